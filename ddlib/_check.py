@@ -1,0 +1,79 @@
+"""Argument checks: every error names the argument, its value and its range."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
+    """`value` as a float array, refused if it is not finite or has the wrong last axis.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, used in the message.
+    value : array_like
+        The argument.
+    last : int, optional
+        Required length of the last axis.
+
+    Raises
+    ------
+    TypeError
+        If `value` is not numeric.
+    ValueError
+        If it contains NaN or infinity, or its last axis is not `last` long.
+    """
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
+    if last is not None and (array.ndim == 0 or array.shape[-1] != last):
+        raise ValueError(f"{name} must have a last axis of length {last}, got shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} must be finite, got NaN or infinity")
+    return array
+
+
+def number(name: str, value, low=-np.inf, high=np.inf, *, open_low=False) -> float:
+    """`value` as a float within `low` to `high` (`open_low` excludes `low` itself).
+
+    Raises
+    ------
+    TypeError
+        If `value` is not a single number.
+    ValueError
+        If it is not finite or out of range.
+    """
+    if isinstance(value, bool) or np.ndim(value) != 0:
+        raise TypeError(f"{name} must be a single number, got {value!r}")
+    x = float(finite_array(name, value))
+    if x < low or x > high or (open_low and x == low):
+        bracket = "(" if open_low else "["
+        raise ValueError(f"{name} must lie in {bracket}{low:g}, {high:g}], got {x:g}")
+    return x
+
+
+def non_negative(name: str, value, last: int | None = None) -> np.ndarray:
+    """`value` as a finite array without negative entries, otherwise a ValueError."""
+    array = finite_array(name, value, last)
+    if (array < 0).any():
+        raise ValueError(f"{name} must not be negative, got {array.min():g}")
+    return array
+
+
+def integer(name: str, value, low: int, high: int | None = None) -> int:
+    """`value` as an int within `low` to `high`; TypeError or ValueError otherwise."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name} must be an integer, got {value!r}")
+    if value < low or (high is not None and value > high):
+        upper = "and up" if high is None else f"to {high}"
+        raise ValueError(f"{name} must be an integer from {low} {upper}, got {value}")
+    return int(value)
+
+
+def one_of(name: str, value, known) -> str:
+    """`value` if it is among `known`, otherwise a ValueError that lists them."""
+    if value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    return value

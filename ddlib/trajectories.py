@@ -1,0 +1,106 @@
+"""Reference trajectories: the paper's pick-and-place family (section 2, Appendix I)."""
+
+from __future__ import annotations
+
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, non_negative, number
+from ddlib.paper import APPENDIX_I_EXTENTS_DEG
+
+MOTION_SECONDS = 3.0
+"""Length of one pick-and-place motion, s (Appendix I)."""
+
+MAX_EXTENT_DEG = 45.0
+"""Largest extent of the family, degrees (section 2)."""
+
+
+class OutsideFamilyWarning(UserWarning):
+    """The extents lie outside the square of 0 to 45 degrees that the paper draws from."""
+
+
+class Trajectory(NamedTuple):
+    """Positions (rad), velocities (rad/s), accelerations (rad/s^2), each ``(..., time, joint)``."""
+
+    q: np.ndarray
+    qd: np.ndarray
+    qdd: np.ndarray
+
+
+def pick_and_place(extents_deg, t) -> Trajectory:
+    """The family ``phi = -theta sin(pi t / 3)``: out and back in three seconds.
+
+    Before 0 s and from 3 s on the reference rests at zero, so its velocity jumps at
+    both ends: by 0.82 rad/s for an extent of 45 degrees.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (..., 2)
+        Extents theta of shoulder and elbow in degrees. Outside 0 to 45 they are
+        accepted with an `OutsideFamilyWarning`.
+    t : array_like, shape (time,)
+        Times, s.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape ``(..., time, 2)``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not numeric, not finite or of the wrong shape.
+
+    Source: Goldberg & Pearlmutter 1988, Appendix I.
+    """
+    extents_deg = finite_array("extents_deg", extents_deg, 2)
+    t = finite_array("t", t)
+    if t.ndim != 1:
+        raise ValueError(f"t must have shape (time,), got {t.shape}")
+    if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
+        warnings.warn(
+            f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family",
+            OutsideFamilyWarning,
+            stacklevel=2,
+        )
+    theta = np.deg2rad(extents_deg)[..., None, :]
+    omega = np.pi / MOTION_SECONDS
+    moving = ((t >= 0) & (t < MOTION_SECONDS))[:, None]
+    sine, cosine = np.sin(omega * t)[:, None] * moving, np.cos(omega * t)[:, None] * moving
+    return Trajectory(-theta * sine, -theta * omega * cosine, theta * omega**2 * sine)
+
+
+APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)
+"""Extents of the six trajectories in degrees, shape (6, 2); the last one is the test."""
+APPENDIX_I.setflags(write=False)
+
+
+def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.ndarray:
+    """`n` random members of the family: extents in degrees, shape ``(n, 2)``.
+
+    Uniform over the square, the way the paper draws its six (section 2).
+    """
+    integer("n", n, 1)
+    number("max_deg", max_deg, 0.0, open_low=True)
+    return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
+
+
+def time_grid(step: float, rest: float = 0.0) -> np.ndarray:
+    """Times of one motion with `rest` s before and after it, every `step` s.
+
+    The grid contains 0 exactly; the motion covers the samples in [0, 3) s.
+
+    Raises
+    ------
+    ValueError
+        If `step` does not divide the motion and the rest into whole samples.
+    """
+    number("step", step, 0.0, MOTION_SECONDS, open_low=True)
+    non_negative("rest", rest)
+    before, total = rest / step, (MOTION_SECONDS + 2 * rest) / step
+    for name, count in (("rest", before), ("step", total)):
+        if abs(count - round(count)) > 1e-6:
+            raise ValueError(f"{name} must give a whole number of samples, got {count:g}")
+    return (np.arange(round(total)) - round(before)) * step
