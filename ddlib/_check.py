@@ -25,9 +25,12 @@ def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
         If it contains NaN or infinity, or its last axis is not `last` long.
     """
     try:
-        array = np.asarray(value, dtype=float)
+        given = np.asarray(value)
+        if given.dtype.kind not in "biufO" or (given == None).any():  # noqa: E711
+            raise TypeError(f"numbers of kind {given.dtype}")
+        array = given.astype(float)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} must be an array of numbers, got {value!r}") from error
+        raise TypeError(f"{name} must be an array of real numbers, got {value!r}") from error
     if last is not None and (array.ndim == 0 or array.shape[-1] != last):
         raise ValueError(f"{name} must have a last axis of length {last}, got shape {array.shape}")
     if not np.isfinite(array).all():

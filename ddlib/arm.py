@@ -11,9 +11,9 @@ angles are in rad and, for arms with gravity, counted from hanging straight down
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Mapping
 
 import numpy as np
 
@@ -76,8 +76,11 @@ class Arm:
     def __post_init__(self):
         for name in ("a", "b", "d"):
             number(name, getattr(self, name))
-        non_negative("lengths", self.lengths, 2)
-        finite_array("gravity_moments", self.gravity_moments, 2)
+        for name, check in (("lengths", non_negative), ("gravity_moments", finite_array)):
+            pair = check(name, getattr(self, name), 2)
+            if pair.ndim != 1:
+                raise ValueError(f"{name} must have shape (2,), got {pair.shape}")
+            object.__setattr__(self, name, tuple(pair.tolist()))
         if not (self.d > 0 and self.a * self.d > self.d**2 + self.b**2):
             raise ValueError(
                 "a, b, d must make the mass matrix positive definite "
@@ -91,7 +94,7 @@ class Arm:
         return (Arm, (*values, dict(self.provenance)))
 
     @classmethod
-    def from_links(cls, name, link1: Link, link2: Link, gravity=0.0, provenance=()) -> "Arm":
+    def from_links(cls, name, link1: Link, link2: Link, gravity=0.0, provenance=()) -> Arm:
         """Arm with two given links; `gravity` in m/s^2 is 0 for a horizontal plane.
 
         The base parameters are ``a = I1 + m1 lc1^2 + m2 l1^2 + d``,
@@ -144,7 +147,10 @@ class Arm:
         q : array_like, shape (..., 2)
             Joint angles, rad, from hanging straight down.
         """
-        q = finite_array("q", q, 2)
+        return self._gravity(finite_array("q", q, 2))
+
+    def _gravity(self, q) -> np.ndarray:
+        """`gravity` without checks, for the inner loop of a simulation."""
         g1, g2 = self.gravity_moments
         elbow = g2 * np.sin(q[..., 0] + q[..., 1])
         return np.stack([g1 * np.sin(q[..., 0]) + elbow, elbow], -1)
@@ -162,7 +168,6 @@ class Arm:
         ndarray, shape (..., 2)
             Joint torques, N m.
         """
-        qdd = finite_array("qdd", qdd, 2)
         return sum(self.torque_terms(q, qd, qdd).values())
 
     def torque_terms(self, q, qd, qdd) -> dict[str, np.ndarray]:
@@ -174,8 +179,7 @@ class Arm:
             ``inertial``, ``coupling`` (off-diagonal inertia), ``centrifugal``,
             ``coriolis`` and ``gravity``, each of shape ``(..., 2)`` in N m.
         """
-        q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
-        qdd = finite_array("qdd", qdd, 2)
+        q, qd, qdd = _state(q, qd, qdd)
         c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
         m12 = self.d + self.b * c2
         v1, v2 = qd[..., 0], qd[..., 1]
@@ -208,7 +212,7 @@ class Arm:
         r1 = tau[..., 0] + h * v2 * (2 * v1 + v2)
         r2 = tau[..., 1] - h * v1 * v1
         if any(self.gravity_moments):
-            weight = self.gravity(q)
+            weight = self._gravity(q)
             r1, r2 = r1 - weight[..., 0], r2 - weight[..., 1]
         m11, m12 = self.a + 2 * self.b * c2, self.d + self.b * c2
         determinant = m11 * self.d - m12 * m12
@@ -233,8 +237,7 @@ class Arm:
         The torque is linear in the base parameters; this is what identification
         by least squares rests on (An 1988; Khosla 1986).
         """
-        q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
-        qdd = finite_array("qdd", qdd, 2)
+        q, qd, qdd = _state(q, qd, qdd)
         c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
         (v1, v2), (a1, a2) = np.moveaxis(qd, -1, 0), np.moveaxis(qdd, -1, 0)
         s1, s12, zero = np.sin(q[..., 0]), np.sin(q[..., 0] + q[..., 1]), np.zeros_like(a1 * c2)
@@ -254,7 +257,12 @@ class Arm:
         return np.stack([elbow, elbow + np.stack([l2 * np.cos(q12), l2 * np.sin(q12)], -1)], -2)
 
 
-_ASSUMED = "assumed"
+def _state(q, qd, qdd) -> tuple[np.ndarray, ...]:
+    """Checked angles, velocities and accelerations, broadcast against each other."""
+    checked = (finite_array(n, x, 2) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
+    return np.broadcast_arrays(*checked)
+
+
 CMU_DD_ARM_II = Arm.from_links(
     "CMU DD Arm II (surrogate)",
     Link(mass=14.0, length=0.50, com=0.22, inertia=0.40),

@@ -7,8 +7,9 @@ control period with the sample number and the *measured* state.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -116,6 +117,11 @@ class Feedforward:
         """The law that follows `reference`, called every `step` s."""
         model = self.model.inverse_dynamics if isinstance(self.model, Arm) else self.model
         torque = finite_array("model(q, qd, qdd)", model(*reference), 2)
+        samples = reference.q.shape[-2]
+        if torque.ndim < 2 or torque.shape[-2] != samples:
+            raise ValueError(
+                f"model(q, qd, qdd) must return shape (..., {samples}, 2), got {torque.shape}"
+            )
         feedback = self.feedback.start(reference, step)
 
         def law(k, q, qd):

@@ -92,7 +92,7 @@ class Quantisation:
         number("step", self.step, 0.0, open_low=True)
 
     @classmethod
-    def encoder(cls, bits: int) -> "Quantisation":
+    def encoder(cls, bits: int) -> Quantisation:
         """Absolute encoder with 2**`bits` steps a turn, in rad."""
         return cls(2 * np.pi / 2 ** integer("bits", bits, 1, 40))
 
@@ -136,6 +136,13 @@ class Effects:
     encoder: tuple = ()
     torque_sensor: tuple = ()
 
+    def __post_init__(self):
+        for part in ("friction", "actuator", "encoder", "torque_sensor"):
+            method = "torque" if part == "friction" else "apply"
+            effects = getattr(self, part)
+            if not isinstance(effects, tuple) or not all(hasattr(e, method) for e in effects):
+                raise TypeError(f"{part} must be a tuple of effects with {method}(), got {effects}")
+
     def friction_torque(self, qd) -> np.ndarray:
         """Sum of all friction torques (N m) at `qd` (rad/s), shape ``(..., joint)``."""
         total = np.zeros_like(qd)
@@ -143,7 +150,7 @@ class Effects:
             total = total + effect.torque(qd)
         return total
 
-    def without(self, *parts: str) -> "Effects":
+    def without(self, *parts: str) -> Effects:
         """A copy with whole parts switched off.
 
         Parameters

@@ -55,8 +55,8 @@ class Recording:
     @property
     def motion(self) -> slice:
         """The samples of the motion itself, without the rests."""
-        inside = np.flatnonzero((self.t >= 0) & (self.t < MOTION_SECONDS))
-        return slice(int(inside[0]), int(inside[-1]) + 1)
+        first, end = np.searchsorted(self.t, (0.0, MOTION_SECONDS))
+        return slice(int(first), int(end))
 
     @property
     def tracking_error(self) -> np.ndarray:
@@ -103,10 +103,13 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     t : ndarray, shape (time,)
     q, qd : ndarray, shape (..., time, 2)
     """
-    q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
+    q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
     number("seconds", seconds, 0.0, open_low=True)
     number("step", step, 0.0, seconds, open_low=True)
-    t = np.arange(round(seconds / step) + 1) * step
+    count = seconds / step
+    if abs(count - round(count)) > 1e-6:
+        raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
+    t = np.arange(round(count) + 1) * step
     states = [(q, qd)]
     zero = np.zeros_like(q)
     for _ in t[1:]:
@@ -161,9 +164,14 @@ def follow(
         raise ValueError(
             f"reference must have {t.size} samples like t, got shape {reference.q.shape}"
         )
+    if not callable(getattr(controller, "start", None)):
+        raise TypeError(f"controller must have a start method, got {controller!r}")
+    step = float(t[1] - t[0])
+    if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
+        raise ValueError(f"t must increase in equal steps, got steps from {step:g} s")
+    integer("seed", seed, 0)
     integer("log_every", log_every, 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
-    step = float(t[1] - t[0])
     rng = np.random.default_rng(seed)
     law = controller.start(reference, step)
 
@@ -171,18 +179,21 @@ def follow(
     reading = pass_through(effects.encoder, q, rng)
     log = []
     for k in range(t.size):
+        if not np.abs(qd).max() < 1e6:
+            raise ValueError(
+                f"the control loop diverges: joint speeds pass 1e6 rad/s at t = {t[k]:.3f} s; "
+                "lower the gains or the control period"
+            )
         previous, reading = reading, pass_through(effects.encoder, q, rng)
         speed = qd if velocity == "tachometer" else (reading - previous) / step
         tau = pass_through(effects.actuator, law(k, reading, speed), rng)
         if k % log_every == 0:
             log.append((reading, pass_through(effects.torque_sensor, tau, rng), q, qd, tau))
-            if not np.abs(qd).max() < 1e6:
-                raise ValueError(
-                    f"the control loop diverges: joint speeds pass 1e6 rad/s at t = {t[k]:.3f} s; "
-                    "lower the gains or the control period"
-                )
-        q, qd = rk4_step(arm, effects, q, qd, tau, step)
-    read, tau, q_true, qd_true, tau_true = (np.stack(series, -2) for series in zip(*log))
+        with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported above
+            q, qd = rk4_step(arm, effects, q, qd, tau, step)
+    read, tau, q_true, qd_true, tau_true = (
+        np.stack(np.broadcast_arrays(*series), -2) for series in zip(*log)
+    )
     logged = Trajectory(*(x[..., ::log_every, :] for x in reference))
     return Recording(t[::log_every], logged, read, tau, q_true, qd_true, tau_true)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number
+from ddlib._check import finite_array, integer, number
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
 MOTION_SECONDS = 3.0
@@ -83,6 +83,7 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
     Uniform over the square, the way the paper draws its six (section 2).
     """
     integer("n", n, 1)
+    integer("seed", seed, 0)
     number("max_deg", max_deg, 0.0, open_low=True)
     return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
 
@@ -98,9 +99,10 @@ def time_grid(step: float, rest: float = 0.0) -> np.ndarray:
         If `step` does not divide the motion and the rest into whole samples.
     """
     number("step", step, 0.0, MOTION_SECONDS, open_low=True)
-    non_negative("rest", rest)
+    number("rest", rest, 0.0)
     before, total = rest / step, (MOTION_SECONDS + 2 * rest) / step
     for name, count in (("rest", before), ("step", total)):
         if abs(count - round(count)) > 1e-6:
             raise ValueError(f"{name} must give a whole number of samples, got {count:g}")
-    return (np.arange(round(total)) - round(before)) * step
+    # counted in fractions of the motion, so that 3 s is 3.0 and not one rounding below it
+    return (np.arange(round(total)) - round(before)) * MOTION_SECONDS / round(MOTION_SECONDS / step)
