@@ -32,9 +32,7 @@ class Rmss(NamedTuple):
 TABLE_4_1 = MappingProxyType({11: Rmss(0.078, 0.22), 21: Rmss(0.027, 0.10), 41: Rmss(0.024, 0.13)})
 """RMSS error by window size, Table 4-1."""
 
-TABLE_6_1 = MappingProxyType(
-    {"random set A": 0.068, "random set B": 0.083, "trajectory 6": 0.067}
-)
+TABLE_6_1 = MappingProxyType({"random set A": 0.068, "random set B": 0.083, "trajectory 6": 0.067})
 """RMSS error of the simulation network on its synthetic data sets, Table 6-1."""
 
 LARGEST_WEIGHT = MappingProxyType({11: 18.9, 21: 11.7, 41: 4.2})

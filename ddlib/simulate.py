@@ -164,6 +164,12 @@ def follow(
         raise ValueError(
             f"reference must have {t.size} samples like t, got shape {reference.q.shape}"
         )
+    for name, x in zip(Trajectory._fields, reference):
+        if x.shape != reference.q.shape:
+            raise ValueError(
+                f"reference.{name} must have the shape of reference.q {reference.q.shape}, "
+                f"got {x.shape}"
+            )
     if not callable(getattr(controller, "start", None)):
         raise TypeError(f"controller must have a start method, got {controller!r}")
     step = float(t[1] - t[0])

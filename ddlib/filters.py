@@ -1,0 +1,211 @@
+"""Weights as convolution filters: even and odd parts, derivative content (section 5.1).
+
+A weight function is a unit's weights from one joint's window, ``f(x)`` with x from
+-n to n samples, oldest first. Convolved with the position it estimates derivatives:
+even filters see acceleration, odd ones velocity (and jerk).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, number, one_of
+
+
+class Decomposition(NamedTuple):
+    """The parts of a weight function; ``constant + even + odd`` is the function itself.
+
+    Attributes
+    ----------
+    constant : ndarray, shape (..., 1)
+    even, odd : ndarray, shape (..., width)
+    """
+
+    constant: np.ndarray
+    even: np.ndarray
+    odd: np.ndarray
+
+    def sum(self) -> np.ndarray:
+        """The function that was decomposed."""
+        return self.constant + self.even + self.odd
+
+
+def _odd_width(f) -> np.ndarray:
+    f = finite_array("f", f)
+    if f.ndim == 0 or f.shape[-1] < 3 or f.shape[-1] % 2 == 0:
+        raise ValueError(f"f must have an odd last axis of 3 or more samples, got shape {f.shape}")
+    return f
+
+
+def decompose(f, convention: str = "symmetric") -> Decomposition:
+    """Split a weight function into constant, even and odd parts.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions; the centre sample is x = 0.
+    convention : {"symmetric", "paper"}
+        "symmetric": the mean is taken out of the even part, so that the odd part is
+        odd. "paper": as printed in section 5.1, where it is taken out of the *odd*
+        part: the sum is the same, but "odd" is then not odd and "even" keeps the mean.
+
+    Returns
+    -------
+    Decomposition
+
+    Raises
+    ------
+    ValueError
+        If `f` is not finite or has an even number of samples.
+    """
+    f = _odd_width(f)
+    one_of("convention", convention, ("symmetric", "paper"))
+    mirrored = f[..., ::-1]
+    constant = f.mean(-1, keepdims=True)
+    even, odd = (f + mirrored) / 2, (f - mirrored) / 2
+    if convention == "paper":
+        return Decomposition(constant, even, odd - constant)
+    return Decomposition(constant, even - constant, odd)
+
+
+DERIVATIVES = ("position", "velocity", "acceleration", "jerk")
+"""Names of the derivatives of order 0 to 3."""
+
+
+def basis(width: int) -> np.ndarray:
+    """Orthonormal discrete polynomials of degree 0 to 3 over a window, shape (4, width).
+
+    They are discrete Legendre (Gram) polynomials, each with positive leading
+    coefficient: even for degree 0 and 2, odd for 1 and 3. A weight function's component
+    along degree k is its response to the k-th derivative once lower ones are taken out.
+    """
+    x = np.linspace(-1, 1, width)
+    q, r = np.linalg.qr(np.vander(x, 4, increasing=True))
+    return (q * np.sign(np.diag(r))).T
+
+
+def content(f) -> np.ndarray:
+    """Components of weight functions along `basis`, shape ``(..., 4)``.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions, 5 samples or more.
+    """
+    f = _odd_width(f)
+    if f.shape[-1] < 5:
+        raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
+    return f @ basis(f.shape[-1]).T
+
+
+def shares(f) -> np.ndarray:
+    """Share of each derivative in the energy of weight functions.
+
+    Returns
+    -------
+    ndarray, shape (..., 5)
+        Position, velocity, acceleration, jerk and the rest (what a cubic does not
+        explain); the five sum to 1.
+    """
+    f = _odd_width(f)
+    energy = (f**2).sum(-1, keepdims=True)
+    if (energy == 0).any():
+        raise ValueError("f must not be zero everywhere")
+    parts = content(f) ** 2 / energy
+    return np.concatenate([parts, np.clip(1 - parts.sum(-1, keepdims=True), 0, None)], -1)
+
+
+CLASSES = (
+    "velocity", "acceleration", "jerk", "velocity + acceleration",
+    "acceleration + jerk", "other mix", "not analysable",
+)  # fmt: skip
+"""Names that `classify` gives."""
+
+
+def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
+    """Name weight functions by the derivatives they respond to.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions.
+    pure : float
+        Share of the cubic part's energy, without its constant, from which one
+        derivative alone (or two together) gives the name.
+    smooth : float
+        Smallest share of the energy that a cubic must explain; below it the function is
+        "not analysable".
+
+    Returns
+    -------
+    ndarray of str, shape (...)
+        One of `CLASSES` each.
+    """
+    number("pure", pure, 0.5, 1.0)
+    number("smooth", smooth, 0.0, 1.0)
+    share = shares(f)
+    v, a, j = np.moveaxis(share[..., 1:4], -1, 0)
+    total = np.where(v + a + j > 0, v + a + j, 1)
+    v, a, j = v / total, a / total, j / total
+    rough = share[..., 4] > 1 - smooth
+    conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
+    names = [CLASSES[6], *CLASSES[:5]]
+    return np.select(conditions, names, CLASSES[5])
+
+
+def roughness(f) -> np.ndarray:
+    """Energy of the second differences against white noise's, shape (...).
+
+    0 for a straight line, about 1 for white noise, more for an alternating one.
+    """
+    f = _odd_width(f)
+    centred = f - f.mean(-1, keepdims=True)
+    energy = (centred**2).mean(-1)
+    second = (np.diff(f, 2, axis=-1) ** 2).mean(-1)
+    return np.divide(second, 6 * energy, out=np.zeros_like(energy), where=energy > 0)
+
+
+def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) -> np.ndarray:
+    """Least-squares filter that estimates a derivative at the window's centre.
+
+    Parameters
+    ----------
+    width : int
+        Window size in samples, odd.
+    derivative : int
+        Order of the derivative, 0 to `degree`.
+    step : float
+        Sampling period, s.
+    degree : int
+        Degree of the fitted polynomial.
+
+    Returns
+    -------
+    ndarray, shape (width,)
+        Weights, oldest sample first: ``weights @ window`` estimates the derivative.
+    """
+    from scipy.signal import savgol_coeffs
+
+    number("step", step, 0.0, open_low=True)
+    return savgol_coeffs(width, degree, deriv=derivative, delta=step, use="dot")
+
+
+def frequency_response(f, frequencies, step: float) -> np.ndarray:
+    """Complex gain of weight functions for ``exp(i 2 pi nu t)``, shape (..., frequency).
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions, oldest sample first, centred on now.
+    frequencies : array_like, shape (frequency,)
+        In Hz.
+    step : float
+        Sampling period, s.
+    """
+    f, frequencies = _odd_width(f), finite_array("frequencies", frequencies)
+    number("step", step, 0.0, open_low=True)
+    half = f.shape[-1] // 2
+    times = np.arange(-half, half + 1) * step
+    return f @ np.exp(2j * np.pi * times[:, None] * frequencies)

@@ -1,0 +1,71 @@
+"""The printed numbers, typed a second time from the report, and what the text says of them."""
+
+import numpy as np
+import pytest
+
+from ddlib import paper
+
+
+def test_appendix_i_as_printed():
+    shoulder = [45.0, 38.6, 5.4, 20.9, 0.0, 39.5]
+    elbow = [45.0, 32.2, 39.4, 0.0, 45.0, 14.4]
+    assert list(paper.APPENDIX_I_EXTENTS_DEG) == list(zip(shoulder, elbow))
+    assert paper.TRAINING_TRAJECTORIES == (1, 2, 3, 4, 5) and paper.TEST_TRAJECTORY == 6
+    assert paper.SAMPLES_PER_TRAJECTORY == 3 * 100  # three seconds, 100 samples per second
+
+
+def test_extents_lie_in_the_family():
+    extents = np.array(paper.APPENDIX_I_EXTENTS_DEG)
+    assert extents.shape == (6, 2) and (extents >= 0).all() and (extents <= 45).all()
+    numbers = {*paper.TRAINING_TRAJECTORIES, paper.TEST_TRAJECTORY}
+    assert numbers == set(range(1, len(extents) + 1))
+
+
+def test_table_4_1_as_printed():
+    printed = [(w, *paper.TABLE_4_1[w]) for w in sorted(paper.TABLE_4_1)]
+    assert printed == [(11, 0.078, 0.22), (21, 0.027, 0.10), (41, 0.024, 0.13)]
+
+
+def test_table_4_1_says_what_the_text_says():
+    """Sections 4 and 5.3: training improves with the window, the test is best at 21."""
+    rows = [paper.TABLE_4_1[w] for w in (11, 21, 41)]
+    assert rows[0].training > rows[1].training > rows[2].training
+    assert min(paper.TABLE_4_1, key=lambda w: paper.TABLE_4_1[w].test) == 21
+    assert all(row.test > row.training for row in rows)
+
+
+def test_table_6_1_as_printed():
+    assert dict(paper.TABLE_6_1) == {
+        "random set A": 0.068,
+        "random set B": 0.083,
+        "trajectory 6": 0.067,
+    }
+
+
+def test_largest_weights_as_printed():
+    assert dict(paper.LARGEST_WEIGHT) == {11: 18.9, 21: 11.7, 41: 4.2}
+    assert paper.LARGEST_WEIGHT_SIMULATION == 9.63
+    assert paper.LARGEST_WEIGHT.keys() == paper.TABLE_4_1.keys()
+
+
+def test_multiplications_fit_window_21_not_the_largest():
+    """Weights times cases: the printed "over 700,000" is the middle window's count."""
+
+    def per_epoch(width):
+        inputs, outputs, hidden = 2 * width, 2, paper.HIDDEN_UNITS
+        weights = inputs * hidden + inputs * outputs + hidden * outputs
+        return weights * paper.SAMPLES_PER_TRAJECTORY * len(paper.TRAINING_TRAJECTORIES)
+
+    printed = paper.MULTIPLICATIONS_PER_EPOCH
+    assert printed == 700_000 and per_epoch(21) == 786_000
+    assert per_epoch(11) < printed < per_epoch(21) < 2 * printed < per_epoch(41)
+    assert paper.EPOCHS == 20_000 and paper.HIDDEN_UNITS == 10
+
+
+@pytest.mark.parametrize("table", [paper.TABLE_4_1, paper.TABLE_6_1, paper.LARGEST_WEIGHT])
+def test_printed_tables_cannot_be_changed(table):
+    key = next(iter(table))
+    with pytest.raises(TypeError):
+        table[key] = 0.0
+    with pytest.raises((TypeError, AttributeError)):
+        paper.TABLE_4_1[11].test = 0.0

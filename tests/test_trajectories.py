@@ -1,0 +1,201 @@
+"""The pick-and-place family against its formula, its derivatives and Appendix I."""
+
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ddlib.trajectories import (
+    APPENDIX_I,
+    OutsideFamilyWarning,
+    pick_and_place,
+    random_extents,
+    time_grid,
+)
+
+family = st.tuples(st.floats(0, 45), st.floats(0, 45))
+
+
+@settings(deadline=None, max_examples=30)
+@given(extents=family)
+def test_velocity_and_acceleration_are_derivatives(extents):
+    t, h = np.linspace(0.01, 2.99, 150), 1e-3
+    at = pick_and_place(extents, t)
+    near = {k: pick_and_place(extents, t + k * h) for k in (-2, -1, 1, 2)}
+
+    def slope(field):
+        x = {k: getattr(value, field) for k, value in near.items()}
+        return (8 * (x[1] - x[-1]) - (x[2] - x[-2])) / (12 * h)
+
+    np.testing.assert_allclose(slope("q"), at.qd, atol=1e-9)
+    np.testing.assert_allclose(slope("qd"), at.qdd, atol=1e-9)
+
+
+@settings(deadline=None, max_examples=30)
+@given(extents=family)
+def test_out_to_the_extent_and_back(extents):
+    q, qd, qdd = pick_and_place(extents, np.array([0.0, 0.75, 1.5, 2.25]))
+    theta = np.deg2rad(extents)
+    np.testing.assert_allclose(q, -theta * np.sqrt([[0], [0.5], [1], [0.5]]), atol=1e-15)
+    np.testing.assert_allclose(qd[2], 0, atol=1e-15)  # turns at the extent
+    np.testing.assert_allclose(qd[0], -theta * np.pi / 3)
+    np.testing.assert_allclose(qdd, -((np.pi / 3) ** 2) * q, atol=1e-15)  # a harmonic motion
+    fine = pick_and_place(extents, np.linspace(0, 3, 3001)).q
+    np.testing.assert_allclose(np.abs(fine).max(0), theta, atol=1e-15)
+    np.testing.assert_allclose(fine[1:3000], fine[2999:0:-1], atol=1e-12)  # back as it went out
+    assert (fine <= 0).all()  # the minus sign of Appendix I
+
+
+def test_velocity_jumps_at_both_ends():
+    moment = 1e-9
+    t = np.array([-moment, 0.0, 3.0 - moment, 3.0])
+    qd = pick_and_place([45.0, 45.0], t).qd[:, 0]
+    np.testing.assert_allclose(qd, [0.0, -0.8225, 0.8225, 0.0], atol=5e-5)
+    assert round(abs(qd[1]), 2) == 0.82
+
+
+def test_acceleration_never_changes_sign():
+    qdd = pick_and_place([38.6, 32.2], time_grid(0.01)).qdd
+    assert (qdd >= 0).all() and (qdd[1:] > 0).all()
+
+
+def test_reference_rests_outside_the_motion():
+    t = np.array([-5.0, -0.01, 3.0, 3.01, 100.0])
+    for array in pick_and_place([45.0, 20.0], t):
+        assert not array.any()
+
+
+def test_many_members_at_once_equal_one_by_one():
+    t = time_grid(0.01, 0.2)
+    together = pick_and_place(APPENDIX_I, t)
+    assert together.q.shape == (6, 340, 2)
+    for i, extents in enumerate(APPENDIX_I):
+        for many, one in zip(together, pick_and_place(extents, t)):
+            np.testing.assert_array_equal(many[i], one)
+    assert pick_and_place(np.zeros((2, 3, 2)), t).qdd.shape == (2, 3, 340, 2)
+
+
+@pytest.mark.parametrize("extents", [(45.1, 0), (0, -0.1), (90, 90), [[1, 2], [3, 46]]])
+def test_extents_outside_the_family_warn_and_still_work(extents):
+    with pytest.warns(OutsideFamilyWarning, match="0 to 45") as caught:
+        q = pick_and_place(extents, [1.5]).q
+    np.testing.assert_allclose(q[..., 0, :], -np.deg2rad(extents))
+    assert caught[0].filename == __file__  # points at the caller
+
+
+@settings(deadline=None, max_examples=30)
+@given(extents=family)
+def test_members_of_the_family_do_not_warn(extents):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pick_and_place(extents, [0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    "extents, t, name",
+    [
+        ((np.nan, 0), [0.0], "extents_deg"),
+        ((0, np.inf), [0.0], "extents_deg"),
+        ((10,), [0.0], "extents_deg"),
+        ((10, 10, 10), [0.0], "extents_deg"),
+        (10, [0.0], "extents_deg"),
+        ((10, 10), [0.0, np.nan], "t"),
+        ((10, 10), 0.0, "t"),
+        ((10, 10), [[0.0, 1.0]], "t"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(extents, t, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        pick_and_place(extents, t)
+
+
+@pytest.mark.parametrize("extents, t, name", [("far", [0.0], "extents_deg"), ((1, 1), "now", "t")])
+def test_wrong_kinds_are_refused_by_name(extents, t, name):
+    with pytest.raises(TypeError, match=rf"^{name} must"):
+        pick_and_place(extents, t)
+
+
+def test_appendix_i():
+    assert APPENDIX_I.tolist() == [
+        [45.0, 45.0],
+        [38.6, 32.2],
+        [5.4, 39.4],
+        [20.9, 0.0],
+        [0.0, 45.0],
+        [39.5, 14.4],
+    ]
+    with pytest.raises(ValueError, match="read-only"):
+        APPENDIX_I[0, 0] = 1.0
+
+
+def test_random_extents_fill_the_square():
+    extents = random_extents(20_000, seed=3)
+    assert extents.shape == (20_000, 2) and extents.min() >= 0 and extents.max() <= 45
+    np.testing.assert_allclose(extents.mean(0), 22.5, atol=4 * 13 / np.sqrt(20_000))
+    np.testing.assert_allclose(extents.std(0), 45 / np.sqrt(12), rtol=0.02)
+    assert abs(np.corrcoef(extents.T)[0, 1]) < 4 / np.sqrt(20_000)  # each joint independently
+
+
+def test_random_extents_are_seeded():
+    np.testing.assert_array_equal(random_extents(5, 1), random_extents(5, 1))
+    assert not np.array_equal(random_extents(5, 1), random_extents(5, 2))
+    assert random_extents(1000, 0, max_deg=10.0).max() <= 10.0
+
+
+@pytest.mark.parametrize("n, seed, max_deg", [(0, 0, 45), (-1, 0, 45), (1, -1, 45), (1, 0, 0)])
+def test_random_extents_refuse_bad_values(n, seed, max_deg):
+    with pytest.raises(ValueError, match=r"^(n|seed|max_deg) must"):
+        random_extents(n, seed, max_deg)
+
+
+@pytest.mark.parametrize("n, seed", [(1.5, 0), (1, None), (1, 0.5)])
+def test_random_extents_refuse_wrong_kinds(n, seed):
+    with pytest.raises(TypeError, match=r"^(n|seed) must"):
+        random_extents(n, seed)
+
+
+@pytest.mark.parametrize(
+    "step, rest, count",
+    [(0.01, 0.0, 300), (0.01, 0.5, 400), (0.002, 0.5, 2000), (0.1, 0.7, 44), (0.005, 0.02, 608)],
+)
+def test_time_grid_counts(step, rest, count):
+    t = time_grid(step, rest)
+    assert t.size == count and (t == 0.0).any()
+    np.testing.assert_allclose(np.diff(t), step, rtol=1e-9)
+    assert t[0] == pytest.approx(-rest) and t[-1] == pytest.approx(3 + rest - step)
+
+
+@settings(deadline=None, max_examples=200)
+@given(samples=st.integers(1, 5000), rest=st.integers(1, 50))
+def test_time_grid_has_the_whole_motion_and_no_sample_more(samples, rest):
+    """3 s itself belongs to the rest, whatever the step rounds to."""
+    step = 3.0 / samples
+    t = time_grid(step, rest * step)
+    assert np.count_nonzero((t >= 0) & (t < 3.0)) == samples
+    assert np.count_nonzero(t < 0) == np.count_nonzero(t >= 3.0) == rest
+
+
+@pytest.mark.parametrize(
+    "step, rest, name",
+    [
+        (0.007, 0.0, "step"),
+        (0.01, 0.005, "rest"),
+        (0.0, 0.0, "step"),
+        (-0.01, 0.0, "step"),
+        (3.5, 0.0, "step"),
+        (np.nan, 0.0, "step"),
+        (0.01, -0.5, "rest"),
+        (0.01, np.inf, "rest"),
+    ],
+)
+def test_time_grid_refuses_bad_values(step, rest, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        time_grid(step, rest)
+
+
+def test_time_grid_refuses_wrong_kinds():
+    for step, rest in (("fast", 0.0), (0.01, [0.5, 0.5]), (0.01, "0.5")):
+        with pytest.raises(TypeError, match=r"^(step|rest) must"):
+            time_grid(step, rest)
