@@ -95,10 +95,21 @@ class Arm:
 
     @classmethod
     def from_links(cls, name, link1: Link, link2: Link, gravity=0.0, provenance=()) -> Arm:
-        """Arm with two given links; `gravity` in m/s^2 is 0 for a horizontal plane.
+        """Arm with two given links.
 
         The base parameters are ``a = I1 + m1 lc1^2 + m2 l1^2 + d``,
         ``b = m2 l1 lc2`` and ``d = I2 + m2 lc2^2``.
+
+        Parameters
+        ----------
+        name : str
+            What the arm is called in tables and figures.
+        link1, link2 : Link
+            Upper arm and forearm.
+        gravity : float
+            Acceleration of free fall, m/s^2; 0 for a horizontal plane.
+        provenance : mapping
+            For each quantity, where its value comes from.
         """
         d = link2.inertia + link2.mass * link2.com**2
         a = link1.inertia + link1.mass * link1.com**2 + link2.mass * link1.length**2 + d
@@ -173,6 +184,11 @@ class Arm:
     def torque_terms(self, q, qd, qdd) -> dict[str, np.ndarray]:
         """The torque of `inverse_dynamics`, split by physical origin.
 
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+
         Returns
         -------
         dict
@@ -236,6 +252,11 @@ class Arm:
 
         The torque is linear in the base parameters; this is what identification
         by least squares rests on (An 1988; Khosla 1986).
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
         """
         q, qd, qdd = _state(q, qd, qdd)
         c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])

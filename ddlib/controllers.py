@@ -93,7 +93,7 @@ def proportional(kp) -> PID:
 
 
 def pd(kp, kd) -> PID:
-    """Proportional-derivative control with gains in N m/rad and N m s/rad per joint."""
+    """Proportional-derivative control: gains `kp` in N m/rad, `kd` in N m s/rad per joint."""
     return PID(kp, kd=kd)
 
 

@@ -87,6 +87,11 @@ class Weights:
             draws.append([rng.uniform(-initial, initial, shape) for shape in shapes])
         return cls(*(np.stack(parts) for parts in zip(*draws)))
 
+    @classmethod
+    def concatenate(cls, parts) -> Weights:
+        """One ensemble of several: their members in order."""
+        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS))
+
     def __getitem__(self, index) -> Weights:
         """The network(s) at `index` of the leading axis."""
         return Weights(*(getattr(self, name)[index] for name in _FIELDS))

@@ -67,7 +67,8 @@ class Recording:
 def rk4_step(arm: Arm, effects: Effects, q, qd, tau, step):
     """One Runge-Kutta step of the plant under constant torque; returns new `q`, `qd`.
 
-    Arrays are ``(..., joint)``; `step` in s.
+    The `arm` and the friction of `effects` make the plant. Arrays are ``(..., joint)``:
+    angles `q` (rad), velocities `qd` (rad/s), applied torque `tau` (N m); `step` is in s.
     """
 
     def acceleration(q, qd):
@@ -93,10 +94,14 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
 
     Parameters
     ----------
+    arm : Arm
+        The arm that moves.
     q, qd : array_like, shape (..., 2)
         Initial angles (rad) and velocities (rad/s).
     seconds, step : float
-        Duration and integration step, s.
+        Duration and integration step, s; a whole number of steps.
+    effects : Effects
+        Only the friction acts here.
 
     Returns
     -------
@@ -220,6 +225,8 @@ def record(
 
     Parameters
     ----------
+    arm, controller
+        Plant and control law.
     extents_deg : array_like, shape (2,) or (runs, 2)
         Extents in degrees; several rows are several runs, simulated together.
     effects, seed, velocity

@@ -7,6 +7,8 @@ one network, by autograd; `train_ensemble` does the same sums for many at once.
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,6 +23,10 @@ from ddlib.windows import Scaler, sliding_windows
 
 TARGET_RANGE = (0.2, 0.8)
 """Range of the output units that the torques are scaled to (Lang 1988)."""
+
+
+WORKERS = min(2, os.cpu_count() or 1)
+"""Threads that `train_ensemble` uses."""
 
 
 @dataclass(frozen=True)
@@ -320,27 +326,57 @@ def train_ensemble(
     """
     rate = default_rate(weights.width) if rate is None else rate
     _check(rate, momentum, epochs)
+    blocks = np.array_split(np.arange(len(weights)), min(WORKERS, len(weights)))
+    bar = tqdm(total=epochs, desc=label, disable=not progress, mininterval=0.5)
+
+    def work(block):
+        leader = bar if block[0] == 0 else None
+        return _train_block(
+            weights[block], data, test, rate, momentum, epochs, set(snapshots), leader
+        )
+
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)  # one core for each block: no waiting at every product
+    try:
+        with ThreadPoolExecutor(len(blocks)) as pool:
+            parts = list(pool.map(work, blocks))
+    finally:
+        torch.set_num_threads(threads)
+        bar.close()
+    trained, histories, kept = zip(*parts)
+    history = History(
+        histories[0].epochs,
+        np.hstack([h.training for h in histories]),
+        np.hstack([h.test for h in histories]),
+    )
+    if not np.isfinite(history.training[-1]).any():
+        raise TrainingDiverged(
+            f"no member's error is finite after {epochs} epochs: lower the rate ({rate:g})", history
+        )
+    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs)
+    return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in kept[0]}
+
+
+def _train_block(weights, data, test, rate, momentum, epochs, snapshots, bar):
+    """Train some members in this thread; `bar`, if any, is told how far it is."""
+    torch.set_num_threads(1)
     ensemble = _Ensemble(weights, data.x, data.y)
     history, points = History(), set(check_points(epochs))
     kept = {0: weights} if 0 in snapshots else {}
     eps = rate / len(data.x)
-    bar = tqdm(range(1, epochs + 1), desc=label, disable=not progress, mininterval=0.5)
-    for epoch in bar:
+    for epoch in range(1, epochs + 1):
         ensemble.epoch(eps, momentum)
-        if epoch in points or epoch in snapshots:
-            current = ensemble.weights()
-            if epoch in snapshots:
-                kept[epoch] = current
+        if bar is not None and epoch % 50 == 0:
+            bar.update(50)
+        if epoch in snapshots:
+            kept[epoch] = ensemble.weights()
         if epoch in points:
+            current = ensemble.weights()
             errors = [_error(current, *pair) for pair in ([(data.x, data.y)] + [test] * bool(test))]
             history.append(epoch, *errors)
-            bar.set_postfix(median_rmss=f"{np.nanmedian(errors[0]):.3f}")
-            if not np.isfinite(errors[0]).any():
-                raise TrainingDiverged(
-                    f"no member's error is finite at epoch {epoch}: lower the rate ({rate:g})",
-                    history,
-                )
-    return TorqueModel(ensemble.weights(), data.inputs, data.outputs), history, kept
+            if bar is not None:
+                bar.set_postfix(median_rmss=f"{np.nanmedian(errors[0]):.3f}", refresh=False)
+    return ensemble.weights(), history, kept
 
 
 def _error(weights: Weights, x, y) -> np.ndarray:

@@ -80,7 +80,8 @@ APPENDIX_I.setflags(write=False)
 def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.ndarray:
     """`n` random members of the family: extents in degrees, shape ``(n, 2)``.
 
-    Uniform over the square, the way the paper draws its six (section 2).
+    Uniform over the square from 0 to `max_deg`, the way the paper draws its six
+    (section 2); the same `seed` gives the same members.
     """
     integer("n", n, 1)
     integer("seed", seed, 0)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
     IDEAL,
     CoulombFriction,
     Effects,
@@ -213,6 +214,18 @@ def test_bad_values_are_refused_when_the_effect_is_made(make):
 def test_wrong_kinds_are_refused_by_name(make, name):
     with pytest.raises(TypeError, match=name):
         make()
+
+
+def test_surrogate_effects_by_numbers():
+    effects = CMU_DD_ARM_II_EFFECTS
+    # viscous plus Coulomb at 1 rad/s, one joint each way
+    np.testing.assert_allclose(effects.friction_torque(np.array([1.0, -1.0])), [1.0, -0.3])
+    np.testing.assert_allclose(effects.friction_torque(np.array([2.0, -2.0])), [1.5, -0.45])
+    rng = np.random.default_rng(0)
+    torque = pass_through(effects.actuator, np.array([500.0, -500.0]), rng)
+    assert torque.tolist() == [100.0, -30.0]
+    reading = pass_through(effects.encoder, np.array([1.0, -1.0]), rng)
+    np.testing.assert_allclose(reading * 65536 / (2 * np.pi), [10430, -10430], rtol=1e-12)
 
 
 def test_effects_cannot_be_changed():

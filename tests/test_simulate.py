@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import simpson, solve_ivp
 
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Link
+from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm, Link
 from ddlib.controllers import PID, ComputedTorque, pd, proportional
 from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
     IDEAL,
     CoulombFriction,
     Effects,
@@ -60,7 +61,7 @@ def test_free_arm_keeps_its_energy_for_ten_seconds(arm):
     assert t[-1] == pytest.approx(10.0) and q.shape == (3, 10001, 2)
     e, moving = energy(arm, q, qd), arm.kinetic_energy(q, qd).max(-1, keepdims=True)
     assert (np.abs(e - e[:, :1]) / moving).max() < 1e-6
-    assert np.ptp(arm.kinetic_energy(q, qd)[0]) >= 0 and np.ptp(q[..., 1]) > 1.0
+    assert (np.ptp(q, axis=1) > 0.5).all()  # every joint of every run has moved
 
 
 def test_free_arm_without_gravity_keeps_its_angular_momentum():
@@ -87,8 +88,6 @@ def test_free_motion_agrees_with_scipy(arm):
 
 def test_a_simple_pendulum_swings_with_its_period():
     """One heavy link, a weightless one behind: 2 pi sqrt(I / (m g c)) for a small swing."""
-    from ddlib.arm import Arm
-
     heavy, light = Link(2.0, 0.5, 0.4, 0.1), Link(1e-7, 0.1, 0.05, 1e-7)
     arm = Arm.from_links("pendulum", heavy, light, gravity=9.81)
     t, q, _ = free_motion(arm, [1e-3, 0.0], [0.0, 0.0], 6.0, step=0.002)
@@ -111,8 +110,6 @@ def test_friction_takes_exactly_the_energy_that_is_lost():
 
 def test_viscous_friction_decays_at_its_closed_form():
     """Elbow straight and both joints turning alone: one equation, one exponential."""
-    from ddlib.arm import Arm
-
     arm = Arm("diagonal inertia", a=4.0, b=0.0, d=1e-9, lengths=(1.0, 1.0))
     effects = Effects(friction=(ViscousFriction((2.0, 0.0)),))
     t, q, qd = free_motion(arm, [0.0, 0.0], [1.0, -1.0], 2.0, 0.01, effects=effects)
@@ -153,7 +150,6 @@ def test_one_step_can_be_taken_back(q, qd, tau):
     there = rk4_step(REYES_KELLY_ARM, IDEAL, q, qd, tau, 1e-4)
     back = rk4_step(REYES_KELLY_ARM, IDEAL, *there, tau, -1e-4)
     np.testing.assert_allclose(back, (q, qd), atol=1e-9)
-    assert np.abs(there[1] - qd).max() > 0 or np.abs(there[0] - q).max() >= 0
 
 
 def test_free_motions_at_once_and_broadcast():
@@ -317,6 +313,15 @@ def test_torque_noise_is_in_the_log_only(paper_run):
     quiet = record(ARM, PD, APPENDIX_I, effects=SENSORS.without("torque_sensor"))
     np.testing.assert_array_equal(quiet.tau_true, paper_run.tau_true)
     np.testing.assert_array_equal(quiet.q, paper_run.q)
+
+
+def test_surrogate_noise_is_what_its_docstring_says():
+    """About 2.4 % of the torques' standard deviation; the torque limits are not reached."""
+    recording = record(ARM, proportional((1000, 300)), APPENDIX_I, effects=CMU_DD_ARM_II_EFFECTS)
+    tau = recording.tau_true[:, recording.motion].reshape(-1, 2)
+    noise = (recording.tau - recording.tau_true).reshape(-1, 2)
+    np.testing.assert_allclose(noise.std(0) / tau.std(0), 0.024, rtol=0.1)
+    assert (np.abs(tau).max(0) < [100.0, 30.0]).all()
 
 
 def test_ideal_sensors_tell_the_truth():

@@ -1,0 +1,77 @@
+# Everything runs in .venv, which the first target makes. `make help` lists the targets.
+#   make book PYTHON=python3.12    another interpreter
+#   make test JOBS=4               more worker processes
+
+PYTHON ?= python3
+VENV   ?= .venv
+JOBS   ?= 2
+
+BIN    := $(VENV)/bin
+READY  := $(VENV)/.ready
+STRIP  := $(BIN)/nbstripout --keep-id --extra-keys "metadata.language_info.version \
+	metadata.language_info.codemirror_mode metadata.language_info.file_extension \
+	metadata.language_info.mimetype metadata.language_info.nbconvert_exporter \
+	metadata.language_info.pygments_lexer"
+NOTEBOOKS = book/*.ipynb
+
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.DEFAULT_GOAL := help
+.PHONY: help env book test lint stripped unit notebooks pages lab reproduce bench strip clean
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+env: $(READY)  ## the Python environment alone, in .venv
+
+$(READY): requirements.txt pyproject.toml
+	@echo "==> Installing into $(VENV) (a few minutes and about 2 GB the first time)"
+	@$(PYTHON) -c 'import sys; v = sys.version_info; sys.exit(None if v >= (3, 11) else \
+	  f"Python 3.11 or newer is needed, this is {v[0]}.{v[1]}; try: make PYTHON=python3.12")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --disable-pip-version-check -r requirements.txt
+	$(BIN)/python -m pip install --disable-pip-version-check --no-deps -e .
+	@touch $@
+
+book: $(READY)  ## execute the notebooks and build the pages
+	@$(BIN)/python book/_ext/build.py
+
+test: lint stripped unit notebooks pages  ## everything that CI checks
+
+lint: $(READY)
+	@echo "==> Style"
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+stripped: $(READY)
+	@echo "==> Notebooks are stored without outputs"
+	$(STRIP) --verify $(NOTEBOOKS)
+
+unit: $(READY)
+	@echo "==> Unit and property tests"
+	$(BIN)/python -m pytest -n $(JOBS) -m "not built and not browser"
+
+notebooks: $(READY)
+	@echo "==> Every notebook in a fresh process, warnings are errors"
+	OMP_NUM_THREADS=1 PYTHONWARNINGS="error:::__main__" \
+	  $(BIN)/python -m pytest -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
+
+pages: book
+	@echo "==> The built pages"
+	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser"
+
+lab: $(READY)  ## JupyterLab on the book
+	$(BIN)/python -m jupyterlab --LabApp.default_url=/lab/tree/book
+
+reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
+	$(BIN)/python -m ddlib.reproduce
+
+bench: $(READY)  ## speed, as ratios measured in one run
+	$(BIN)/python benchmarks/run.py
+
+strip: $(READY)  ## remove outputs from the notebooks before a commit
+	$(STRIP) $(NOTEBOOKS)
+
+clean:  ## remove what was built; .venv stays
+	rm -rf _build .pytest_cache .ruff_cache .hypothesis
+	find book ddlib tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

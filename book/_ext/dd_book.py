@@ -1,0 +1,92 @@
+"""The book's Sphinx extension: the notebooks' cache, a local MathJax, stills of widgets."""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import json
+import re
+import shutil
+import sys
+from importlib.metadata import files
+from pathlib import Path
+
+MATHJAX = "tex-svg-full.js"
+SKIP = {"__pycache__", ".ipynb_checkpoints"}
+KEPT_CACHES = 3
+
+# What a notebook's outcome depends on beside its own cells, and what the pages depend on.
+CELL_INPUTS = ("ddlib", "book/results", "book/*.yml", "requirements.txt")
+PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml")
+
+
+def digest(root: Path, patterns: tuple[str, ...]) -> str:
+    """Hash of the names and contents of all files that the patterns name, folders included."""
+    found = {path for pattern in patterns for top in root.glob(pattern) for path in walk(top)}
+    total = hashlib.sha256(f"python {sys.version_info[:2]}".encode())
+    for path in sorted(found):
+        content = hashlib.sha256(path.read_bytes()).hexdigest()
+        total.update(f"\n{path.relative_to(root).as_posix()} {content}".encode())
+    return total.hexdigest()[:16]
+
+
+def walk(top: Path):
+    """Every file at or below a path, without what Python and Jupyter leave behind."""
+    for path in [top, *top.rglob("*")]:
+        if path.is_file() and not SKIP & set(path.parts):
+            yield path
+
+
+def set_cache_path(app, config):
+    """Key the cache of executed notebooks by the code and data they import and read."""
+    caches = Path(app.outdir).parent / ".jupyter_cache"
+    cache = caches / digest(Path(app.srcdir), CELL_INPUTS)
+    cache.mkdir(parents=True, exist_ok=True)
+    cache.touch()
+    by_age = sorted(caches.iterdir(), key=lambda path: path.stat().st_mtime)
+    for old in by_age[:-KEPT_CACHES]:
+        shutil.rmtree(old)
+    config.nb_execution_cache_path = str(cache)
+
+
+def copy_mathjax(app):
+    """Take the one MathJax file that needs no others; its package as an extension copies 24 MB."""
+    if app.builder.format != "html":
+        return
+    source = next(f for f in files("sphinx-mathjax-offline") if f.name == MATHJAX)
+    target = Path(app.outdir, "_static", "mathjax", MATHJAX)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(source.locate(), target)
+
+
+VIEW = re.compile(
+    r'<script type="application/vnd\.jupyter\.widget-view\+json">(.*?)</script>', flags=re.DOTALL
+)
+
+
+def add_stills(body: str, state: dict) -> str:
+    """After each widget with a trait `still` (a data: URI), show it where there is no script."""
+
+    def with_still(match):
+        entry = state.get(json.loads(match[1]).get("model_id"), {}).get("state", {})
+        if not entry.get("still"):
+            return match[0]
+        src, alt = html.escape(entry["still"]), html.escape(entry.get("still_alt", ""))
+        return f'{match[0]}<noscript><img class="still" src="{src}" alt="{alt}"></noscript>'
+
+    return VIEW.sub(with_still, body)
+
+
+def show_stills(app, pagename, templatename, context, doctree):
+    """Find the page's widget states where myst-nb keeps them, and add the stills."""
+    scripts = getattr(app.env, "nb_metadata", {}).get(pagename, {}).get("js_files", {})
+    if "ipywidgets_state" in scripts:
+        state = json.loads(scripts["ipywidgets_state"][1]["body"])["state"]
+        context["body"] = add_stills(context["body"], state)
+
+
+def setup(app):
+    app.connect("config-inited", set_cache_path)
+    app.connect("builder-inited", copy_mathjax)
+    app.connect("html-page-context", show_stills)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,173 @@
+"""The experiment of section 4, as this book repeats it: one place for every choice made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib import paper
+from ddlib._check import finite_array, integer
+from ddlib.arm import CMU_DD_ARM_II, Arm
+from ddlib.controllers import Controller, pd, proportional
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
+from ddlib.metrics import rmss
+from ddlib.network import TorqueModel, Weights
+from ddlib.simulate import Recording, record
+from ddlib.training import History, TrainingSet, cases, train_ensemble
+from ddlib.trajectories import APPENDIX_I
+from ddlib.windows import sliding_windows
+
+KP = (100.0, 30.0)
+"""Gains on the position error of shoulder and elbow, N m/rad. Assumed."""
+
+KD = (20.0, 6.0)
+"""Gains on the velocity error, N m s/rad. Assumed: damping ratios of about 0.4 and 0.65."""
+
+WINDOWS = tuple(paper.TABLE_4_1)
+"""Window sizes of Table 4-1."""
+
+MOMENTUM = 0.98
+"""Acceleration factor. Assumed; Lang (1988) used 0.95, which leaves the training error far
+from its asymptote after the paper's 20,000 epochs."""
+
+INITIAL = 0.3
+"""Initial weights are uniform in plus or minus this (Rumelhart, Hinton & Williams 1986)."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Arm, effects, controller and training: everything that decides Table 4-1.
+
+    Parameters
+    ----------
+    name : str
+        What tables call it.
+    controller : Controller
+    arm : Arm
+    effects : Effects
+    epochs : int
+    momentum, initial : float
+    hidden : int
+        Number of hidden units.
+    seed : int
+        Seed of the sensor noise of the recording.
+    """
+
+    name: str
+    controller: Controller
+    arm: Arm = CMU_DD_ARM_II
+    effects: Effects = CMU_DD_ARM_II_EFFECTS
+    epochs: int = paper.EPOCHS
+    momentum: float = MOMENTUM
+    initial: float = INITIAL
+    hidden: int = paper.HIDDEN_UNITS
+    seed: int = 0
+
+    def record(self, extents_deg=APPENDIX_I) -> Recording:
+        """The recording of all runs, noise included; default: the six of Appendix I."""
+        return record(self.arm, self.controller, extents_deg, effects=self.effects, seed=self.seed)
+
+
+POSITION_FEEDBACK = Setup("position feedback", proportional(KP))
+"""First reading of "a proportional controller": torque proportional to the position error."""
+
+STATE_FEEDBACK = Setup("state feedback", pd(KP, KD))
+"""Second reading: the reference is "position and velocity" (section 2), so the torque is
+proportional to the errors in both. The arm follows without ringing."""
+
+SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK)}
+"""The two readings by name."""
+
+
+def run(recording: Recording, run_number: int | slice) -> Recording:
+    """One run (or several) of a batch recording; numbers count from 0."""
+    pick = [x[run_number] for x in (recording.q, recording.tau, recording.q_true)]
+    pick += [recording.qd_true[run_number], recording.tau_true[run_number]]
+    reference = type(recording.reference)(*(x[run_number] for x in recording.reference))
+    return Recording(recording.t, reference, *pick)
+
+
+def split(recording: Recording) -> tuple[Recording, Recording]:
+    """Training runs 1 to 5 and test run 6 of an Appendix I recording: split by trajectory."""
+    if recording.q.ndim != 3 or len(recording.q) != len(APPENDIX_I):
+        raise ValueError(
+            f"recording must hold the six runs of Appendix I, got shape {recording.q.shape}"
+        )
+    return run(recording, slice(0, 5)), run(recording, 5)
+
+
+def train_windows(
+    setup: Setup,
+    recording: Recording,
+    width: int,
+    members: int,
+    *,
+    seed=0,
+    snapshots=(),
+    progress=True,
+) -> tuple[TorqueModel, History, dict[int, Weights]]:
+    """Train `members` networks of one window size on runs 1 to 5, following run 6.
+
+    Parameters
+    ----------
+    setup : Setup
+    recording : Recording
+        The six runs of Appendix I.
+    width, members, seed : int
+        Window size, number of networks, seed of the first one's weights.
+    snapshots, progress
+        As in `ddlib.training.train_ensemble`.
+
+    Returns
+    -------
+    model, history, snapshots
+        As from `ddlib.training.train_ensemble`.
+    """
+    integer("members", members, 1)
+    training, test = split(recording)
+    data = TrainingSet.from_recording(training, width)
+    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
+    return train_ensemble(
+        weights,
+        data,
+        test=data.transform(*cases(test, width)),
+        momentum=setup.momentum,
+        epochs=setup.epochs,
+        snapshots=snapshots,
+        progress=progress,
+        label=f"{setup.name}, window {width}",
+    )
+
+
+def errors(model: TorqueModel, recording: Recording) -> dict[str, np.ndarray]:
+    """RMSS of a model on an Appendix I recording, in each way the paper may have meant.
+
+    Returns
+    -------
+    dict
+        ``training`` and ``test`` (pooled, own standard deviation), ``test, training's
+        deviation``, ``test shoulder``, ``test elbow`` and ``test, desired positions`` (the
+        network sees the reference in place of the measured positions); one value per
+        member each.
+    """
+    width = model.weights.width
+    training, test = split(recording)
+    (x, y), (x6, y6) = cases(training, width), cases(test, width)
+    desired = sliding_windows(test.reference.q, width, test.motion)
+    predicted = model.torque(x6)
+    by_joint = rmss(predicted, y6, pooled=False)
+    return {
+        "training": rmss(model.torque(x), y),
+        "test": rmss(predicted, y6),
+        "test, training's deviation": rmss(predicted, y6, scale=y.std(0)),
+        "test shoulder": by_joint[..., 0],
+        "test elbow": by_joint[..., 1],
+        "test, desired positions": rmss(model.torque(desired), y6),
+    }
+
+
+def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
+    """Torque that a model gives along the motion of a recording, ``(..., time, joint)``, N m."""
+    finite_array("recording.q", recording.q, 2)
+    return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))

@@ -1,0 +1,124 @@
+"""The house style: figures as inline SVG that follow the page's light or dark theme."""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import io
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+INK = "#010203"
+"""Colour of text and axes; becomes the page's own text colour in the SVG."""
+
+FAINT = "#7f7f7f"
+"""Colour of grids and secondary lines; legible on light and on dark pages."""
+
+COLOURS = ("#2f7fd1", "#d4680b", "#219a6c", "#c2559d", "#8c7ae6", "#a08100")
+"""Line colours, each with a contrast of 3:1 or more on white and on near-black."""
+
+DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
+"""Line styles that go with the colours, so that colour is never the only difference."""
+
+RC = {
+    "axes.edgecolor": INK,
+    "axes.grid": True,
+    "axes.labelcolor": INK,
+    "axes.labelsize": 9.5,
+    "axes.linewidth": 0.7,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlecolor": INK,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 10,
+    "figure.constrained_layout.use": True,
+    "figure.facecolor": "none",
+    "axes.facecolor": "none",
+    "font.size": 9.5,
+    "grid.alpha": 0.28,
+    "grid.color": FAINT,
+    "grid.linewidth": 0.6,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "legend.labelcolor": INK,
+    "lines.linewidth": 1.5,
+    "svg.fonttype": "path",
+    "text.color": INK,
+    "xtick.color": INK,
+    "xtick.labelsize": 8.5,
+    "ytick.color": INK,
+    "ytick.labelsize": 8.5,
+}
+
+
+@dataclass(frozen=True)
+class Illustration:
+    """A finished figure with its alternative text; a notebook shows it as inline SVG.
+
+    Attributes
+    ----------
+    svg : str
+        The picture.
+    alt : str
+        What it shows, for those who cannot see it.
+    """
+
+    svg: str
+    alt: str
+
+    def _repr_html_(self) -> str:
+        return f'<div class="ddlib-figure">{self.svg}</div>'
+
+    def save(self, path, ink="#1a1a1a", paper="#ffffff") -> None:
+        """Write the picture to an ``.svg`` file with fixed colours."""
+        svg = self.svg.replace("currentColor", ink)
+        svg = svg.replace("<svg ", f'<svg style="background:{paper}" ', 1)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(svg)
+
+
+def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) -> Illustration:
+    """Draw a figure in the house style.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw(figure)`` puts axes and curves on an empty matplotlib figure.
+    alt : str
+        Alternative text; required.
+    width, height : float
+        Size in inches.
+
+    Raises
+    ------
+    ValueError
+        If the alternative text is empty.
+    """
+    if not alt.strip():
+        raise ValueError("alt must describe the figure, got an empty text")
+    with mpl.rc_context({**RC, "svg.hashsalt": alt}):
+        figure = Figure(figsize=(width, height))
+        draw(figure)
+        stream = io.StringIO()
+        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
+    return Illustration(_inline(stream.getvalue(), alt), alt)
+
+
+def _inline(svg: str, alt: str) -> str:
+    """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name."""
+    svg = svg[svg.index("<svg ") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    prefix = "f" + hashlib.sha256(svg.encode()).hexdigest()[:8]
+    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
+    svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
+    svg = svg.replace(INK, "currentColor")
+    size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
+    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto"
+    label = html.escape(alt, quote=True)
+    attributes = f'role="img" aria-label="{label}" style="{style}"'
+    svg = svg.replace(size[0], attributes, 1)
+    return re.sub(r"\n\s*", "\n", svg)

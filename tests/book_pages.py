@@ -1,0 +1,24 @@
+"""The pages of the book, as _toc.yml lists them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+TOC = yaml.safe_load((ROOT / "_toc.yml").read_text(encoding="utf-8"))
+
+CHAPTERS = [
+    page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
+]
+BACK_MATTER = [
+    page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
+]
+PAGES = [TOC["root"], *CHAPTERS, *BACK_MATTER]
+
+
+def source(page: str) -> Path | None:
+    """The file a page is written in, or None."""
+    candidates = (ROOT / f"{page}{suffix}" for suffix in (".ipynb", ".md"))
+    return next((path for path in candidates if path.is_file()), None)

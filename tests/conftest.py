@@ -1,0 +1,90 @@
+"""Fixtures that open built pages, and hypothesis settings that hold on a busy machine."""
+
+from __future__ import annotations
+
+import os
+
+import chromium
+import pytest
+from hypothesis import settings
+
+CI = os.environ.get("CI", "").lower() in {"1", "true"}
+
+settings.register_profile("book", deadline=None, derandomize=CI, print_blob=True)
+settings.load_profile("book")
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A headless Chromium. Without one the test is skipped, or fails under CI=true."""
+    if chromium.find() is None:
+        (pytest.fail if CI else pytest.skip)(chromium.HOW_TO_GET_ONE)
+    with chromium.launch() as running:
+        yield running
+
+
+@pytest.fixture(scope="session")
+def built():
+    """The folder of the built pages."""
+    if not (chromium.HTML / ".built-from").is_file():
+        pytest.fail("there is no clean build of the book: run `make book` first")
+    return chromium.HTML
+
+
+@pytest.fixture(scope="session")
+def site(built):
+    """The address of a loopback server with the built pages."""
+    with chromium.serve(built) as address:
+        yield address
+
+
+class Visit:
+    """An open page and everything that went wrong on it."""
+
+    def __init__(self, context, url: str, lands: str | None):
+        self.problems: list[str] = []
+        self.home = url.split("/", 3)[2]  # host and port; empty for file:
+        self.page = context.new_page()
+        self.page.on("console", self._console)
+        self.page.on("pageerror", lambda error: self.problems.append(f"page error: {error}"))
+        self.page.on("request", self._request)
+        self.page.on("requestfailed", lambda r: self.problems.append(f"failed: {r.url[:200]}"))
+        self.page.on("response", self._response)
+        self.page.goto(url)
+        if lands:
+            self.page.wait_for_url(lands)
+        chromium.settle(self.page)
+
+    def _console(self, message):
+        if message.type in {"error", "warning"}:
+            self.problems.append(f"console {message.type}: {message.text}")
+
+    def _request(self, request):
+        scheme, _, rest = request.url.partition(":")
+        local = scheme in {"data", "blob", "file"} or rest.split("/")[2] == self.home
+        if not local:
+            self.problems.append(f"external request: {request.url[:200]}")
+
+    def _response(self, response):
+        if response.status >= 400:
+            self.problems.append(f"{response.status}: {response.url[:200]}")
+
+
+@pytest.fixture
+def visit(browser):
+    """Open a page: `visit(url, scheme="light", width=1280)` -> Visit.
+
+    `lands` is the address pattern that the page redirects to.
+    """
+    contexts = []
+
+    def open_page(
+        url: str, scheme: str = "light", width: int = 1280, lands: str | None = None
+    ) -> Visit:
+        context = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 800})
+        contexts.append(context)
+        return Visit(context, url, lands)
+
+    yield open_page
+    for context in contexts:
+        context.close()

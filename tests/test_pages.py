@@ -1,0 +1,234 @@
+"""The built pages, in a real browser and as plain HTML."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from functools import lru_cache
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlsplit
+
+import numpy as np
+import pytest
+from book_pages import PAGES, ROOT
+from bs4 import BeautifulSoup
+
+browser_test = pytest.mark.browser
+built_test = pytest.mark.built
+
+VIEW_TAG = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
+VIEW = 'script[type="application/vnd.jupyter.widget-view+json"]'
+MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
+
+# name -> colour scheme, width in px, opened as a file or over http
+VARIANTS = {
+    "light": ("light", 1280, "file"),
+    "dark": ("dark", 1280, "http"),
+    "narrow": ("light", 400, "http"),
+}
+
+# Runs in the page; returns what a reader would see as wrong.
+CHECKS = r"""
+({ width, scheme }) => {
+  const found = [];
+  const root = document.documentElement;
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  if (root.scrollWidth > width) {
+    const box = (el) => el.getBoundingClientRect();
+    const wide = all("main :not(mjx-container *)").filter((el) => box(el).right > width + 1);
+    const names = wide.slice(0, 3).map((el) => `${el.tagName}.${el.className}`);
+    found.push(`overflows: ${root.scrollWidth} px of ${width}: ${names.join(", ")}`);
+  }
+  if (root.dataset.theme !== scheme) found.push(`theme is ${root.dataset.theme}`);
+  for (const img of all("img")) {
+    if (!img.alt.trim()) found.push(`no alternative text: ${img.src.slice(0, 80)}`);
+    if (img.complete && !img.naturalWidth) found.push(`broken image: ${img.alt}`);
+  }
+  for (const [kind, wanted] of [["light", scheme === "light"], ["dark", scheme === "dark"]]) {
+    for (const el of all(`.only-${kind}`)) {
+      if ((getComputedStyle(el).display !== "none") !== wanted) found.push(`only-${kind} is wrong`);
+    }
+  }
+  for (const el of all("mjx-merror")) found.push(`bad TeX: ${el.textContent}`);
+  const prose = document.querySelector("article").cloneNode(true);
+  prose.querySelectorAll("pre, code, script, style, mjx-container").forEach((el) => el.remove());
+  const raw = prose.textContent.match(/\\[([]|\$\$|\\begin\{|\\(frac|tau|ddot|dot|text)\b/);
+  if (raw) found.push(`raw TeX: ${prose.textContent.substr(raw.index, 60)}`);
+  return found;
+}
+"""
+
+
+def address(page: str, kind: str, built: Path, site: str) -> str:
+    return (built / f"{page}.html").as_uri() if kind == "file" else f"{site}/{page}.html"
+
+
+@browser_test
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("name", PAGES)
+def test_page_is_clean(name, variant, built, site, visit):
+    scheme, width, kind = VARIANTS[variant]
+    opened = visit(address(name, kind, built, site), scheme, width)
+    views = opened.page.locator(VIEW).count()
+    mounted = opened.page.locator(".ddlib-widget").count()
+    alerts = opened.page.locator(".ddlib-widget-error").all_inner_texts()
+    problems = opened.problems + opened.page.evaluate(CHECKS, {"width": width, "scheme": scheme})
+    assert not problems + alerts
+    assert mounted == views
+
+
+@browser_test
+@pytest.mark.parametrize("kind", ["file", "http"])
+def test_root_leads_to_the_book(kind, built, site, visit):
+    opened = visit(address("index", kind, built, site), lands=f"**/{PAGES[0]}.html")
+    assert opened.page.locator("article h1").count() == 1
+    assert not opened.problems
+
+
+@browser_test
+def test_search_finds_a_chapter(site, visit):
+    opened = visit(f"{site}/search.html?q=torque")
+    opened.page.wait_for_selector("#search-results li a", timeout=10_000)
+    assert not opened.problems
+
+
+@browser_test
+def test_there_is_one_search_field(built, site, visit):
+    opened = visit(address(PAGES[1], "http", built, site))
+    fields = opened.page.locator("button.search-button-field")
+    assert sum(fields.nth(i).is_visible() for i in range(fields.count())) == 1
+
+
+# Links
+
+
+@lru_cache
+def soup(path: Path) -> BeautifulSoup:
+    return BeautifulSoup(path.read_text(encoding="utf-8"), "html.parser")
+
+
+@lru_cache
+def anchors(path: Path) -> frozenset[str]:
+    tags = soup(path).find_all(True)
+    return frozenset(tag.get(key) for tag in tags for key in ("id", "name") if tag.get(key))
+
+
+def broken_links(path: Path) -> list[str]:
+    """Links and resources of a page that lead to no file or no anchor."""
+    broken = []
+    for tag in soup(path).find_all(True):
+        for link in (tag.get("href"), tag.get("src")):
+            if not link or urlsplit(link).scheme or link.startswith("//"):
+                continue
+            target, anchor = urldefrag(link)
+            target = path.parent / unquote(urlsplit(target).path) if target else path
+            if not target.is_file():
+                broken.append(link)
+            elif anchor and target.suffix == ".html" and unquote(anchor) not in anchors(target):
+                broken.append(link)
+    return broken
+
+
+@built_test
+@pytest.mark.parametrize("name", [*PAGES, "search", "genindex"])
+def test_links_resolve(name, built):
+    page = built / f"{name}.html"
+    assert soup(page).find("a", href=True)
+    assert not broken_links(page)
+
+
+def test_broken_links_are_seen(tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text(
+        '<p id="here"><a href="#here">a</a><a href="#gone">b</a><a href="no.html">c</a>'
+        '<a href="https://example.org">d</a><img src="no.png"></p>'
+    )
+    assert broken_links(page) == ["#gone", "no.html", "no.png"]
+
+
+@built_test
+@pytest.mark.parametrize("name", PAGES)
+def test_page_loads_nothing_from_outside(name, built):
+    tags = soup(built / f"{name}.html").find_all(["script", "link", "img", "iframe", "source"])
+    loaded = [
+        tag.get("src") or tag.get("href") or ""
+        for tag in tags
+        if "canonical" not in tag.get("rel", [])
+    ]
+    assert loaded
+    assert not [link for link in loaded if re.match(r"(https?:)?//", link)]
+
+
+# The script that mounts widgets
+
+ESM = """
+export default {
+  initialize({ model }) { model.set("ready", true); },
+  render({ model, el }) {
+    const bytes = model.get("table");
+    const label = document.createElement("b");
+    const show = () => {
+      const value = new Float32Array(bytes.buffer)[model.get("index")];
+      label.textContent = `${model.kernelless} ${model.get("ready")} ${value}`;
+    };
+    model.on("change:index", show);
+    const button = document.createElement("button");
+    button.textContent = "second value";
+    button.onclick = () => { model.set("index", 1); model.save_changes(); };
+    show();
+    el.append(label, button);
+  },
+};
+"""
+
+
+def widget_page(tmp_path, state: str, ids: list[str]) -> str:
+    views = "".join(VIEW_TAG % json.dumps({"model_id": model_id}) for model_id in ids)
+    page = tmp_path / "page.html"
+    page.write_text(
+        '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">'
+        f"<body>{views}<p id='end'>the rest of the page</p>"
+        f'<script type="application/vnd.jupyter.widget-state+json">{state}</script>'
+        f'<script src="{MOUNT}" defer></script>'
+    )
+    return page.as_uri()
+
+
+def saved_state(**modules: str) -> str:
+    table = base64.b64encode(np.array([0.5, 2.5], dtype="<f4").tobytes()).decode()
+    entry = {"buffers": [{"path": ["table"], "encoding": "base64", "data": table}]}
+    return json.dumps(
+        {"state": {k: {**entry, "state": {"_esm": esm, "index": 0}} for k, esm in modules.items()}}
+    )
+
+
+@browser_test
+def test_mounted_widget_has_its_data_and_reacts(tmp_path, visit):
+    opened = visit(widget_page(tmp_path, saved_state(good=ESM), ["good", "good"]))
+    labels = opened.page.locator(".ddlib-widget b")
+    assert labels.all_inner_texts() == ["true true 0.5"] * 2
+    opened.page.locator("button").first.click()
+    assert labels.all_inner_texts() == ["true true 2.5"] * 2  # both views share the model
+    assert not opened.problems
+
+
+@browser_test
+def test_failing_widget_says_so_and_spares_the_others(tmp_path, visit):
+    state = saved_state(
+        good=ESM, syntax="export default {", run="export default {render() { nope() }}"
+    )
+    opened = visit(widget_page(tmp_path, state, ["syntax", "good", "run", "absent"]))
+    alerts = opened.page.locator("[role=alert]").all_inner_texts()
+    assert len(alerts) == 3
+    assert "nope is not defined" in alerts[1]
+    assert "its state is not in the page" in alerts[2]
+    assert opened.page.locator(".ddlib-widget b").inner_text() == "true true 0.5"
+
+
+@browser_test
+@pytest.mark.parametrize("state", ["", "{", "null", '{"state": {"good": {}}}'])
+def test_damaged_state_is_reported(state, tmp_path, visit):
+    opened = visit(widget_page(tmp_path, state, ["good"]))
+    assert opened.page.locator("[role=alert]").count() == 1
+    assert opened.page.locator("#end").is_visible()
