@@ -1,0 +1,108 @@
+"""Tables for notebook and page: rows in, Markdown out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+def number(value, digits: int = 3) -> str:
+    """A number for a table cell: `digits` significant digits, no exponent where avoidable."""
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+        return f"{value:,}"
+    value = float(value)
+    if not np.isfinite(value):
+        return "–"
+    if value == 0:
+        return "0"
+    size = int(np.floor(np.log10(abs(value))))
+    if -4 <= size < 6:
+        return f"{value:,.{max(digits - 1 - size, 0)}f}"
+    return f"{value:.{digits - 1}e}"
+
+
+def spread(values, digits: int = 2) -> str:
+    """Median and range of a sample: ``0.10 (0.08 to 0.14)``.
+
+    Parameters
+    ----------
+    values : array_like
+        The sample; values that are not finite are left out.
+    digits : int
+        Significant digits.
+    """
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    if values.size == 0:
+        return "–"
+    parts = [number(v, digits) for v in (np.median(values), values.min(), values.max())]
+    return "{} ({} to {})".format(*parts)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table that a notebook shows as Markdown.
+
+    Parameters
+    ----------
+    header : sequence of str
+        Column heads.
+    rows : iterable of sequence
+        Cells: text is taken as it is, numbers are formatted by `number`.
+    """
+
+    header: Sequence[str]
+    rows: Iterable[Sequence]
+
+    def __post_init__(self):
+        rows = [tuple(row) for row in self.rows]
+        for row in rows:
+            if len(row) != len(self.header):
+                raise ValueError(
+                    f"rows must have {len(self.header)} cells like the header, got {len(row)}: {row}"
+                )
+        object.__setattr__(self, "rows", rows)
+
+    def _repr_markdown_(self) -> str:
+        def line(cells):
+            texts = (c if isinstance(c, str) else number(c) for c in cells)
+            return "| " + " | ".join(text.replace("|", r"\|") for text in texts) + " |"
+
+        rule = "|" + "|".join(" --- " for _ in self.header) + "|"
+        return "\n".join([line(self.header), rule, *map(line, self.rows)])
+
+
+def verdict(value: float, printed: float, factor: float) -> str:
+    """ "reproduced" if `value` lies within `factor` of `printed`, else "not reproduced".
+
+    Parameters
+    ----------
+    value, printed : float
+        Ours (a median) and the paper's; both positive.
+    factor : float
+        1 or more.
+    """
+    if not (value > 0 and printed > 0 and factor >= 1):
+        raise ValueError(
+            f"value and printed must be positive and factor at least 1, "
+            f"got {value}, {printed}, {factor}"
+        )
+    return "reproduced" if 1 / factor <= value / printed <= factor else "not reproduced"
+
+
+def claims(rows: Iterable[tuple[str, str, str, str]]) -> Table:
+    """The closing table of a chapter: claim, what the paper prints, what we find, verdict.
+
+    Raises
+    ------
+    ValueError
+        If a verdict is none of "reproduced", "qualitative", "not reproduced", "not testable".
+    """
+    known = ("reproduced", "qualitative", "not reproduced", "not testable")
+    rows = list(rows)
+    for row in rows:
+        if row[-1] not in known:
+            raise ValueError(f"verdict must be one of {known}, got {row[-1]!r}")
+    return Table(("claim", "printed", "here", "verdict"), rows)
