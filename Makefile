@@ -61,7 +61,7 @@ pages: book
 	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser"
 
 lab: $(READY)  ## JupyterLab on the book
-	$(BIN)/python -m jupyterlab --LabApp.default_url=/lab/tree/book
+	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	$(BIN)/python -m ddlib.reproduce

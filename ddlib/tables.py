@@ -61,7 +61,7 @@ class Table:
         for row in rows:
             if len(row) != len(self.header):
                 raise ValueError(
-                    f"rows must have {len(self.header)} cells like the header, got {len(row)}: {row}"
+                    f"rows must have {len(self.header)} cells like the header, got {row}"
                 )
         object.__setattr__(self, "rows", rows)
 

@@ -24,6 +24,7 @@ ORDER = [
     ("network",),
     ("training",),
     ("rivals",),
+    ("results", "style", "tables"),
     ("figures",),
     ("widgets",),
     ("experiments", "reproduce"),
