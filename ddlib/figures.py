@@ -100,8 +100,8 @@ def arm_sketch(arm: Arm, q) -> Illustration:
                 centre[1] + 1.3 * radius * np.sin(middle),
                 name, ha="center", va="center", fontsize=12,
             )  # fmt: skip
-        axis.text(ex / 2 + 0.03, ey / 2 - 0.07, "link 1", ha="left")
-        axis.text((ex + hx) / 2 + 0.05, (ey + hy) / 2 - 0.02, "link 2", ha="left")
+        axis.text(ex * 0.62 - 0.04, ey * 0.62 + 0.05, "link 1", ha="right")
+        axis.text((ex + hx) / 2 - 0.05, (ey + hy) / 2 + 0.03, "link 2", ha="right")
         axis.text(0.02, -0.07, "shoulder", ha="left")
         axis.text(ex - 0.05, ey + 0.03, "elbow", ha="right")
         axis.text(hx + 0.03, hy + 0.02, "hand", ha="left")

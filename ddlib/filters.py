@@ -135,8 +135,8 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
         Share of the cubic part's energy, without its constant, from which one
         derivative alone (or two together) gives the name.
     smooth : float
-        Smallest share of the energy that a cubic must explain; below it the function is
-        "not analysable".
+        Smallest share of the energy without its constant that a cubic must explain; below
+        it the function is "not analysable".
 
     Returns
     -------
@@ -149,7 +149,7 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     v, a, j = np.moveaxis(share[..., 1:4], -1, 0)
     total = np.where(v + a + j > 0, v + a + j, 1)
     v, a, j = v / total, a / total, j / total
-    rough = share[..., 4] > 1 - smooth
+    rough = share[..., 4] > (1 - smooth) * (1 - share[..., 0])
     conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
     names = [CLASSES[6], *CLASSES[:5]]
     return np.select(conditions, names, CLASSES[5])

@@ -225,6 +225,7 @@ class TorqueModel:
     def save(self, path) -> None:
         """Write the model to an ``.npz`` file (float32), replacing it in one step."""
         path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
         arrays = {name: getattr(self.weights, name).astype(np.float32) for name in _FIELDS}
         for name in ("inputs", "outputs"):
             scaler = getattr(self, name)

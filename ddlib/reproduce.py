@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,18 +26,6 @@ from ddlib.experiment import (
     train_windows,
 )
 from ddlib.network import TorqueModel
-
-MEMBERS = 25
-"""Networks per cell of Table 4-1."""
-
-SNAPSHOTS = (0, 10, 30, 100, 300, 1000, 3000, 10_000, 20_000)
-"""Epochs at which the first networks' weights are kept."""
-
-GAIN_FACTORS = ((0.5, 0.5), (2.0, 1.4), (10.0, 3.2), (0.5, 0.0), (2.0, 0.0), (10.0, 0.0))
-"""Factors on the position and velocity gains whose influence is shown."""
-
-GAIN_MEMBERS = 8
-"""Networks per cell of that comparison."""
 
 
 def _cell(setup, recording, width, members, snapshots=()):
@@ -56,46 +45,71 @@ def _cell(setup, recording, width, members, snapshots=()):
     return cell, model, kept
 
 
-def table_4_1() -> dict:
+def table_4_1(members=25, snapshots=(0, 10, 30, 100, 300, 1000, 3000, 10_000, 20_000)) -> dict:
     """Table 4-1 for both readings of the controller; the networks go into ``.npz`` files."""
     table = {}
     for setup in SETUPS.values():
         recording = setup.record()
         table[setup.name] = {}
         for width in WINDOWS:
-            cell, model, kept = _cell(setup, recording, width, MEMBERS, SNAPSHOTS)
+            cell, model, kept = _cell(setup, recording, width, members, snapshots)
             table[setup.name][str(width)] = cell
-            model.save(results.FOLDER / f"networks-{setup.name.replace(' ', '-')}-{width}.npz")
-            if setup is STATE_FEEDBACK:
-                first = {f"epoch {e}": TorqueModel(w[:2], model.inputs, model.outputs)
-                         for e, w in kept.items()}  # fmt: skip
-                for epoch, snapshot in first.items():
-                    name = f"snapshot-{width}-{epoch.split()[1]}.npz"
-                    snapshot.save(results.FOLDER / "snapshots" / name)
-    return {"members": MEMBERS, "setups": table}
+            model.save(results.networks_path(setup.name, width))
+            for epoch, weights in kept.items() if setup is STATE_FEEDBACK else ():
+                first = TorqueModel(weights[:2], model.inputs, model.outputs)
+                first.save(results.snapshot_path(width, epoch))
+    return {"members": members, "setups": table}
 
 
-def gains() -> dict:
-    """What the assumed gains decide: Table 4-1 for other controllers."""
+def gains(
+    members=8,
+    factors=((0.5, 0.5), (2.0, 1.4), (10.0, 3.2), (0.5, 0.0), (2.0, 0.0), (10.0, 0.0)),
+) -> dict:
+    """What the assumed gains decide: Table 4-1 for other controllers.
+
+    `factors` multiply the position and velocity gains of the state feedback.
+    """
     rows = []
-    for position, velocity in GAIN_FACTORS:
+    for position, velocity in factors:
         kp, kd = position * np.array(KP), velocity * np.array(KD)
         setup = Setup(f"kp x {position:g}, kd x {velocity:g}", pd(tuple(kp), tuple(kd)))
         recording = setup.record()
         tracking = np.rad2deg(np.abs(recording.tracking_error[:, recording.motion]).max())
         row = {"kp": kp, "kd": kd, "largest tracking error, degrees": tracking, "windows": {}}
         for width in WINDOWS:
-            cell, *_ = _cell(setup, recording, width, GAIN_MEMBERS)
+            cell, *_ = _cell(setup, recording, width, members)
             row["windows"][str(width)] = {
                 "training": cell["errors"]["training"],
                 "test": cell["errors"]["test"],
                 "largest weight": cell["largest weight"],
             }
         rows.append(row)
-    return {"members": GAIN_MEMBERS, "rows": rows}
+    return {"members": members, "rows": rows}
 
 
-PARTS: dict[str, Callable[[], dict]] = {"table-4-1": table_4_1, "gains": gains}
+def longer(members=8, epochs=100_000) -> dict:
+    """State feedback trained five times as long: where do the errors go?"""
+    setup = replace(STATE_FEEDBACK, epochs=epochs)
+    recording = setup.record()
+    windows = {str(w): _cell(setup, recording, w, members)[0] for w in WINDOWS}
+    return {"members": members, "epochs": epochs, "windows": windows}
+
+
+def clean(members=8) -> dict:
+    """State feedback on an arm without friction, quantisation and torque noise."""
+    effects = STATE_FEEDBACK.effects.without("friction", "encoder", "torque_sensor")
+    setup = replace(STATE_FEEDBACK, effects=effects, name="perfect sensors, no friction")
+    recording = setup.record()
+    windows = {str(w): _cell(setup, recording, w, members)[0] for w in WINDOWS}
+    return {"members": members, "windows": windows}
+
+
+PARTS: dict[str, Callable[[], dict]] = {
+    "table-4-1": table_4_1,
+    "gains": gains,
+    "longer": longer,
+    "clean": clean,
+}
 """The parts by the name of their result."""
 
 
@@ -108,10 +122,10 @@ def main(arguments=None) -> None:
     for name in options.parts:
         if name not in PARTS:
             parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
-    (results.FOLDER / "snapshots").mkdir(parents=True, exist_ok=True)
+    results.FOLDER.mkdir(parents=True, exist_ok=True)
     for name in options.parts or PARTS:
         path = results.FOLDER / f"{name}.json"
-        fresh = path.is_file() and results.read(name)["made by"]["code"] == results.code_hash()
+        fresh = path.is_file() and results.read(name)["made by"]["code"] == results.code_hash(name)
         if fresh and not options.force:
             print(f"==> {name}: up to date", flush=True)
             continue
@@ -119,7 +133,7 @@ def main(arguments=None) -> None:
         started = time.monotonic()
         content = PARTS[name]()
         seconds = time.monotonic() - started
-        results.write_json(path, {"made by": results.stamp(seconds), **content})
+        results.write_json(path, {"made by": results.stamp(name, seconds), **content})
         print(f"==> {name}: {seconds:.0f} s, written to {path}", flush=True)
 
 

@@ -18,24 +18,38 @@ FOLDER = PACKAGE.parent / "book" / "results"
 
 MODULES = (
     "paper", "arm", "effects", "trajectories", "controllers", "simulate", "windows",
-    "metrics", "network", "training", "experiment", "reproduce",
+    "metrics", "network", "training", "experiment",
 )  # fmt: skip
-"""Modules on which the results depend."""
+"""Modules on which every result depends."""
 
 
-def code_hash(modules=MODULES) -> str:
-    """Hash of what the modules' code does: docstrings, comments and layout do not count.
+def code_hash(result: str) -> str:
+    """Hash of the code that makes a result: docstrings, comments and layout do not count.
+
+    It covers `MODULES` whole, and of `ddlib.reproduce` the result's own function with
+    the private helpers.
 
     Parameters
     ----------
-    modules : sequence of str
-        Names of modules of ddlib.
+    result : str
+        Name of the result, like "table-4-1".
+
+    Raises
+    ------
+    ValueError
+        If no function of `ddlib.reproduce` makes it.
     """
-    total = hashlib.sha256()
-    for name in modules:
-        tree = ast.parse((PACKAGE / f"{name}.py").read_text(encoding="utf-8"))
-        total.update(f"{name}:{_normal_form(tree)}\n".encode())
-    return total.hexdigest()[:16]
+    trees = [ast.parse(_source(name)) for name in MODULES]
+    functions = [n for n in ast.parse(_source("reproduce")).body if isinstance(n, ast.FunctionDef)]
+    own = result.replace("-", "_")
+    if own not in [function.name for function in functions]:
+        raise ValueError(f"result must be made by a function of ddlib.reproduce, got {result!r}")
+    trees += [f for f in functions if f.name == own or f.name.startswith("_")]
+    return hashlib.sha256("\n".join(map(_normal_form, trees)).encode()).hexdigest()[:16]
+
+
+def _source(module: str) -> str:
+    return (PACKAGE / f"{module}.py").read_text(encoding="utf-8")
 
 
 def _normal_form(node) -> str:
@@ -61,10 +75,10 @@ def _is_text(node) -> bool:
     )
 
 
-def stamp(seconds: float) -> dict:
+def stamp(result: str, seconds: float) -> dict:
     """What is kept beside every result: code, versions, run time."""
     return {
-        "code": code_hash(),
+        "code": code_hash(result),
         "seconds": round(seconds, 1),
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
@@ -87,6 +101,16 @@ def _plain(value):
     if isinstance(value, (np.integer, np.bool_)):
         return value.item()
     raise TypeError(f"{type(value).__name__} does not go into a results file")
+
+
+def networks_path(setup: str, width: int) -> Path:
+    """File of the trained networks of one cell of Table 4-1."""
+    return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
+
+
+def snapshot_path(width: int, epoch: int) -> Path:
+    """File of the first two networks of a window size after some epochs."""
+    return FOLDER / "snapshots" / f"{width}-{epoch}.npz"
 
 
 def read(name: str) -> dict:

@@ -111,13 +111,15 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
 def _inline(svg: str, alt: str) -> str:
     """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name."""
     svg = svg[svg.index("<svg ") :]
-    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.DOTALL)
+    # Matplotlib's style sheet would reach every element of the page
+    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>", "", svg, flags=re.DOTALL)
     prefix = "f" + hashlib.sha256(svg.encode()).hexdigest()[:8]
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
     svg = svg.replace(INK, "currentColor")
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
-    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto"
+    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto;"
+    style += "stroke-linejoin:round;stroke-linecap:butt"
     label = html.escape(alt, quote=True)
     attributes = f'role="img" aria-label="{label}" style="{style}"'
     svg = svg.replace(size[0], attributes, 1)
