@@ -183,7 +183,7 @@ CMU_DD_ARM_II_EFFECTS = Effects(
     friction=(ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15))),
     actuator=(Saturation((100.0, 30.0)),),
     encoder=(Quantisation.encoder(16),),
-    torque_sensor=(Noise((0.135, 0.036)),),
+    torque_sensor=(Noise((0.163, 0.043)),),
 )
 """Effects of the surrogate arm: every number is assumed.
 

@@ -18,11 +18,12 @@ from ddlib.training import History, TrainingSet, cases, train_ensemble
 from ddlib.trajectories import APPENDIX_I
 from ddlib.windows import sliding_windows
 
-KP = (100.0, 30.0)
-"""Gains on the position error of shoulder and elbow, N m/rad. Assumed."""
+KP = (300.0, 90.0)
+"""Gains on the position error of shoulder and elbow, N m/rad. Assumed: stiff enough to follow
+the family within a few degrees. Softer and stiffer ones are compared in the book."""
 
-KD = (20.0, 6.0)
-"""Gains on the velocity error, N m s/rad. Assumed: damping ratios of about 0.4 and 0.65."""
+KD = (35.0, 10.0)
+"""Gains on the velocity error, N m s/rad. Assumed: damping ratios of about 0.4 and 0.6."""
 
 WINDOWS = tuple(paper.TABLE_4_1)
 """Window sizes of Table 4-1."""

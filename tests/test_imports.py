@@ -13,19 +13,20 @@ import ddlib
 ROOT = Path(ddlib.__file__).parent
 
 # Each stage may import earlier ones only; modules of one stage do not import each other.
+# A new module is written down here first.
 ORDER = [
     ("_check",),
     ("metrics", "filters"),  # of plain arrays: they stand alone, anything may use them
     ("arm", "effects", "paper"),
     ("trajectories",),
-    ("controllers",),
+    ("controllers", "linear"),
     ("simulate",),
     ("windows",),
     ("network",),
     ("training",),
     ("rivals",),
     ("results", "style", "tables"),
-    ("figures",),
+    ("figures", "diagrams"),
     ("widgets",),
     ("experiments", "reproduce"),
 ]
