@@ -1,16 +1,13 @@
-"""Pictures of the control loop: Figure 2-1 as blocks, and the paths of the hand."""
+"""Block diagrams: the control loop of Figure 2-1."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch
 
-from ddlib._check import finite_array
-from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
+from ddlib.style import COLOURS, FAINT, INK, Illustration, illustrate
 
 
 def feedforward_loop() -> Illustration:
@@ -49,41 +46,6 @@ def feedforward_loop() -> Illustration:
         "arm; its measured motion returns to the comparison."
     )
     return illustrate(draw, alt, 7.0, 2.5)
-
-
-def hand_paths(reference, panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
-    """Paths of the hand seen from above, each panel against the same reference path.
-
-    Parameters
-    ----------
-    reference : array_like, shape (time, 2)
-        Path that was asked for, m.
-    panels : mapping
-        ``{title: {name: path (time, 2)}}``, m.
-    """
-    reference = finite_array("reference", reference, 2)
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-        for axis, (title, paths) in zip(axes, panels.items()):
-            axis.plot(*reference.T, color=INK, lw=3, alpha=0.3, label="reference")
-            for k, (name, path) in enumerate(paths.items()):
-                axis.plot(*np.asarray(path).T, color=COLOURS[k], ls=DASHES[k], lw=1.2, label=name)
-            axis.set(title=title, xlabel="x, m", aspect="equal")
-            if len(paths) > 1:
-                axis.legend(loc="best")
-        axes[0].set_ylabel("y, m")
-
-    def gap(path):
-        return 1e3 * np.linalg.norm(np.asarray(path) - reference, axis=-1).max()
-
-    worst = ", ".join(
-        f"{title}, {name}: {gap(path):.0f} mm"
-        for title, paths in panels.items()
-        for name, path in paths.items()
-    )
-    alt = f"Paths of the hand against the reference path; largest distance {worst}."
-    return illustrate(draw, alt, 7.0, 3.3)
 
 
 def _block(axis: Axes, x, y, text, colour=INK):

@@ -1,7 +1,31 @@
-"""Interactive figures: exact with a kernel, interpolated in the built page without one."""
+"""Interactive figures that work with a kernel, without one, and as a still picture."""
 
-from ddlib.widgets.baked import Parameter
-from ddlib.widgets.base import CurveWidget, Mark, Pad, Panel, Scalar
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts import (
+    ArmPose,
+    Choice,
+    Curve,
+    Mark,
+    Pad,
+    Panel,
+    Parameter,
+    ParameterError,
+    Readout,
+    Stage,
+)
 from ddlib.widgets.picker import TrajectoryPicker
 
-__all__ = ["CurveWidget", "Mark", "Pad", "Panel", "Parameter", "Scalar", "TrajectoryPicker"]
+__all__ = [
+    "ArmPose",
+    "Choice",
+    "Curve",
+    "CurveWidget",
+    "Mark",
+    "Pad",
+    "Panel",
+    "Parameter",
+    "ParameterError",
+    "Readout",
+    "Stage",
+    "TrajectoryPicker",
+]

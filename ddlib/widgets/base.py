@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import anywidget
+import matplotlib as mpl
 import numpy as np
 import traitlets as t
 
@@ -16,6 +17,11 @@ from ddlib.style import COLOURS, DASHES, illustrate
 from ddlib.widgets.baked import Baked, Parameter, evaluate
 
 HERE = Path(__file__).parent
+
+
+def module(*names: str) -> str:
+    """The named files of this folder as one text: a widget's script must stand alone."""
+    return "\n".join((HERE / name).read_text(encoding="utf-8") for name in names)
 
 
 @dataclass(frozen=True)
@@ -161,8 +167,8 @@ class CurveWidget(anywidget.AnyWidget):
         coarse for the tolerance.
     """
 
-    _esm = (HERE / "curves.js").read_text(encoding="utf-8")
-    _css = (HERE / "curves.css").read_text(encoding="utf-8")
+    _esm = module("baked.js", "curves.js")
+    _css = module("curves.css")
 
     spec = t.Dict(help="everything that stays as it is").tag(sync=True)
     baked = t.Bytes(help="the table of `Baked`").tag(sync=True)
@@ -308,6 +314,7 @@ class CurveWidget(anywidget.AnyWidget):
         pad, count = self._pad, len(self._panels) + bool(self._pad)
 
         def draw(figure):
+            mpl.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif"})
             axes = list(np.ravel(figure.subplots(1, count)))
             if pad:
                 self._draw_pad(axes.pop(0), values)

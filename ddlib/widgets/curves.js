@@ -1,5 +1,5 @@
-// Shows a CurveWidget (base.py): sliders, an optional pad, charts. Interpolates baked curves;
-// with a kernel the exact ones replace them when they come.
+// Shows a CurveWidget (base.py): sliders, an optional pad, charts. Follows baked.js in the
+// widget's module. With a kernel the exact curves replace the interpolated ones.
 
 const SVG = "http://www.w3.org/2000/svg";
 const SVG_TAGS = new Set(["svg", "g", "path", "line", "text", "rect", "circle", "polygon"]);
@@ -12,116 +12,6 @@ function make(tag, attributes = {}, ...children) {
   el.append(...children);
   return el;
 }
-
-// --- numbers
-
-function crc32(bytes) {
-  let crc = ~0;
-  for (const byte of bytes) {
-    crc ^= byte;
-    for (let k = 0; k < 8; k++) crc = (crc >>> 1) ^ (0xedb88320 & -(crc & 1));
-  }
-  return ~crc >>> 0;
-}
-
-// The baked table, or an error that says what is wrong with it.
-export function readTable(spec, view) {
-  if (!spec?.parameters?.length || !spec.curves?.length) throw new Error("no description");
-  const samples = spec.curves.reduce((sum, curve) => sum + curve.length, 0);
-  const wanted = 2 * spec.parameters.reduce((product, p) => product * p.grid, samples);
-  const bytes = new Uint8Array(view.buffer, view.byteOffset, view.byteLength);
-  if (bytes.length !== wanted) throw new Error(`${bytes.length} bytes in place of ${wanted}`);
-  if (crc32(bytes) !== spec.checksum) throw new Error("the checksum is wrong");
-  return Int16Array.from({ length: wanted / 2 }, (_, i) => view.getInt16(2 * i, true));
-}
-
-export const toFraction = (p, value) =>
-  p.scale === "log"
-    ? Math.log(value / p.low) / Math.log(p.high / p.low)
-    : (value - p.low) / (p.high - p.low);
-
-export function fromFraction(p, fraction) {
-  const value =
-    p.scale === "log"
-      ? p.low * (p.high / p.low) ** fraction
-      : p.low + (p.high - p.low) * fraction;
-  return Math.min(p.high, Math.max(p.low, value));
-}
-
-// Grid points and weights, as Parameter.weights in baked.py.
-export function weights(p, value, cubic) {
-  const position = toFraction(p, value) * (p.grid - 1);
-  const i = Math.min(Math.max(Math.trunc(position), 0), p.grid - 2);
-  const f = position - i;
-  if (!cubic || p.grid === 2) return [[i, 1 - f], [i + 1, f]];
-  const [a, b, c, d] = [
-    (((2 - f) * f - 1) * f) / 2,
-    ((3 * f - 5) * f * f + 2) / 2,
-    (((4 - 3 * f) * f + 1) * f) / 2,
-    ((f - 1) * f * f) / 2,
-  ];
-  if (i === 0) return [[0, b + 3 * a], [1, c - 3 * a], [2, d + a]];
-  if (i === p.grid - 2) return [[i - 1, a + d], [i, b - 3 * d], [i + 1, c + 3 * d]];
-  return [[i - 1, a], [i, b], [i + 1, c], [i + 2, d]];
-}
-
-// All curves, one after the other, at one value per parameter.
-export function interpolate(spec, table, values) {
-  let corners = [[0, 1]];
-  spec.parameters.forEach((p, k) => {
-    const points = weights(p, values[k], spec.cubic);
-    corners = corners.flatMap(([row, w]) => points.map(([i, u]) => [row * p.grid + i, w * u]));
-  });
-  const samples = spec.curves.reduce((sum, curve) => sum + curve.length, 0);
-  const out = new Float64Array(samples);
-  for (const [row, w] of corners) {
-    for (let s = 0, at = row * samples; s < samples; s++) out[s] += w * table[at + s];
-  }
-  let s = 0;
-  for (const { length, low, high } of spec.curves) {
-    const [middle, step] = [(low + high) / 2, (high - low) / 65534];
-    for (const end = s + length; s < end; s++) out[s] = middle + step * out[s];
-  }
-  return out;
-}
-
-// Cut into named curves.
-export function split(spec, flat) {
-  let start = 0;
-  return Object.fromEntries(
-    spec.curves.map(({ name, length }) => [name, flat.subarray(start, (start += length))]),
-  );
-}
-
-export function insidePolygon(corners, x, y) {
-  const sides = corners.map(([x0, y0], k) => {
-    const [x1, y1] = corners[(k + 1) % corners.length];
-    return (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0);
-  });
-  return sides.every((s) => s >= -1e-9) || sides.every((s) => s <= 1e-9);
-}
-
-export function ticks(low, high, count) {
-  const rough = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 2.5, 5, 10].find((m) => m * power >= rough * 0.999);
-  const first = Math.ceil(low / step - 1e-9);
-  const last = Math.floor(high / step + 1e-9);
-  return Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
-}
-
-const short = (x) => String(Number(x.toPrecision(6))).replace("-", "−");
-
-// A value with the digits that its range deserves.
-export function format(value, low, high, unit = "") {
-  const size = Math.log10(high - low || Math.abs(high) || 1);
-  const digits = Math.min(6, Math.max(0, 2 - Math.floor(size)));
-  const fixed = value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
-  return unit ? `${fixed}${unit === "°" ? "" : "\u00a0"}${unit}` : fixed;
-}
-
-const show = (p, value) =>
-  p.scale === "log" ? format(value, 0, value, p.unit) : format(value, p.low, p.high, p.unit);
 
 // --- charts
 
@@ -213,11 +103,12 @@ function chart(view, panel) {
 function slider(view, p, k) {
   const id = `${view.id}-${p.name}`;
   const output = make("output", { for: id });
-  const input = make("input", { id, type: "range", min: 0, max: 1, step: 0.005 });
-  input.addEventListener("input", () => view.set({ [k]: fromFraction(p, Number(input.value)) }));
+  const steps = Math.round(1 / stepOf(p));
+  const input = make("input", { id, type: "range", min: 0, max: steps, step: 1 });
+  input.addEventListener("input", () => view.set({ [k]: fromFraction(p, input.value / steps) }));
   const update = () => {
     output.textContent = show(p, view.values[k]);
-    input.value = toFraction(p, view.values[k]);
+    input.value = steps * toFraction(p, view.values[k]);
     input.setAttribute("aria-valuetext", output.textContent);
   };
   const el = make("div", { class: "slider" }, make("label", { for: id }, p.label), output, input);
@@ -289,9 +180,9 @@ function padOf(view) {
     if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     event.stopPropagation(); // a notebook has its own arrow keys
-    const step = event.shiftKey ? 0.1 : 0.01;
-    const at = [toFraction(px, view.values[i]), toFraction(py, view.values[j])];
-    move(at[0] + step * way[0], at[1] + step * way[1]);
+    const [fx, fy] = [toFraction(px, view.values[i]), toFraction(py, view.values[j])];
+    const steps = event.shiftKey ? 10 : 1;
+    move(fx + steps * stepOf(px) * way[0], fy + steps * stepOf(py) * way[1]);
   });
 
   const legend = make("div", { class: "legend" });
@@ -309,3 +200,144 @@ function padOf(view) {
   };
   return { el: make("div", { class: "pad-box" }, svg, legend), update };
 }
+
+// --- the whole figure
+
+function build({ model, el }) {
+  const spec = model.get("spec");
+  const view = { model, el, spec, id: `dd${Math.random().toString(36).slice(2, 10)}` };
+  const table = readTable(spec, model.get("baked"));
+  const names = spec.parameters.map((p) => p.name);
+  view.values = names.map((name) => model.get(name));
+  el.classList.add("ddlib-widget", "ddlib-curves");
+  el.setAttribute("role", "group");
+  el.setAttribute("aria-label", spec.title);
+
+  view.charts = spec.panels.map((panel) => chart(view, panel));
+  const controls = spec.parameters.map((p, k) => slider(view, p, k));
+  const pad = spec.pad && padOf(view);
+  view.controls = make("div", { class: "controls" }, ...controls.map((control) => control.el));
+  view.top = make("div", { class: "top" }, ...(pad ? [pad.el] : []), view.controls);
+  const charts = make("div", { class: "charts" }, ...view.charts.map((c) => c.el));
+  const scalars = spec.scalars.map((s) => ({ ...s, output: make("output") }));
+  const numbers = make("dl", { class: "scalars" });
+  for (const s of scalars) numbers.append(make("div", {}, make("dt", {}, s.label), make("dd", {}, s.output)));
+  const note = make("p", { class: "note", role: "status", hidden: "" });
+  const problem = make("p", { class: "problem", role: "alert", hidden: "" });
+  const spoken = make("p", { class: "spoken", "aria-live": "polite" });
+  const footer = make("p", { class: "footer" }, footerText(model, spec));
+  el.replaceChildren(view.top, charts, ...(scalars.length ? [numbers] : []), note, problem, footer, spoken);
+
+  // The curves for the values as they stand: exact ones if the kernel has sent them.
+  function current() {
+    const { values = [], error } = model.get("answer") ?? {};
+    const exact = model.get("exact");
+    view.exact = values.every((v, k) => v === view.values[k]) && exact?.byteLength > 0;
+    problem.hidden = !(error && values.every((v, k) => v === view.values[k]));
+    problem.textContent = problem.hidden ? "" : `The exact curves could not be computed. ${error}`;
+    if (!view.exact) return interpolate(spec, table, view.values);
+    return Float64Array.from({ length: exact.byteLength / 4 }, (_, i) => exact.getFloat32(4 * i, true));
+  }
+
+  view.after = []; // called with the curves after each redraw
+  let frame = 0;
+  let speaking = 0;
+  function redraw() {
+    frame = 0;
+    view.curves = split(spec, current());
+    view.charts.forEach((c) => c.redraw(view.curves));
+    controls.forEach((control) => control.update());
+    pad?.update();
+    for (const { name, output, unit } of scalars) {
+      const { low, high } = spec.curves.find((curve) => curve.name === name);
+      output.textContent = format(view.curves[name][0], low, high, unit);
+    }
+    el.dataset.values = view.exact ? "exact" : "interpolated";
+    view.after.forEach((callback) => callback(view.curves));
+    clearTimeout(speaking);
+    speaking = setTimeout(speak, 700);
+  }
+  view.schedule = () => (frame ||= requestAnimationFrame(redraw));
+
+  let first = true;
+  function speak() {
+    view.charts.forEach((c) => c.describe(view.curves));
+    const parts = spec.parameters.map((p, k) => `${p.label} ${show(p, view.values[k])}`);
+    parts.push(...scalars.map((s) => `${s.label} ${s.output.textContent}`), ...(view.words?.() ?? []));
+    if (!first) spoken.textContent = `${parts.join(". ")}.`;
+    first = false;
+  }
+
+  // One request at a time; what changes meanwhile goes with the next one.
+  let waiting = 0;
+  let again = false;
+  view.silence = (silent) => {
+    note.hidden = !silent;
+    note.textContent = silent ? "The kernel does not answer: showing baked values." : "";
+  };
+  function ask() {
+    if (model.kernelless) return;
+    again = Boolean(waiting);
+    if (waiting) return;
+    model.set("request", model.get("request") + 1);
+    model.save_changes();
+    waiting = setTimeout(() => {
+      waiting = 0;
+      view.silence(true);
+    }, PATIENCE);
+  }
+  function answered() {
+    if ((model.get("answer")?.request ?? 0) < model.get("request")) return;
+    clearTimeout(waiting);
+    waiting = 0;
+    view.silence(false);
+    view.schedule();
+    if (again) ask();
+  }
+
+  view.set = (changes) => {
+    for (const [k, value] of Object.entries(changes)) model.set(names[k], value);
+    ask();
+  };
+  const follow = () => {
+    view.values = names.map((name) => model.get(name));
+    view.schedule();
+  };
+  const events = [["change:answer", answered], ...names.map((name) => [`change:${name}`, follow])];
+  for (const [event, callback] of events) model.on(event, callback);
+  const stops = extras.map((extra) => extra(view));
+  const size = new ResizeObserver(() => {
+    view.charts.forEach((c) => c.resize());
+    view.schedule();
+  });
+  size.observe(el);
+  return () => {
+    for (const [event, callback] of events) model.off(event, callback);
+    stops.forEach((stop) => stop?.());
+    size.disconnect();
+    cancelAnimationFrame(frame);
+    clearTimeout(waiting);
+    clearTimeout(speaking);
+  };
+}
+
+function footerText(model, spec) {
+  const percent = Number((100 * spec.error).toPrecision(2)) || "below 0.001";
+  const points = spec.parameters.map((p) => p.grid).join(" × ");
+  const measured = `at most ${percent} % of a curve's range, at ${spec.checks} random settings`;
+  return model.kernelless
+    ? `Interpolated between ${points} settings computed when the page was built. Error: ${measured}.`
+    : `Exact values from the kernel; until they come, interpolated ones. Their error: ${measured}.`;
+}
+
+function render({ model, el }) {
+  try {
+    return build({ model, el });
+  } catch (error) {
+    el.className = "ddlib-widget-error";
+    el.setAttribute("role", "alert");
+    el.textContent = `The data of this interactive figure are damaged: ${error.message}.`;
+  }
+}
+
+export default { render };

@@ -1,0 +1,141 @@
+// What TrajectoryPicker (picker.py) adds to a CurveWidget: the arm, its player, the verdict
+// about the hull of the training trajectories, and the button that records.
+
+// Elbow and hand of two links of given lengths at given joint angles (rad), in pixels.
+function pose([l1, l2], q1, q2, scale) {
+  const elbow = [scale * l1 * Math.cos(q1), -scale * l1 * Math.sin(q1)];
+  const tip = [scale * l2 * Math.cos(q1 + q2), -scale * l2 * Math.sin(q1 + q2)];
+  return [elbow, [elbow[0] + tip[0], elbow[1] + tip[1]]];
+}
+
+function armOf(view) {
+  const { lengths, angles, times } = view.model.get("arm");
+  const scale = 230 / (lengths[0] + lengths[1]);
+  const trail = make("path", { class: "trail" });
+  const links = ["upper", "fore"].map((name) => make("line", { class: `link ${name}`, x1: 0, y1: 0 }));
+  const elbow = make("circle", { class: "joint", r: 5 });
+  const hand = make("circle", { class: "hand", r: 5 });
+  const ground = make("line", { class: "ground", x1: 0, x2: 244, y1: 0, y2: 0 });
+  const base = make("circle", { class: "joint", r: 7 });
+  const words = "The arm from above; the dotted line is the path of the hand";
+  const svg = make(
+    "svg",
+    { class: "arm", viewBox: "-20 -16 280 262", role: "img", "aria-label": words },
+    ...[ground, trail, ...links, base, elbow, hand],
+  );
+  let joints = [[0], [0]];
+  const rad = (x) => (x * Math.PI) / 180;
+
+  function path(curves) {
+    joints = angles.map((name) => curves[name]);
+    const points = times.map((_, i) => pose(lengths, rad(joints[0][i]), rad(joints[1][i]), scale)[1]);
+    trail.setAttribute("d", `M${points.map((p) => p.map((v) => v.toFixed(1)).join(" ")).join("L")}`);
+  }
+  function stand(time) {
+    const position = (time / times.at(-1)) * (times.length - 1);
+    const i = Math.min(Math.floor(position), times.length - 2);
+    const [q1, q2] = joints.map((q) => rad(q[i] + (position - i) * (q[i + 1] - q[i])));
+    const [a, b] = pose(lengths, q1, q2, scale);
+    const put = (el, names, values) => names.forEach((n, k) => el.setAttribute(n, values[k].toFixed(2)));
+    put(links[0], ["x2", "y2"], a);
+    put(links[1], ["x1", "y1", "x2", "y2"], [...a, ...b]);
+    put(elbow, ["cx", "cy"], a);
+    put(hand, ["cx", "cy"], b);
+  }
+  return { svg, path, stand, end: times.at(-1) };
+}
+
+extras.push((view) => {
+  const { model, spec } = view;
+  const arm = armOf(view);
+
+  // The player
+  const id = `${view.id}-time`;
+  const output = make("output", { for: id });
+  const scrub = make("input", { id, type: "range", min: 0, max: 300, step: 1 });
+  const button = make("button", { type: "button" }, "Play");
+  const label = make("label", { for: id }, "Time");
+  const time = make("div", { class: "slider" }, label, output, scrub);
+  const player = make("div", { class: "player" }, button, time);
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  let now = arm.end / 2;
+  let started = 0; // the moment that stands for 0 s, or 0 when paused
+  let frame = 0;
+
+  function show() {
+    arm.stand(now);
+    scrub.value = (300 * now) / arm.end;
+    output.textContent = `${now.toFixed(2)}\u00a0s`;
+    scrub.setAttribute("aria-valuetext", output.textContent);
+    view.charts.forEach((c) => c.point(now));
+  }
+  function run(moment) {
+    const passed = (moment - started) / 1000;
+    now = Math.min(arm.end, calm.matches ? Math.floor(passed * 2) / 2 : passed); // calm: poses
+    show();
+    if (now < arm.end) frame = requestAnimationFrame(run);
+    else pause();
+  }
+  function pause() {
+    cancelAnimationFrame(frame);
+    started = 0;
+    button.textContent = "Play";
+  }
+  button.addEventListener("click", () => {
+    if (started) return pause();
+    if (now >= arm.end) now = 0;
+    started = performance.now() - 1000 * now;
+    button.textContent = "Pause";
+    frame = requestAnimationFrame(run);
+  });
+  scrub.addEventListener("input", () => {
+    pause();
+    now = (arm.end * scrub.value) / 300;
+    show();
+  });
+
+  // The verdict
+  const verdict = make("p", { class: "verdict" });
+  const words = () =>
+    insidePolygon(spec.pad.region, ...view.values)
+      ? "Between the training trajectories: a network interpolates."
+      : "Outside the training trajectories: a network extrapolates.";
+  view.words = () => [words().slice(0, -1)];
+
+  // The button that records
+  const record = make("button", { type: "button" }, "Record this trajectory");
+  const said = make("p", { id: `${view.id}-said`, role: "status" });
+  record.setAttribute("aria-describedby", said.id);
+  let waiting = 0;
+  function done() {
+    clearTimeout(waiting);
+    record.disabled = Boolean(model.kernelless);
+    said.textContent = model.kernelless
+      ? "Recording needs a running kernel: open this chapter as a notebook."
+      : model.get("record_status").text;
+  }
+  record.addEventListener("click", () => {
+    record.disabled = true;
+    said.textContent = "Recording…";
+    model.send({ type: "record", extents_deg: view.values });
+    waiting = setTimeout(() => {
+      done();
+      said.textContent = "The kernel does not answer: nothing was recorded.";
+    }, 20000);
+  });
+  model.on("change:record_status", done);
+
+  view.controls.append(verdict, make("div", { class: "record" }, record, said));
+  view.top.append(make("div", { class: "arm-box" }, arm.svg, player));
+  view.after.push((curves) => {
+    arm.path(curves);
+    show();
+    verdict.textContent = words();
+  });
+  done();
+  return () => {
+    pause();
+    clearTimeout(waiting);
+    model.off("change:record_status", done);
+  };
+});
