@@ -295,7 +295,7 @@ CMU_DD_ARM_II = Arm.from_links(
         "a, b, d": "computed from the assumed links",
     },
 )
-"""Stand-in for the first two links of the CMU Direct-Drive Arm II: no published value."""
+"""Stand-in for the first two links of the CMU Direct-Drive Arm II; no value is the real one's."""
 
 IMI_ARM = Arm(
     "IMI direct-drive arm",
@@ -308,7 +308,7 @@ IMI_ARM = Arm(
         "lengths": "assumed",
     },
 )
-"""A real planar direct-drive arm whose inertial parameters were measured."""
+"""A planar direct-drive arm; its parameters are those that public simulations of it use."""
 
 REYES_KELLY_ARM = Arm.from_links(
     "Reyes-Kelly vertical arm",

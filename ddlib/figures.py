@@ -64,7 +64,7 @@ def curves(
                 axis.set_yscale("log")
             if len(named) > 1:
                 axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
-        for axis in axes[len(panels) - columns : len(panels)]:
+        for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
             axis.set_xlabel(x_label)
         for axis in axes[len(panels) :]:
             axis.remove()
@@ -214,7 +214,7 @@ def rmss_by_window(table: Mapping[str, Mapping[int, np.ndarray]], printed: Mappi
     """
 
     def draw(figure: Figure):
-        axes = figure.subplots(1, len(table), sharey=True)
+        axes = figure.subplots(1, len(table), sharey=True, squeeze=False)[0]
         for k, (axis, (name, columns)) in enumerate(zip(axes, table.items())):
             for place, values in enumerate(columns.values()):
                 spread = np.linspace(-0.16, 0.16, len(values))
@@ -233,7 +233,9 @@ def rmss_by_window(table: Mapping[str, Mapping[int, np.ndarray]], printed: Mappi
     return illustrate(draw, alt.strip(), 7.0, 3.1)
 
 
-def overlay(t, measured, predicted: Mapping[str, np.ndarray], joint: str = "shoulder"):
+def overlay(
+    t, measured, predicted: Mapping[str, np.ndarray], joint: str = "shoulder"
+) -> Illustration:
     """Figure 4-1: measured torque (fine) under the networks' (bold), one panel each.
 
     Parameters
@@ -249,7 +251,7 @@ def overlay(t, measured, predicted: Mapping[str, np.ndarray], joint: str = "shou
     """
 
     def draw(figure: Figure):
-        axes = figure.subplots(len(predicted), 1, sharex=True, sharey=True)
+        axes = figure.subplots(len(predicted), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
         for axis, (title, torque) in zip(axes, predicted.items()):
             axis.plot(t, torque, color=COLOURS[1], lw=2.6, alpha=0.85, label="network")
             axis.plot(t, measured, color=INK, lw=0.8, label="measured")
@@ -294,6 +296,8 @@ def hinton(weights: Weights) -> Illustration:
     if weights.hidden_bias.ndim != 1:
         raise ValueError("weights must be of one network: pick a member of the ensemble")
     largest = float(weights.largest)
+    if not 0 < largest < np.inf:
+        raise ValueError(f"weights must be finite and not all zero, got {largest:g} as largest")
     hidden, width = len(weights.hidden_bias), weights.width
     columns, unit_width, unit_height = 2, width + 3.0, 7.0
     rows = -(-hidden // columns)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, number, one_of
+from ddlib._check import finite_array, integer, number, one_of
 
 
 class Decomposition(NamedTuple):
@@ -81,7 +81,7 @@ def basis(width: int) -> np.ndarray:
     coefficient: even for degree 0 and 2, odd for 1 and 3. A weight function's component
     along degree k is its response to the k-th derivative once lower ones are taken out.
     """
-    x = np.linspace(-1, 1, width)
+    x = np.linspace(-1, 1, integer("width", width, 4))
     q, r = np.linalg.qr(np.vander(x, 4, increasing=True))
     return (q * np.sign(np.diag(r))).T
 
@@ -141,7 +141,7 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     Returns
     -------
     ndarray of str, shape (...)
-        One of `CLASSES` each.
+        One of `CLASSES` each; a constant has no derivative and is "not analysable".
     """
     number("pure", pure, 0.5, 1.0)
     number("smooth", smooth, 0.0, 1.0)
@@ -149,10 +149,48 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     v, a, j = np.moveaxis(share[..., 1:4], -1, 0)
     total = np.where(v + a + j > 0, v + a + j, 1)
     v, a, j = v / total, a / total, j / total
-    rough = share[..., 4] > (1 - smooth) * (1 - share[..., 0])
+    varying = 1 - share[..., 0]
+    rough = (share[..., 4] > (1 - smooth) * varying) | (varying < 1e-12)
     conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
     names = [CLASSES[6], *CLASSES[:5]]
     return np.select(conditions, names, CLASSES[5])
+
+
+def purest(f, name: str, score=None) -> np.ndarray:
+    """The weight function of a class that shows it most clearly.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions to choose from.
+    name : str
+        One of `CLASSES`.
+    score : callable, optional
+        ``score(shares)`` with the five shares along the first axis; the largest wins.
+        Default: the share of the named derivative, or the smaller of two named ones.
+
+    Returns
+    -------
+    ndarray, shape (width,)
+
+    Raises
+    ------
+    ValueError
+        If no function is of that class.
+    """
+    one_of("name", name, CLASSES)
+    f = _odd_width(f)
+    f = f.reshape(-1, f.shape[-1])
+    share = np.moveaxis(shares(f), -1, 0)
+    if score is None:
+        named = [share[DERIVATIVES.index(n)] for n in name.split(" + ") if n in DERIVATIVES]
+        value = np.min(named, axis=0) if named else share[4]
+    else:
+        value = score(share)
+    fitting = classify(f) == name
+    if not fitting.any():
+        raise ValueError(f"f holds no function of class {name!r}")
+    return f[np.where(fitting, value, -np.inf).argmax()]
 
 
 def roughness(f) -> np.ndarray:
@@ -188,6 +226,10 @@ def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) ->
     """
     from scipy.signal import savgol_coeffs
 
+    if integer("width", width, 3) % 2 == 0:
+        raise ValueError(f"width must be odd, so that a window has a centre, got {width}")
+    integer("degree", degree, 0, width - 1)
+    integer("derivative", derivative, 0, degree)
     number("step", step, 0.0, open_low=True)
     return savgol_coeffs(width, degree, deriv=derivative, delta=step, use="dot")
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib import results
+from ddlib import figures, results
 from ddlib.controllers import pd
 from ddlib.experiment import (
     KD,
@@ -25,7 +25,9 @@ from ddlib.experiment import (
     errors,
     train_windows,
 )
+from ddlib.filters import purest
 from ddlib.network import TorqueModel
+from ddlib.simulate import LOG_STEP
 
 
 def _cell(setup, recording, width, members, snapshots=()):
@@ -100,6 +102,17 @@ def clean(members=8) -> dict:
     return {"members": members, "windows": windows}
 
 
+def picture() -> None:
+    """The README's picture: two filters found in the networks of window 21."""
+    networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, 21)).weights
+    found = {
+        f"a {name} filter": purest(networks.hidden_weights, name)
+        for name in ("velocity", "acceleration")
+    }
+    target = results.FOLDER.parent / "_static" / "readme.svg"
+    figures.decomposition(found, LOG_STEP).save(target)
+
+
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table_4_1,
     "gains": gains,
@@ -129,8 +142,9 @@ def main(arguments=None) -> None:
         started = time.monotonic()
         content = PARTS[name]()
         seconds = time.monotonic() - started
-        results.write_json(path, {"made by": results.stamp(name, seconds), **content})
+        results.write_json(path, {"made by": results.stamp(seconds, name), **content})
         print(f"==> {name}: {seconds:.0f} s, written to {path}", flush=True)
+    picture()
 
 
 if __name__ == "__main__":

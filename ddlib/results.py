@@ -75,10 +75,10 @@ def _is_text(node) -> bool:
     )
 
 
-def stamp(result: str, seconds: float) -> dict:
-    """What is kept beside every result: code, versions, run time."""
+def stamp(seconds: float, result: str | None = None) -> dict:
+    """What is kept beside a result: run time, versions, and for `result` its code's hash."""
     return {
-        "code": code_hash(result),
+        **({"code": code_hash(result)} if result else {}),
         "seconds": round(seconds, 1),
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},

@@ -76,7 +76,7 @@ class Illustration:
     def save(self, path, ink="#1a1a1a", paper="#ffffff") -> None:
         """Write the picture to an ``.svg`` file with fixed colours."""
         svg = self.svg.replace("currentColor", ink)
-        svg = svg.replace("<svg ", f'<svg style="background:{paper}" ', 1)
+        svg = svg.replace(' style="', f' style="background:{paper};', 1)
         with open(path, "w", encoding="utf-8") as file:
             file.write(svg)
 
@@ -113,7 +113,7 @@ def _inline(svg: str, alt: str) -> str:
     svg = svg[svg.index("<svg ") :]
     # Matplotlib's style sheet would reach every element of the page
     svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>", "", svg, flags=re.DOTALL)
-    prefix = "f" + hashlib.sha256(svg.encode()).hexdigest()[:8]
+    prefix = "f" + hashlib.sha256((alt + svg).encode()).hexdigest()[:8]
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
     svg = svg.replace(INK, "currentColor")

@@ -17,7 +17,7 @@ def number(value, digits: int = 3) -> str:
         return "–"
     if value == 0:
         return "0"
-    size = int(np.floor(np.log10(abs(value))))
+    size = int(f"{value:.{digits - 1}e}".partition("e")[2])  # of the rounded value
     if -4 <= size < 6:
         return f"{value:,.{max(digits - 1 - size, 0)}f}"
     return f"{value:.{digits - 1}e}"
@@ -39,6 +39,21 @@ def spread(values, digits: int = 2) -> str:
         return "–"
     parts = [number(v, digits) for v in (np.median(values), values.min(), values.max())]
     return "{} ({} to {})".format(*parts)
+
+
+def quote(name: str, value) -> None:
+    """Keep a computed number under a name, for the prose of the page to quote.
+
+    Parameters
+    ----------
+    name : str
+        What the prose asks for; begins with the chapter's name.
+    value : scalar
+        A number; numpy scalars become plain ones, so that formats work.
+    """
+    from myst_nb import glue
+
+    glue(name, np.asarray(value)[()].item(), display=False)
 
 
 @dataclass(frozen=True)

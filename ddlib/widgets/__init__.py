@@ -1,31 +1,7 @@
-"""Interactive figures that work with a kernel, without one, and as a still picture."""
+"""Interactive figures: exact with a kernel, interpolated in the built page without one."""
 
-from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.parts import (
-    ArmPose,
-    Choice,
-    Curve,
-    Mark,
-    Pad,
-    Panel,
-    Parameter,
-    ParameterError,
-    Readout,
-    Stage,
-)
+from ddlib.widgets.baked import Parameter
+from ddlib.widgets.base import CurveWidget, Mark, Pad, Panel, Scalar
 from ddlib.widgets.picker import TrajectoryPicker
 
-__all__ = [
-    "ArmPose",
-    "Choice",
-    "Curve",
-    "CurveWidget",
-    "Mark",
-    "Pad",
-    "Panel",
-    "Parameter",
-    "ParameterError",
-    "Readout",
-    "Stage",
-    "TrajectoryPicker",
-]
+__all__ = ["CurveWidget", "Mark", "Pad", "Panel", "Parameter", "Scalar", "TrajectoryPicker"]

@@ -57,7 +57,7 @@ function chart(view, panel) {
     x = axis(panel.x[0], panel.x.at(-1), panel.x_scale, left, width - 10, 52);
     grid.replaceChildren(
       ...y.marks.flatMap((v) => {
-        const at = y.place(v).toFixed(1);
+        const at = y.place(v).toFixed(2);
         const label = make("text", { x: left - 6, y: at, dy: "0.34em", class: "y" }, short(v));
         return [make("line", { x1: left, x2: width - 10, y1: at, y2: at }), label];
       }),
@@ -259,13 +259,12 @@ function build({ model, el }) {
   }
   view.schedule = () => (frame ||= requestAnimationFrame(redraw));
 
-  let first = true;
+  let moved = false; // nothing is spoken before the reader does something
   function speak() {
     view.charts.forEach((c) => c.describe(view.curves));
     const parts = spec.parameters.map((p, k) => `${p.label} ${show(p, view.values[k])}`);
     parts.push(...scalars.map((s) => `${s.label} ${s.output.textContent}`), ...(view.words?.() ?? []));
-    if (!first) spoken.textContent = `${parts.join(". ")}.`;
-    first = false;
+    if (moved) spoken.textContent = `${parts.join(". ")}.`;
   }
 
   // One request at a time; what changes meanwhile goes with the next one.
@@ -296,6 +295,7 @@ function build({ model, el }) {
   }
 
   view.set = (changes) => {
+    moved = true;
     for (const [k, value] of Object.entries(changes)) model.set(names[k], value);
     ask();
   };

@@ -1,0 +1,171 @@
+"""Linear loops against the simulation, closed forms and python-control's own feedback."""
+
+import control
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ddlib.arm import CMU_DD_ARM_II, Arm
+from ddlib.controllers import PID
+from ddlib.effects import Effects, ViscousFriction
+from ddlib.linear import closed_loop, loop_gain, plant, proportional_limit
+from ddlib.simulate import follow
+from ddlib.trajectories import Trajectory
+
+STEP = 0.002
+VISCOUS = (0.5, 0.15)
+KP, KI, KD = (200.0, 60.0), (90.0, 20.0), (20.0, 6.0)
+LINEAR_ARM = Arm("without coupling by the elbow's angle", 6.0, 0.0, 0.7, (0.5, 0.4))
+
+
+def inertia_of(arm):
+    return arm.mass_matrix([0.0, 0.0])
+
+
+def radius(inertia, viscous, kp, period):
+    return abs(closed_loop(plant(inertia, viscous), kp, period=period).poles()).max()
+
+
+# --- the plant ------------------------------------------------------------------------
+
+
+def test_plant_obeys_its_equation():
+    M, rng = inertia_of(CMU_DD_ARM_II), np.random.default_rng(0)
+    joints = plant(M, VISCOUS)
+    qd, tau = rng.normal(size=(2, 2))
+    rate = joints.A @ np.concatenate([rng.normal(size=2), qd]) + joints.B @ tau
+    np.testing.assert_allclose(rate[:2], qd)
+    np.testing.assert_allclose(M @ rate[2:] + np.array(VISCOUS) * qd, tau)
+    np.testing.assert_array_equal(joints.C, np.eye(4))
+
+
+def test_one_joint_is_the_transfer_function():
+    s = np.array([0.3j, 2j, 1 + 5j])
+    joint = plant(6.0, 0.5)
+    np.testing.assert_allclose([joint(x)[0, 0] for x in s], 1 / (6 * s**2 + 0.5 * s))
+
+
+# --- continuous loops -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("gains", [(200.0, 0.0, 0.0), (200.0, 0.0, 20.0), (200.0, 90.0, 20.0)])
+def test_loop_gain_closes_to_the_closed_loop(gains):
+    """The same characteristic polynomial: denominator plus numerator of the open loop."""
+    L = loop_gain(6.0, 0.5, *gains)
+    polynomial = np.polyadd(L.num[0][0], L.den[0][0])
+    poles = closed_loop(plant(6.0, 0.5), *gains).poles()
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(np.roots(polynomial)))
+
+
+def test_loop_gain_is_pid_times_joint():
+    s = np.array([0.3j, 2j, 1 + 5j])
+    expected = (200 + 90 / s + 20 * s) / (6 * s**2 + 0.5 * s)
+    np.testing.assert_allclose(loop_gain(6.0, 0.5, 200, 90, 20)(s), expected)
+
+
+def test_steady_errors_under_a_constant_load():
+    """A spring gives way by load over stiffness, an integral not at all; both follow a step."""
+    joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
+    for ki, give in ((0.0, np.diag(1 / np.array(KP))), (KI, np.zeros((2, 2)))):
+        for period in (None, STEP):
+            gain = closed_loop(joints, KP, ki, KD, period).dcgain()
+            np.testing.assert_allclose(gain, np.hstack([np.eye(2), give]), atol=1e-9)
+
+
+def test_pd_overshoot_is_the_textbooks():
+    J, kp, kd = 6.0, 200.0, 20.0
+    zeta = kd / (2 * np.sqrt(kp * J))
+    t = np.linspace(0, 5, 20001)
+    loop = closed_loop(plant(J, 0.0), kp, kd=kd)
+    answer = control.forced_response(loop, t, [1 + 0 * t, 0 * t]).outputs[0]
+    predicted = 1 + np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
+    assert answer.max() == pytest.approx(predicted, abs=1e-6)
+
+
+# --- sampled loops --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ki", [(0.0, 0.0), KI], ids=["PD", "PID"])
+def test_sampled_loop_is_the_simulated_one(ki):
+    """On an arm whose equations are linear, sample by sample, with two coupled joints."""
+    t = np.arange(500) * STEP
+    target = np.deg2rad([3.0, -2.0]) * (t > 0)[:, None]
+    recording = follow(
+        LINEAR_ARM,
+        PID(KP, ki, KD),
+        Trajectory(target, 0 * target, 0 * target),
+        t,
+        effects=Effects((ViscousFriction(VISCOUS),)),
+        log_every=1,
+    )
+    loop = closed_loop(plant(inertia_of(LINEAR_ARM), VISCOUS), KP, ki, KD, STEP)
+    inputs = np.vstack([target.T, np.zeros((2, t.size))])
+    answer = control.forced_response(loop, t, inputs).outputs.T
+    assert np.abs(answer).max() > np.deg2rad(3)
+    np.testing.assert_allclose(recording.q_true, answer, atol=1e-11)
+
+
+def test_fast_sampling_is_continuous_control():
+    joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
+    slow = np.sort_complex(closed_loop(joints, KP, KI, KD).poles())
+    gaps = []
+    for period in (2e-4, 1e-4):
+        poles = closed_loop(joints, KP, KI, KD, period).poles()
+        gaps.append(abs(np.sort_complex(np.log(poles) / period) - slow).max())
+    assert gaps[1] < 0.05
+    assert gaps[0] / gaps[1] == pytest.approx(2, abs=0.1)
+
+
+# --- the limit of proportional control --------------------------------------------------
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.floats(0.05, 20), st.floats(-3.0, 1.5))
+def test_limit_separates_stable_from_unstable(inertia, power):
+    """From hardly any friction to a period of thirty time constants: both ways to fail."""
+    period = 0.01
+    viscous = 10**power * inertia / period
+    limit = proportional_limit(inertia, viscous, period)
+    assert radius(inertia, viscous, 0.99 * limit, period) < 1
+    assert radius(inertia, viscous, 1.01 * limit, period) > 1
+
+
+def test_limit_is_twice_friction_over_period():
+    assert proportional_limit(6.5, 0.5, STEP) == pytest.approx(2 * 0.5 / STEP, rel=1e-4)
+    assert proportional_limit(6.5, 0.0, STEP) == 0
+    assert radius(6.5, 0.0, 1.0, STEP) > 1  # without friction no gain is stable
+
+
+def test_limit_is_continuous_where_its_series_ends():
+    period = 0.01
+    below, above = (proportional_limit(1.0, x / period, period) / x for x in (0.999e-4, 1.001e-4))
+    assert below == pytest.approx(above, rel=1e-6)
+
+
+# --- refusals -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: plant(-1.0, 0.5), "inertia"),
+        (lambda: plant([[1.0, 2.0], [2.0, 1.0]], 0.5), "inertia"),
+        (lambda: plant([[1.0, 0.5], [0.0, 1.0]], 0.5), "inertia"),
+        (lambda: plant([1.0, 2.0], 0.5), "inertia"),
+        (lambda: plant(np.nan, 0.5), "inertia"),
+        (lambda: plant(1.0, -0.5), "viscous"),
+        (lambda: plant(1.0, [0.5, 0.1]), "viscous"),
+        (lambda: loop_gain(0.0, 0.5, 1.0), "inertia"),
+        (lambda: loop_gain(1.0, 0.5, -1.0), "kp"),
+        (lambda: loop_gain(1.0, 0.5, 1.0, kd=np.inf), "kd"),
+        (lambda: closed_loop(plant(1.0, 0.5), [1.0, 2.0]), "kp"),
+        (lambda: closed_loop(plant(1.0, 0.5), 1.0, ki=-1.0), "ki"),
+        (lambda: closed_loop(plant(1.0, 0.5), 1.0, period=0.0), "period"),
+        (lambda: proportional_limit(1.0, -1.0, STEP), "viscous"),
+        (lambda: proportional_limit(1.0, 1.0, 0.0), "period"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        call()
