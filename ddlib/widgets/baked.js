@@ -108,7 +108,22 @@ export function ticks(low, high, count) {
   return Array.from({ length: last - first + 1 }, (_, i) => (first + i) * step);
 }
 
-const short = (x) => String(Number(x.toPrecision(6))).replace("-", "−");
+// A few round numbers, both ends among them where that is possible.
+export function fullTicks(p) {
+  if (p.scale === "log") return ticks(Math.log10(p.low), Math.log10(p.high), 4).map((x) => 10 ** x);
+  const range = p.high - p.low;
+  const count = [3, 4, 5, 2].find((n) => Math.abs((range / n).toPrecision(2) - range / n) < 1e-9);
+  if (!count) return ticks(p.low, p.high, 4);
+  return Array.from({ length: count + 1 }, (_, i) => p.low + (i * range) / count);
+}
+
+// Numbers as text, all with the same number of decimals unless they are powers of ten.
+export function labels(numbers, log = false) {
+  const texts = numbers.map((x) => String(Number(x.toPrecision(6))));
+  const digits = Math.max(...texts.map((text) => (text.split(".")[1] ?? "").length));
+  const short = log || texts.some((text) => text.includes("e"));
+  return texts.map((text, i) => (short ? text : numbers[i].toFixed(digits)).replace("-", "−"));
+}
 
 // A value with the digits that its range deserves.
 export function format(value, low, high, unit = "") {

@@ -21,7 +21,7 @@ function axis(low, high, scale, from, to, room) {
   const place = (x) => from + (((log ? Math.log10(x) : x) - a) / (b - a)) * (to - from);
   let marks = ticks(a, b, Math.max(2, Math.floor(Math.abs(to - from) / room)));
   if (log) marks = marks.filter(Number.isInteger).map((x) => 10 ** x);
-  return { place, marks };
+  return { place, marks, texts: labels(marks, log) };
 }
 
 function chart(view, panel) {
@@ -53,16 +53,16 @@ function chart(view, panel) {
     for (const [name, value] of [["width", width], ["height", height]]) svg.setAttribute(name, value);
     const bottom = height - 36;
     y = axis(low, high, panel.y_scale, bottom, 6, 30);
-    const left = 10 + 6.6 * Math.max(...y.marks.map((v) => short(v).length));
+    const left = 10 + 6.6 * Math.max(...y.texts.map((text) => text.length));
     x = axis(panel.x[0], panel.x.at(-1), panel.x_scale, left, width - 10, 52);
     grid.replaceChildren(
-      ...y.marks.flatMap((v) => {
+      ...y.marks.flatMap((v, i) => {
         const at = y.place(v).toFixed(2);
-        const label = make("text", { x: left - 6, y: at, dy: "0.34em", class: "y" }, short(v));
+        const label = make("text", { x: left - 6, y: at, dy: "0.34em", class: "y" }, y.texts[i]);
         return [make("line", { x1: left, x2: width - 10, y1: at, y2: at }), label];
       }),
-      ...x.marks.map((v) =>
-        make("text", { x: x.place(v).toFixed(1), y: bottom + 16, class: "x" }, short(v)),
+      ...x.marks.map((v, i) =>
+        make("text", { x: x.place(v).toFixed(1), y: bottom + 16, class: "x" }, x.texts[i]),
       ),
       make("path", { class: "frame", d: `M${left} 6V${bottom}H${width - 10}` }),
       make("text", { x: (left + width - 10) / 2, y: height - 3, class: "x" }, panel.x_label),
@@ -135,22 +135,22 @@ function padOf(view) {
   const name = (p) => `${p.label}${p.unit ? `, ${p.unit}` : ""}`;
   const label = `${px.label} to the right, ${py.label} upwards; arrow keys move, with Shift faster`;
   const middle = top + size / 2;
+  const numbers = (p, attributes) => {
+    const texts = labels(fullTicks(p), p.scale === "log");
+    return fullTicks(p).map((v, k) => make("text", attributes(v), texts[k]));
+  };
   const svg = make(
     "svg",
     { viewBox: `0 0 ${left + size + 14} ${top + size + 40}`, class: "pad", tabindex: 0 },
     frame,
     make("polygon", { points: region, class: "region" }),
-    ...ticks(px.low, px.high, 3).map((v) =>
-      make("text", { x: x(v), y: top + size + 16, class: "x" }, short(v)),
-    ),
-    ...ticks(py.low, py.high, 3).map((v) =>
-      make("text", { x: left - 6, y: y(v), dy: "0.34em", class: "y" }, short(v)),
-    ),
+    ...numbers(px, (v) => ({ x: x(v), y: top + size + 16, class: "x" })),
+    ...numbers(py, (v) => ({ x: left - 6, y: y(v), dy: "0.34em", class: "y" })),
     make("text", { x: left + size / 2, y: top + size + 34, class: "x" }, name(px)),
     make("text", { transform: `translate(12 ${middle}) rotate(-90)`, class: "x" }, name(py)),
     ...pad.marks.map((mark) => {
-      const inward = toFraction(px, mark.x) > 0.9 ? -11 : 11;
-      const up = toFraction(py, mark.y) > 0.9 ? 14 : -8;
+      const inward = toFraction(px, mark.x) > 0.9 ? -13 : 13;
+      const up = toFraction(py, mark.y) > 0.9 ? 18 : -9;
       const text = { x: inward, y: up, class: "x" };
       const place = `translate(${x(mark.x)} ${y(mark.y)})`;
       return make("g", { transform: place }, make("path", shape(mark.group)), make("text", text, mark.label));

@@ -11,6 +11,9 @@ function pose([l1, l2], q1, q2, scale) {
 function armOf(view) {
   const { lengths, angles, times } = view.model.get("arm");
   const scale = 230 / (lengths[0] + lengths[1]);
+  const rad = (x) => (x * Math.PI) / 180;
+  const far = angles.map((name) => rad(view.spec.curves.find((c) => c.name === name).low));
+  const [deepest] = pose(lengths, ...far, scale).slice(1); // to the right of and below the base
   const trail = make("path", { class: "trail" });
   const links = ["upper", "fore"].map((name) => make("line", { class: `link ${name}`, x1: 0, y1: 0 }));
   const elbow = make("circle", { class: "joint", r: 5 });
@@ -20,11 +23,10 @@ function armOf(view) {
   const words = "The arm from above; the dotted line is the path of the hand";
   const svg = make(
     "svg",
-    { class: "arm", viewBox: "-20 -16 280 262", role: "img", "aria-label": words },
+    { class: "arm", viewBox: `-20 -16 280 ${deepest[1] + 32}`, role: "img", "aria-label": words },
     ...[ground, trail, ...links, base, elbow, hand],
   );
   let joints = [[0], [0]];
-  const rad = (x) => (x * Math.PI) / 180;
 
   function path(curves) {
     joints = angles.map((name) => curves[name]);
@@ -70,7 +72,7 @@ extras.push((view) => {
     view.charts.forEach((c) => c.point(now));
   }
   function run(moment) {
-    const passed = (moment - started) / 1000;
+    const passed = Math.max(0, moment - started) / 1000; // a frame may bear an earlier stamp
     now = Math.min(arm.end, calm.matches ? Math.floor(passed * 2) / 2 : passed); // calm: poses
     show();
     if (now < arm.end) frame = requestAnimationFrame(run);
