@@ -117,6 +117,7 @@ def _inline(svg: str, alt: str) -> str:
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
     svg = svg.replace(INK, "currentColor")
+    svg = re.sub(r' d="[^"]*"', _rounded, svg)
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
     style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto;"
     style += "stroke-linejoin:round;stroke-linecap:butt"
@@ -124,3 +125,8 @@ def _inline(svg: str, alt: str) -> str:
     attributes = f'role="img" aria-label="{label}" style="{style}"'
     svg = svg.replace(size[0], attributes, 1)
     return re.sub(r"\n\s*", "\n", svg)
+
+
+def _rounded(path: re.Match) -> str:
+    """A path's coordinates to hundredths of a point: nobody sees the rest."""
+    return re.sub(r"-?\d+\.\d{3,}", lambda x: f"{float(x[0]):.2f}", path[0])

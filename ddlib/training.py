@@ -183,6 +183,8 @@ def train(
     Returns
     -------
     History
+        Training errors before the step of each noted epoch, since they cost nothing
+        there; `train_ensemble` takes them after it.
 
     Raises
     ------

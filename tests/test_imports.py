@@ -1,7 +1,6 @@
 """Data flows one way: nothing in ddlib imports against its order, and torch stays in its place."""
 
 import ast
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -25,20 +24,20 @@ ORDER = [
     ("network",),
     ("training",),
     ("rivals",),
+    ("experiment",),
     ("results", "style", "tables"),
     ("figures", "diagrams"),
     ("widgets",),
-    ("experiments", "reproduce"),
+    ("reproduce",),
 ]
 STAGE = {name: i for i, names in enumerate(ORDER) for name in names}
 TORCH = {"network", "training"}
-SINGLE_STAGE_FREE = {"widgets", "experiments", "rivals"}  # packages of several modules
+SINGLE_STAGE_FREE = {"widgets", "rivals"}  # packages of several modules
 
 
 def name_of(path) -> str:
     """Place of a file in the order: its module, or the package it lies in."""
-    name = path.relative_to(ROOT).with_suffix("").parts[0]
-    return "experiments" if re.match(r"experiment|reproduce", name) else name
+    return path.relative_to(ROOT).with_suffix("").parts[0]
 
 
 FILES = [p for p in sorted(ROOT.rglob("*.py")) if p != ROOT / "__init__.py"]

@@ -133,7 +133,7 @@ class TrajectoryPicker(CurveWidget):
 
             call = STATE_FEEDBACK.record
         self.recording = call(self.extents_deg)
-        self._say(f"Recorded {_words(self.extents_deg)}: now in the widget's `recording`.")
+        self._say(f"Recorded {_words(self.extents_deg)}: now in the widget's recording.")
         return self.recording
 
     @t.validate("extents_deg")

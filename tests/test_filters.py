@@ -1,0 +1,387 @@
+"""Weight functions as filters: parts, derivatives, names, and filters of known gain."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.polynomial import Polynomial
+from scipy.signal import freqz
+
+from ddlib.filters import (
+    CLASSES,
+    DERIVATIVES,
+    basis,
+    classify,
+    content,
+    decompose,
+    frequency_response,
+    purest,
+    roughness,
+    savitzky_golay,
+    shares,
+)
+
+WIDTHS = (11, 21, 41)
+
+functions = st.integers(2, 20).flatmap(
+    lambda half: hnp.arrays(float, 2 * half + 1, elements=st.floats(-10, 10, width=32))
+)
+
+
+def random(size):
+    """White noise, the same in every test."""
+    return np.random.default_rng(8).normal(size=size)
+
+
+def grid(width):
+    return np.arange(width) - width // 2
+
+
+def legendre(width):
+    """Parabola and cubic that are orthogonal to what is below them, in closed form."""
+    x, n = grid(width).astype(float), width // 2
+    parabola = x**2 - n * (n + 1) / 3
+    cubic = x**3 - x * (3 * n**2 + 3 * n - 1) / 5
+    return {"position": 1 + 0 * x, "velocity": x, "acceleration": parabola, "jerk": cubic}
+
+
+# --- even and odd parts -------------------------------------------------------------------
+
+
+@given(f=functions)
+def test_the_parts_are_what_they_are_called_and_sum_to_the_function(f):
+    parts = decompose(f)
+    np.testing.assert_allclose(parts.sum(), f, atol=1e-12)
+    np.testing.assert_allclose(parts.odd, -parts.odd[::-1], atol=1e-12)
+    np.testing.assert_allclose(parts.even, parts.even[::-1], atol=1e-12)
+    assert parts.constant.shape == (1,)
+    assert parts.constant[0] == pytest.approx(np.mean(f), abs=1e-12)
+    assert parts.even.mean() == pytest.approx(0, abs=1e-12)
+    mixed = [a @ b for a, b in ((parts.odd, parts.even), (parts.odd, np.ones(len(f))))]
+    np.testing.assert_allclose(mixed, 0, atol=1e-9)
+
+
+@given(f=functions)
+def test_the_paper_takes_the_constant_from_the_odd_part(f):
+    ours, printed = decompose(f), decompose(f, "paper")
+    np.testing.assert_allclose(printed.sum(), f, atol=1e-12)
+    np.testing.assert_allclose(printed.even, (f + f[::-1]) / 2, atol=1e-12)
+    np.testing.assert_allclose(printed.odd, (f - f[::-1]) / 2 - f.mean(), atol=1e-12)
+    np.testing.assert_allclose(printed.constant, ours.constant)
+
+
+def test_the_printed_odd_part_is_not_odd():
+    f = np.array([1.0, 2.0, 6.0])
+    assert decompose(f, "paper").odd[1] == -3.0
+    assert decompose(f).odd[1] == 0.0
+
+
+def test_known_functions_come_out_as_what_they_are():
+    x = grid(21)
+    f = 4 + 0.5 * x + np.cos(x)
+    parts = decompose(f)
+    np.testing.assert_allclose(parts.odd, 0.5 * x, atol=1e-12)
+    np.testing.assert_allclose(parts.even, np.cos(x) - np.cos(x).mean(), atol=1e-12)
+    many = decompose(np.stack([f, 2 * f, -f]).reshape(3, 1, 21))
+    assert many.constant.shape == (3, 1, 1) and many.even.shape == (3, 1, 21)
+    np.testing.assert_allclose(many.odd[1, 0], x, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [decompose, content, shares, classify, roughness])
+@pytest.mark.parametrize(
+    "f", [np.ones(10), np.ones((3, 4)), np.ones(1), 1.0, [0.0, np.nan, 1.0, 2.0, 3.0]]
+)
+def test_functions_of_a_window_are_finite_and_have_a_centre(name, f):
+    with pytest.raises(ValueError, match="^f must"):
+        name(f)
+
+
+def test_convention_is_known():
+    with pytest.raises(ValueError, match="convention must be one of 'symmetric', 'paper'"):
+        decompose(np.ones(5), "printed")
+
+
+# --- derivatives -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("width", [5, *WIDTHS, 81])
+def test_basis_is_orthonormal_and_known(width):
+    b = basis(width)
+    assert b.shape == (4, width)
+    np.testing.assert_allclose(b @ b.T, np.eye(4), atol=1e-12)
+    for row, known in zip(b, legendre(width).values()):
+        np.testing.assert_allclose(row, known / np.linalg.norm(known), atol=1e-12)
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("order", range(4))
+def test_pure_functions_have_one_share(width, order):
+    f = -2.5 * list(legendre(width).values())[order]
+    np.testing.assert_allclose(shares(f), np.eye(5)[order], atol=1e-12)
+    np.testing.assert_allclose(content(f)[order], -np.linalg.norm(f))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_shares_of_a_sum_are_its_energies(width):
+    x = grid(width).astype(float)
+    quartic = x**4
+    cubic_fit = Polynomial.fit(x, quartic, 3)(x)
+    rest = quartic - cubic_fit
+    known = [*legendre(width).values(), rest]
+    f = sum(np.sqrt(weight) * k / np.linalg.norm(k) for weight, k in zip((1, 2, 3, 4, 5), known))
+    np.testing.assert_allclose(shares(f), np.arange(1, 6) / 15, atol=1e-12)
+
+
+@given(f=functions.filter(lambda f: np.abs(f).max() > 1e-3), scale=st.sampled_from([-3.0, 0.1]))
+def test_shares_sum_to_one_whatever_the_scale(f, scale):
+    s = shares(f)
+    assert s.shape == (5,) and (s >= 0).all()
+    assert s.sum() == pytest.approx(1, abs=1e-9)
+    np.testing.assert_allclose(shares(scale * f), s, atol=1e-9)
+
+
+def test_shares_of_time_reversed_functions_are_the_same():
+    f = random((6, 21))
+    np.testing.assert_allclose(shares(f[:, ::-1]), shares(f), atol=1e-12)
+
+
+def test_response_to_a_polynomial_motion():
+    """A filter without position share does not see where the arm stands, and so on."""
+    f = {name: k for name, k in legendre(11).items()}
+    x = grid(11)
+    assert f["velocity"] @ (7.0 + 0 * x) == 0
+    assert f["acceleration"] @ (7.0 + 3.0 * x) == pytest.approx(0, abs=1e-9)
+    assert f["jerk"] @ (7.0 + 3.0 * x - x**2) == pytest.approx(0, abs=1e-9)
+    for name, motion in zip(DERIVATIVES[1:], (x, x**2, x**3)):
+        assert f[name] @ motion > 1
+
+
+def test_refusals_of_content():
+    with pytest.raises(ValueError, match="5 samples or more"):
+        content(np.ones(3))
+    with pytest.raises(ValueError, match="must not be zero everywhere"):
+        shares(np.stack([np.ones(7), np.zeros(7)]))
+    with pytest.raises(ValueError, match="width must be an integer from 4"):
+        basis(3)
+
+
+# --- names -------------------------------------------------------------------------------
+
+
+def mix(width, **weights):
+    known = legendre(width)
+    return sum(
+        np.sign(w) * np.sqrt(abs(w)) * known[n] / np.linalg.norm(known[n])
+        for n, w in weights.items()
+    )
+
+
+NAMED = [
+    (dict(velocity=1), "velocity"),
+    (dict(acceleration=-1), "acceleration"),
+    (dict(jerk=1), "jerk"),
+    (dict(velocity=0.85, acceleration=0.15), "velocity"),
+    (dict(velocity=0.6, acceleration=-0.4), "velocity + acceleration"),
+    (dict(acceleration=0.5, jerk=0.5), "acceleration + jerk"),
+    (dict(velocity=0.5, jerk=0.5), "other mix"),
+    (dict(velocity=0.4, acceleration=0.3, jerk=-0.3), "other mix"),
+    (dict(position=50, acceleration=1), "acceleration"),  # where the arm stands does not count
+    (dict(position=-50, velocity=0.5, jerk=0.5), "other mix"),
+]
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("weights, name", NAMED, ids=lambda x: x if isinstance(x, str) else "")
+def test_names_of_pure_and_mixed_functions(width, weights, name):
+    f = mix(width, **weights)
+    noise = random(width)
+    noise *= 0.03 * np.linalg.norm(mix(width, **{**weights, "position": 0})) / np.sqrt(width)
+    np.testing.assert_array_equal(classify([f, -f, 40 * f, f + noise]), [name] * 4)
+
+
+def test_rough_functions_are_not_analysable():
+    alternating = (-1.0) ** np.arange(21)
+    assert classify(alternating) == "not analysable"
+    assert (classify(random((40, 41))) == "not analysable").mean() > 0.9
+    ramp = mix(21, velocity=1)
+    rough = alternating - content(alternating) @ basis(21)
+    rough /= np.linalg.norm(rough)
+    below, above = ramp + 0.45 * rough, ramp + 0.55 * rough  # 17 and 23 % of the energy
+    np.testing.assert_array_equal(classify([below, above]), ["velocity", "not analysable"])
+    assert classify(above, smooth=0.7) == "velocity"
+    assert classify(above + 100.0) == "not analysable"  # a constant does not smooth
+
+
+def test_the_threshold_of_purity():
+    f = mix(21, velocity=0.75, jerk=0.25)
+    assert classify(f) == "other mix" and classify(f, pure=0.7) == "velocity"
+
+
+@pytest.mark.parametrize("value", [1.0, 0.1, 0.3, -2.7, 1e-9])
+@pytest.mark.parametrize("width", WIDTHS)
+def test_a_constant_has_no_derivative_to_be_named_after(width, value):
+    assert classify(np.full(width, value)) == "not analysable"
+
+
+def test_names_keep_the_leading_shape():
+    f = np.stack([[mix(11, velocity=1), mix(11, jerk=1)], [mix(11, acceleration=1)] * 2])
+    names = classify(f)
+    assert names.shape == (2, 2) and set(names.ravel()) <= set(CLASSES)
+    np.testing.assert_array_equal(names, [["velocity", "jerk"], ["acceleration", "acceleration"]])
+
+
+@pytest.mark.parametrize("option", [dict(pure=0.4), dict(pure=1.1), dict(smooth=-0.1)])
+def test_thresholds_are_shares(option):
+    with pytest.raises(ValueError, match=f"{next(iter(option))} must lie in"):
+        classify(np.arange(5.0), **option)
+
+
+def test_the_purest_of_a_class():
+    f = np.stack(
+        [
+            mix(11, velocity=0.82, acceleration=0.18),
+            mix(11, velocity=0.95, acceleration=0.05),
+            mix(11, velocity=0.55, acceleration=0.45),
+            mix(11, velocity=0.7, acceleration=0.3),
+            mix(11, acceleration=1),
+        ]
+    )
+    np.testing.assert_array_equal(purest(f, "velocity"), f[1])
+    np.testing.assert_array_equal(purest(f.reshape(1, 5, 11), "acceleration"), f[4])
+    np.testing.assert_array_equal(purest(f, "velocity + acceleration"), f[2])
+    np.testing.assert_array_equal(purest(f, "velocity", lambda share: share[2]), f[0])
+    with pytest.raises(ValueError, match="no function of class 'jerk'"):
+        purest(f, "jerk")
+    with pytest.raises(ValueError, match="name must be one of"):
+        purest(f, "speed")
+
+
+# --- roughness ---------------------------------------------------------------------------
+
+
+def test_roughness_of_lines_noise_and_zigzag():
+    x = grid(21)
+    np.testing.assert_allclose(roughness([3 + 2 * x, -0.1 * x]), 0, atol=1e-20)
+    assert roughness(np.full(21, 0.3)) == 0
+    noise = roughness(random((3000, 41)))
+    assert noise.mean() == pytest.approx(1, abs=0.05)
+    # second differences of +1, -1 are 4 in size: 16 / (6 x variance)
+    zigzag = (-1.0) ** np.arange(41)
+    assert roughness(zigzag) == pytest.approx(16 / (6 * zigzag.var()))
+    assert roughness(x**2) < 0.01 < roughness(np.sin(x)) < 1
+
+
+@given(f=functions.filter(lambda f: np.ptp(f) > 1e-3), a=st.floats(0.1, 9), b=st.floats(-9, 9))
+def test_roughness_does_not_depend_on_scale_and_offset(f, a, b):
+    np.testing.assert_allclose(roughness(a * f + b), roughness(f), rtol=1e-6, atol=1e-9)
+
+
+# --- reference filters ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("derivative", range(4))
+def test_savitzky_golay_is_exact_on_cubics(width, derivative):
+    step = 0.01
+    cubic = Polynomial([0.3, -1.2, 5.0, 40.0])
+    window = cubic(grid(width) * step)
+    weights = savitzky_golay(width, derivative, step)
+    exact = cubic.deriv(derivative)(0.0) if derivative else cubic(0.0)
+    assert weights @ window == pytest.approx(exact, rel=1e-7)
+    if derivative == 1:  # oldest sample first: a rising position gives a positive velocity
+        assert savitzky_golay(width, 1, step, 2) @ grid(width) > 0
+
+
+@pytest.mark.parametrize("width, degree", [(11, 2), (21, 4), (41, 3), (7, 6)])
+def test_savitzky_golay_is_a_least_squares_fit(width, degree):
+    noisy, x = random(width), grid(width) * 0.01
+    fitted = Polynomial.fit(x, noisy, degree)
+    for derivative in range(degree + 1):
+        exact = fitted.deriv(derivative)(0.0) if derivative else fitted(0.0)
+        ours = savitzky_golay(width, derivative, 0.01, degree) @ noisy
+        assert ours == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize("width, gain", [(11, 683), (21, 133.5), (41, 25.0)])
+@pytest.mark.parametrize("degree", [2, 3])
+def test_acceleration_noise_gains(width, gain, degree):
+    """Per s^2 per rad on a 10 ms grid; in closed form 2 / (norm of the parabola)."""
+    weights = savitzky_golay(width, 2, 0.01, degree)
+    own = np.linalg.norm(weights)
+    assert own == pytest.approx(gain, rel=2e-3)
+    parabola = legendre(width)["acceleration"] * 0.01**2
+    assert own == pytest.approx(2 / np.linalg.norm(parabola), rel=1e-9)
+    assert classify(weights) == "acceleration"
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ((10, 1, 0.01), "width must be odd"),
+        ((1, 0, 0.01), "width must be an integer from 3"),
+        ((11, 4, 0.01), "derivative must be an integer from 0 to 3"),
+        ((11, -1, 0.01), "derivative must"),
+        ((5, 1, 0.01, 5), "degree must be an integer from 0 to 4"),
+        ((11, 1, 0.0), "step must"),
+        ((11, 1, np.nan), "step must"),
+    ],
+)
+def test_savitzky_golay_refuses_bad_values(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        savitzky_golay(*arguments)
+
+
+# --- frequency response --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_frequency_response_is_scipys_without_the_delay(width):
+    """A causal filter sees the newest sample first, and the centre half a window ago."""
+    f = random((3, width))
+    frequencies = np.linspace(0, 50, 40)
+    ours = frequency_response(f, frequencies, 0.01)
+    assert ours.shape == (3, 40)
+    for weights, gain in zip(f, ours):
+        _, causal = freqz(weights[::-1], worN=frequencies, fs=100.0)
+        delay = np.exp(-2j * np.pi * frequencies * 0.01 * (width // 2))
+        np.testing.assert_allclose(gain, causal / delay, atol=1e-10)
+
+
+def test_frequency_response_is_what_a_sine_meets():
+    f, step = random(21), 0.01
+    times = 0.37 + grid(21) * step
+    for nu in (0.5, 3.0, 17.0):
+        wave = np.exp(2j * np.pi * nu * times)
+        gain = frequency_response(f, [nu], step)[0]
+        assert gain == pytest.approx(f @ wave / np.exp(2j * np.pi * nu * 0.37), rel=1e-9)
+
+
+def test_differentiators_have_the_gain_of_a_derivative_at_low_frequency():
+    nu = np.array([0.02, 0.1])
+    omega = 2 * np.pi * nu
+    for order in (0, 1, 2, 3):
+        gain = frequency_response(savitzky_golay(21, order, 0.01), nu, 0.01)
+        np.testing.assert_allclose(gain, (1j * omega) ** order, rtol=0.02)
+
+
+def test_even_functions_have_real_gain_and_odd_ones_imaginary():
+    parts = decompose(random(11))
+    nu = np.linspace(0, 50, 30)
+    even, odd = (frequency_response(p, nu, 0.01) for p in (parts.even, parts.odd))
+    np.testing.assert_allclose(even.imag, 0, atol=1e-12)
+    np.testing.assert_allclose(odd.real, 0, atol=1e-12)
+    assert np.abs(odd).max() > 0.1 < np.abs(even).max()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ((np.ones(10), [1.0], 0.01), "f must"),
+        ((np.ones(11), [np.nan], 0.01), "frequencies must be finite"),
+        ((np.ones(11), [1.0], 0.0), "step must"),
+    ],
+)
+def test_frequency_response_refuses_bad_values(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        frequency_response(*arguments)

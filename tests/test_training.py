@@ -1,0 +1,467 @@
+"""Descent with momentum: gradients, the rule of 1988, history, and runs that go astray."""
+
+import re
+import warnings
+from dataclasses import fields
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ddlib import training
+from ddlib.experiment import STATE_FEEDBACK
+from ddlib.metrics import rmss
+from ddlib.network import Weights, WindowNetwork
+from ddlib.training import (
+    History,
+    TrainingDiverged,
+    TrainingSet,
+    cases,
+    check_points,
+    default_rate,
+    train,
+    train_ensemble,
+)
+from ddlib.windows import sliding_windows
+
+NAMES = tuple(field.name for field in fields(Weights))
+WIDTH = 7
+
+
+def smooth_cases(n=80, width=WIDTH, seed=0):
+    """Windows of two smooth signals and a torque-like target with a few cycles."""
+    t = np.arange(n + width - 1) * 0.1
+    rng = np.random.default_rng(seed)
+    q = np.stack([np.sin(t + 0.3) + 0.3 * np.sin(2.7 * t), np.cos(1.3 * t)], -1)
+    windows = sliding_windows(q, width)
+    centre = windows[..., width // 2]
+    torque = np.stack([np.gradient(centre[:, 0]), centre[:, 1] * centre[:, 0]], -1)
+    return windows, torque + 0.02 * rng.normal(size=torque.shape)
+
+
+@pytest.fixture(scope="module")
+def data():
+    return TrainingSet.from_arrays(*smooth_cases())
+
+
+@pytest.fixture(scope="module")
+def other(data):
+    return data.transform(*smooth_cases(50, seed=1))
+
+
+def parts(weights):
+    return [getattr(weights, name) for name in NAMES]
+
+
+def squared_error(tensors, x, y):
+    """Half the summed squared error of one network, written with sums over named axes."""
+    a, b, c, d, e = tensors
+    h = torch.sigmoid(torch.einsum("hjw,njw->nh", a, x) + b)
+    out = torch.sigmoid(torch.einsum("ojw,njw->no", d, x) + torch.einsum("oh,nh->no", c, h) + e)
+    return 0.5 * ((out - y) ** 2).sum()
+
+
+def gradient(arrays, x, y):
+    """Its gradient in double precision."""
+    tensors = [torch.tensor(p, dtype=torch.float64, requires_grad=True) for p in arrays]
+    squared_error(tensors, torch.tensor(x), torch.tensor(y)).backward()
+    return [t.grad.numpy() for t in tensors]
+
+
+def close(weights, wanted, rtol, atol=0.0):
+    for name, own, w in zip(NAMES, parts(weights), wanted):
+        np.testing.assert_allclose(own, w, rtol=rtol, atol=atol, err_msg=name)
+
+
+# --- the data ---------------------------------------------------------------------------
+
+
+def test_a_training_set_is_scaled_and_can_be_unscaled():
+    windows, torque = smooth_cases()
+    made = TrainingSet.from_arrays(windows, torque, (0.1, 0.9))
+    for j in (0, 1):
+        assert (made.x[:, j].min(), made.x[:, j].max()) == pytest.approx((0, 1))
+        assert (made.y[:, j].min(), made.y[:, j].max()) == pytest.approx((0.1, 0.9))
+    np.testing.assert_allclose(made.inputs.unscale(made.x, -2), windows, atol=1e-12)
+    np.testing.assert_allclose(made.outputs.unscale(made.y), torque, atol=1e-12)
+    x, y = made.transform(windows[:5], torque[:5])
+    np.testing.assert_array_equal(x, made.x[:5])
+    np.testing.assert_array_equal(y, made.y[:5])
+
+
+def test_cases_pair_each_window_with_the_torque_at_its_centre():
+    recording = STATE_FEEDBACK.record([(30.0, 20.0), (10.0, 40.0)])
+    windows, torque = cases(recording, 11)
+    assert windows.shape == (600, 2, 11) and torque.shape == (600, 2)
+    for run, sample in ((0, 0), (0, 299), (1, 0), (1, 123)):
+        k, moment = 300 * run + sample, 50 + sample
+        np.testing.assert_array_equal(windows[k], recording.q[run, moment - 5 : moment + 6].T)
+        np.testing.assert_array_equal(torque[k], recording.tau[run, moment])
+    made = TrainingSet.from_recording(recording, 11)
+    np.testing.assert_allclose(made.inputs.unscale(made.x, -2), windows, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "windows, torque, words",
+    [
+        (np.zeros((5, 2)), np.zeros((5, 2)), "windows and torque must have shapes"),
+        (np.zeros((5, 2, 3)), np.zeros(5), "windows and torque must have shapes"),
+        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "windows and torque must have shapes"),
+        (np.full((5, 2, 3), np.nan), np.zeros((5, 2)), "windows must be finite"),
+        (np.zeros((5, 2, 3)), np.full((5, 2), np.inf), "torque must be finite"),
+        (np.zeros((5, 2, 3)), np.zeros((5, 2)), "high must exceed low"),
+    ],
+)
+def test_training_sets_refuse_bad_values(windows, torque, words):
+    with pytest.raises(ValueError, match=words):
+        TrainingSet.from_arrays(windows, torque)
+
+
+# --- the step ------------------------------------------------------------------------------
+
+
+def test_double_gradient_is_right_by_finite_differences(data):
+    """The yardstick of the next tests, checked without autograd."""
+    arrays = [p.copy() for p in parts(Weights.random(1, WIDTH, 4, initial=1.0)[0])]
+    exact = gradient(arrays, data.x, data.y)
+
+    def error():
+        out = Weights(*arrays).activity(data.x)[1]
+        return 0.5 * ((out - data.y) ** 2).sum()
+
+    for array, slope in zip(arrays, exact):
+        place = np.unravel_index(np.abs(slope).argmax(), slope.shape)
+        array[place] += 1e-5
+        above = error()
+        array[place] -= 2e-5
+        below = error()
+        array[place] += 1e-5
+        assert (above - below) / 2e-5 == pytest.approx(slope[place], rel=1e-6)
+
+
+def test_one_ensemble_step_is_the_gradient_of_each_member(data):
+    start = Weights.random(3, WIDTH, initial=1.0, seed=4)
+    model, *_ = train_ensemble(start, data, rate=8.0, epochs=1, progress=False)
+    for k in range(3):
+        before = parts(start[k])
+        slopes = gradient(before, data.x, data.y)
+        for own, p, g, name in zip(parts(model.weights[k]), before, slopes, NAMES):
+            step = (p - own) * len(data.x) / 8.0
+            assert np.abs(g).max() > 0.01, name
+            np.testing.assert_allclose(step, g, atol=2e-4 * np.abs(g).max() + 1e-5, err_msg=name)
+
+
+@pytest.mark.parametrize("momentum", [0.0, 0.5, 0.95])
+def test_the_rule_of_1988(data, momentum):
+    """``dw(t) = -eps dE/dw + alpha dw(t-1)``, recomputed step by step in double precision."""
+    start = Weights.random(2, WIDTH, 5, initial=0.5, seed=7)
+    epochs, rate = 12, 4.0
+    model, *_ = train_ensemble(
+        start, data, rate=rate, momentum=momentum, epochs=epochs, progress=False
+    )
+    network = WindowNetwork(WIDTH, 5, initial=0.5, seed=7)
+    train(network, data.x, data.y, rate=rate, momentum=momentum, epochs=epochs, progress=False)
+    for k in range(2):
+        w = [p.copy() for p in parts(start[k])]
+        dw = [np.zeros_like(p) for p in w]
+        for _ in range(epochs):
+            slopes = gradient(w, data.x, data.y)
+            dw = [-rate / len(data.x) * g + momentum * d for g, d in zip(slopes, dw)]
+            w = [p + d for p, d in zip(w, dw)]
+        moved = max(np.abs(a - b).max() for a, b in zip(w, parts(start[k])))
+        assert moved > 0.05
+        close(model.weights[k], w, rtol=0, atol=1e-4 * moved)
+        if k == 0:
+            close(network.weights(), w, rtol=0, atol=1e-4 * moved)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 3, 5])
+def test_the_ensemble_follows_the_plain_reference(data, monkeypatch, workers):
+    """200 epochs, five members in one to five blocks, against autograd member by member."""
+    monkeypatch.setattr(training, "WORKERS", workers)
+    options = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
+    model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **options)
+    assert history.training.shape == (len(check_points(200)), 5)
+    for k in (0, 2, 4):
+        network = WindowNetwork(WIDTH, seed=20 + k)
+        train(network, data.x, data.y, **options)
+        wanted = parts(network.weights())
+        largest = max(np.abs(p).max() for p in wanted)
+        close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
+
+
+def test_training_learns(data, other):
+    """Errors fall well below the constant guess, also on cases that were not seen."""
+    model, history, _ = train_ensemble(
+        Weights.random(3, WIDTH), data, test=other, epochs=1500, momentum=0.95, progress=False
+    )
+    assert (history.training[0] > 0.5).all() and (history.training[-1] < 0.35).all()
+    assert (history.test[-1] < 0.5).all() and not history.derailed.any()
+    assert (history.slope() < 0).all()
+    windows, torque = smooth_cases()
+    np.testing.assert_allclose(rmss(model.torque(windows), torque), history.training[-1], rtol=1e-5)
+
+
+def test_initial_weights_are_not_touched(data):
+    start = Weights.random(2, WIDTH)
+    before = [p.copy() for p in parts(start)]
+    train_ensemble(start, data, epochs=5, progress=False)
+    close(start, before, rtol=0)
+
+
+# --- history ----------------------------------------------------------------------------
+
+
+@given(epochs=st.integers(1, 30_000), points=st.integers(2, 100))
+def test_check_points_reach_from_first_to_last(epochs, points):
+    found = check_points(epochs, points)
+    assert found[0] == 1 and found[-1] == epochs and len(found) <= points
+    assert (np.diff(found) > 0).all()
+    late = found[found > 100]
+    if len(late) > 2:  # equal ratios, but for rounding to whole epochs
+        ratios = late[1:] / late[:-1]
+        assert ratios.max() / ratios.min() < 1.03
+
+
+def test_history_holds_the_error_at_its_epochs(data, other):
+    """Taken after the step by `train_ensemble`, before it by `train`."""
+    start = Weights.random(3, WIDTH, seed=2)
+    options = dict(rate=5.0, momentum=0.9, progress=False)
+    _, history, _ = train_ensemble(start, data, test=other, epochs=40, **options)
+    np.testing.assert_array_equal(history.epochs, check_points(40))
+    assert history.training.shape == history.test.shape == (len(history.epochs), 3)
+    for e in (1, 2, 13, 40):
+        model, *_ = train_ensemble(start, data, epochs=e, **options)
+        point = list(history.epochs).index(e)
+        for errors, x, y in (
+            (history.training, data.x, data.y),
+            (history.test, *other),
+        ):
+            own = rmss(model.weights.activity(x)[1], y)
+            np.testing.assert_allclose(errors[point], own, rtol=1e-5)
+    network = WindowNetwork(WIDTH, seed=2)
+    before = train(network, data.x, data.y, epochs=40, **options)
+    np.testing.assert_array_equal(before.epochs, check_points(40))
+    assert before.training.shape == (len(before.epochs), 1) and before.test.size == 0
+    first = rmss(start[0].activity(data.x)[1], data.y)
+    np.testing.assert_allclose(before.training[0], first, rtol=1e-5)
+    np.testing.assert_allclose(before.training[1:10, 0], history.training[:9, 0], rtol=1e-4)
+
+
+def test_snapshots_are_the_weights_of_their_epochs(data, monkeypatch):
+    monkeypatch.setattr(training, "WORKERS", 2)
+    start = Weights.random(5, WIDTH)
+    options = dict(rate=5.0, momentum=0.9, progress=False)
+    model, _, kept = train_ensemble(start, data, epochs=20, snapshots=(0, 7, 20), **options)
+    assert set(kept) == {0, 7, 20}
+    close(kept[0], parts(start), rtol=0)
+    close(kept[20], parts(model.weights), rtol=0)
+    seven, *_ = train_ensemble(start, data, epochs=7, **options)
+    close(kept[7], parts(seven.weights), rtol=0, atol=1e-6)
+
+
+def test_history_in_short():
+    history = History()
+    for epoch, a, b in ((1, [2.0, 1.0], [0.9, 3.0]), (5, [1.0, 0.5], [0.2, 4.0])):
+        history.append(epoch, a, b)
+    history.append(10, [0.5, 1.5], [0.4, np.nan])
+    np.testing.assert_array_equal(history.epochs, [1, 5, 10])
+    np.testing.assert_array_equal(history.best_test, [0.2, 3.0])
+    np.testing.assert_array_equal(history.derailed, [False, True])
+    assert history.training.shape == (3, 2)
+    scalar = History()
+    scalar.append(1, 0.5)
+    assert scalar.training.shape == (1, 1) and scalar.test.size == 0
+
+
+@given(power=st.floats(-2, 1), start=st.floats(0.01, 10))
+def test_slope_of_a_power_law_is_its_exponent(power, start):
+    history = History()
+    for epoch in check_points(20_000):
+        history.append(int(epoch), [start * epoch**power, 1.0])
+    np.testing.assert_allclose(history.slope(), [power, 0.0], atol=1e-9)
+
+
+def test_slope_looks_at_the_end_only():
+    """Fast descent that has stopped by half the epochs counts as stopped."""
+    history = History()
+    for epoch in check_points(1000):
+        history.append(int(epoch), [1.0 / min(epoch, 300)])
+    assert history.slope() == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("last, astray", [(0.3, False), (1.0, True), (np.nan, True)])
+def test_derailed_looks_at_the_end_only(last, astray):
+    history = History()
+    history.append(1, [9.0])
+    history.append(2, [last])
+    assert history.derailed == [astray]
+
+
+# --- runs that go astray -----------------------------------------------------------------
+
+
+def with_member(start, k, value):
+    """`start` with all weights of member `k` multiplied by (or set to) a value."""
+    arrays = [p.copy() for p in parts(start)]
+    for p in arrays:
+        p[k] = p[k] * value
+    return Weights(*arrays)
+
+
+@pytest.mark.parametrize("value", [1e4, np.nan, np.inf])
+@pytest.mark.filterwarnings("ignore:invalid value")
+def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
+    start = Weights.random(4, WIDTH)
+    options = dict(test=other, epochs=60, momentum=0.9, progress=False)
+    alone, clean, _ = train_ensemble(start, data, **options)
+    model, history, _ = train_ensemble(with_member(start, 2, value), data, **options)
+    np.testing.assert_array_equal(history.derailed, [False, False, True, False])
+    assert not clean.derailed.any()
+    if not np.isfinite(value):
+        assert np.isnan(history.training[:, 2]).all() and np.isnan(history.test[:, 2]).all()
+    for k in (0, 1, 3):
+        close(model.weights[k], parts(alone.weights[k]), rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(history.training[:, k], clean.training[:, k], rtol=1e-5)
+        np.testing.assert_allclose(history.test[:, k], clean.test[:, k], rtol=1e-5)
+
+
+@pytest.mark.filterwarnings("ignore:All-NaN")
+def test_divergence_of_all_members_is_an_error_that_keeps_the_history(data):
+    start = Weights.random(2, WIDTH)
+    start = with_member(with_member(start, 0, np.nan), 1, np.nan)
+    with pytest.raises(TrainingDiverged, match=r"after 30 epochs: lower the rate \(2\.5\)") as info:
+        train_ensemble(start, data, rate=2.5, epochs=30, progress=False)
+    history = info.value.history
+    np.testing.assert_array_equal(history.epochs, check_points(30))
+    assert np.isnan(history.training).all() and history.training.shape[1] == 2
+    assert history.derailed.all()
+
+
+def test_divergence_of_one_network_is_an_error_that_keeps_the_history(data):
+    """Sigmoid units saturate at large steps; it takes one beyond float32 to lose the sum."""
+    with pytest.raises(TrainingDiverged, match=r"lower the rate \(1e\+39\)") as info:
+        train(WindowNetwork(WIDTH), data.x, data.y, rate=1e39, momentum=0.95, progress=False)
+    history = info.value.history
+    at = int(re.search(r"at epoch (\d+)", str(info.value))[1])
+    assert history.epochs[-1] == at > 1 and len(history.training) == len(history.epochs) > 1
+    assert np.isfinite(history.training[0]).all() and not np.isfinite(history.training[-1]).any()
+
+
+def test_a_far_too_large_rate_is_seen_as_derailed(data):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        _, history, _ = train_ensemble(
+            Weights.random(3, WIDTH), data, rate=1e6, epochs=50, progress=False
+        )
+    assert history.derailed.all() and (history.training[-1] > 1).all()
+
+
+@pytest.mark.parametrize(
+    "options, name",
+    [
+        (dict(rate=0.0), "rate"),
+        (dict(rate=-1.0), "rate"),
+        (dict(rate=np.nan), "rate"),
+        (dict(rate=np.inf), "rate"),
+        (dict(momentum=-0.1), "momentum"),
+        (dict(momentum=1.0), "momentum"),
+        (dict(momentum=np.nan), "momentum"),
+        (dict(epochs=0), "epochs"),
+        (dict(epochs=-5), "epochs"),
+    ],
+)
+def test_bad_options_are_refused_before_any_work(data, options, name):
+    network, start = WindowNetwork(WIDTH), Weights.random(1, WIDTH)
+    before = parts(network.weights())
+    options = {"rate": 1.0, "epochs": 3, "progress": False, **options}
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        train(network, data.x, data.y, **options)
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        train_ensemble(start, data, **options)
+    close(network.weights(), before, rtol=0)
+
+
+@pytest.mark.parametrize(
+    "options, name",
+    [(dict(rate="fast"), "rate"), (dict(momentum=None), "momentum"), (dict(epochs=10.0), "epochs")],
+)
+def test_options_of_the_wrong_kind(data, options, name):
+    options = {"rate": 1.0, "epochs": 3, "progress": False, **options}
+    with pytest.raises(TypeError, match=rf"^{name} must"):
+        train(WindowNetwork(WIDTH), data.x, data.y, **options)
+    with pytest.raises(TypeError, match=rf"^{name} must"):
+        train_ensemble(Weights.random(1, WIDTH), data, **options)
+
+
+def test_data_must_be_finite(data):
+    bad = np.where(data.x == data.x.max(), np.nan, data.x)
+    with pytest.raises(ValueError, match="^x must be finite"):
+        train(WindowNetwork(WIDTH), bad, data.y, rate=1.0, progress=False)
+    with pytest.raises(ValueError, match="^y must be finite"):
+        train(WindowNetwork(WIDTH), data.x, np.full_like(data.y, np.inf), rate=1.0, progress=False)
+
+
+@pytest.mark.xfail(reason="known: reported as divergence, with the advice to lower the rate")
+@pytest.mark.parametrize("y", [np.full((80, 2), 0.5), np.full((1, 2), 0.5)], ids=["still", "short"])
+def test_targets_that_cannot_be_learnt_are_refused(data, y):
+    with pytest.raises(ValueError, match="y must"):
+        train(WindowNetwork(WIDTH), data.x, y, rate=1.0, progress=False)
+
+
+@pytest.mark.xfail(reason="known: a matrix product fails with torch's own message")
+def test_another_window_than_the_data_has_is_refused(data):
+    with pytest.raises(ValueError, match="width"):
+        train_ensemble(Weights.random(2, WIDTH + 2), data, epochs=2, progress=False)
+
+
+def test_a_single_network_is_not_an_ensemble(data):
+    with pytest.raises(TypeError, match="single network"):
+        train_ensemble(Weights.random(1, WIDTH)[0], data, epochs=2, progress=False)
+
+
+# --- rate, threads, progress ---------------------------------------------------------------
+
+
+def test_default_rate_is_in_inverse_proportion_to_the_fan_in(data):
+    assert default_rate(11) == pytest.approx(3.0)
+    assert default_rate(11) / default_rate(33) == pytest.approx(3.0)
+    for width, error in ((0, ValueError), (2.5, TypeError)):
+        with pytest.raises(error, match="width must"):
+            default_rate(width)
+    start = Weights.random(2, WIDTH)
+    default, *_ = train_ensemble(start, data, epochs=20, progress=False)
+    named, *_ = train_ensemble(start, data, epochs=20, rate=33.0 / WIDTH, progress=False)
+    close(default.weights, parts(named.weights), rtol=0)
+
+
+@pytest.fixture
+def two_threads():
+    before = torch.get_num_threads()
+    torch.set_num_threads(2)
+    yield
+    torch.set_num_threads(before)
+
+
+@pytest.mark.filterwarnings("ignore:All-NaN")
+def test_torch_gets_its_threads_back(data, two_threads):
+    train_ensemble(Weights.random(3, WIDTH), data, epochs=3, progress=False)
+    assert torch.get_num_threads() == 2
+    with pytest.raises(TrainingDiverged):
+        bad = with_member(Weights.random(1, WIDTH), 0, np.nan)
+        train_ensemble(bad, data, epochs=3, progress=False)
+    assert torch.get_num_threads() == 2
+    with pytest.raises((RuntimeError, ValueError)):  # windows that do not fit
+        train_ensemble(Weights.random(3, WIDTH + 2), data, epochs=3, progress=False)
+    assert torch.get_num_threads() == 2
+
+
+def test_progress_is_shown_when_asked_for(data, capsys):
+    options = dict(epochs=100, label="a cell of the table")
+    train_ensemble(Weights.random(2, WIDTH), data, progress=True, **options)
+    shown = capsys.readouterr().err
+    assert "a cell of the table: 100%" in shown and "median_rmss=" in shown
+    train_ensemble(Weights.random(2, WIDTH), data, progress=False, **options)
+    assert capsys.readouterr().err == ""
