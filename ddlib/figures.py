@@ -49,6 +49,8 @@ def curves(
         Logarithmic axes.
     """  # fmt: skip
     rows = -(-len(panels) // columns)
+    names = [tuple(named) for named in panels.values()]
+    shared = len(panels) > 1 and len(names[0]) > 1 and len(set(names)) == 1
 
     def draw(figure: Figure):
         axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel()

@@ -132,9 +132,10 @@ def main(arguments=None) -> None:
         if name not in PARTS:
             parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
     results.FOLDER.mkdir(parents=True, exist_ok=True)
+    codes = {name: results.code_hash(name) for name in PARTS}  # now: files may change meanwhile
     for name in options.parts or PARTS:
         path = results.FOLDER / f"{name}.json"
-        fresh = path.is_file() and results.read(name)["made by"]["code"] == results.code_hash(name)
+        fresh = path.is_file() and results.read(name)["made by"]["code"] == codes[name]
         if fresh and not options.force:
             print(f"==> {name}: up to date", flush=True)
             continue
@@ -142,7 +143,8 @@ def main(arguments=None) -> None:
         started = time.monotonic()
         content = PARTS[name]()
         seconds = time.monotonic() - started
-        results.write_json(path, {"made by": results.stamp(seconds, name), **content})
+        made_by = {**results.stamp(seconds, name), "code": codes[name]}
+        results.write_json(path, {"made by": made_by, **content})
         print(f"==> {name}: {seconds:.0f} s, written to {path}", flush=True)
     picture()
 

@@ -329,9 +329,7 @@ class CurveWidget(anywidget.AnyWidget):
 
         svg = illustrate(draw, alt, width=2.9 * count, height=2.6).svg
         svg = svg.replace("currentColor", "#1a1a1a")
-        svg = svg.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1).replace(
-            'style="', 'style="background:#fff;', 1
-        )
+        svg = svg.replace('style="', 'style="background:#fff;', 1)
         return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
 
     def _draw_pad(self, ax, values):

@@ -1,0 +1,327 @@
+"""Committed results: hashes that see code and nothing else, files, freshness, a re-measurement."""
+
+import ast
+import json
+import random
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from ddlib import paper, reproduce, results
+from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, errors
+from ddlib.network import TorqueModel, Weights
+from ddlib.reproduce import PARTS
+
+STALE = "book/results is not what this code gives: run `make reproduce`"
+
+
+# --- the hash -----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    """`results` looks at a copy of the package; ``copy(module, old, new)`` edits it."""
+    folder = tmp_path / "ddlib"
+    shutil.copytree(results.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(results, "PACKAGE", folder)
+
+    def edit(module, old, new):
+        path = folder / f"{module}.py"
+        text = path.read_text()
+        assert text.count(old) >= 1, f"{old!r} is not in {module}.py"
+        path.write_text(text.replace(old, new, 1))
+
+    edit.folder = folder
+    return edit
+
+
+def hashes():
+    return {name: results.code_hash(name) for name in PARTS}
+
+
+@pytest.fixture(scope="module")
+def before():
+    """Hashes of the package as it is."""
+    return hashes()
+
+
+def test_each_part_has_its_own_hash(before):
+    assert len(set(before.values())) == len(PARTS)
+    assert all(re.fullmatch("[0-9a-f]{16}", h) for h in before.values())
+    assert hashes() == before
+
+
+def test_words_and_layout_do_not_count(copy, before):
+    copy("training", '"""Batch gradient descent', '"""Some words. Batch gradient descent')
+    copy("training", "history, points = History(), set(", "history, points = History(), set(  # x\n")
+    copy("metrics", '    """Root mean square error', '    """Words')
+    copy("windows", "import numpy as np\n", "\n\n# a remark\nimport numpy as np  # another\n")
+    copy("experiment", '"""Window sizes of Table 4-1."""', '"""Other words."""')
+    copy("reproduce", '"""The parts by the name of their result."""', "")
+    copy("paper", '    """A pair of printed errors', '    """A couple of printed errors')
+    assert hashes() == before
+
+
+def test_layout_of_every_module_does_not_count(copy, before):
+    for path in copy.folder.glob("*.py"):
+        path.write_text(ast.unparse(ast.parse(path.read_text())))
+    assert hashes() == before
+
+
+@pytest.mark.parametrize("module", results.MODULES)
+def test_code_of_every_module_counts(copy, before, module):
+    path = copy.folder / f"{module}.py"
+    path.write_text(path.read_text() + "\nADDED = 1\n")
+    assert results.code_hash("clean") != before["clean"]
+
+
+@pytest.mark.parametrize(
+    "module, old, new",
+    [
+        ("training", "TARGET_RANGE = (0.2, 0.8)", "TARGET_RANGE = (0.2, 0.9)"),
+        ("training", "return 33.0 / integer", "return 34.0 / integer"),
+        ("training", "momentum: float = 0.95", "momentum: float = 0.96"),
+        ("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.97"),
+        ("experiment", "KP = (300.0, 90.0)", "KP = (300.0, -90.0)"),
+        ("metrics", "scale = target.std(-2) if", "scale = target.std(-1) if"),
+        ("network", "0.5 * (1 + np.tanh", "0.5 * (1 - np.tanh"),
+        ("windows", "width // 2", "width / 2"),
+        ("reproduce", "history.best_test", "history.best_tests"),  # in a private helper
+    ],
+)
+def test_changed_code_changes_every_hash(copy, before, module, old, new):
+    copy(module, old, new)
+    assert results.code_hash("clean") != before["clean"]
+
+
+def test_a_part_stales_alone(copy, before):
+    copy("reproduce", "def gains(members=8)", "def gains(members=9)")
+    after = hashes()
+    assert {name for name in PARTS if after[name] != before[name]} == {"gains"}
+
+
+def test_a_result_that_nothing_makes():
+    with pytest.raises(ValueError, match="result must be made by a function"):
+        results.code_hash("table-9-9")
+
+
+def test_the_modules_are_all_that_results_are_made_of():
+    """Followed through the imports, from what `ddlib.reproduce` computes with."""
+
+    def imports(module):
+        found = set()
+        for node in ast.walk(ast.parse((results.PACKAGE / f"{module}.py").read_text())):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib"):
+                below = node.module.partition(".")[2]
+                found |= {below} if below else {alias.name for alias in node.names}
+        return found
+
+    reached, waiting = set(), {"experiment"}
+    while waiting:
+        module = waiting.pop()
+        reached.add(module)
+        waiting |= imports(module) - reached
+    assert reached - {"_check"} == set(results.MODULES)
+    # what else the parts may use: the files themselves, and pictures of results
+    assert imports("reproduce") - reached <= {"results", "figures", "filters"}
+
+
+# --- files --------------------------------------------------------------------------------
+
+
+def test_stamp():
+    made = results.stamp(12.345, "gains")
+    assert made["code"] == results.code_hash("gains") and made["seconds"] in (12.3, 12.4)
+    assert set(made["versions"]) == {"numpy", "torch", "scipy"}
+    assert made["versions"]["numpy"] == np.__version__
+    assert "code" not in results.stamp(1.0)
+    json.dumps(made)
+
+
+def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
+    path = tmp_path / "new" / "folder" / "a.json"
+    content = {
+        "matrix": np.array([[1.23456789, -2e-9], [np.float32(0.1), 123456.7]]),
+        "mask": np.array([True, False]),
+        "count": np.int64(1234567),
+        "scalar": np.float32(0.000123456),
+        "plain": [1, 0.1 + 0.2, "text", None],
+    }
+    results.write_json(path, content)
+    assert json.loads(path.read_text()) == {
+        "matrix": [[1.2346, -2e-9], [0.1, 123460.0]],
+        "mask": [True, False],
+        "count": 1234567,
+        "scalar": 0.00012346,
+        "plain": [1, 0.1 + 0.2, "text", None],
+    }
+    assert [p.name for p in path.parent.iterdir()] == ["a.json"]
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
+    path = tmp_path / "a.json"
+    results.write_json(path, {"a": 1})
+    with pytest.raises(TypeError, match="set does not go into a results file"):
+        results.write_json(path, {"a": {2}})
+    assert json.loads(path.read_text()) == {"a": 1}
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(results.os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        results.write_json(path, {"a": 3})
+    assert json.loads(path.read_text()) == {"a": 1}
+
+
+def test_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(results, "FOLDER", tmp_path)
+    results.write_json(tmp_path / "a.json", {"a": [1, 2]})
+    assert results.read("a") == {"a": [1, 2]}
+    with pytest.raises(FileNotFoundError, match="no result 'b' .*run `make reproduce` first"):
+        results.read("b")
+
+
+@pytest.fixture
+def parts(copy, tmp_path, monkeypatch):
+    """Two quick parts in place of the real ones; the list says which have run."""
+    ran = []
+
+    def part(name):
+        return lambda: ran.append(name) or {"value": len(ran)}
+
+    monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
+    monkeypatch.setattr(reproduce, "PARTS", {n: part(n) for n in ("gains", "clean")})
+    monkeypatch.setattr(reproduce, "picture", lambda: None)
+    return ran
+
+
+def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
+    reproduce.main(["clean"])
+    reproduce.main([])
+    assert parts == ["clean", "gains"]
+    assert "==> clean: up to date" in capsys.readouterr().out
+    reproduce.main([])
+    assert parts == ["clean", "gains"]
+    copy("reproduce", "def gains(members=8)", "def gains(members=9)")
+    reproduce.main([])
+    assert parts == ["clean", "gains", "gains"] and results.read("gains")["value"] == 3
+    reproduce.main(["--force", "clean"])
+    assert parts[3:] == ["clean"]
+    with pytest.raises(SystemExit):
+        reproduce.main(["table-9-9"])
+    assert "parts must be among gains, clean, got 'table-9-9'" in capsys.readouterr().err
+
+
+def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(reproduce.PARTS, "clean", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        reproduce.main([])
+    assert [p.name for p in results.FOLDER.iterdir()] == ["gains.json"]
+    assert results.read("gains")["made by"]["code"] == results.code_hash("gains")
+
+
+def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
+    """Code that changes while a long part runs does not get the credit for it."""
+    before = results.code_hash("gains")
+
+    def slow():
+        copy("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.5")
+        return {}
+
+    monkeypatch.setitem(reproduce.PARTS, "gains", slow)
+    reproduce.main(["gains"])
+    assert results.read("gains")["made by"]["code"] == before != results.code_hash("gains")
+
+
+def test_every_file_has_its_own_name():
+    cells = [(s, w) for s in SETUPS for w in WINDOWS]
+    paths = {results.networks_path(s, w) for s, w in cells}
+    paths |= {results.snapshot_path(w, e) for w in WINDOWS for e in (0, 1, 10, 100)}
+    assert len(paths) == len(cells) + 12
+    assert all(p.suffix == ".npz" and " " not in p.name for p in paths)
+    assert all(results.FOLDER in p.parents for p in paths)
+
+
+# --- what is committed ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_committed_results_are_of_this_code(name):
+    path = results.FOLDER / f"{name}.json"
+    assert path.is_file(), f"{name}: {STALE}"
+    assert results.read(name)["made by"]["code"] == results.code_hash(name), f"{name}: {STALE}"
+
+
+def test_nothing_is_left_over():
+    assert not [p.name for p in results.FOLDER.rglob("*.part")], STALE
+    unknown = {p.stem for p in results.FOLDER.glob("*.json")} - set(PARTS)
+    for name in unknown:  # made elsewhere: then it must not claim to be made here
+        assert "code" not in results.read(name).get("made by", {}), name
+
+
+@pytest.fixture(scope="module")
+def table():
+    if not (results.FOLDER / "table-4-1.json").is_file():
+        pytest.fail(STALE)
+    return results.read("table-4-1")
+
+
+CELLS = [(s, w) for s in SETUPS for w in WINDOWS]
+
+
+def test_table_4_1_has_every_cell(table):
+    assert list(table["setups"]) == list(SETUPS)
+    for setup, width in CELLS:
+        cell, members = table["setups"][setup][str(width)], table["members"]
+        assert members >= 20
+        for name in ("best test", "largest weight", "slope", "derailed"):
+            assert len(cell[name]) == members, (setup, width, name)
+        history = cell["history"]
+        assert history["epochs"][0] == 1 and history["epochs"][-1] == paper.EPOCHS
+        for name in ("training", "test"):
+            assert np.shape(history[name]) == (members, len(history["epochs"]))
+            np.testing.assert_allclose(
+                np.array(history[name])[:, -1], cell["errors"][name], rtol=0.02, err_msg=STALE
+            )
+        np.testing.assert_allclose(np.min(history["test"], 1), cell["best test"], rtol=1e-4)
+        worse = np.array(cell["errors"]["training"]) >= 1
+        np.testing.assert_array_equal(cell["derailed"], worse)
+
+
+DRAW = random.Random(1988)
+SAMPLE = [(s, DRAW.choice(WINDOWS)) for s in SETUPS]
+
+
+@pytest.mark.parametrize("setup, width", SAMPLE)
+def test_committed_networks_measure_what_the_table_says(table, setup, width):
+    """Recorded anew, loaded, measured: a sample of Table 4-1."""
+    cell = table["setups"][setup][str(width)]
+    path = results.networks_path(setup, width)
+    assert path.is_file(), STALE
+    model = TorqueModel.load(path)
+    measured = errors(model, SETUPS[setup].record())
+    assert set(measured) == set(cell["errors"])
+    for name, values in measured.items():
+        np.testing.assert_allclose(
+            values, cell["errors"][name], rtol=0.02, err_msg=f"{name}: {STALE}"
+        )
+    np.testing.assert_allclose(model.weights.largest, cell["largest weight"], rtol=1e-3)
+
+
+@pytest.mark.parametrize("width", WINDOWS)
+def test_snapshots_begin_at_the_seed_and_end_at_the_networks(width):
+    first = TorqueModel.load(results.snapshot_path(width, 0)).weights
+    seeded = Weights.random(2, width, initial=STATE_FEEDBACK.initial)
+    last = TorqueModel.load(results.snapshot_path(width, paper.EPOCHS)).weights
+    networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width)).weights
+    for name in ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias"):
+        own, wanted = getattr(first, name), getattr(seeded, name)
+        np.testing.assert_array_equal(own, wanted.astype(np.float32), err_msg=STALE)
+        np.testing.assert_array_equal(getattr(last, name), getattr(networks[:2], name))
