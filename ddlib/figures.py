@@ -64,8 +64,10 @@ def curves(
                 axis.set_xscale("log")
             if y_log:
                 axis.set_yscale("log")
-            if len(named) > 1:
+            if len(named) > 1 and not shared:
                 axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
+        if shared:
+            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
         for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
             axis.set_xlabel(x_label)
         for axis in axes[len(panels) :]:

@@ -19,7 +19,7 @@ from ddlib.experiment import (
 from ddlib.metrics import rmss
 from ddlib.network import TorqueModel, Weights
 from ddlib.training import check_points
-from ddlib.trajectories import APPENDIX_I, pick_and_place
+from ddlib.trajectories import pick_and_place
 from ddlib.windows import Scaler
 
 QUICK = replace(STATE_FEEDBACK, epochs=60, momentum=0.5)
@@ -64,17 +64,15 @@ def test_the_recording_is_of_appendix_i_with_noise(recording):
     np.testing.assert_allclose(recording.reference.q, wanted, atol=1e-12)
     assert not np.array_equal(recording.tau, recording.tau_true)
     assert not np.array_equal(recording.q, recording.q_true)
-    again = STATE_FEEDBACK.record()
-    np.testing.assert_array_equal(again.tau, recording.tau)
     other = replace(STATE_FEEDBACK, seed=1).record()
+    np.testing.assert_array_equal(other.q, recording.q)  # the seed is of the torque sensor
     assert not np.array_equal(other.tau, recording.tau)
 
 
-@pytest.mark.parametrize("setup", SETUPS.values(), ids=lambda s: s.name)
-def test_the_arm_follows_the_family_within_a_few_degrees(setup):
-    made = setup.record()
-    error = np.rad2deg(np.abs(made.tracking_error[:, made.motion]))
-    assert 0.1 < error.max() < 10
+def test_the_arm_follows_the_family_within_a_few_degrees(recording):
+    for made in (recording, POSITION_FEEDBACK.record()):
+        error = np.rad2deg(np.abs(made.tracking_error[:, made.motion]))
+        assert 0.1 < error.max() < 10
 
 
 def test_split_is_by_trajectory(recording):
@@ -221,8 +219,6 @@ def test_bad_setups_are_refused_before_training(recording, option, words):
 
 
 def test_record_takes_other_extents():
-    made = STATE_FEEDBACK.record((10.0, 20.0))
-    assert made.q.shape == (400, 2)
-    assert STATE_FEEDBACK.record(APPENDIX_I[:2]).q.shape == (2, 400, 2)
+    assert STATE_FEEDBACK.record((10.0, 20.0)).q.shape == (400, 2)
     with pytest.raises(ValueError, match="extents_deg"):
         STATE_FEEDBACK.record((10.0,))

@@ -24,7 +24,9 @@ STALE = "book/results is not what this code gives: run `make reproduce`"
 def copy(tmp_path, monkeypatch):
     """`results` looks at a copy of the package; ``copy(module, old, new)`` edits it."""
     folder = tmp_path / "ddlib"
-    shutil.copytree(results.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        results.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__", "widgets")
+    )
     monkeypatch.setattr(results, "PACKAGE", folder)
 
     def edit(module, old, new):
@@ -55,7 +57,9 @@ def test_each_part_has_its_own_hash(before):
 
 def test_words_and_layout_do_not_count(copy, before):
     copy("training", '"""Batch gradient descent', '"""Some words. Batch gradient descent')
-    copy("training", "history, points = History(), set(", "history, points = History(), set(  # x\n")
+    copy(
+        "training", "history, points = History(), set(", "history, points = History(), set(  # x\n"
+    )
     copy("metrics", '    """Root mean square error', '    """Words')
     copy("windows", "import numpy as np\n", "\n\n# a remark\nimport numpy as np  # another\n")
     copy("experiment", '"""Window sizes of Table 4-1."""', '"""Other words."""')
@@ -181,7 +185,7 @@ def test_read(tmp_path, monkeypatch):
     monkeypatch.setattr(results, "FOLDER", tmp_path)
     results.write_json(tmp_path / "a.json", {"a": [1, 2]})
     assert results.read("a") == {"a": [1, 2]}
-    with pytest.raises(FileNotFoundError, match="no result 'b' .*run `make reproduce` first"):
+    with pytest.raises(FileNotFoundError, match=r"no result 'b' .*run `make reproduce` first"):
         results.read("b")
 
 

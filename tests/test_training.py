@@ -153,11 +153,11 @@ def test_one_ensemble_step_is_the_gradient_of_each_member(data):
             np.testing.assert_allclose(step, g, atol=2e-4 * np.abs(g).max() + 1e-5, err_msg=name)
 
 
-@pytest.mark.parametrize("momentum", [0.0, 0.5, 0.95])
+@pytest.mark.parametrize("momentum", [0.0, 0.9])
 def test_the_rule_of_1988(data, momentum):
     """``dw(t) = -eps dE/dw + alpha dw(t-1)``, recomputed step by step in double precision."""
     start = Weights.random(2, WIDTH, 5, initial=0.5, seed=7)
-    epochs, rate = 12, 4.0
+    epochs, rate = 8, 4.0
     model, *_ = train_ensemble(
         start, data, rate=rate, momentum=momentum, epochs=epochs, progress=False
     )
@@ -177,17 +177,27 @@ def test_the_rule_of_1988(data, momentum):
             close(network.weights(), w, rtol=0, atol=1e-4 * moved)
 
 
-@pytest.mark.parametrize("workers", [1, 2, 3, 5])
-def test_the_ensemble_follows_the_plain_reference(data, monkeypatch, workers):
-    """200 epochs, five members in one to five blocks, against autograd member by member."""
-    monkeypatch.setattr(training, "WORKERS", workers)
-    options = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
-    model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **options)
-    assert history.training.shape == (len(check_points(200)), 5)
+LONG = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
+
+
+@pytest.fixture(scope="module")
+def reference(data):
+    """Three members trained one by one, by autograd."""
+    trained = {}
     for k in (0, 2, 4):
         network = WindowNetwork(WIDTH, seed=20 + k)
-        train(network, data.x, data.y, **options)
-        wanted = parts(network.weights())
+        train(network, data.x, data.y, **LONG)
+        trained[k] = parts(network.weights())
+    return trained
+
+
+@pytest.mark.parametrize("workers", [1, 2, 5])
+def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers):
+    """200 epochs, five members in one to five blocks, against autograd member by member."""
+    monkeypatch.setattr(training, "WORKERS", workers)
+    model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
+    assert history.training.shape == (len(check_points(200)), 5)
+    for k, wanted in reference.items():
         largest = max(np.abs(p).max() for p in wanted)
         close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
 
@@ -195,7 +205,7 @@ def test_the_ensemble_follows_the_plain_reference(data, monkeypatch, workers):
 def test_training_learns(data, other):
     """Errors fall well below the constant guess, also on cases that were not seen."""
     model, history, _ = train_ensemble(
-        Weights.random(3, WIDTH), data, test=other, epochs=1500, momentum=0.95, progress=False
+        Weights.random(3, WIDTH), data, test=other, epochs=700, momentum=0.95, progress=False
     )
     assert (history.training[0] > 0.5).all() and (history.training[-1] < 0.35).all()
     assert (history.test[-1] < 0.5).all() and not history.derailed.any()
@@ -398,9 +408,9 @@ def test_options_of_the_wrong_kind(data, options, name):
 
 def test_data_must_be_finite(data):
     bad = np.where(data.x == data.x.max(), np.nan, data.x)
-    with pytest.raises(ValueError, match="^x must be finite"):
+    with pytest.raises(ValueError, match=r"^x must be finite"):
         train(WindowNetwork(WIDTH), bad, data.y, rate=1.0, progress=False)
-    with pytest.raises(ValueError, match="^y must be finite"):
+    with pytest.raises(ValueError, match=r"^y must be finite"):
         train(WindowNetwork(WIDTH), data.x, np.full_like(data.y, np.inf), rate=1.0, progress=False)
 
 

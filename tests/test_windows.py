@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
@@ -26,6 +26,7 @@ def by_loop(q, width, first, end):
 # --- windows ------------------------------------------------------------------------------
 
 
+@settings(max_examples=50)
 @given(data=st.data(), half=st.integers(1, 6), joints=st.integers(1, 3))
 def test_windows_hold_what_a_loop_finds(data, half, joints):
     width = 2 * half + 1
@@ -126,6 +127,7 @@ ranges = st.tuples(st.floats(-100, 100), st.floats(0.01, 200))
 targets = st.tuples(st.floats(-2, 2), st.floats(0.05, 3)).map(lambda t: (t[0], t[0] + t[1]))
 
 
+@settings(max_examples=50)
 @given(joints=st.lists(ranges, min_size=1, max_size=4), target=targets, data=st.data())
 def test_scaling_there_and_back(joints, target, data):
     low = np.array([a for a, _ in joints])

@@ -308,7 +308,8 @@ function build({ model, el }) {
   const stops = extras.map((extra) => extra(view));
   const size = new ResizeObserver(() => {
     view.charts.forEach((c) => c.resize());
-    view.schedule();
+    cancelAnimationFrame(frame);
+    redraw(); // in the same frame: axes and curves never differ
   });
   size.observe(el);
   return () => {

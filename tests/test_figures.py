@@ -1,0 +1,319 @@
+"""Every figure of the book: sound, accessible, small, and showing what it was given."""
+
+import inspect
+import re
+import warnings
+import xml.etree.ElementTree as ET
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from ddlib import diagrams, figures, paper
+from ddlib.arm import CMU_DD_ARM_II
+from ddlib.filters import CLASSES, classify, shares
+from ddlib.network import Weights
+from ddlib.style import COLOURS, INK, Illustration
+from ddlib.trajectories import APPENDIX_I, random_extents
+
+SVG = "{http://www.w3.org/2000/svg}"
+NAMES = tuple(field.name for field in fields(Weights))
+T = np.linspace(0, 3, 300)
+RNG = np.random.default_rng(3)
+FILTERS = RNG.normal(size=(60, 21)).cumsum(-1)
+TABLE = {
+    "training": {w: RNG.uniform(0.02, 0.2, 25) for w in (11, 21, 41)},
+    "test": {w: RNG.uniform(0.1, 0.4, 25) for w in (11, 21, 41)},
+}
+PRINTED = {
+    "training": {w: r.training for w, r in paper.TABLE_4_1.items()},
+    "test": {w: r.test for w, r in paper.TABLE_4_1.items()},
+}
+
+EXAMPLES = {
+    "curves": lambda: figures.curves(
+        T,
+        {"q, rad": {"shoulder": np.sin(T), "elbow": np.cos(T)}, "error": {"e": (T[1:], 1 / T[1:])}},
+        "time, s",
+        "Two joints over time, and an error.",
+        y_log=False,
+    ),
+    "arm_sketch": lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.6, 0.9]),
+    "extents_square": lambda: figures.extents_square(
+        APPENDIX_I[:5], APPENDIX_I[5], random_extents(200, 0)
+    ),
+    "network_diagram": lambda: figures.network_diagram(Weights.random(1, 21)[0]),
+    "rmss_by_window": lambda: figures.rmss_by_window(TABLE, PRINTED),
+    "overlay": lambda: figures.overlay(T, np.sin(T), {f"window {w}": np.cos(T) for w in (11, 41)}),
+    "hinton": lambda: figures.hinton(Weights.random(1, 41)[0]),
+    "decomposition": lambda: figures.decomposition(
+        {f"unit {k}": FILTERS[k] for k in range(3)}, 0.01
+    ),
+    "share_map": lambda: figures.share_map(shares(FILTERS), classify(FILTERS), CLASSES),
+    "feedforward_loop": diagrams.feedforward_loop,
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return {name: make() for name, make in EXAMPLES.items()}
+
+
+def ids(svg):
+    return [e.attrib["id"] for e in ET.fromstring(svg).iter() if "id" in e.attrib]
+
+
+each = pytest.mark.parametrize("name", EXAMPLES)
+
+
+def test_every_figure_has_an_example():
+    public = {
+        name
+        for module in (figures, diagrams)
+        for name, f in inspect.getmembers(module, inspect.isfunction)
+        if f.__module__ == module.__name__ and not name.startswith("_")
+    }
+    assert public == set(EXAMPLES)
+
+
+@each
+def test_sound_and_accessible(made, name):
+    figure = made[name]
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.tag == f"{SVG}svg" and root.attrib["role"] == "img"
+    assert root.attrib["aria-label"] == figure.alt and len(figure.alt) > 20
+    assert "nan" not in figure.alt and not re.search(r"\bnan\b", figure.svg)
+    assert "<style" not in figure.svg and "<script" not in figure.svg
+    assert INK not in figure.svg
+    assert "currentColor" in figure.svg or name == "hinton"  # which has no text
+    assert len(figure.svg) < 400_000
+    own = ids(figure.svg)
+    assert len(own) == len(set(own))
+    targets = {a or b for a, b in re.findall(r'href="#([^"]*)"|url\(#([^)]*)\)', figure.svg)}
+    assert targets <= set(own)
+
+
+def test_no_two_figures_share_an_id(made):
+    everything = [i for figure in made.values() for i in ids(figure.svg)]
+    assert len(everything) == len(set(everything)) > 100
+
+
+@each
+def test_text_follows_the_page(made, name):
+    """Nothing but the signs of a Hinton diagram is painted black or white."""
+    colours = set(re.findall(r"(?:fill|stroke): (#[0-9a-f]{6}|white|black)", made[name].svg))
+    fixed = colours & {"#000000", "#ffffff"}
+    assert not fixed or (name, fixed) in [("hinton", {"#ffffff"}), ("arm_sketch", {"#ffffff"})]
+
+
+# --- curves -----------------------------------------------------------------------------
+
+
+def polylines(svg, colour):
+    """Vertices of the lines of a colour, ``(points, 2)`` each, y downwards."""
+    found = []
+    for e in ET.fromstring(svg).iter(f"{SVG}path"):
+        if f"stroke: {colour}" in e.attrib.get("style", "") and "clip-path" in e.attrib:
+            pairs = re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", e.attrib["d"])
+            found.append(np.array(pairs, float))
+    return found
+
+
+def test_curves_go_where_the_data_goes():
+    x = np.linspace(0, 1, 7)
+    y = np.array([0.0, 3.0, 1.0, 4.0, 1.0, 5.0, 9.0])
+    svg = figures.curves(x, {"y": {"first": y, "second": -y}}, "x", "Two curves.").svg
+    for colour, wanted in zip(COLOURS, (y, -y)):
+        line = max(polylines(svg, colour), key=len)
+        assert len(line) == 7
+        for drawn, data in zip(line.T, (x, -wanted)):
+            scale = np.polyfit(data, drawn, 1)
+            assert scale[0] > 0
+            np.testing.assert_allclose(drawn, np.polyval(scale, data), atol=0.02)
+
+
+@pytest.mark.parametrize("count, columns", [(1, 2), (3, 2), (2, 3)])
+def test_curves_label_every_bottom_axis(count, columns):
+    panels = {f"panel {k}": {"a": T} for k in range(count)}
+    svg = figures.curves(T, panels, "the common axis", "Panels.", columns=columns).svg
+    assert svg.count("<!-- the common axis -->") == min(count, columns)
+    assert all(svg.count(f"<!-- {label} -->") == 1 for label in panels)
+
+
+def test_logarithmic_axes_straighten_a_power_law():
+    x = np.geomspace(1, 1000, 9)
+    svg = figures.curves(x, {"y": {"a": 5 * x**-0.5}}, "x", "A line.", x_log=True, y_log=True).svg
+    line = max(polylines(svg, COLOURS[0]), key=len)
+    fit = np.polyval(np.polyfit(*line.T, 1), line[:, 0])
+    np.testing.assert_allclose(fit, line[:, 1], atol=0.02)
+
+
+# --- the others' numbers ------------------------------------------------------------------
+
+
+def test_alt_texts_say_the_numbers(made):
+    assert "q1 = 34 degrees" in made["arm_sketch"].alt
+    assert "39.5 and 14.4 degrees" in made["extents_square"].alt
+    assert "2 times 21 inputs, 10 hidden units and 2 outputs" in made["network_diagram"].alt
+    median = np.median(TABLE["test"][21])
+    assert f"Median test error 11: {np.median(TABLE['test'][11]):.3f}" in made["rmss_by_window"].alt
+    assert f"21: {median:.3f}" in made["rmss_by_window"].alt
+    worst = np.sqrt(np.mean((np.sin(T) - np.cos(T)) ** 2))
+    assert f"{worst:.2f} N m" in made["overlay"].alt and "window 11" in made["overlay"].alt
+    names, counts = np.unique(classify(FILTERS), return_counts=True)
+    for name, count in zip(names, counts):
+        assert f"{count} {name}" in made["share_map"].alt
+
+
+def test_one_panel_is_enough():
+    one = figures.overlay(T, np.sin(T), {"window 21": np.cos(T)})
+    assert one.svg.count("<!-- window 21 -->") == 1
+    table = {"test": TABLE["test"]}
+    assert "Median test error" in figures.rmss_by_window(table, PRINTED).alt
+    assert "only" in figures.decomposition({"only": FILTERS[0]}, 0.01).alt
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.1, np.nan]), "q must be finite"),
+        (lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.1]), "q must have"),
+        (lambda: figures.extents_square(APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
+        (lambda: figures.decomposition({"a": np.ones(10)}, 0.01), "f must have an odd"),
+        (lambda: figures.share_map(np.ones((3, 4)), ["a"] * 3, ["a"]), "shares must have"),
+        (lambda: figures.curves(T, {"y": {"a": T}}, "x", " "), "alt must describe"),
+        (lambda: figures.hinton(Weights.random(3, 11)), "weights must be of one network"),
+        (lambda: figures.hinton(scaled(0.0)), "weights must be finite and not all zero"),
+        (lambda: figures.hinton(scaled(np.nan)), "weights must be finite and not all zero"),
+    ],
+)
+def test_refusals(make, words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ValueError, match=words):
+            make()
+
+
+# --- Hinton diagrams ----------------------------------------------------------------------
+
+
+def scaled(factor):
+    weights = Weights.random(1, 11, hidden=5)[0]
+    return Weights(*(factor * getattr(weights, name) for name in NAMES))
+
+
+def squares(svg):
+    """Centre, side and whiteness of every square, and the boxes of the units."""
+    found, boxes = [], []
+    for e in ET.fromstring(svg).iter(f"{SVG}path"):
+        if "clip-path" not in e.attrib:
+            continue
+        x, y = np.array(re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", e.attrib["d"]), float)[:4].T
+        fill = re.search(r"fill: (#\w+)", e.attrib.get("style", ""))
+        if fill and fill[1] == "#8c8c8c":
+            boxes.append((x.min(), x.max(), y.min(), y.max()))
+        else:  # an SVG path is black by default
+            white = bool(fill) and fill[1] == "#ffffff"
+            assert white or fill is None or fill[1] == "#000000"
+            assert np.ptp(x) == pytest.approx(np.ptp(y), abs=0.03)
+            found.append((x.mean(), y.mean(), np.ptp(x), white))
+    return np.array(found), np.array(boxes)
+
+
+def everything(weights):
+    """All weights; those between hidden and output units are shown at both ends."""
+    names = (*NAMES, "output_weights")
+    return np.concatenate([getattr(weights, name).ravel() for name in names])
+
+
+@pytest.mark.parametrize("width, hidden", [(11, 10), (21, 3)])
+def test_area_is_size_and_white_is_positive(width, hidden):
+    weights = Weights.random(1, width, hidden, seed=width)[0]
+    marks, boxes = squares(figures.hinton(weights).svg)
+    values = everything(weights)
+    assert len(marks) == len(values) and len(boxes) == hidden + 2
+    for white, some in ((True, values[values > 0]), (False, -values[values < 0])):
+        sides = np.sort(marks[marks[:, 3] == white, 2])
+        assert len(sides) == len(some)
+        wanted = np.sqrt(np.sort(some) / weights.largest) * marks[:, 2].max()
+        np.testing.assert_allclose(sides, wanted, atol=0.03)
+    assert np.ptp(boxes[:, 1] - boxes[:, 0]) < 0.03  # units of one size
+    for x, y, side, _ in marks:  # each square inside one unit
+        inside = (boxes[:, 0] - 0.1 < x - side / 2) & (x + side / 2 < boxes[:, 1] + 0.1)
+        inside &= (boxes[:, 2] - 0.1 < y - side / 2) & (y + side / 2 < boxes[:, 3] + 0.1)
+        assert inside.sum() == 1
+
+
+def test_squares_do_not_overlap():
+    ones = Weights(*(np.sign(getattr(scaled(1.0), name)) for name in NAMES))
+    marks, _ = squares(figures.hinton(ones).svg)
+    gap = np.abs(marks[:, None, :2] - marks[None, :, :2]).max(-1)  # of centres
+    np.fill_diagonal(gap, np.inf)
+    assert gap.min() >= marks[:, 2].max() - 0.03
+
+
+def only(**arrays):
+    """A network of window 11 with a few weights, the rest zero."""
+    zero = scaled(0.0)
+    return Weights(*(arrays.get(name, getattr(zero, name)) for name in NAMES))
+
+
+def visible(weights):
+    marks, boxes = squares(figures.hinton(weights).svg)
+    return marks[marks[:, 2] > 0.03], boxes[np.lexsort((boxes[:, 0], boxes[:, 2].round()))]
+
+
+def unit_of(mark, boxes):
+    x, y = mark[:2]
+    inside = (boxes[:, 0] < x) & (x < boxes[:, 1]) & (boxes[:, 2] < y) & (y < boxes[:, 3])
+    return int(np.flatnonzero(inside)[0])
+
+
+@pytest.mark.parametrize("unit, place", [(0, 2), (1, 3), (4, 6)])
+def test_windows_run_to_the_right_with_the_shoulder_above(unit, place):
+    """Of hidden unit k: box k + 2, counted by rows from the top left."""
+    window = np.zeros((5, 2, 11))
+    window[unit, 0] = np.arange(1, 12)
+    window[unit, 1] = -np.arange(1, 12)
+    marks, boxes = visible(only(hidden_weights=window))
+    assert len(marks) == 22 and {unit_of(m, boxes) for m in marks} == {place}
+    upper, lower = marks[marks[:, 3] == 1], marks[marks[:, 3] == 0]
+    assert upper[:, 1].max() < lower[:, 1].min()  # y runs downwards
+    for row in (upper, lower):
+        assert np.ptp(row[:, 1]) < 0.05
+        row = row[row[:, 0].argsort()]
+        np.testing.assert_allclose((row[:, 2] / row[-1, 2]) ** 2, np.arange(1, 12) / 11, atol=0.02)
+        np.testing.assert_allclose(np.diff(row[:, 0], 2), 0, atol=0.05)
+    box = boxes[place]
+    assert upper[:, 1].min() > (box[2] + box[3]) / 2  # the lower half of the unit
+
+
+def test_direct_weights_lie_in_the_output_units():
+    skip = np.zeros((2, 2, 11))
+    skip[0, 0, 0], skip[1, 1, 10] = 1.0, -1.0
+    (first, second), boxes = visible(only(skip_weights=skip))
+    assert (unit_of(first, boxes), unit_of(second, boxes)) == (0, 1)
+    assert first[3] == 1 and second[3] == 0
+    assert first[0] < boxes[0, :2].mean() and second[0] > boxes[1, :2].mean()
+
+
+def test_one_weight_is_shown_at_both_of_its_ends():
+    """From hidden unit 2 to the elbow: in the output unit's row and on top of the hidden unit."""
+    weights = np.zeros((2, 5))
+    weights[1, 2] = 1.0
+    marks, boxes = visible(only(output_weights=weights))
+    assert sorted(unit_of(m, boxes) for m in marks) == [1, 4]
+    assert all(m[1] < boxes[unit_of(m, boxes), 2:].mean() for m in marks)  # upper half
+
+
+def test_biases_are_at_the_upper_left():
+    marks, boxes = visible(only(hidden_bias=np.ones(5), output_bias=-np.ones(2)))
+    assert sorted(unit_of(m, boxes) for m in marks) == list(range(7))
+    for mark in marks:
+        k = unit_of(mark, boxes)
+        assert mark[0] < boxes[k, 0] + 0.3 * (boxes[k, 1] - boxes[k, 0])
+        assert mark[1] < boxes[k, 2:].mean()
+        assert mark[3] == (k > 1)

@@ -1,0 +1,191 @@
+"""Tables: numbers as text, Markdown, verdicts."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ddlib.tables import Table, claims, number, quote, spread, verdict
+
+# --- numbers ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "value, text",
+    [
+        (0.0, "0"),
+        (1.0, "1.00"),
+        (0.078, "0.0780"),
+        (-0.0271828, "-0.0272"),
+        (18.9, "18.9"),
+        (123.4, "123"),
+        (1234.5678, "1,235"),
+        (786000.0, "786,000"),
+        (0.000683, "0.000683"),
+        (0.0000683, "6.83e-05"),
+        (2.5e7, "2.50e+07"),
+        (9.999, "10.0"),  # rounding adds a digit
+        (0.09999, "0.100"),
+        (999.9, "1,000"),
+        (np.float32(0.25), "0.250"),
+        (np.array(0.25), "0.250"),
+        (np.nan, "–"),
+        (-np.inf, "–"),
+        (20_000, "20,000"),  # counts keep all their digits
+        (np.int64(1_234_567), "1,234,567"),
+        (0, "0"),
+        (-5, "-5"),
+    ],
+)
+def test_three_significant_digits(value, text):
+    assert number(value) == text
+
+
+@given(
+    value=st.floats(1e-8, 1e8).flatmap(lambda x: st.sampled_from([x, -x])),
+    digits=st.integers(1, 6),
+)
+def test_a_number_can_be_read_back_to_its_digits(value, digits):
+    text = number(value, digits)
+    read = float(text.replace(",", ""))
+    assert read == pytest.approx(value, rel=0.500001 * 10.0 ** (1 - digits))
+    mantissa = text.partition("e")[0].lstrip("-").replace(",", "").replace(".", "").lstrip("0")
+    if abs(value) < 10.0 ** (digits - 1):
+        assert len(mantissa) == digits
+    assert ("e" in text) == (not 1e-4 <= abs(float(f"{value:.{digits - 1}e}")) < 1e6)
+
+
+def test_words_are_not_numbers():
+    with pytest.raises(ValueError):
+        number("many")
+
+
+@pytest.mark.parametrize(
+    "values, text",
+    [
+        ([0.1, 0.2, 0.6], "0.20 (0.10 to 0.60)"),
+        ([3.0, 1.0], "2.0 (1.0 to 3.0)"),
+        ([0.1, np.nan, 0.2, 0.3, np.inf], "0.20 (0.10 to 0.30)"),
+        (np.array([[0.5, 0.7], [0.6, 0.6]]), "0.60 (0.50 to 0.70)"),
+        ([np.nan], "–"),
+        ([], "–"),
+    ],
+)
+def test_spread_is_median_and_range(values, text):
+    assert spread(values) == text
+
+
+def test_spread_with_more_digits():
+    assert spread([0.12345, 0.12355, 0.12349], 4) == "0.1235 (0.1235 to 0.1235)"
+    assert spread([12.0, 14.0, 13.0], 3) == "13.0 (12.0 to 14.0)"
+
+
+def test_quote_gives_the_page_a_plain_number(monkeypatch):
+    import myst_nb
+
+    kept = {}
+    monkeypatch.setattr(
+        myst_nb, "glue", lambda name, value, display: kept.update({name: (value, display)})
+    )
+    for value in (np.float64(0.25), np.array(0.25), 0.25, np.int64(3)):
+        quote("chapter-value", value)
+        assert kept["chapter-value"] == (float(value), False)
+        assert type(kept["chapter-value"][0]) in (int, float)
+
+
+# --- Markdown ---------------------------------------------------------------------------
+
+
+def cells(line):
+    """Cells of a row as a Markdown reader takes them: bars with a backslash are text."""
+    assert line[0] == line[-1] == "|"
+    bare = line[1:-1].replace(r"\|", "\0")
+    return [c.strip().replace("\0", "|") for c in bare.split("|")]
+
+
+def test_markdown():
+    table = Table(("window", "RMSS"), [(11, 0.078), (np.int64(21), "about 0.03")])
+    assert table._repr_markdown_() == (
+        "| window | RMSS |\n| --- | --- |\n| 11 | 0.0780 |\n| 21 | about 0.03 |"
+    )
+
+
+texts = st.text(st.characters(codec="ascii", categories=["L", "N", "P", "S"]), max_size=12).filter(
+    lambda s: "\\" not in s
+)
+
+
+@given(rows=st.lists(st.tuples(texts, texts, st.floats(0.1, 10)), max_size=4))
+def test_any_text_stays_in_its_cell(rows):
+    lines = Table(("|a|", "b", "c"), rows)._repr_markdown_().split("\n")
+    assert len(lines) == 2 + len(rows)
+    assert cells(lines[0]) == ["|a|", "b", "c"] and cells(lines[1]) == ["---"] * 3
+    for line, row in zip(lines[2:], rows):
+        assert cells(line) == [row[0], row[1], number(row[2])]
+
+
+def test_rows_may_come_once():
+    table = Table(("a",), ((k,) for k in range(3)))
+    assert table._repr_markdown_() == table._repr_markdown_()
+    assert len(table.rows) == 3
+
+
+@pytest.mark.parametrize("rows", [[(1,)], [(1, 2), (1, 2, 3)], [()]])
+def test_rows_have_the_length_of_the_header(rows):
+    with pytest.raises(ValueError, match="rows must have 2 cells like the header"):
+        Table(("a", "b"), rows)
+
+
+# --- verdicts ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "value, printed, factor, word",
+    [
+        (0.027, 0.027, 1.0, "reproduced"),
+        (0.04, 0.027, 1.5, "reproduced"),
+        (0.041, 0.027, 1.5, "not reproduced"),
+        (0.019, 0.027, 1.5, "reproduced"),
+        (0.017, 0.027, 1.5, "not reproduced"),
+        (100.0, 0.027, 2.0, "not reproduced"),
+    ],
+)
+def test_verdict(value, printed, factor, word):
+    assert verdict(value, printed, factor) == word
+
+
+@given(a=st.floats(0.01, 10), b=st.floats(0.01, 10), factor=st.floats(1, 5))
+def test_too_large_counts_like_too_small(a, b, factor):
+    ratio = max(a, b) / min(a, b)
+    if abs(ratio - factor) > 1e-9:
+        expected = "reproduced" if ratio < factor else "not reproduced"
+        assert verdict(a, b, factor) == verdict(b, a, factor) == expected
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [(0, 1, 2), (1, 0, 2), (-1, 1, 2), (1, 1, 0.5), (np.nan, 1, 2), (1, np.nan, 2), (1, 1, np.nan)],
+)
+def test_verdict_refuses_what_has_no_ratio(arguments):
+    with pytest.raises(ValueError, match="value and printed must be positive"):
+        verdict(*arguments)
+
+
+def test_claims():
+    rows = [
+        ("error, window 21", "0.027", "0.03 (0.02 to 0.04)", "reproduced"),
+        ("hidden units act as filters", "yes", "most", "qualitative"),
+        ("error, window 41", "0.024", "0.1", "not reproduced"),
+        ("time on a Sun", "9 h", "–", "not testable"),
+    ]
+    table = claims(iter(rows))
+    assert table.header[-1] == "verdict" and table.rows == rows
+    assert cells(table._repr_markdown_().split("\n")[3])[0] == "hidden units act as filters"
+
+
+@pytest.mark.parametrize("word", ["", "Reproduced", "yes", "not  testable"])
+def test_claims_refuse_other_verdicts(word):
+    with pytest.raises(ValueError, match="verdict must be one of"):
+        claims([("a", "b", "c", "reproduced"), ("a", "b", "c", word)])
+    with pytest.raises(ValueError, match="4 cells"):
+        claims([("a", "b", "reproduced")])
