@@ -51,12 +51,14 @@ def curves(
     rows = -(-len(panels) // columns)
     names = [tuple(named) for named in panels.values()]
     shared = len(panels) > 1 and len(names[0]) > 1 and len(set(names)) == 1
+    look = {name: k for k, name in enumerate(dict.fromkeys(sum(names, ())))}
 
     def draw(figure: Figure):
         axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel()
         for axis, (label, named) in zip(axes, panels.items()):
-            for k, (name, y) in enumerate(named.items()):
+            for name, y in named.items():
                 x_k, y_k = y if isinstance(y, tuple) else (x, y)
+                k = look[name]  # the same curve looks the same in every panel
                 style = DASHES[k % len(DASHES)]
                 axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=style, label=name)
             axis.set_ylabel(label)
