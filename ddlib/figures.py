@@ -263,7 +263,7 @@ def overlay(
             axis.plot(t, measured, color=INK, lw=0.8, label="measured")
             axis.set_title(title)
             axis.set_ylabel("torque, N m")
-        axes[0].legend(loc="upper right", ncols=2)
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=2)
         axes[-1].set_xlabel("time, s")
 
     worst = max(np.sqrt(np.mean((np.asarray(p) - measured) ** 2)) for p in predicted.values())
@@ -364,7 +364,7 @@ def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustrat
             axis.axhline(float(parts.constant[0]), color=COLOURS[2], ls=":", lw=1.3,
                          label="constant")  # fmt: skip
             axis.set_title(title)
-        axes[0].legend(loc="best", ncols=2)
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
         for axis in axes[len(functions) - columns : len(functions)]:
             axis.set_xlabel("time from the window's centre, ms")
         for axis in axes[len(functions) :]:
