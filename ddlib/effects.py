@@ -36,6 +36,11 @@ class ViscousFriction:
     def __post_init__(self):
         non_negative("coefficient", self.coefficient, 2)
 
+    @property
+    def slope(self) -> np.ndarray:
+        """Steepest rise of the torque with velocity, N m s/rad per joint."""
+        return np.asarray(self.coefficient, dtype=float)
+
     def torque(self, qd):
         """Friction torque (N m) at joint velocities `qd` (rad/s)."""
         return np.asarray(self.coefficient) * qd
@@ -60,6 +65,11 @@ class CoulombFriction:
     def __post_init__(self):
         non_negative("level", self.level, 2)
         number("smoothing", self.smoothing, 0.0, open_low=True)
+
+    @property
+    def slope(self) -> np.ndarray:
+        """Steepest rise of the torque with velocity, N m s/rad per joint: at rest."""
+        return np.asarray(self.level, dtype=float) / self.smoothing
 
     def torque(self, qd):
         """Friction torque (N m) at joint velocities `qd` (rad/s)."""

@@ -194,8 +194,12 @@ def train(
         If an option is out of range.
     """
     _check(rate, momentum, epochs)
-    x = torch.as_tensor(finite_array("x", x), dtype=torch.float32)
-    y = torch.as_tensor(finite_array("y", y), dtype=torch.float32)
+    x, y = finite_array("x", x), finite_array("y", y)
+    if y.ndim != 2 or len(y) != len(x) or (np.ptp(y, axis=0) == 0).any():
+        raise ValueError(
+            f"y must have shape ({len(x)}, output) like x and vary in each column, got {y.shape}"
+        )
+    x, y = (torch.as_tensor(array, dtype=torch.float32) for array in (x, y))
     spread = y.std(0, correction=0)
     optimiser = torch.optim.SGD(network.parameters(), lr=rate / len(x), momentum=momentum)
     history, points = History(), set(check_points(epochs))
@@ -328,6 +332,11 @@ def train_ensemble(
     """
     rate = default_rate(weights.width) if rate is None else rate
     _check(rate, momentum, epochs)
+    if weights.hidden_weights.shape[-2:] != data.x.shape[-2:]:
+        raise ValueError(
+            f"weights must have the joints and width of the data, {data.x.shape[-2:]}, "
+            f"got {weights.hidden_weights.shape[-2:]}"
+        )
     blocks = np.array_split(np.arange(len(weights)), min(WORKERS, len(weights)))
     bar = tqdm(total=epochs, desc=label, disable=not progress, mininterval=0.5)
 

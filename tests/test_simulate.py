@@ -21,7 +21,7 @@ from ddlib.effects import (
     ViscousFriction,
 )
 from ddlib.experiment import STATE_FEEDBACK
-from ddlib.simulate import Recording, follow, free_motion, record, rk4_step
+from ddlib.simulate import Recording, follow, free_motion, record, rk4_step, substeps
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM = CMU_DD_ARM_II
@@ -501,3 +501,22 @@ def test_follow_refuses_wrong_kinds(change, words):
     good = dict(controller=PD, reference=Trajectory(*np.zeros((3, 3, 2))), t=[0.0, 0.1, 0.2])
     with pytest.raises(TypeError, match=words):
         follow(ARM, **{**good, **change})
+
+
+def test_substeps_agree_with_an_implicit_solver():
+    friction = (ViscousFriction((5.3, 1.1)), CoulombFriction((8.45, 2.35)))
+    effects = Effects(friction=friction)
+
+    def slide(_, state):
+        qd = state[2:]
+        net = -effects.friction_torque(qd)
+        return np.concatenate([qd, IMI_ARM.forward_dynamics(state[:2], qd, net)])
+
+    start = np.array([0.0, 0.3, 1.0, -2.0])
+    implicit = solve_ivp(slide, (0, 1.0), start, method="Radau", rtol=1e-9, atol=1e-11).y[:, -1]
+    parts = substeps(IMI_ARM, effects, 0.002)
+    assert parts > 4 and substeps(CMU_DD_ARM_II, Effects(), 0.002) == 1
+    _, q, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002 / parts, effects)
+    assert np.allclose(q[-1], implicit[:2], atol=1e-5)
+    _, wild, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002, effects)
+    assert not np.allclose(wild[-1], implicit[:2], atol=1e-5)  # without them it chatters
