@@ -7,16 +7,22 @@ The stamp is written last, so that only a clean build lets the next call say "no
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
-from dd_book import PAGE_INPUTS, digest
+from jupyter_cache import get_cache
+from jupyter_cache.executors import load_executor
+
+from dd_book import PAGE_INPUTS, cache_path, digest
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"
+
+TIMEOUT = 600  # seconds for one cell, as in _config.yml
 
 
 def build(root: Path) -> int:
@@ -30,6 +36,19 @@ def build(root: Path) -> int:
     return process.returncode
 
 
+def execute_ahead(root: Path) -> None:
+    """Execute on all cores the notebooks that the build would otherwise execute one by one.
+
+    What fails here is not kept: the build meets it again and reports it.
+    """
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
+    cache = get_cache(str(cache_path(root, root / "_build")))
+    for path in sorted((root / "book").glob("*.ipynb")):
+        cache.add_nb_to_project(str(path))
+    done = load_executor("local-parallel", cache).run_and_cache(timeout=TIMEOUT)
+    print(f"==> Executed {len(done.succeeded)} notebooks", flush=True)
+
+
 def main(root: Path) -> int:
     html = root / "_build" / "html"
     stamp = html / ".built-from"
@@ -39,6 +58,7 @@ def main(root: Path) -> int:
     else:
         print("==> Executing the notebooks that changed and writing the pages", flush=True)
         started = time.monotonic()
+        execute_ahead(root)
         for stale in (html, root / "_build" / ".doctrees"):
             shutil.rmtree(stale, ignore_errors=True)
         status = build(root)

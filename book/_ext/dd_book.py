@@ -37,10 +37,15 @@ def walk(top: Path):
             yield path
 
 
+def cache_path(root: Path, build: Path) -> Path:
+    """Where executed notebooks are kept: keyed by the code and data they import and read."""
+    return build / ".jupyter_cache" / digest(root, CELL_INPUTS)
+
+
 def set_cache_path(app, config):
-    """Key the cache of executed notebooks by the code and data they import and read."""
-    caches = Path(app.outdir).parent / ".jupyter_cache"
-    cache = caches / digest(Path(app.srcdir), CELL_INPUTS)
+    """Point myst-nb to the cache, and drop the oldest ones."""
+    cache = cache_path(Path(app.srcdir), Path(app.outdir).parent)
+    caches = cache.parent
     cache.mkdir(parents=True, exist_ok=True)
     cache.touch()
     by_age = sorted(caches.iterdir(), key=lambda path: path.stat().st_mtime)
