@@ -161,6 +161,7 @@ def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
         "scalar": 0.00012346,
         "plain": [1, 0.1 + 0.2, "text", None],
     }
+    assert '"count": 1234567,' in path.read_text() and "true" in path.read_text()
     assert [p.name for p in path.parent.iterdir()] == ["a.json"]
 
 

@@ -121,7 +121,9 @@ def test_rounding_of_paths_is_not_seen(monkeypatch):
     np.testing.assert_allclose(numbers(rounded), numbers(exact), atol=0.0051)
 
 
-def test_settings_of_the_reader_survive():
+def test_settings_of_the_reader_survive(monkeypatch):
+    for name, value in (("axes.grid", False), ("font.size", 21.0), ("svg.hashsalt", "own")):
+        monkeypatch.setitem(mpl.rcParams, name, value)
     before = dict(mpl.rcParams)
     illustrate(draw, "A curve.")
     assert dict(mpl.rcParams) == before
