@@ -106,7 +106,7 @@ def picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
     networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, 21)).weights
     found = {
-        f"a {name} filter": purest(networks.hidden_weights, name)
+        f"{name} filter": purest(networks.hidden_weights, name)
         for name in ("velocity", "acceleration")
     }
     target = results.FOLDER.parent / "_static" / "readme.svg"

@@ -44,7 +44,9 @@ EXAMPLES = {
     ),
     "network_diagram": lambda: figures.network_diagram(Weights.random(1, 21)[0]),
     "rmss_by_window": lambda: figures.rmss_by_window(TABLE, PRINTED),
-    "overlay": lambda: figures.overlay(T, np.sin(T), {f"window {w}": np.cos(T) for w in (11, 41)}),
+    "overlay": lambda: figures.overlay(
+        T, np.sin(T), {"window 11": np.cos(T), "window 41": 0.9 * np.sin(T)}
+    ),
     "hinton": lambda: figures.hinton(Weights.random(1, 41)[0]),
     "decomposition": lambda: figures.decomposition(
         {f"unit {k}": FILTERS[k] for k in range(3)}, 0.01
