@@ -144,7 +144,8 @@ def default_rate(width: int) -> float:
     """Step size per case for a window of `width` samples: 33 / width.
 
     Larger windows mean more inputs that rise and fall together, hence a steeper error
-    surface; a step in inverse proportion to the fan-in keeps descent just stable. It is
+    surface; a step in inverse proportion to the fan-in keeps descent stable for most
+    initial weights, and a few networks still saturate early (`History.derailed`). It is
     this book's choice: the paper does not print its rates.
     """
     return 33.0 / integer("width", width, 1)
