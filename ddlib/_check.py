@@ -26,7 +26,8 @@ def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     """
     try:
         given = np.asarray(value)
-        if given.dtype.kind not in "biufO" or (given == None).any():  # noqa: E711
+        kind = given.dtype.kind
+        if kind not in "biufO" or (kind == "O" and (given == None).any()):  # noqa: E711
             raise TypeError(f"numbers of kind {given.dtype}")
         array = given.astype(float)
     except (TypeError, ValueError) as error:

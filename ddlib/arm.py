@@ -232,9 +232,11 @@ class Arm:
             r1, r2 = r1 - weight[..., 0], r2 - weight[..., 1]
         m11, m12 = self.a + 2 * self.b * c2, self.d + self.b * c2
         determinant = m11 * self.d - m12 * m12
-        qdd1 = (self.d * r1 - m12 * r2) / determinant
-        qdd2 = (m11 * r2 - m12 * r1) / determinant
-        return np.stack([qdd1, qdd2], -1)
+        numerators = self.d * r1 - m12 * r2, m11 * r2 - m12 * r1
+        qdd = np.empty((2, *np.shape(numerators[0])))  # joint by joint: contiguous over runs
+        for joint, numerator in enumerate(numerators):
+            np.divide(numerator, determinant, out=qdd[joint, ...])
+        return np.moveaxis(qdd, 0, -1)
 
     def kinetic_energy(self, q, qd) -> np.ndarray:
         """Kinetic energy ``qd' M(q) qd / 2`` in J, shape ``(...)``."""

@@ -1,95 +1,32 @@
 """What Lagrange-Euler leaves out: friction, actuators and sensors as they are.
 
 Each effect is a small frozen object. `Effects` collects them in the order in
-which a signal meets them; leaving one out switches it off.
+which a signal meets them; leaving one out switches it off. Frictions are written in
+`ddlib.friction`, motors and shafts in `ddlib.actuators`; all can be imported from here.
 """
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number
+from ddlib._check import integer, non_negative, number
+from ddlib.actuators import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
+from ddlib.friction import (
+    CoulombFriction,
+    StickSlipFriction,
+    StribeckFriction,
+    ViscousFriction,
+)
 
-
-class Friction(Protocol):
-    """A torque that opposes motion."""
-
-    def torque(self, qd: np.ndarray) -> np.ndarray:
-        """Friction torque (N m) at joint velocities `qd` (rad/s), both ``(..., joint)``."""
-
-
-@dataclass(frozen=True)
-class ViscousFriction:
-    """Friction torque proportional to velocity.
-
-    Parameters
-    ----------
-    coefficient : array_like, shape (2,) or (..., 2)
-        N m s/rad per joint, not negative.
-    """
-
-    coefficient: tuple[float, float]
-
-    def __post_init__(self):
-        non_negative("coefficient", self.coefficient, 2)
-
-    @property
-    def slope(self) -> np.ndarray:
-        """Steepest rise of the torque with velocity, N m s/rad per joint."""
-        return np.asarray(self.coefficient, dtype=float)
-
-    def torque(self, qd):
-        """Friction torque (N m) at joint velocities `qd` (rad/s)."""
-        return np.asarray(self.coefficient) * qd
-
-
-@dataclass(frozen=True)
-class CoulombFriction:
-    """Friction torque of constant size against the motion, smooth through zero.
-
-    Parameters
-    ----------
-    level : array_like, shape (2,) or (..., 2)
-        N m per joint, not negative.
-    smoothing : float
-        Velocity in rad/s over which the sign turns (``tanh(qd / smoothing)``).
-        It stands in for sticking: below it the joint creeps instead of resting.
-    """
-
-    level: tuple[float, float]
-    smoothing: float = 2e-3
-
-    def __post_init__(self):
-        non_negative("level", self.level, 2)
-        number("smoothing", self.smoothing, 0.0, open_low=True)
-
-    @property
-    def slope(self) -> np.ndarray:
-        """Steepest rise of the torque with velocity, N m s/rad per joint: at rest."""
-        return np.asarray(self.level, dtype=float) / self.smoothing
-
-    def torque(self, qd):
-        """Friction torque (N m) at joint velocities `qd` (rad/s)."""
-        return np.asarray(self.level) * np.tanh(np.asarray(qd) / self.smoothing)
-
-
-@dataclass(frozen=True)
-class Saturation:
-    """Torque limited to plus or minus `limit` (N m per joint, shape (2,))."""
-
-    limit: tuple[float, float]
-
-    def __post_init__(self):
-        if (finite_array("limit", self.limit, 2) <= 0).any():
-            raise ValueError(f"limit must be positive, got {self.limit}")
-
-    def apply(self, x, rng=None):
-        """The torque `x` (N m), clipped."""
-        limit = np.asarray(self.limit)
-        return np.clip(x, -limit, limit)
+__all__ = [
+    "CMU_DD_ARM_II_EFFECTS", "IDEAL", "Backlash", "ComputingTime", "CoulombFriction", "DeadZone",
+    "Delay", "Effects", "FlexibleJoint", "Noise", "Quantisation", "Ripple", "Saturation",
+    "StickSlipFriction", "StribeckFriction", "ViscousFriction", "started",
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -126,6 +63,72 @@ class Noise:
 
 
 @dataclass(frozen=True)
+class Delay:
+    """A signal that arrives `periods` samples late (whole control periods, 0 or more)."""
+
+    periods: int
+
+    def __post_init__(self):
+        integer("periods", self.periods, 0)
+
+    def start(self, initial):
+        """The delay of one run: a function ``late(x, rng)``, called once a sample.
+
+        Until its first sample arrives it gives `initial`.
+        """
+        waiting = deque([initial] * self.periods)
+
+        def late(x, rng=None):
+            waiting.append(x)
+            return waiting.popleft()
+
+        return late
+
+
+@dataclass(frozen=True)
+class Backlash:
+    """Play of a gear between joint and encoder: the reading follows when a tooth touches.
+
+    The play operator: with the joint at `x` the reading stays where it is as long as it is
+    within ``gap / 2`` of `x`, and is dragged along otherwise. It does not depend on the
+    speed, only on the turning points that have been passed (Krasnosel'skii & Pokrovskii 1989).
+    It stands for gears whose motor is light and held by its own friction; `FlexibleJoint`
+    has play with the motor's motion. A direct-drive joint has none.
+
+    Parameters
+    ----------
+    gap : array_like, shape (2,) or (..., 2)
+        Whole play, rad per joint, not negative.
+    """
+
+    gap: tuple[float, float]
+
+    def __post_init__(self):
+        non_negative("gap", self.gap, 2)
+
+    def start(self, initial):
+        """The play of one run: a function ``play(x, rng)``, centred on `initial` at first."""
+        half, held = np.asarray(self.gap) / 2, initial
+
+        def play(x, rng=None):
+            nonlocal held
+            held = np.clip(held, x - half, x + half)
+            return held
+
+        return play
+
+
+_METHODS = {
+    "friction": ("torque",),
+    "actuator": ("apply", "start"),
+    "encoder": ("apply", "start"),
+    "torque_sensor": ("apply", "start"),
+    "motor": ("shaft_torque",),
+    "transmission": ("spring_torque",),
+}
+
+
+@dataclass(frozen=True)
 class Effects:
     """Everything between the rigid-body equations and what is written to the log.
 
@@ -133,57 +136,87 @@ class Effects:
     ----------
     friction : tuple of effects with ``torque(qd)``
         Opposes the motion, inside the plant.
-    actuator : tuple of effects with ``apply(x, rng)``
+    actuator : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
         Between commanded and applied torque.
-    encoder : tuple of effects with ``apply(x, rng)``
+    encoder : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
         Between true and measured position; the controller sees the measured one.
-    torque_sensor : tuple of effects with ``apply(x, rng)``
+    torque_sensor : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
         Between applied and logged torque.
+    motor : tuple of effects with ``shaft_torque(tau, q)``
+        Between applied torque, which is a current, and torque on the shaft, inside the plant.
+    transmission : tuple of one `FlexibleJoint`, or empty
+        Between motor and link, inside the plant.
     """
 
     friction: tuple = ()
     actuator: tuple = ()
     encoder: tuple = ()
     torque_sensor: tuple = ()
+    motor: tuple = ()
+    transmission: tuple = ()
 
     def __post_init__(self):
-        for part in ("friction", "actuator", "encoder", "torque_sensor"):
-            method = "torque" if part == "friction" else "apply"
+        for part, methods in _METHODS.items():
             effects = getattr(self, part)
-            if not isinstance(effects, tuple) or not all(hasattr(e, method) for e in effects):
-                raise TypeError(f"{part} must be a tuple of effects with {method}(), got {effects}")
+            if not isinstance(effects, tuple) or not all(_fits(e, part) for e in effects):
+                names = " or ".join(f"{m}()" for m in methods)
+                raise TypeError(f"{part} must be a tuple of effects with {names}, got {effects}")
+        if len(self.transmission) > 1:
+            raise ValueError(f"transmission must hold one effect at most, got {self.transmission}")
+
+    @property
+    def computing_time(self) -> float:
+        """Time between reading and torque, s: the sum over the actuator's `ComputingTime`."""
+        return sum(e.seconds for e in self.actuator if isinstance(e, ComputingTime))
 
     def friction_torque(self, qd) -> np.ndarray:
         """Sum of all friction torques (N m) at `qd` (rad/s), shape ``(..., joint)``."""
-        total = np.zeros_like(qd)
-        for effect in self.friction:
-            total = total + effect.torque(qd)
-        return total
+        torques = [effect.torque(qd) for effect in self.friction]
+        return sum(torques[1:], torques[0]) if torques else np.zeros_like(qd)
 
     def without(self, *parts: str) -> Effects:
         """A copy with whole parts switched off.
 
         Parameters
         ----------
-        *parts : {"friction", "actuator", "encoder", "torque_sensor"}
+        *parts : {"friction", "actuator", "encoder", "torque_sensor", "motor", "transmission"}
 
         Raises
         ------
         ValueError
             If a part is unknown.
         """
-        known = ("friction", "actuator", "encoder", "torque_sensor")
         for part in parts:
-            if part not in known:
-                raise ValueError(f"parts must be among {known}, got {part!r}")
+            if part not in _METHODS:
+                raise ValueError(f"parts must be among {tuple(_METHODS)}, got {part!r}")
         return replace(self, **dict.fromkeys(parts, ()))
 
 
-def pass_through(effects: tuple, x, rng) -> np.ndarray:
-    """`x` after every one of the `effects` in turn; noise is drawn from `rng`."""
-    for effect in effects:
-        x = effect.apply(x, rng)
-    return x
+def _fits(effect, part: str) -> bool:
+    """Whether an effect can stand in a part of `Effects`."""
+    if isinstance(effect, ComputingTime) and part != "actuator":
+        return False
+    return any(hasattr(effect, method) for method in _METHODS[part])
+
+
+def started(effects: tuple, initial) -> Callable:
+    """A signal path for one run (or a batch): a function ``path(x, rng)``, once a sample.
+
+    Parameters
+    ----------
+    effects : tuple
+        Effects with ``apply(x, rng)`` or, if they have a memory, ``start(initial)``.
+    initial : ndarray, shape (..., 2)
+        What the memories hold at first.
+    """
+    steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
+
+    def path(x, rng):
+        for step in steps:
+            x = step(x, rng)
+        return x
+
+    return path
 
 
 IDEAL = Effects()

@@ -32,6 +32,13 @@ MOMENTUM = 0.98
 """Acceleration factor. Assumed; Lang (1988) used 0.95, which leaves the training error far
 from its asymptote after the paper's 20,000 epochs."""
 
+WARM_UP = 1000
+"""Epochs at the start with a momentum of 0.5. Assumed; Lang (1988) raised it from .5 to .95.
+Without them a few networks in a hundred saturate early and never recover."""
+
+COURSE = (*sorted({0, *(round(10 ** (k / 14)) for k in range(61))}), paper.EPOCHS)
+"""Epochs after which the weights of the first networks are kept: 14 in each decade."""
+
 INITIAL = 0.3
 """Initial weights are uniform in plus or minus this (Rumelhart, Hinton & Williams 1986)."""
 
@@ -47,7 +54,7 @@ class Setup:
     controller : Controller
     arm : Arm
     effects : Effects
-    epochs : int
+    epochs, warm_up : int
     momentum, initial : float
     hidden : int
         Number of hidden units.
@@ -61,6 +68,7 @@ class Setup:
     effects: Effects = CMU_DD_ARM_II_EFFECTS
     epochs: int = paper.EPOCHS
     momentum: float = MOMENTUM
+    warm_up: int = WARM_UP
     initial: float = INITIAL
     hidden: int = paper.HIDDEN_UNITS
     seed: int = 0
@@ -135,6 +143,7 @@ def train_windows(
         test=data.transform(*cases(test, width)),
         momentum=setup.momentum,
         epochs=setup.epochs,
+        warm_up=setup.warm_up,
         snapshots=snapshots,
         progress=progress,
         label=f"{setup.name}, window {width}",

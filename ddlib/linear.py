@@ -7,10 +7,12 @@ errors against a reference at rest, velocity of the reference zero.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import control
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number
+from ddlib._check import finite_array, integer, non_negative, number
 
 
 def plant(inertia, viscous) -> control.StateSpace:
@@ -65,7 +67,9 @@ def loop_gain(inertia, viscous, kp, ki=0.0, kd=0.0) -> control.TransferFunction:
     return control.tf(numerator, denominator)
 
 
-def closed_loop(joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None) -> control.StateSpace:
+def closed_loop(
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0
+) -> control.StateSpace:
     """The PID loop around joints: reference angles and disturbance torques in, angles out.
 
     Parameters
@@ -77,6 +81,8 @@ def closed_loop(joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None) -> 
     period : float, optional
         Control period in s: the torque is computed once a period and held. The loop is
         then a discrete-time system, exact at the samples. Default: continuous control.
+    delay : int
+        Whole periods between a reading and the moment its torque acts; sampled loops only.
 
     Returns
     -------
@@ -84,24 +90,131 @@ def closed_loop(joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None) -> 
         Inputs: reference angles (rad), then torques (N m) that disturb the joints.
     """
     n = joints.ninputs
+    A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
+    B = np.hstack([command @ reference[0] + reference[1], torque])
+    C = np.hstack([np.eye(n), np.zeros((n, len(A) - n))])
+    time = 0 if period is None else period
+    return control.ss(A + command @ law, B, C, np.zeros((n, 2 * n)), time)
+
+
+def opened_loop(
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0, *, joint=0
+) -> control.StateSpace:
+    """The PID loop cut open where one joint's torque is commanded, the other loops closed.
+
+    What goes in is that torque; what comes out is the torque with which the controller
+    answers, its sign reversed. For one joint alone this is the loop gain ``L`` of
+    `loop_gain`, and of its sampled counterpart.
+
+    Parameters
+    ----------
+    joints, kp, ki, kd, period, delay
+        As in `closed_loop`.
+    joint : int
+        Number of the joint whose loop is open.
+    """
+    number("joint", joint, 0, joints.ninputs - 1)
+    A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
+    others = [k for k in range(joints.ninputs) if k != joint]
+    A = A + command[:, others] @ law[others]
+    time = 0 if period is None else period
+    return control.ss(A, command[:, [joint]], -law[[joint]], 0, time)
+
+
+def _parts(joints, kp, ki, kd, period, delay):
+    """The loop in pieces.
+
+    State ``x``: angles, velocities, integrals (only if there are any), waiting torques.
+    With the commanded torque ``v = law x + reference[0] r``,
+    ``x' = A x + command v + reference[1] r + torque d``.
+    """
+    n = joints.ninputs
     kp, ki, kd = (np.diag(_per_joint(k, v, n)) for k, v in (("kp", kp), ("ki", ki), ("kd", kd)))
+    integer("delay", delay, 0)
+    if period is None and delay:
+        raise ValueError(f"delay must be 0 in continuous control, got {delay} periods")
     zero, one = np.zeros((n, n)), np.eye(n)
-    if period is None:
-        A, B, step, at_once = joints.A, joints.B, ki, zero
-        hold = zero  # the integral's own dynamics: d(integral)/dt = ki e
-    else:
+    A, B, step, at_once, hold = joints.A, joints.B, ki, zero, zero
+    if period is not None:
         number("period", period, 0.0, open_low=True)
         sampled = control.sample_system(joints, period, "zoh")
-        A, B, step, hold = sampled.A, sampled.B, ki * period, one
-        at_once = step  # the law adds the newest error to the integral before using it
-    # tau = (kp + at_once) (r - q) - kd qd + integral
-    state = np.hstack([-(kp + at_once), -kd])
-    A = np.block([[A + B @ state, B], [-step, zero, hold]])
-    B = np.block([[B @ (kp + at_once), B], [step, zero]])
-    if not ki.any():  # no integral: leave its states out
-        A, B = A[: 2 * n, : 2 * n], B[: 2 * n]
-    C = np.hstack([one, np.zeros((n, len(A) - n))])
-    return control.ss(A, B, C, np.zeros((n, 2 * n)), 0 if period is None else period)
+        # the law adds the newest error to the integral before using it
+        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, one
+    law, size, above = np.hstack([-(kp + at_once), -kd]), 2 * n, n if ki.any() else 0
+    integral, waiting = slice(size, size + above), size + above
+    total = waiting + n * delay
+    F, command, torque, of_law, reference = (
+        np.zeros(shape) for shape in ((total, total), *[(total, n)] * 2, (n, total), (total, n))
+    )
+    F[:size, :size], torque[:size], of_law[:, :size] = A, B, law
+    if above:
+        F[integral, :n], F[integral, integral] = -step, hold
+        of_law[:, integral], reference[integral] = one, step
+    if delay:  # v enters the queue at its end and acts when it has reached the front
+        F[:size, waiting : waiting + n] = B
+        F[waiting : total - n, waiting + n :] = np.eye(total - n - waiting)
+        command[total - n :] = one
+    else:
+        command[:size] = B
+    return F, command, torque, of_law, (kp + at_once, reference)
+
+
+class Margins(NamedTuple):
+    """How far a stable loop is from instability.
+
+    Attributes
+    ----------
+    phase_deg : float
+        Angle in degrees that the loop may lose at its crossover.
+    crossover : float
+        Frequency in rad/s at which the loop gain is 1.
+    most, least : float
+        Factors by which the gain may rise and to which it may fall (infinite and 0 if
+        there is no such limit).
+    """
+
+    phase_deg: float
+    crossover: float
+    most: float
+    least: float
+
+
+def margins(loop) -> Margins:
+    """Gain and phase margins of an open loop, by python-control.
+
+    A sampled loop is first mapped to the w plane, ``z = (1 + w T / 2) / (1 - w T / 2)``:
+    the unit circle becomes the imaginary axis, on which the polynomials of python-control
+    are well conditioned; its frequencies are mapped back.
+
+    Parameters
+    ----------
+    loop : control.StateSpace or control.TransferFunction
+        From `opened_loop` or `loop_gain`; one input, one output.
+
+    Raises
+    ------
+    ValueError
+        If the loop gain never is 1.
+    """
+    period = loop.dt or 0.0
+    if period:
+        state = np.eye(loop.nstates)
+        inverse = np.linalg.inv(loop.A + state)
+        A = 2 / period * inverse @ (loop.A - state)
+        B = 2 / period * inverse @ loop.B
+        C = 2 * loop.C @ inverse
+        loop = control.ss(A, B, C, loop.D - loop.C @ inverse @ loop.B)
+    gains, phases, _, _, crossovers, _ = control.stability_margins(loop, returnall=True)
+    if not len(phases):
+        raise ValueError("loop must have a gain of 1 at some frequency, got none")
+    if period and loop.D[0, 0] < 0:  # w of infinity, the highest frequency samples can show
+        gains = np.append(gains, -1 / loop.D[0, 0])
+    k = np.argmin(np.abs(phases))
+    crossover = crossovers[k]
+    if period:
+        crossover = 2 / period * np.arctan(crossover * period / 2)
+    most, least = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
+    return Margins(float(phases[k]), float(crossover), float(most), float(least))
 
 
 def proportional_limit(inertia, viscous, period) -> float:

@@ -32,7 +32,7 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
         If shapes differ, a value is not finite or the standard deviation is zero.
     """
     predicted, target = finite_array("predicted", predicted), finite_array("target", target)
-    if target.ndim < 2 or predicted.shape[-2:] != target.shape[-2:]:
+    if target.ndim < 2 or not target.shape[-2] or predicted.shape[-2:] != target.shape[-2:]:
         raise ValueError(
             "predicted and target must both have shape (..., cases, joint), "
             f"got {predicted.shape} and {target.shape}"

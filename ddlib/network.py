@@ -91,6 +91,11 @@ class Weights:
         """One ensemble of several: their members in order."""
         return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS))
 
+    @classmethod
+    def stack(cls, parts) -> Weights:
+        """Several of one shape along a new leading axis."""
+        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in _FIELDS))
+
     def __getitem__(self, index) -> Weights:
         """The network(s) at `index` of the leading axis."""
         return Weights(*(getattr(self, name)[index] for name in _FIELDS))
@@ -132,7 +137,7 @@ class Weights:
         output : ndarray, shape (..., cases, output)
         """
         x = finite_array("x", x)
-        if x.shape[-2:] != self.hidden_weights.shape[-2:]:
+        if x.ndim != 3 or x.shape[-2:] != self.hidden_weights.shape[-2:]:
             raise ValueError(
                 f"x must have shape (cases, {self.hidden_weights.shape[-2]}, {self.width}), "
                 f"got {x.shape}"

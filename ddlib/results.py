@@ -7,27 +7,31 @@ import hashlib
 import json
 import os
 import platform
+import resource
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
+from ddlib.experiment import COURSE
+from ddlib.network import TorqueModel
+
 PACKAGE = Path(__file__).parent
 FOLDER = PACKAGE.parent / "book" / "results"
 """Where `make reproduce` writes and the chapters read."""
 
-MODULES = (
-    "paper", "arm", "effects", "trajectories", "controllers", "simulate", "windows",
-    "metrics", "network", "training", "experiment",
-)  # fmt: skip
-"""Modules on which every result depends."""
+STUDIES = "studies"
+"""Folder of the package with the functions that make the results."""
+
+ASIDE = ("_check", "results")
+"""Modules that a study imports and that do not decide what it finds."""
 
 
 def code_hash(result: str) -> str:
     """Hash of the code that makes a result: docstrings, comments and layout do not count.
 
-    It covers `MODULES` whole, and of `ddlib.reproduce` the result's own function with
-    the private helpers.
+    It covers every module of ddlib that the result's study depends on through its imports,
+    and of the study's own file all but the other public functions.
 
     Parameters
     ----------
@@ -37,19 +41,57 @@ def code_hash(result: str) -> str:
     Raises
     ------
     ValueError
-        If no function of `ddlib.reproduce` makes it.
+        If no function in `STUDIES` makes it.
     """
-    trees = [ast.parse(_source(name)) for name in MODULES]
-    functions = [n for n in ast.parse(_source("reproduce")).body if isinstance(n, ast.FunctionDef)]
-    own = result.replace("-", "_")
-    if own not in [function.name for function in functions]:
-        raise ValueError(f"result must be made by a function of ddlib.reproduce, got {result!r}")
-    trees += [f for f in functions if f.name == own or f.name.startswith("_")]
+    body = _study(result).body
+    others = {node.name for node in body if isinstance(node, ast.FunctionDef)}
+    others = {name for name in others if not name.startswith("_")} - {result.replace("-", "_")}
+    trees: list = [[node for node in body if getattr(node, "name", None) not in others]]
+    trees += [_tree(name) for name in modules(result)]
     return hashlib.sha256("\n".join(map(_normal_form, trees)).encode()).hexdigest()[:16]
 
 
-def _source(module: str) -> str:
-    return (PACKAGE / f"{module}.py").read_text(encoding="utf-8")
+def modules(result: str) -> list[str]:
+    """Modules of ddlib on which a result depends, through all imports of its study's file.
+
+    Parameters
+    ----------
+    result : str
+        Name of the result, like "table-4-1".
+    """
+    reached, waiting = set(ASIDE), _imports(_study(result))
+    while waiting - reached:
+        name = min(waiting - reached)
+        reached.add(name)
+        waiting |= _imports(_tree(name))
+    return sorted(reached - set(ASIDE))
+
+
+def _study(result: str) -> ast.Module:
+    """The file whose function makes a result."""
+    own = result.replace("-", "_")
+    for path in sorted((PACKAGE / STUDIES).glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == own for node in tree.body):
+            return tree
+    raise ValueError(f"result must be made by a function of ddlib.{STUDIES}, got {result!r}")
+
+
+def _imports(tree) -> set[str]:
+    """Modules of ddlib that a syntax tree imports from."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module == "ddlib":
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib."):
+            found.add(node.module.partition(".")[2])
+    return found
+
+
+def _tree(module: str) -> ast.Module:
+    path = PACKAGE.joinpath(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return ast.parse(path.read_text(encoding="utf-8"))
 
 
 def _normal_form(node) -> str:
@@ -80,6 +122,7 @@ def stamp(seconds: float, result: str | None = None) -> dict:
     return {
         **({"code": code_hash(result)} if result else {}),
         "seconds": round(seconds, 1),
+        "peak GiB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2),
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
     }
@@ -89,17 +132,25 @@ def write_json(path: Path, content: dict) -> None:
     """Write a JSON file in one step, so that an interrupted run leaves no half file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.name + ".part")
-    temporary.write_text(json.dumps(content, indent=1, default=_plain) + "\n", encoding="utf-8")
+    text = json.dumps(_plain(content), indent=1, allow_nan=False)
+    temporary.write_text(text + "\n", encoding="utf-8")
     os.replace(temporary, path)
 
 
 def _plain(value):
+    """Floats with five digits (null if not finite), arrays as lists; the rest is refused."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
     if isinstance(value, np.ndarray):
         return [_plain(v) for v in value] if value.ndim else _plain(value[()])
-    if isinstance(value, np.floating):
-        return float(f"{value:.5g}")
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.5g}") if np.isfinite(value) else None
     if isinstance(value, (np.integer, np.bool_)):
         return value.item()
+    if value is None or isinstance(value, (str, int)):
+        return value
     raise TypeError(f"{type(value).__name__} does not go into a results file")
 
 
@@ -108,9 +159,32 @@ def networks_path(setup: str, width: int) -> Path:
     return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
 
 
-def snapshot_path(width: int, epoch: int) -> Path:
-    """File of the first two networks of a window size after some epochs."""
-    return FOLDER / "snapshots" / f"{width}-{epoch}.npz"
+def course_path(width: int) -> Path:
+    """File of the first two networks of a window size on their way through training."""
+    return FOLDER / f"course-{width}.npz"
+
+
+def course(width: int) -> tuple[np.ndarray, TorqueModel]:
+    """The first two networks (state feedback) of a window size, all along their training.
+
+    Parameters
+    ----------
+    width : int
+        Window size, among those of Table 4-1.
+
+    Returns
+    -------
+    epochs : ndarray, shape (epochs,)
+        `ddlib.experiment.COURSE`: 0 stands for the initial weights.
+    model : TorqueModel
+        Weights with leading axes ``(epochs, 2)``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such result.
+    """
+    return np.array(COURSE), TorqueModel.load(course_path(width))
 
 
 def read(name: str) -> dict:

@@ -13,7 +13,8 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, one_of
 from ddlib.arm import Arm
 from ddlib.controllers import Controller
-from ddlib.effects import IDEAL, Effects, pass_through
+from ddlib.effects import IDEAL, Effects, started
+from ddlib.plant import Plant, substeps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
 CONTROL_STEP = 0.002
@@ -64,54 +65,52 @@ class Recording:
         return self.q_true - self.reference.q
 
 
-def rk4_step(arm: Arm, effects: Effects, q, qd, tau, step):
-    """One Runge-Kutta step of the plant under constant torque; returns new `q`, `qd`.
+class _Streams:
+    """Noise for many runs, each from a generator of its own; drawn in blocks."""
 
-    The `arm` and the friction of `effects` make the plant. Arrays are ``(..., joint)``:
-    angles `q` (rad), velocities `qd` (rad/s), applied torque `tau` (N m); `step` is in s.
-    """
+    BLOCK = 256
 
-    def acceleration(q, qd):
-        net = tau - effects.friction_torque(qd) if effects.friction else tau
-        return arm._acceleration(q, qd, net)
+    def __init__(self, seeds: np.ndarray):
+        self.shape = seeds.shape
+        self.generators = [np.random.default_rng(int(s)) for s in seeds.ravel()]
+        self.used = self.BLOCK
 
-    half = 0.5 * step
-    a1 = acceleration(q, qd)
-    v2 = qd + half * a1
-    a2 = acceleration(q + half * qd, v2)
-    v3 = qd + half * a2
-    a3 = acceleration(q + half * v2, v3)
-    v4 = qd + step * a3
-    a4 = acceleration(q + step * v3, v4)
-    return (
-        q + step / 6 * (qd + 2 * v2 + 2 * v3 + v4),
-        qd + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4),
-    )
+    def standard_normal(self, shape) -> np.ndarray:
+        """The next sample of every run, shape ``(*runs, 2)``; `shape` must fit to it."""
+        runs, own = shape[:-1], self.shape
+        if len(runs) > len(own) or any(n not in (1, m) for n, m in zip(runs[::-1], own[::-1])):
+            raise ValueError(f"seed must be one number or one for each run {runs}, got {own}")
+        if self.used == self.BLOCK:
+            drawn = np.stack([g.standard_normal((self.BLOCK, 2)) for g in self.generators], 1)
+            self.block, self.used = drawn.reshape(self.BLOCK, *self.shape, 2), 0
+        self.used += 1
+        return self.block[self.used - 1]
 
 
-def substeps(arm: Arm, effects: Effects, step: float) -> int:
-    """Runge-Kutta steps that one control period needs to stay stable.
+def _generator(seed):
+    """Source of noise for one seed (all runs share it) or for an array of them."""
+    if np.ndim(seed) == 0:
+        return np.random.default_rng(integer("seed", seed, 0))
+    seeds = np.asarray(seed)
+    if seeds.dtype.kind not in "iu":
+        raise TypeError(f"seed must be an integer or an array of integers, got {seed!r}")
+    if not seeds.size or (seeds < 0).any():
+        raise ValueError(f"seed must hold integers from 0 and up, got {seed!r}")
+    return _Streams(seeds)
 
-    Friction acts like a first-order decay of joint speed, fastest where its curve is
-    steepest: at rest. A step of RK4 is stable up to 2.78 times the decay's time constant;
-    2 is used.
 
-    Parameters
-    ----------
-    arm, effects
-        The plant; frictions without a `slope` count as smooth.
-    step : float
-        Control period, s.
-    """
-    slope = sum(
-        np.max(np.broadcast_to(f.slope, (*np.shape(f.slope)[:-1], 2)).reshape(-1, 2), axis=0)
-        for f in effects.friction
-        if hasattr(f, "slope")
-    )
-    elbow = np.linspace(0.0, np.pi, 13)
-    mass = arm.mass_matrix(np.stack([0 * elbow, elbow], -1))
-    decay = np.linalg.eigvals(np.linalg.solve(mass, np.eye(2) * slope)).real.max()
-    return max(1, int(np.ceil(decay * step / 2)))
+def _held(plant: Plant, x, v, tau, seconds, parts):
+    """Positions and velocities after `seconds` under constant torque, in `parts` steps a run."""
+    most = int(np.max(parts))
+    if np.min(parts) == most:
+        for _ in range(most):
+            x, v = plant.advance(x, v, tau, seconds / most)
+        return x, v
+    parts = parts[..., None]
+    for k in range(most):  # runs that need fewer steps wait for the others
+        x_next, v_next = plant.advance(x, v, tau, seconds / parts)
+        x, v = np.where(k < parts, x_next, x), np.where(k < parts, v_next, v)
+    return x, v
 
 
 def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
@@ -122,11 +121,11 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     arm : Arm
         The arm that moves.
     q, qd : array_like, shape (..., 2)
-        Initial angles (rad) and velocities (rad/s).
+        Initial angles (rad) and velocities (rad/s); motors behind a shaft have the same.
     seconds, step : float
         Duration and integration step, s; a whole number of steps.
     effects : Effects
-        Only the friction acts here.
+        Those that act inside the plant: friction, motor, transmission.
 
     Returns
     -------
@@ -140,11 +139,15 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     if abs(count - round(count)) > 1e-6:
         raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
     t = np.arange(round(count) + 1) * step
-    states = [(q, qd)]
+    plant = Plant(arm, effects)
+    x, v = plant.rest(q)
+    v = v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
+    states = [(x, v)]
     zero = np.zeros_like(q)
     for _ in t[1:]:
-        states.append(rk4_step(arm, effects, *states[-1], zero, step))
-    q, qd = (np.stack(series, -2) for series in zip(*states))
+        states.append(plant.advance(*states[-1], zero, step))
+    states = [np.broadcast_arrays(*series) for series in zip(*states)]
+    q, qd = (np.stack(series, -2)[..., :2] for series in states)
     return t, q, qd
 
 
@@ -155,13 +158,16 @@ def follow(
     t,
     *,
     effects: Effects = IDEAL,
-    seed: int = 0,
+    seed: int | np.ndarray = 0,
     log_every: int = 5,
     velocity: str = "tachometer",
 ) -> Recording:
     """Drive the arm along a sampled reference and log what the sensors say.
 
-    The arm starts at rest at the reference's first position.
+    The arm starts at rest at the reference's first position. Runs may differ in their
+    reference, in the gains of the controller, the strengths of the effects and the seed:
+    leading axes of all of them are broadcast. No run depends on which others it is
+    simulated with, except through a shared noise generator (`seed`).
 
     Parameters
     ----------
@@ -171,8 +177,10 @@ def follow(
         Sampled at the control period, shape ``(..., time, joint)``; leading axes are runs.
     t : array_like, shape (time,)
         Times of the control samples, equally spaced, s.
-    seed : int
-        Seed of the sensor noise.
+    seed : int or array_like of int, shape (...)
+        Seed of the sensor noise. With one number the runs of a batch share a generator and
+        the noise of a run depends on its place in the batch; with an array of the shape of
+        the runs each run has its own, the same as if it ran alone with that seed.
     log_every : int
         Control periods between two logged samples.
     velocity : {"tachometer", "difference"}
@@ -205,35 +213,51 @@ def follow(
     step = float(t[1] - t[0])
     if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
         raise ValueError(f"t must increase in equal steps, got steps from {step:g} s")
-    integer("seed", seed, 0)
     integer("log_every", log_every, 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
-    rng = np.random.default_rng(seed)
+    late = effects.computing_time
+    if late > step * (1 - 1e-9):
+        raise ValueError(
+            f"effects must have a computing time below the control period {step:g} s, got "
+            f"{late:g}; Delay adds whole periods"
+        )
+    reference = Trajectory(*(_time_first(x) for x in reference))
+    rng = _generator(seed)
     law = controller.start(reference, step)
-    parts = substeps(arm, effects, step)
+    plant, parts = Plant(arm, effects), substeps(arm, effects, step)
 
-    q, qd = reference.q[..., 0, :].copy(), np.zeros_like(reference.q[..., 0, :])
-    reading = pass_through(effects.encoder, q, rng)
+    x, v = plant.rest(reference.q[..., 0, :])
+    tau = np.zeros_like(reference.q[..., 0, :])
+    encoder = started(effects.encoder, x[..., -2:])
+    actuator, torque_sensor = (started(e, tau) for e in (effects.actuator, effects.torque_sensor))
+    reading = encoder(x[..., -2:], rng)
     log = []
     for k in range(t.size):
-        if not np.abs(qd).max() < 1e6:
+        if not np.abs(v).max() < 1e6:
             raise ValueError(
                 f"the control loop diverges: joint speeds pass 1e6 rad/s at t = {t[k]:.3f} s; "
                 "lower the gains or the control period"
             )
-        previous, reading = reading, pass_through(effects.encoder, q, rng)
-        speed = qd if velocity == "tachometer" else (reading - previous) / step
-        tau = pass_through(effects.actuator, law(k, reading, speed), rng)
+        previous, reading = reading, encoder(x[..., -2:], rng)
+        speed = v[..., -2:] if velocity == "tachometer" else (reading - previous) / step
+        before, tau = tau, actuator(law(k, reading, speed), rng)
         if k % log_every == 0:
-            log.append((reading, pass_through(effects.torque_sensor, tau, rng), q, qd, tau))
+            now = before if late else tau
+            log.append((reading, torque_sensor(now, rng), x[..., :2], v[..., :2], now))
         with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported above
-            for _ in range(parts):
-                q, qd = rk4_step(arm, effects, q, qd, tau, step / parts)
+            if late:
+                x, v = _held(plant, x, v, before, late, parts)
+            x, v = _held(plant, x, v, tau, step - late, parts)
     read, tau, q_true, qd_true, tau_true = (
         np.stack(np.broadcast_arrays(*series), -2) for series in zip(*log)
     )
     logged = Trajectory(*(x[..., ::log_every, :] for x in reference))
     return Recording(t[::log_every], logged, read, tau, q_true, qd_true, tau_true)
+
+
+def _time_first(x):
+    """`x` unchanged, but one sample of all runs lies together in memory, joint by joint."""
+    return np.moveaxis(np.ascontiguousarray(np.moveaxis(x, (-2, -1), (0, 1))), (0, 1), (-2, -1))
 
 
 def record(
@@ -242,7 +266,7 @@ def record(
     extents_deg,
     *,
     effects: Effects = IDEAL,
-    seed: int = 0,
+    seed: int | np.ndarray = 0,
     rest: float = REST,
     control_step: float = CONTROL_STEP,
     log_step: float = LOG_STEP,

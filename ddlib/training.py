@@ -7,7 +7,7 @@ one network, by autograd; `train_ensemble` does the same sums for many at once.
 
 from __future__ import annotations
 
-import os
+import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -16,7 +16,7 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, number
-from ddlib.metrics import rmss
+from ddlib.descent import Descent, prepare
 from ddlib.network import TorqueModel, Weights, WindowNetwork
 from ddlib.simulate import Recording
 from ddlib.windows import Scaler, sliding_windows
@@ -25,8 +25,11 @@ TARGET_RANGE = (0.2, 0.8)
 """Range of the output units that the torques are scaled to (Lang 1988)."""
 
 
-WORKERS = min(2, os.cpu_count() or 1)
-"""Threads that `train_ensemble` uses."""
+WORKERS = min(2, torch.get_num_threads())
+"""Threads that `train_ensemble` uses: as many as torch may (OMP_NUM_THREADS), two at most."""
+
+BLOCK = 8
+"""Most members that a thread trains side by side: what fits into a core's cache."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +116,10 @@ class History:
 
     @property
     def best_test(self) -> np.ndarray:
-        """Smallest test error on the way, per member."""
-        return np.nanmin(self.test, axis=0)
+        """Smallest test error on the way, per member; NaN if none is finite."""
+        if not self.test.size:
+            raise ValueError("history has no test errors: give `test` to train_ensemble")
+        return np.fmin.reduce(self.test, axis=0)
 
     @property
     def derailed(self) -> np.ndarray:
@@ -127,9 +132,20 @@ class History:
         Taken between the last point and the one nearest to half its epoch. The paper
         trains "to the point where the derivative of the error was nearly zero".
         """
+        if len(self.epochs) < 2:
+            raise ValueError(f"history must hold two points or more, got {len(self.epochs)}")
         half = int(np.argmin(np.abs(self.epochs - self.epochs[-1] / 2)))
         ratio = np.log(self.training[-1] / self.training[half])
         return ratio / np.log(self.epochs[-1] / self.epochs[half])
+
+    def settled(self, steepest: float = 0.1) -> np.ndarray:
+        """Members at their asymptote: error over epochs no steeper than `steepest`.
+
+        The criterion is on a log-log scale (`slope`): with 0.1, twice the epochs would
+        lower the error by less than 7 %. A derailed member counts as settled if it rests.
+        """
+        number("steepest", steepest, 0.0)
+        return np.abs(self.slope()) <= steepest
 
 
 class TrainingDiverged(RuntimeError):
@@ -156,10 +172,28 @@ def check_points(epochs: int, points: int = 60) -> np.ndarray:
     return np.unique(np.round(np.geomspace(1, epochs, points)).astype(int))
 
 
+WARM_UP_MOMENTUM = 0.5
+"""Momentum of the first epochs; Lang (1988) began with it."""
+
+MAX_RATE = 1e38
+"""Largest step size that single precision can hold."""
+
+
 def _check(rate, momentum, epochs):
-    number("rate", rate, 0.0, open_low=True)
+    number("rate", rate, 0.0, MAX_RATE, open_low=True)
     number("momentum", momentum, 0.0, 0.999)
     integer("epochs", epochs, 1)
+
+
+def _per_member(rate, momentum, epochs, members):
+    """Checked rates and momenta as arrays of shape (members,)."""
+    arrays = [finite_array("rate", rate), finite_array("momentum", momentum)]
+    for name, array in zip(("rate", "momentum"), arrays):
+        if array.shape not in ((), (members,)):
+            raise ValueError(f"{name} must be one number or {members}, got shape {array.shape}")
+    for pair in np.broadcast(*arrays):
+        _check(*map(float, pair), epochs)
+    return [np.broadcast_to(array, members) for array in arrays]
 
 
 def train(
@@ -222,80 +256,21 @@ def train(
     return history
 
 
-class _Ensemble:
-    """Gradient descent of many networks on the same cases.
-
-    The input-to-hidden and direct weights of all members share one product with the
-    inputs: rows of `first` are member by member the hidden units, then the outputs,
-    with the bias as the last column.
-    """
-
-    def __init__(self, weights: Weights, x, y):
-        n, self.hidden = weights.hidden_bias.shape
-        self.shape = weights.hidden_weights.shape[-2:]
-        inputs = int(np.prod(self.shape))
-        hidden = weights.hidden_weights.reshape(n, self.hidden, inputs)
-        skip = weights.skip_weights.reshape(n, -1, inputs)
-        columns = np.concatenate([hidden, skip], 1)
-        biases = np.concatenate([weights.hidden_bias, weights.output_bias], 1)
-        first = np.concatenate([columns, biases[..., None]], -1)
-        self.first = torch.tensor(first, dtype=torch.float32)
-        self.second = torch.tensor(weights.output_weights, dtype=torch.float32)
-        x = torch.as_tensor(x.reshape(len(x), -1), dtype=torch.float32)
-        self.x = torch.cat([x, torch.ones(len(x), 1)], 1).contiguous()
-        self.xt = self.x.T.contiguous()
-        self.yt = torch.as_tensor(y, dtype=torch.float32).T.contiguous()
-        self.step_first = torch.zeros_like(self.first)
-        self.step_second = torch.zeros_like(self.second)
-        self.net = torch.empty(n, first.shape[1], len(x))
-        self.back = torch.empty(n, self.hidden, len(x))
-
-    def epoch(self, eps: float, momentum: float) -> None:
-        """One step of every member, in place."""
-        n, rows, inputs = self.first.shape
-        torch.mm(self.first.view(n * rows, inputs), self.xt, out=self.net.view(n * rows, -1))
-        hidden, output = self.net[:, : self.hidden], self.net[:, self.hidden :]
-        hidden.sigmoid_()
-        output.baddbmm_(self.second, hidden).sigmoid_()
-        delta = (output - self.yt).mul_(output - output * output)
-        gradient_second = torch.bmm(delta, hidden.transpose(1, 2))
-        torch.bmm(self.second.transpose(1, 2), delta, out=self.back)
-        self.back.mul_(hidden)
-        torch.addcmul(self.back, self.back, hidden, value=-1, out=hidden)
-        output.copy_(delta)
-        gradient_first = torch.mm(self.net.view(n * rows, -1), self.x).view_as(self.first)
-        self.step_first.mul_(momentum).add_(gradient_first, alpha=-eps)
-        self.step_second.mul_(momentum).add_(gradient_second, alpha=-eps)
-        self.first.add_(self.step_first)
-        self.second.add_(self.step_second)
-
-    def weights(self) -> Weights:
-        """All members as plain arrays."""
-        first = self.first.numpy().astype(float)
-        hidden, skip = first[:, : self.hidden, :-1], first[:, self.hidden :, :-1]
-        bias = first[..., -1]
-        return Weights(
-            hidden.reshape(*hidden.shape[:2], *self.shape),
-            bias[:, : self.hidden],
-            self.second.numpy().astype(float),
-            skip.reshape(*skip.shape[:2], *self.shape),
-            bias[:, self.hidden :],
-        )
-
-
 def train_ensemble(
     weights: Weights,
     data: TrainingSet,
     *,
     test: tuple | None = None,
-    rate: float | None = None,
-    momentum: float = 0.95,
+    targets=None,
+    rate=None,
+    momentum=0.95,
     epochs: int = 20_000,
+    warm_up: int = 0,
     snapshots=(),
     progress: bool = True,
     label: str = "training",
 ) -> tuple[TorqueModel, History, dict[int, Weights]]:
-    """Train many networks on the same cases by the rule of `train`.
+    """Train many networks on the same windows by the rule of `train`.
 
     Parameters
     ----------
@@ -305,14 +280,22 @@ def train_ensemble(
         Cases and scaling.
     test : tuple of ndarray, optional
         Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
-    rate : float, optional
-        Step size per case; default `default_rate` of the window.
-    momentum, epochs
+    targets : array_like, shape (members, cases, output), optional
+        Scaled targets of each member in place of ``data.y``, for instance with noise of
+        different levels. Errors are relative to the spread of ``data.y`` all the same.
+    rate : float or array_like, shape (members,), optional
+        Step size per case, one for all or one per member; default `default_rate`.
+    momentum : float or array_like, shape (members,)
+        The factor alpha of the previous step, 0 to 0.999.
+    epochs : int
         As in `train`.
+    warm_up : int
+        Epochs at the start with a momentum of `WARM_UP_MOMENTUM`, if that is smaller. Large
+        steps before the units have found their parts saturate them for good.
     snapshots : sequence of int
         Epochs after which a copy of all weights is kept (0: the initial ones).
     progress : bool
-        Show a progress bar with the median error.
+        Show a progress bar with the median error and the time left.
     label : str
         What the bar says.
 
@@ -330,27 +313,39 @@ def train_ensemble(
     ------
     TrainingDiverged
         If no member's error is finite any more.
+    ValueError
+        If an option is out of range or shapes do not fit.
     """
+    members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
-    _check(rate, momentum, epochs)
+    rate, momentum = _per_member(rate, momentum, epochs, members)
     if weights.hidden_weights.shape[-2:] != data.x.shape[-2:]:
         raise ValueError(
             f"weights must have the joints and width of the data, {data.x.shape[-2:]}, "
             f"got {weights.hidden_weights.shape[-2:]}"
         )
-    blocks = np.array_split(np.arange(len(weights)), min(WORKERS, len(weights)))
-    bar = tqdm(total=epochs, desc=label, disable=not progress, mininterval=0.5)
+    if targets is not None:
+        targets = finite_array("targets", targets)
+        if targets.shape != (members, *data.y.shape):
+            raise ValueError(
+                f"targets must have shape {(members, *data.y.shape)}, got {targets.shape}"
+            )
+    integer("warm_up", warm_up, 0)
+    snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
+    count = WORKERS * math.ceil(members / (WORKERS * BLOCK))
+    blocks = np.array_split(np.arange(members), min(count, members))
+    bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
 
     def work(block):
-        leader = bar if block[0] == 0 else None
-        return _train_block(
-            weights[block], data, test, rate, momentum, epochs, set(snapshots), leader
-        )
+        y = data.y if targets is None else targets[block]
+        start = weights[block]
+        descent = Descent(start, data.x, y, rate[block] / len(data.x), momentum[block])
+        return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar)
 
     threads = torch.get_num_threads()
     torch.set_num_threads(1)  # one core for each block: no waiting at every product
     try:
-        with ThreadPoolExecutor(len(blocks)) as pool:
+        with ThreadPoolExecutor(min(WORKERS, len(blocks))) as pool:
             parts = list(pool.map(work, blocks))
     finally:
         torch.set_num_threads(threads)
@@ -363,39 +358,42 @@ def train_ensemble(
     )
     if not np.isfinite(history.training[-1]).any():
         raise TrainingDiverged(
-            f"no member's error is finite after {epochs} epochs: lower the rate ({rate:g})", history
+            f"no member's error is finite after {epochs} epochs: lower the rate ({rate.min():g})",
+            history,
         )
     model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs)
-    return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in kept[0]}
+    return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in sorted(kept[0])}
 
 
-def _train_block(weights, data, test, rate, momentum, epochs, snapshots, bar):
-    """Train some members in this thread; `bar`, if any, is told how far it is."""
+def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
+    """Train some members in this thread; `bar` is told how far they are."""
     torch.set_num_threads(1)
-    ensemble = _Ensemble(weights, data.x, data.y)
     history, points = History(), set(check_points(epochs))
-    kept = {0: weights} if 0 in snapshots else {}
-    eps = rate / len(data.x)
+    kept = {0: initial} if 0 in snapshots else {}
+    spread = data.y.std(0)
+    if test is not None:
+        test_cases, test_spread = prepare(*test), np.std(test[1], axis=0)
+
+    def relative(mean_square, spread):
+        return np.sqrt((mean_square / spread**2).mean(-1))
+
+    def note(epoch, square, test_square):
+        training = relative(square, spread)
+        history.append(epoch, training, *(relative(s, test_spread) for s in test_square))
+        if np.isfinite(training).any():
+            bar.set_postfix(median_rmss=f"{np.nanmedian(training):.3f}", refresh=False)
+
     for epoch in range(1, epochs + 1):
-        ensemble.epoch(eps, momentum)
-        if bar is not None and epoch % 50 == 0:
-            bar.update(50)
+        due = epoch - 1 in points  # the errors after one step show in the next one
+        test_square = [descent.mean_square(*test_cases)] if due and test is not None else []
+        square = descent.epoch(due, WARM_UP_MOMENTUM if epoch <= warm_up else 1.0)
+        if due:
+            note(epoch - 1, square, test_square)
         if epoch in snapshots:
-            kept[epoch] = ensemble.weights()
-        if epoch in points:
-            current = ensemble.weights()
-            errors = [_error(current, *pair) for pair in ([(data.x, data.y)] + [test] * bool(test))]
-            history.append(epoch, *errors)
-            if bar is not None:
-                bar.set_postfix(median_rmss=f"{np.nanmedian(errors[0]):.3f}", refresh=False)
-    return ensemble.weights(), history, kept
-
-
-def _error(weights: Weights, x, y) -> np.ndarray:
-    """Pooled RMSS per member; NaN for members whose weights are not finite."""
-    fine = np.isfinite(weights.hidden_weights).all((-3, -2, -1))
-    fine &= np.isfinite(weights.output_weights).all((-2, -1))
-    errors = np.full(len(fine), np.nan)
-    if fine.any():
-        errors[fine] = rmss(weights[fine].activity(x)[1], y)
-    return errors
+            kept[epoch] = descent.weights()
+        if epoch % 50 == 0 or epoch == epochs:
+            with bar.get_lock():
+                bar.update((epoch % 50 or 50) * descent.members)
+    test_square = [descent.mean_square(*test_cases)] if test is not None else []
+    note(epochs, descent.mean_square(descent.inputs, descent.targets), test_square)
+    return descent.weights(), history, kept

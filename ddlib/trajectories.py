@@ -65,11 +65,16 @@ def pick_and_place(extents_deg, t) -> Trajectory:
             OutsideFamilyWarning,
             stacklevel=2,
         )
-    theta = np.deg2rad(extents_deg)[..., None, :]
+    theta = np.ascontiguousarray(np.moveaxis(np.deg2rad(extents_deg), -1, 0))
     omega = np.pi / MOTION_SECONDS
-    moving = ((t >= 0) & (t < MOTION_SECONDS))[:, None]
-    sine, cosine = np.sin(omega * t)[:, None] * moving, np.cos(omega * t)[:, None] * moving
-    return Trajectory(-theta * sine, -theta * omega * cosine, theta * omega**2 * sine)
+    moving = (t >= 0) & (t < MOTION_SECONDS)
+    sine, cosine = np.sin(omega * t) * moving, np.cos(omega * t) * moving
+    # laid out (time, joint, runs): a simulation takes one sample of all runs at a time
+    scaled = (
+        np.multiply.outer(s, f * theta)
+        for s, f in ((sine, -1.0), (cosine, -omega), (sine, omega**2))
+    )
+    return Trajectory(*(np.moveaxis(x, (0, 1), (-2, -1)) for x in scaled))
 
 
 APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)

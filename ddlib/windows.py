@@ -47,6 +47,8 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
     width, time = check_width(width), q.shape[-2]
     if width > time:
         raise ValueError(f"width must not exceed the {time} samples of the recording, got {width}")
+    if not isinstance(cases, slice | None):
+        raise TypeError(f"cases must be a slice, got {cases!r}")
     half = width // 2
     start, stop, step = (cases or slice(half, time - half)).indices(time)
     if step != 1 or start - half < 0 or stop + half > time or start >= stop:
@@ -89,6 +91,8 @@ class Scaler:
         """The scaler that maps the range of `data` per joint to `target`."""
         data = np.moveaxis(finite_array("data", data), joint_axis, -1)
         data = data.reshape(-1, data.shape[-1])
+        if not len(data):
+            raise ValueError("data must hold at least one value per joint, got none")
         return cls(data.min(0), data.max(0), tuple(target))
 
     @property
@@ -98,15 +102,19 @@ class Scaler:
 
     def scale(self, data, joint_axis: int = -1) -> np.ndarray:
         """`data` in scaled units; `joint_axis` says where the joints are."""
-        low, gain = self._along(np.ndim(data), joint_axis)
-        return self.target[0] + (np.asarray(data) - low) * gain
+        data, low, gain = self._along(data, joint_axis)
+        return self.target[0] + (data - low) * gain
 
     def unscale(self, data, joint_axis: int = -1) -> np.ndarray:
         """Scaled `data` back in its own unit."""
-        low, gain = self._along(np.ndim(data), joint_axis)
-        return low + (np.asarray(data) - self.target[0]) / gain
+        data, low, gain = self._along(data, joint_axis)
+        return low + (data - self.target[0]) / gain
 
-    def _along(self, ndim, axis):
-        shape = [1] * ndim
+    def _along(self, data, axis):
+        data, shape = finite_array("data", data), [1] * np.ndim(data)
+        if not -data.ndim <= axis < data.ndim or data.shape[axis] != self.low.size:
+            raise ValueError(
+                f"data must have {self.low.size} joints along axis {axis}, got {data.shape}"
+            )
         shape[axis] = -1
-        return self.low.reshape(shape), self.gain.reshape(shape)
+        return data, self.low.reshape(shape), self.gain.reshape(shape)

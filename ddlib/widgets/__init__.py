@@ -1,7 +1,32 @@
 """Interactive figures: exact with a kernel, interpolated in the built page without one."""
 
-from ddlib.widgets.baked import Parameter
-from ddlib.widgets.base import CurveWidget, Mark, Pad, Panel, Scalar
-from ddlib.widgets.picker import TrajectoryPicker
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.explorer import FilterExplorer
+from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
+from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.picker import TrajectoryPicker, inside_hull, median_networks
+from ddlib.widgets.player import TrainingPlayer
+from ddlib.widgets.switches import RealArmSwitches
+from ddlib.widgets.tuner import PIDTuner
+from ddlib.widgets.window import SlidingWindow
 
-__all__ = ["CurveWidget", "Mark", "Pad", "Panel", "Parameter", "Scalar", "TrajectoryPicker"]
+__all__ = [
+    "SCRIPT",
+    "STYLE",
+    "Choice",
+    "CurveWidget",
+    "FilterExplorer",
+    "Mark",
+    "PIDTuner",
+    "Pad",
+    "Panel",
+    "Parameter",
+    "RealArmSwitches",
+    "Scalar",
+    "SlidingWindow",
+    "TrainingPlayer",
+    "TrajectoryPicker",
+    "inside_hull",
+    "median_networks",
+    "module",
+]

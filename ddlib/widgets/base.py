@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import anywidget
-import matplotlib as mpl
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array, integer, number, one_of
-from ddlib.style import COLOURS, DASHES, illustrate
-from ddlib.widgets.baked import Baked, Parameter, evaluate
+from ddlib._check import integer, number, one_of
+from ddlib.widgets.baked import Baked
+from ddlib.widgets.panels import Pad, Panel, Scalar
+from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.sampled import evaluate
+from ddlib.widgets.still import still_picture
 
 HERE = Path(__file__).parent
+
+SCRIPT = ("baked.js", "charts.js", "controls.js", "curves.js")
+"""Files of the script that every widget has; a subclass adds its own after them."""
+
+STYLE = ("curves.css",)
+"""The same for the style sheet."""
 
 
 def module(*names: str) -> str:
@@ -24,102 +30,11 @@ def module(*names: str) -> str:
     return "\n".join((HERE / name).read_text(encoding="utf-8") for name in names)
 
 
-@dataclass(frozen=True)
-class Panel:
-    """A chart: curves that share their axes.
-
-    Parameters
-    ----------
-    y_label : str
-        Quantity and unit, the chart's title.
-    curves : sequence of str or mapping
-        Keys of the function's result; a mapping gives each its name in the legend.
-    x_label : str
-        Quantity and unit.
-    x : array_like
-        Where the curves are sampled.
-    x_scale, y_scale : {"linear", "log"}
-        Scales of the axes.
-    """
-
-    y_label: str
-    curves: Sequence[str] | Mapping[str, str]
-    x_label: str
-    x: Sequence[float]
-    x_scale: str = "linear"
-    y_scale: str = "linear"
-
-    def __post_init__(self):
-        names = (self.curves,) if isinstance(self.curves, str) else self.curves
-        legend = dict(names) if isinstance(names, Mapping) else {name: name for name in names}
-        x = finite_array("x", self.x)
-        if x.ndim != 1 or x.size < 2 or (np.diff(x) <= 0).any():
-            raise ValueError(f"x of {self.y_label!r} must increase, got shape {x.shape}")
-        one_of("x_scale", self.x_scale, ("linear", "log"))
-        one_of("y_scale", self.y_scale, ("linear", "log"))
-        if self.x_scale == "log":
-            number(f"x of {self.y_label!r}", x[0], 0.0, open_low=True)
-        object.__setattr__(self, "curves", legend)
-        object.__setattr__(self, "x", x)
-
-
-@dataclass(frozen=True)
-class Scalar:
-    """A number below the charts: its key in the function's result, label and unit."""
-
-    name: str
-    label: str
-    unit: str = ""
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A marked point of a pad.
-
-    Parameters
-    ----------
-    x, y : float
-        Where, in the units of the two parameters.
-    label : str
-        Short text beside the mark.
-    group : str
-        Marks of one group share a shape, which the legend explains.
-    """
-
-    x: float
-    y: float
-    label: str
-    group: str
-
-
-@dataclass(frozen=True)
-class Pad:
-    """A square on which two parameters are set at once.
-
-    Parameters
-    ----------
-    x, y : str
-        Names of the two parameters.
-    marks : sequence of Mark
-        Points of interest.
-    region : sequence of pairs
-        Corners of a shaded convex polygon; empty for none.
-    region_label : str
-        What the legend calls it.
-    """
-
-    x: str
-    y: str
-    marks: Sequence[Mark] = ()
-    region: Sequence[tuple[float, float]] = ()
-    region_label: str = ""
-
-
-class _Bounded(t.Float):
+class _Checked(t.TraitType):
     """The trait of a parameter: its errors name the parameter, the value and the range."""
 
-    def __init__(self, parameter: Parameter):
-        super().__init__(float(parameter.value))
+    def __init__(self, parameter: Parameter | Choice):
+        super().__init__(parameter.check(parameter.value))
         self.parameter = parameter
 
     def validate(self, obj, value):
@@ -130,7 +45,7 @@ class _Bounded(t.Float):
 
 
 class CurveWidget(anywidget.AnyWidget):
-    """Curves of a function of a few parameters, with a slider for each.
+    """Curves of a function of a few parameters, with a control for each.
 
     Every parameter is a trait of its own name, to set, observe and link. With a kernel the
     curves are the function's own; in a built page they are interpolated from values on a
@@ -141,7 +56,7 @@ class CurveWidget(anywidget.AnyWidget):
     function : callable
         Called with one keyword per parameter; returns a dict of 1-D arrays and numbers. It
         should be quick (a few ms): it runs at every grid point and at every change.
-    parameters : sequence of Parameter
+    parameters : sequence of Parameter or Choice
         At least one.
     panels : sequence of Panel
         The charts.
@@ -153,10 +68,19 @@ class CurveWidget(anywidget.AnyWidget):
         Numbers to show below the charts.
     pad : Pad, optional
         Sets two parameters at once.
+    note : str
+        A sentence below the controls.
+    many : callable, optional
+        The function for many settings at once, for baking and checking where single calls
+        are slow: gets one array of length n per parameter, returns arrays of shape
+        ``(n, samples)`` or ``(n,)``.
+    depends : mapping, optional
+        Key of the function's result -> names of the only parameters that it depends on;
+        default: all. Saves space: such curves are baked over these parameters alone.
     interpolation : {"cubic", "linear"}
         Cubic for smooth functions.
     checks : int
-        Number of random parameters at which the interpolation is compared with the function.
+        Number of random settings at which the interpolation is compared with the function.
     tolerance : float
         Largest acceptable deviation, relative to the range of each curve.
 
@@ -167,33 +91,38 @@ class CurveWidget(anywidget.AnyWidget):
         coarse for the tolerance.
     """
 
-    _esm = module("baked.js", "curves.js")
-    _css = module("curves.css")
+    _esm = module(*SCRIPT)
+    _css = module(*STYLE)
 
-    spec = t.Dict(help="everything that stays as it is").tag(sync=True)
-    baked = t.Bytes(help="the table of `Baked`").tag(sync=True)
+    spec = t.Dict(help="everything that stays as it is", read_only=True).tag(sync=True)
+    baked = t.Bytes(help="the table of `Baked`", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)
-    exact = t.Bytes(b"", help="the function's curves as float32").tag(sync=True)
-    answer = t.Dict(help="which request and parameters `exact` belongs to").tag(sync=True)
-    still = t.Unicode(help="the starting state as a data URI").tag(sync=True)
-    still_alt = t.Unicode().tag(sync=True)
+    exact = t.Bytes(b"", help="the function's curves as float32", read_only=True).tag(sync=True)
+    answer = t.Dict(help="request and values that `exact` belongs to", read_only=True)
+    answer.tag(sync=True)
+    still = t.Unicode(help="the starting state as a data URI", read_only=True).tag(sync=True)
+    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(
         self,
         function: Callable[..., dict],
-        parameters: Sequence[Parameter],
+        parameters: Sequence[Parameter | Choice],
         panels: Sequence[Panel],
         *,
         alt: str,
         title: str = "",
         scalars: Sequence[Scalar] = (),
         pad: Pad | None = None,
+        note: str = "",
+        many: Callable[..., dict] | None = None,
+        depends: Mapping[str, Sequence[str]] | None = None,
         interpolation: str = "cubic",
         checks: int = 200,
         tolerance: float = 0.01,
     ):
-        if not callable(function):
-            raise TypeError(f"function must be callable, got {function!r}")
+        for name, call in (("function", function), ("many", many or function)):
+            if not callable(call):
+                raise TypeError(f"{name} must be callable, got {call!r}")
         self._function, self._parameters = function, {p.name: p for p in parameters}
         self._panels, self._pad = tuple(panels), pad
         one_of("interpolation", interpolation, ("cubic", "linear"))
@@ -204,7 +133,8 @@ class CurveWidget(anywidget.AnyWidget):
         for name in self._parameters:
             if hasattr(type(self), name):
                 raise ValueError(f"name must not be an attribute of widgets, got {name!r}")
-        self._baked = Baked(function, parameters, interpolation == "cubic")
+        cubic = interpolation == "cubic"
+        self._baked = Baked(function, parameters, cubic, many, tolerance, depends)
         self._check_names(scalars)
         error = self._baked.error(checks)
         if error > tolerance:
@@ -212,18 +142,18 @@ class CurveWidget(anywidget.AnyWidget):
                 f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
                 "take more grid points or a larger tolerance"
             )
-        self.add_traits(**{p.name: _Bounded(p).tag(sync=True) for p in parameters})
-        super().__init__(
-            spec=self._spec(title, scalars, error, checks),
-            baked=self._baked.tobytes(),
-            still=self._still(alt),
-            still_alt=alt,
-        )
+        start = evaluate(function, {p.name: p.value for p in parameters})
+        self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
+        self.set_trait("spec", self._spec(title, note, scalars, error, checks))
+        self.set_trait("baked", self._baked.tobytes())
+        self.set_trait("still", still_picture(start, panels, self._parameters, pad, alt))
+        self.set_trait("still_alt", alt)
+        super().__init__()
         self._compute()
         self.observe(self._on_change, [*self._parameters, "request"])
 
     @property
-    def values(self) -> dict[str, float]:
+    def values(self) -> dict:
         """The parameters as they stand."""
         return {name: getattr(self, name) for name in self._parameters}
 
@@ -239,18 +169,19 @@ class CurveWidget(anywidget.AnyWidget):
 
     def interpolate(self, **values) -> dict[str, np.ndarray]:
         """What a built page shows; parameters that are not given stand as they are."""
-        unknown = set(values) - set(self._parameters)
+        unknown = ", ".join(name for name in values if name not in self._parameters)
         if unknown:
             raise TypeError(f"values must be among {', '.join(self._parameters)}, got {unknown}")
         return self._baked.interpolate(**{**self.values, **values})
 
     def interpolation_error(self, n=200, seed=0) -> float:
-        """Largest ``|interpolated - exact| / range`` of any curve at `n` random parameters."""
+        """Largest ``|interpolated - exact| / range`` of any curve at `n` random settings."""
         return self._baked.error(n, seed)
 
     def _check_names(self, scalars):
         lengths, used = self._baked.lengths, {name for p in self._panels for name in p.curves}
-        for name in [*used, *(s.name for s in scalars)]:
+        single = [s.name for s in scalars] + [name for p in self._panels for name in p.numbers]
+        for name in [*used, *single]:
             one_of("curve", name, tuple(lengths))
         for panel in self._panels:
             for name in panel.curves:
@@ -259,34 +190,30 @@ class CurveWidget(anywidget.AnyWidget):
                         f"{name} must have {panel.x.size} samples like x of {panel.y_label!r}, "
                         f"got {lengths[name]}"
                     )
-        for scalar in scalars:
-            if lengths[scalar.name] != 1:
-                raise ValueError(f"{scalar.name} must be one number, got {lengths[scalar.name]}")
+        for name in single:
+            if lengths[name] != 1:
+                raise ValueError(f"{name} must be one number, got {lengths[name]}")
         if self._pad:
+            ranged = [n for n, p in self._parameters.items() if isinstance(p, Parameter)]
             for name in (self._pad.x, self._pad.y):
-                one_of("parameter of the pad", name, tuple(self._parameters))
+                one_of("parameter of the pad", name, tuple(ranged))
 
-    def _spec(self, title, scalars, error, checks) -> dict:
+    def _spec(self, title, note, scalars, error, checks) -> dict:
         baked = self._baked
         curves = [
             {"name": name, "length": n, "low": float(low), "high": float(high)}
             for (name, n), low, high in zip(baked.lengths.items(), baked.low, baked.high)
         ]
-        fields = ("name", "label", "low", "high", "unit", "grid", "scale")
-        pad = self._pad
         return {
             "title": title or "; ".join(p.y_label for p in self._panels),
-            "parameters": [{f: getattr(p, f) for f in fields} for p in baked.parameters],
+            "note": note,
+            "parameters": [p.description() for p in baked.parameters],
             "curves": curves,
-            "panels": [{**vars(p), "x": np.round(p.x, 9).tolist()} for p in self._panels],
+            "panels": [p.description() for p in self._panels],
             "scalars": [vars(s) for s in scalars],
-            "pad": pad
-            and {
-                **vars(pad),
-                "marks": [vars(m) for m in pad.marks],
-                "region": [list(map(float, corner)) for corner in pad.region],
-            },
+            "pad": self._pad and self._pad.description(),
             "cubic": baked.cubic,
+            "groups": baked.groups,
             "checksum": baked.checksum(),
             "error": error,
             "checks": checks,
@@ -306,41 +233,5 @@ class CurveWidget(anywidget.AnyWidget):
         except Exception as error:  # shown in the figure: a comm's handler has no other reader
             answer["error"] = f"{type(error).__name__}: {error}"
         with self.hold_sync():
-            self.exact, self.answer = exact, answer
-
-    def _still(self, alt: str) -> str:
-        values = {name: p.value for name, p in self._parameters.items()}
-        curves = evaluate(self._function, values)
-        pad, count = self._pad, len(self._panels) + bool(self._pad)
-
-        def draw(figure):
-            mpl.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif"})
-            axes = list(np.ravel(figure.subplots(1, count)))
-            if pad:
-                self._draw_pad(axes.pop(0), values)
-            for ax, panel in zip(axes, self._panels):
-                for k, (name, label) in enumerate(panel.curves.items()):
-                    style = {"color": COLOURS[k % 6], "linestyle": DASHES[k % 6], "label": label}
-                    ax.plot(panel.x, curves[name], **style)
-                ax.set(xscale=panel.x_scale, yscale=panel.y_scale)
-                ax.set(title=panel.y_label, xlabel=panel.x_label)
-                if len(panel.curves) > 1:
-                    ax.legend()
-
-        svg = illustrate(draw, alt, width=2.9 * count, height=2.6).svg
-        svg = svg.replace("currentColor", "#1a1a1a")
-        svg = svg.replace('style="', 'style="background:#fff;', 1)
-        return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
-
-    def _draw_pad(self, ax, values):
-        pad = self._pad
-        if pad.region:
-            ax.fill(*zip(*pad.region), color=COLOURS[0], alpha=0.18, linewidth=0)
-        groups = list(dict.fromkeys(mark.group for mark in pad.marks))
-        for mark in pad.marks:
-            k = groups.index(mark.group)
-            ax.plot(mark.x, mark.y, "os^D"[k % 4], color=COLOURS[k], clip_on=False)
-        ax.plot(values[pad.x], values[pad.y], "o", ms=11, mfc="none", mec="#1a1a1a", clip_on=False)
-        x, y = self._parameters[pad.x], self._parameters[pad.y]
-        ax.set(xlim=(x.low, x.high), ylim=(y.low, y.high), aspect="auto")
-        ax.set(xlabel=f"{x.label}, {x.unit}", ylabel=f"{y.label}, {y.unit}")
+            self.set_trait("exact", exact)
+            self.set_trait("answer", answer)

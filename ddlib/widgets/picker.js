@@ -50,6 +50,7 @@ function armOf(view) {
 extras.push((view) => {
   const { model, spec } = view;
   const arm = armOf(view);
+  view.el.classList.add("ddlib-picker");
 
   // The player
   const id = `${view.id}-time`;
@@ -67,7 +68,7 @@ extras.push((view) => {
   function show() {
     arm.stand(now);
     scrub.value = (300 * now) / arm.end;
-    output.textContent = `${now.toFixed(2)}\u00a0s`;
+    write(output, `${now.toFixed(2)}\u00a0s`);
     scrub.setAttribute("aria-valuetext", output.textContent);
     view.charts.forEach((c) => c.point(now));
   }
@@ -119,21 +120,28 @@ extras.push((view) => {
   record.addEventListener("click", () => {
     record.disabled = true;
     said.textContent = "Recording…";
-    model.send({ type: "record", extents_deg: view.values });
-    waiting = setTimeout(() => {
-      done();
-      said.textContent = "The kernel does not answer: nothing was recorded.";
-    }, 20000);
+    waiting = setTimeout(unanswered, 20000);
+    try {
+      model.send({ type: "record", extents_deg: view.values });
+    } catch {
+      unanswered(); // the connection is closed
+    }
   });
+  function unanswered() {
+    done();
+    said.textContent = "The kernel does not answer: nothing was recorded.";
+  }
   model.on("change:record_status", done);
 
   view.controls.append(verdict, make("div", { class: "record" }, record, said));
   view.top.append(make("div", { class: "arm-box" }, arm.svg, player));
-  view.after.push((curves) => {
+  const follow = (curves) => {
     arm.path(curves);
     show();
-    verdict.textContent = words();
-  });
+    write(verdict, words());
+  };
+  view.after.push(follow);
+  follow(view.curves);
   done();
   return () => {
     pause();

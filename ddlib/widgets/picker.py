@@ -1,23 +1,31 @@
-"""The square of trajectories: pick one, watch the arm, record it."""
+"""The square of trajectories: pick one, watch the arm, compare torques, record it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
+from ddlib import results
 from ddlib._check import finite_array, number
-from ddlib.arm import CMU_DD_ARM_II, Arm
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS, Setup
+from ddlib.metrics import rmss
+from ddlib.network import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import CurveWidget, Mark, Pad, Panel, Parameter, Scalar, module
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
+from ddlib.widgets.parameters import Parameter
+from ddlib.windows import sliding_windows
 
 JOINTS = ("shoulder", "elbow")
 RIGID = "Lagrange-Euler"
+RECORDED = "recorded"
 
-TIMES = np.linspace(0.0, MOTION_SECONDS, 101)
+TIMES = np.linspace(0.0, MOTION_SECONDS, 76)
 """Where the curves are sampled, s."""
 
 # at 3 s the reference is back at rest: the last sample is the motion's limit from inside
@@ -25,6 +33,18 @@ _INSIDE = np.append(TIMES[:-1], np.nextafter(MOTION_SECONDS, 0.0))
 
 _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
 _HULL = ConvexHull(_TRAINING)
+
+GRIDS = (44, 56)
+"""Baked extents per joint where networks are shown, the second if the first are too few:
+some networks change their torque within a few degrees. The motion alone needs few points."""
+
+CROWD = 1.15
+"""Near zero they change it within less (see `Parameter`)."""
+
+NOTE = (
+    "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
+    "mean square error over the standard deviation of the training torques."
+)
 
 
 def inside_hull(extents_deg) -> np.ndarray:
@@ -34,22 +54,55 @@ def inside_hull(extents_deg) -> np.ndarray:
     return (distances <= 1e-9).all(-1)
 
 
+def median_networks(setup: Setup = STATE_FEEDBACK) -> dict[str, TorqueModel]:
+    """Of each window size of Table 4-1 the trained network whose test error is the median.
+
+    Parameters
+    ----------
+    setup : Setup
+        One of `ddlib.experiment.SETUPS`, whose networks are among the results.
+    """
+    networks = {}
+    for width in WINDOWS:
+        cell = results.read("table-4-1")["setups"][setup.name][str(width)]
+        errors = cell["errors"]["test"]
+        middle = int(np.argsort(errors)[len(errors) // 2])
+        path = results.networks_path(setup.name, width)
+        networks[f"window {width}"] = TorqueModel.load(path)[middle]
+    return networks
+
+
+class _Extents(t.TraitType):
+    """Two angles of the square; its errors name the value and the range."""
+
+    default_value = tuple(APPENDIX_I[-1].tolist())
+
+    def validate(self, obj, value):
+        try:
+            if finite_array("extents_deg", value, 2).ndim != 1:
+                raise ValueError(f"extents_deg must have shape (2,), got {np.shape(value)}")
+            return tuple(number("extents_deg", x, 0.0, MAX_EXTENT_DEG) for x in value)
+        except (TypeError, ValueError) as error:
+            raise t.TraitError(str(error)) from None
+
+
 class TrajectoryPicker(CurveWidget):
     """Pick a trajectory of the paper's family; see arm, joint angles and torques; record it.
 
     The pad is the square of extents from 0 to 45 degrees with the trajectories of Appendix I.
-    The torques are those of the reference motion itself: no controller, no friction.
+    The Lagrange-Euler torques are those of the reference motion itself: no controller, no
+    friction. With `models` the trajectory is also recorded, without quantisation and noise of
+    the sensors, and the networks see the recorded positions.
 
     Parameters
     ----------
-    arm : Arm
-        The arm that moves.
     models : mapping
-        More torque curves: name -> ``callable(extents_deg)`` that returns torques of shape
-        ``(time, 2)`` in N m, equally spaced over the motion.
+        Legend name -> a single trained network, as from `median_networks`.
+    setup : Setup
+        Arm, effects and controller that record.
     on_record : callable, optional
-        Called with the extents when the reader records; default
-        ``ddlib.experiment.STATE_FEEDBACK.record``. Its result is kept in `recording`.
+        Called with the extents when the reader records; default ``setup.record``, sensors
+        included. Its result is kept in `recording`.
     **options
         Passed on to `CurveWidget`: ``checks``, ``tolerance``, ``interpolation``.
 
@@ -61,61 +114,60 @@ class TrajectoryPicker(CurveWidget):
         What `on_record` returned last, or None.
     """
 
-    _esm = module("baked.js", "curves.js", "picker.js")
-    _css = module("curves.css", "picker.css")
+    _esm = module(*SCRIPT, "picker.js")
+    _css = module(*STYLE, "picker.css")
 
-    extents_deg = t.Tuple(t.Float(), t.Float(), default_value=tuple(APPENDIX_I[-1].tolist()))
-    arm = t.Dict(help="lengths in m, curves of the joint angles, times in s").tag(sync=True)
-    record_status = t.Dict({"text": "", "count": 0}).tag(sync=True)
+    extents_deg = _Extents()
+    arm = t.Dict(help="lengths in m, curves of the joint angles, times in s", read_only=True)
+    arm.tag(sync=True)
+    record_status = t.Dict({"text": "", "count": 0}, read_only=True).tag(sync=True)
     recording = t.Any(None)
 
     def __init__(
         self,
-        arm: Arm = CMU_DD_ARM_II,
-        models: Mapping[str, Callable] | None = None,
+        models: Mapping[str, TorqueModel] | None = None,
+        setup: Setup = STATE_FEEDBACK,
         on_record: Callable | None = None,
         **options,
     ):
         models = dict(models or {})
         for name, model in models.items():
-            if not callable(model) or name == RIGID:
-                raise TypeError(f"models must be callables of other names, got {name}: {model!r}")
+            single = isinstance(model, TorqueModel) and model.weights.hidden_bias.ndim == 1
+            if not single or name in (RIGID, RECORDED):
+                raise TypeError(f"models must be single networks by name, got {name}: {model!r}")
         if on_record is not None and not callable(on_record):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
-        self._on_record = on_record
-        lines = [RIGID, *models]
-        seconds = "time, s"
-        super().__init__(
-            lambda **extents: _curves(arm, models, list(extents.values())),
-            [
-                Parameter(
-                    f"{joint}_deg", f"{joint.title()} extent", 0.0, MAX_EXTENT_DEG, start, "°"
-                )
-                for joint, start in zip(JOINTS, APPENDIX_I[TEST_TRAJECTORY - 1].tolist())
-            ],
-            [
-                Panel("Joint angles, °", {f"{j} angle": j for j in JOINTS}, seconds, TIMES),
+        self._on_record = on_record or setup.record
+        many = _Curves(setup, models)
+        alt = "The square of shoulder and elbow extents with the six trajectories of Appendix I, "
+        alt += "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds."
+        options |= {
+            "title": "Trajectory picker",
+            "alt": alt,
+            "scalars": [
                 *(
-                    Panel(
-                        f"{joint.title()} torque, N m",
-                        {f"{joint} torque, {line}": line for line in lines},
-                        seconds,
-                        TIMES,
-                    )
+                    Scalar(f"peak {joint}", f"Largest {RIGID} torque, {joint}", "N m")
                     for joint in JOINTS
                 ),
+                *(Scalar(f"RMSS, {name}", f"RMSS, {name}", digits=2) for name in models),
             ],
-            title="Trajectory picker",
-            alt=(
-                "The square of shoulder and elbow extents with the six trajectories of Appendix I, "
-                "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds."
-            ),
-            scalars=[Scalar(f"peak {joint}", f"Largest {joint} torque", "N m") for joint in JOINTS],
-            pad=_pad(),
-            **options,
-        )
+            "pad": _pad(),
+            "note": NOTE if models else "",
+            "many": many,
+        }
+        panels = _panels([RIGID, RECORDED, *models] if models else [RIGID])
+        *coarser, last = [{"grid": n, "crowd": CROWD} for n in GRIDS] if models else [{}]
+        for grid in coarser:
+            try:
+                super().__init__(many.one, _parameters(**grid), panels, **options)
+                break
+            except ValueError:  # too coarse for these networks
+                continue
+        else:
+            super().__init__(many.one, _parameters(**last), panels, **options)
         angles = [f"{joint} angle" for joint in JOINTS]
-        self.arm = {"lengths": list(arm.lengths), "angles": angles, "times": TIMES.tolist()}
+        lengths = list(setup.arm.lengths)
+        self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
         self.on_msg(self._on_message)
@@ -127,21 +179,10 @@ class TrajectoryPicker(CurveWidget):
 
     def record(self):
         """Record the trajectory as it stands; returns and keeps the recording."""
-        call = self._on_record
-        if call is None:
-            from ddlib.experiment import STATE_FEEDBACK
-
-            call = STATE_FEEDBACK.record
-        self.recording = call(self.extents_deg)
-        self._say(f"Recorded {_words(self.extents_deg)}: now in the widget's recording.")
+        self.recording = self._on_record(self.extents_deg)
+        angles = " and ".join(f"{x:.1f}°" for x in self.extents_deg)
+        self._say(f"Recorded {angles}: now in the widget's recording.")
         return self.recording
-
-    @t.validate("extents_deg")
-    def _check_extents(self, proposal):
-        try:
-            return tuple(number("extents_deg", x, 0.0, MAX_EXTENT_DEG) for x in proposal.value)
-        except ValueError as error:
-            raise t.TraitError(str(error)) from None
 
     def _from_parameters(self, change):
         self.extents_deg = (self.shoulder_deg, self.elbow_deg)
@@ -151,20 +192,25 @@ class TrajectoryPicker(CurveWidget):
             self.shoulder_deg, self.elbow_deg = self.extents_deg
 
     def _say(self, text):
-        self.record_status = {"text": text, "count": self.record_status["count"] + 1}
+        count = self.record_status["count"] + 1
+        self.set_trait("record_status", {"text": text, "count": count})
 
     def _on_message(self, _widget, content, _buffers):
         if content.get("type") != "record":
             return
         try:
-            self.extents_deg = tuple(content["extents_deg"])
+            self.extents_deg = content["extents_deg"]
             self.record()
         except Exception as error:  # shown in the figure: a comm's handler has no other reader
             self._say(f"Not recorded. {type(error).__name__}: {error}")
 
 
-def _words(extents_deg) -> str:
-    return " and ".join(f"{x:.1f}°" for x in extents_deg)
+def _parameters(**grid) -> list[Parameter]:
+    start = APPENDIX_I[TEST_TRAJECTORY - 1].tolist()
+    return [
+        Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, MAX_EXTENT_DEG, x, "°", **grid)
+        for joint, x in zip(JOINTS, start)
+    ]
 
 
 def _pad() -> Pad:
@@ -176,19 +222,56 @@ def _pad() -> Pad:
     return Pad("shoulder_deg", "elbow_deg", marks, corners, "hull of the training set")
 
 
-def _curves(arm, models, extents_deg) -> dict:
-    motion = pick_and_place(extents_deg, _INSIDE)
-    rigid = arm.inverse_dynamics(*motion)
-    torques = {RIGID: rigid}
-    for name, model in models.items():
-        torque = finite_array(name, model(tuple(extents_deg)), 2)
-        if torque.ndim != 2 or len(torque) < 2:
-            raise ValueError(f"{name} must return shape (time, 2), got {torque.shape}")
-        sampled = np.arange(len(torque)) * MOTION_SECONDS / len(torque)
-        torques[name] = np.stack([np.interp(TIMES, sampled, column) for column in torque.T], -1)
-    curves = {}
-    for j, joint in enumerate(JOINTS):
-        curves[f"{joint} angle"] = np.rad2deg(motion.q[:, j])
-        curves.update({f"{joint} torque, {line}": tau[:, j] for line, tau in torques.items()})
-        curves[f"peak {joint}"] = np.abs(rigid[:, j]).max()
-    return curves
+def _panels(lines) -> list[Panel]:
+    seconds, angles = "time, s", {f"{joint} angle": joint for joint in JOINTS}
+    torques = (
+        Panel(
+            f"{joint.title()} torque, N m",
+            {f"{joint} torque, {line}": line for line in lines},
+            seconds,
+            TIMES,
+            y_fit=True,
+        )
+        for joint in JOINTS
+    )
+    return [Panel("Joint angles, °", angles, seconds, TIMES), *torques]
+
+
+class _Curves:
+    """All curves of the picker at many extents at once."""
+
+    def __init__(self, setup: Setup, models: Mapping[str, TorqueModel]):
+        silent = setup.effects.without("encoder", "torque_sensor")
+        self.setup, self.models = replace(setup, effects=silent), models
+        if models:
+            training = self.setup.record(_TRAINING)
+            # near zero extents a motion's own deviation vanishes: that of the training set
+            self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
+
+    def one(self, **extents) -> dict:
+        """The curves at one pair of extents."""
+        return {name: x[0] for name, x in self(**extents).items()}
+
+    def __call__(self, shoulder_deg, elbow_deg) -> dict:
+        extents_deg = np.stack(np.broadcast_arrays(shoulder_deg, elbow_deg), -1).reshape(-1, 2)
+        motion = pick_and_place(extents_deg, _INSIDE)
+        rigid = self.setup.arm.inverse_dynamics(*motion)
+        numbers = {f"peak {joint}": np.abs(rigid[..., j]).max(-1) for j, joint in enumerate(JOINTS)}
+        torques = {RIGID: rigid}
+        if self.models:
+            recording = self.setup.record(extents_deg)
+            during = recording.motion
+            every = round(TIMES[1] / np.diff(recording.t).mean())
+            shown = np.append(np.arange(during.start, during.stop, every), during.stop - 1)
+            recorded = recording.tau[:, during]
+            torques[RECORDED] = recording.tau[:, shown]
+            for name, model in self.models.items():
+                windows = sliding_windows(recording.q, model.weights.width, during)
+                torque = np.stack([model.torque(run) for run in windows])
+                torques[name] = torque[:, shown - during.start]
+                numbers[f"RMSS, {name}"] = rmss(torque, recorded, scale=self.scale)
+        curves = {}
+        for j, joint in enumerate(JOINTS):
+            curves[f"{joint} angle"] = np.rad2deg(motion.q[..., j])
+            curves.update({f"{joint} torque, {line}": x[..., j] for line, x in torques.items()})
+        return {**curves, **numbers}

@@ -1,0 +1,220 @@
+"""Numbers that count the arithmetic done with them.
+
+A formula evaluated with the numbers of a `Tape` leaves a record of every multiplication,
+addition, division, sine and cosine. What is known off-line (a constant of the arm, a zero)
+costs nothing: that is what customising a formula to one arm means.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from ddlib._check import integer, number
+
+
+class Operations(NamedTuple):
+    """How much arithmetic a computation needs. A subtraction counts as an addition."""
+
+    multiplications: int
+    additions: int
+    divisions: int = 0
+    functions: int = 0
+
+
+class Tape:
+    """A record of arithmetic.
+
+    Operations among known numbers are done off-line and are free. So is adding a known
+    zero and multiplying by a known zero, one or minus one. A change of sign is free: it
+    merges with the addition that follows. Everything else counts.
+
+    Examples
+    --------
+    >>> tape = Tape()
+    >>> x, two = tape.unknown(3.0), tape.known(2.0)
+    >>> (two * x + x * x).value
+    15.0
+    >>> tape.executed
+    Operations(multiplications=2, additions=1, divisions=0, functions=0)
+    """
+
+    def __init__(self):
+        self._shared: dict[tuple, Counted] = {}
+        self._done: Counter = Counter()
+        self._size = 0
+
+    def unknown(self, value: float) -> Counted:
+        """A number that is not known before the computation runs, like a joint angle."""
+        return self._make(number("value", value), ())
+
+    def known(self, value: float) -> Counted:
+        """A number that is known off-line, like the mass of a link."""
+        return self._once(("known", number("value", value)), value, None)
+
+    @property
+    def executed(self) -> Operations:
+        """Everything that was computed, repetitions included."""
+        return _tally(self._done)
+
+    def needed(self, results: Iterable) -> Operations:
+        """What the `results` need when nothing is computed twice or in vain.
+
+        Parameters
+        ----------
+        results : iterable
+            Numbers of this tape; plain numbers among them need nothing.
+        """
+        waiting = [x for x in results if isinstance(x, Counted)]
+        seen, kinds = set(), Counter()
+        while waiting:
+            node = waiting.pop()
+            if node.recipe and node.index not in seen:
+                seen.add(node.index)
+                kinds[node.recipe[0]] += 1
+                waiting += node.recipe[1:]
+        return _tally(kinds)
+
+    def _make(self, value, recipe) -> Counted:
+        self._size += 1
+        return Counted(self, self._size, value, recipe)
+
+    def _once(self, key, value, recipe) -> Counted:
+        """The number made before under the same key, or a new one."""
+        found = self._shared.get(key)
+        if found is None:
+            found = self._shared[key] = self._make(value, recipe)
+        return found
+
+    def _operate(self, kind: str, value: float, *operands: Counted) -> Counted:
+        """The result of an operation of which one operand at least is not known."""
+        self._done[kind] += 1
+        return self._once((kind, *(x.index for x in operands)), value, (kind, *operands))
+
+
+class Counted:
+    """A number of a `Tape`. It works in ``+ - * /``, `numpy.sin` and `numpy.cos`.
+
+    Attributes
+    ----------
+    tape : Tape
+        Where operations are recorded.
+    index : int
+        Its place on the tape.
+    value : float
+        What the number is.
+    recipe : tuple or None
+        Kind of operation and operands that made it; empty for an input, None for what is
+        known off-line.
+    negated : bool
+        Whether it is the opposite of another number.
+    """
+
+    __slots__ = ("index", "negated", "recipe", "tape", "value")
+
+    def __init__(self, tape: Tape, index: int, value: float, recipe: tuple | None):
+        self.tape, self.index, self.value, self.recipe = tape, index, float(value), recipe
+        self.negated = bool(recipe) and recipe[0] == "negate"
+
+    def __repr__(self):
+        return f"Counted({self.value!r})"
+
+    def __float__(self):
+        return self.value
+
+    def _is(self, *values) -> bool:
+        """Whether it is known off-line to be one of the values."""
+        return self.recipe is None and self.value in values
+
+    def __neg__(self):
+        if self.recipe is None:
+            return self.tape.known(-self.value)
+        if self.negated:
+            return self.recipe[1]
+        return self.tape._once(("negate", self.index), -self.value, ("negate", self))
+
+    def __add__(self, other):
+        other = self._lift(other)
+        value = self.value + other.value
+        if self.recipe is None or other.recipe is None:
+            if self.recipe is other.recipe:
+                return self.tape.known(value)
+            if self._is(0.0) or other._is(0.0):
+                return other if self._is(0.0) else self
+        if self.negated and other.negated:
+            return -(-self + -other)
+        if self.negated or (not other.negated and other.index < self.index):
+            self, other = other, self  # one order, so that a sum is recognised
+        return self.tape._operate("add", value, self, other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return self + -self._lift(other)
+
+    def __rsub__(self, other):
+        return self._lift(other) - self
+
+    def __mul__(self, other):
+        other = self._lift(other)
+        value = self.value * other.value
+        if self.recipe is None or other.recipe is None:
+            if self.recipe is other.recipe:
+                return self.tape.known(value)
+            constant, factor = (self, other) if self.recipe is None else (other, self)
+            if constant._is(-1.0, 0.0, 1.0):
+                return {-1.0: -factor, 0.0: constant, 1.0: factor}[constant.value]
+        if self.negated:
+            return -(-self * other)
+        if other.negated:
+            return -(self * -other)
+        if other.index < self.index:
+            self, other = other, self
+        return self.tape._operate("multiply", value, self, other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other):
+        other = self._lift(other)
+        if other.recipe is None:
+            return self * self.tape.known(1 / other.value)  # the reciprocal is made off-line
+        return self.tape._operate("divide", self.value / other.value, self, other)
+
+    def __rtruediv__(self, other):
+        return self._lift(other) / self
+
+    def __pow__(self, power):
+        """A power by repeated multiplication."""
+        result = self
+        for _ in range(1, integer("power", power, 1)):
+            result = result * self
+        return result
+
+    def sin(self):
+        """The sine, as `numpy.sin` calls it."""
+        return self._function("sine", math.sin(self.value))
+
+    def cos(self):
+        """The cosine, as `numpy.cos` calls it."""
+        return self._function("cosine", math.cos(self.value))
+
+    def _function(self, kind, value):
+        if self.recipe is None:
+            return self.tape.known(value)
+        return self.tape._operate(kind, value, self)
+
+    def _lift(self, other) -> Counted:
+        """`other` as a number of this tape; a plain number is one that is known."""
+        if not isinstance(other, Counted):
+            return self.tape.known(other)
+        if other.tape is not self.tape:
+            raise ValueError("other must be a number of the same tape")
+        return other
+
+
+def _tally(kinds: Counter) -> Operations:
+    return Operations(
+        kinds["multiply"], kinds["add"], kinds["divide"], kinds["sine"] + kinds["cosine"]
+    )

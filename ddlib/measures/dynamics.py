@@ -1,0 +1,107 @@
+"""Sections 1 and 2: what the paper says of the arm's dynamics, of their cost and identification."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib import costs
+from ddlib.arm import CMU_DD_ARM_II, Link
+from ddlib.claims import Measured
+from ddlib.experiment import STATE_FEEDBACK
+from ddlib.formulations import lagrange_euler, newton_euler
+from ddlib.identification import FRICTION, RIGID, least_squares, true_parameters
+from ddlib.modulation import by_modulation, repeat
+from ddlib.serial import PUMA_560, PUMA_560_ROTORS
+from ddlib.simplified import linear_residual, share_of_other_joint, share_of_velocity_terms
+from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
+
+ARM = CMU_DD_ARM_II
+TIMES = np.arange(300) * 0.01
+LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
+
+
+def nonlinearity() -> Measured:
+    """What a linear model leaves unexplained on the pick-and-place family (judged), on a cube."""
+    family = linear_residual(ARM, *pick_and_place(random_extents(100, seed=0), TIMES))
+    cube = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 20_000, 2))
+    text = (
+        f"a linear model leaves {100 * family:.0f} % on the pick-and-place family, "
+        f"{100 * linear_residual(ARM, *cube):.0f} % on the cube of section 6"
+    )
+    return Measured(family, text)
+
+
+def terms() -> Measured:
+    """Whether the torque is the sum of terms of known origin; sizes of the velocity terms."""
+    motion = pick_and_place(APPENDIX_I[0], TIMES)
+    parts = ARM.torque_terms(*motion)
+    bilinear = np.einsum("tij,tj->ti", ARM.mass_matrix(motion.q), motion.qdd)
+    bilinear += np.einsum("tij,tj->ti", ARM.coriolis_matrix(motion.q, motion.qd), motion.qd)
+    gap = np.abs(sum(parts.values()) - bilinear).max()
+    share = 100 * share_of_velocity_terms(ARM, motion)
+    text = f"velocity terms are {share[0]:.0f} % and {share[1]:.0f} % of the torque, trajectory 1"
+    return Measured(bool(gap < 1e-12), text)
+
+
+def multiplications() -> Measured:
+    """Multiplications of one cycle for six joints, recursively computed (judged), and otherwise."""
+    recursive = costs.count(newton_euler, PUMA_560, "zeros").multiplications
+    old = costs.count(lagrange_euler, PUMA_560).multiplications
+    two = costs.count_closed_form(LINKS, shared=True).multiplications
+    text = f"six joints, recursive: {recursive}; old closed form: {old:,}; two joints: {two}"
+    return Measured(recursive, text)
+
+
+def recursion() -> Measured:
+    """How many times fewer multiplications the recursion needs, six general joints."""
+    old, new = (costs.count(f, PUMA_560) for f in (lagrange_euler, newton_euler))
+    ratio = old.multiplications / new.multiplications
+    return Measured(ratio, f"six joints: {ratio:.0f} times fewer multiplications")
+
+
+def ignoring_terms() -> Measured:
+    """Share of the multiplications that is left without velocity terms, and the error."""
+    full, cheap = (
+        costs.count_closed_form(LINKS, shared=True, velocity_terms=v).multiplications
+        for v in (True, False)
+    )
+    motion = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], TIMES)
+    lost = 100 * share_of_velocity_terms(ARM, motion, effects=STATE_FEEDBACK.effects)
+    text = (
+        f"{cheap} for {full} multiplications, at {lost[0]:.0f} % and {lost[1]:.0f} % of the torque"
+    )
+    return Measured(cheap / full, text)
+
+
+@cache
+def _coverage() -> np.ndarray:
+    names = RIGID + FRICTION
+    plant = (ARM, STATE_FEEDBACK.controller, APPENDIX_I[:5], STATE_FEEDBACK.effects)
+    found = least_squares(by_modulation(repeat(*plant, repetitions=200, seed=1)))
+    return found.covers(true_parameters(ARM, STATE_FEEDBACK.effects, names)).mean(0)
+
+
+def identification() -> Measured:
+    """How often 95 % intervals hold the true parameters in 200 recordings, the worst of seven."""
+    share = 100 * _coverage()
+    text = f"95 % intervals hold the truth in {share.min():.0f} to {share.max():.0f} % of 200"
+    return Measured(float(share.min() / 100), text)
+
+
+def gears() -> Measured:
+    """The shoulder's share of the elbow's torque without gears over that behind 100 to 1."""
+    motion = pick_and_place(APPENDIX_I[0], TIMES)
+    direct, geared = share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
+    text = f"the shoulder causes {100 * direct:.0f} % of the elbow's torque, "
+    text += f"{100 * geared:.0f} % behind gears of 100 to 1"
+    return Measured(float(direct / geared), text)
+
+
+def shoulder_position() -> Measured:
+    """Largest change of the torque when the whole arm is turned about its shoulder, N m."""
+    q, qd, qdd = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 1000, 2))
+    turned = ARM.inverse_dynamics(q + np.array([1.0, 0.0]), qd, qdd)
+    change = float(np.abs(turned - ARM.inverse_dynamics(q, qd, qdd)).max())
+    return Measured(change, f"absent from the equations (largest change {change:.0e} N m)")

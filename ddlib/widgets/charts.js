@@ -1,0 +1,246 @@
+// Draws charts. Follows baked.js in every widget's module.
+
+const SVG = "http://www.w3.org/2000/svg";
+const SVG_TAGS = new Set(
+  "svg g path line text rect circle polygon polyline defs clipPath title".split(" "),
+);
+const COLOURS = 6; // classes c0 to c5
+
+// An element with attributes and children, SVG or HTML by its name.
+function make(tag, attributes = {}, ...children) {
+  const el = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) el.setAttribute(name, value);
+  el.append(...children);
+  return el;
+}
+
+// Text in an element; the same text again would lay it out again.
+function write(el, text) {
+  if (el.textContent !== text) el.textContent = text;
+}
+
+// A number for a path, to hundredths of a pixel; quicker than toFixed.
+const short = (x) => Math.round(x * 100) / 100;
+
+// Powers of ten among logarithms; with fewer than two of them also twice and five times them.
+function decades(marks, low, high) {
+  const powers = marks.filter((x) => Math.abs(x - Math.round(x)) < 1e-9).map((x) => 10 ** x);
+  if (powers.length > 1) return powers;
+  const first = 10 ** Math.floor(Math.log10(low));
+  const all = [1, 10].flatMap((tens) => [1, 2, 5].map((k) => first * tens * k));
+  return all.filter((x) => x >= low * 0.999 && x <= high * 1.001);
+}
+
+function axis(low, high, scale, from, to, room) {
+  const log = scale === "log";
+  const [a, b] = log ? [Math.log10(low), Math.log10(high)] : [low, high];
+  const slope = (to - from) / (b - a);
+  const place = (x) => from + ((log ? Math.log10(x) : x) - a) * slope;
+  let marks = ticks(a, b, Math.max(2, Math.floor(Math.abs(to - from) / room)));
+  if (log) marks = decades(marks, low, high);
+  return { place, marks, texts: labels(marks, log) };
+}
+
+function extremes(lists) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const list of lists) {
+    for (const value of list) {
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return [low, high];
+}
+
+// The sample of a line, stem or bar in a legend.
+function swatch(kind, k) {
+  const c = `c${k % COLOURS}`;
+  const samples = {
+    line: [{ class: `curve ${c}`, d: "M0 5H26" }],
+    stems: [{ class: `curve stem ${c}`, d: "M13 10V2" }, { class: `curve dots ${c}`, d: "M13 3h0" }],
+    bars: [{ class: `curve bar ${c}`, d: "M8 10V0H18V10Z" }],
+  };
+  const paths = samples[kind].map((attributes) => make("path", attributes));
+  return make("svg", { width: 26, height: 10, "aria-hidden": "true" }, ...paths);
+}
+
+// What a chart of each kind draws for one curve: `xs` are places of the samples in px, `y` maps
+// values to px, `base` is the place of zero, `shift` and `width` are a bar's in px.
+const DRAW = {
+  line: ({ xs, y, values }) => {
+    let d = "";
+    for (let i = 0; i < xs.length; i++) d += `${i ? "L" : "M"}${xs[i]} ${short(y(values[i]))}`;
+    return [d];
+  },
+  stems: ({ xs, y, values, base, shift }) => {
+    let [stalks, dots] = ["", ""];
+    for (let i = 0; i < xs.length; i++) {
+      const [x, top] = [short(xs[i] + shift), short(y(values[i]))];
+      stalks += `M${x} ${base}V${top}`;
+      dots += `M${x} ${top}h0`;
+    }
+    return [stalks, dots];
+  },
+  bars: ({ xs, y, values, base, shift, width }) => {
+    let d = "";
+    for (let i = 0; i < xs.length; i++) {
+      const from = short(xs[i] + shift - width / 2);
+      d += `M${from} ${base}V${short(y(values[i]))}h${short(width)}V${base}Z`;
+    }
+    return [d];
+  },
+};
+
+function chart(view, panel) {
+  const { kind } = panel;
+  const standing = kind !== "line"; // on zero
+  const log = panel.y_scale === "log";
+  const ranges = panel.curves.map(([name]) => view.spec.curves.find((c) => c.name === name));
+  const fixed = panel.fixed.map(([legend, values], k) => ({
+    legend,
+    values,
+    k: ranges.length + k,
+    kind: kind === "stems" ? "line" : kind,
+  }));
+  const moving = panel.curves.map(([name, legend], k) => ({ name, legend, k, kind }));
+  const curves = [...moving, ...fixed];
+  for (const curve of curves) {
+    const classes = { line: ["curve"], stems: ["curve stem", "curve dots"], bars: ["curve bar"] };
+    curve.paths = classes[curve.kind].map((c) => make("path", { class: `${c} c${curve.k % COLOURS}` }));
+  }
+
+  const clip = make("rect", {});
+  const clipId = `${view.id}-clip${(view.clips = (view.clips ?? 0) + 1)}`;
+  const grid = make("g", { class: "grid" });
+  const span = make("rect", { class: "span", visibility: "hidden" });
+  const cursor = make("line", { class: "cursor", visibility: "hidden" });
+  const paths = [...fixed, ...moving].flatMap((curve) => curve.paths);
+  for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
+  const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
+  const svg = make("svg", { role: "img" }, defs, span, grid, cursor, ...paths);
+  const legend = make("div", { class: "legend" });
+  if (curves.length > 1) {
+    for (const curve of curves) {
+      legend.append(make("span", {}, swatch(curve.kind, curve.k), curve.legend));
+    }
+  }
+  const title = make("div", { class: "title" }, panel.y_label);
+  const el = make("div", { class: "chart" }, title, legend, svg);
+
+  const gap = Math.min(...panel.x.slice(1).map((x, i) => x - panel.x[i]));
+  const room = kind === "bars" || (kind === "stems" && panel.x_scale === "linear") ? gap / 2 : 0;
+  const ends = [panel.x[0] - room, panel.x.at(-1) + room];
+  let low, high, x, y, xs, left, right, bottom, base, width, height;
+  const whole = wholeRange();
+  [low, high] = whole;
+
+  function wholeRange() {
+    let [a, b] = extremes([ranges.flatMap((r) => [r.low, r.high]), ...fixed.map((c) => c.values)]);
+    if (standing) [a, b] = [Math.min(a, 0), Math.max(b, 0)];
+    if (log) return [Math.max(a, b * 1e-12), b];
+    const margin = 0.04 * (b - a || Math.abs(b) || 1);
+    return [standing && a === 0 ? 0 : a - margin, standing && b === 0 ? 0 : b + margin];
+  }
+  function presentRange(all) {
+    if (panel.y_range) return panel.y_range.map((end) => (typeof end === "string" ? all[end][0] : end));
+    if (!panel.y_fit) return whole;
+    let [a, b] = extremes(curves.map((curve) => curve.values ?? all[curve.name]));
+    if (standing) [a, b] = [Math.min(a, 0), Math.max(b, 0)];
+    return around(log ? Math.max(a, b * 1e-12) : a, b, log);
+  }
+
+  function draw(curve, values) {
+    const count = kind === "bars" ? curves.length : moving.length;
+    const shown = log ? values.map((v) => Math.max(v, low)) : values;
+    const pitch = kind === "bars" ? (0.8 * Math.abs(x.place(ends[0] + gap) - x.place(ends[0]))) / count : 6;
+    const shift = (curve.k - (count - 1) / 2) * pitch;
+    const drawn = DRAW[curve.kind]({ xs, y: y.place, values: shown, base, shift, width: pitch });
+    drawn.forEach((d, i) => curve.paths[i].setAttribute("d", d));
+  }
+
+  // Axes, and the curves that stay, for the range and size as they are.
+  function layout() {
+    bottom = height - 36;
+    y = axis(low, high, panel.y_scale, bottom, 6, 30);
+    left = 10 + 6.6 * Math.max(...y.texts.map((text) => text.length));
+    right = width - 10;
+    x = axis(...ends, panel.x_scale, left, right, 52);
+    xs = panel.x.map((v) => short(x.place(v)));
+    base = short(log ? bottom : y.place(Math.min(high, Math.max(low, 0))));
+    const marks = panel.ticks.length ? panel.ticks : x.marks.map((v, i) => [v, x.texts[i]]);
+    grid.replaceChildren(
+      ...y.marks.flatMap((v, i) => {
+        const at = y.place(v).toFixed(2);
+        const label = make("text", { x: left - 6, y: at, dy: "0.34em", class: "y" }, y.texts[i]);
+        return [make("line", { x1: left, x2: right, y1: at, y2: at }), label];
+      }),
+      ...marks.map(([v, text]) =>
+        make("text", { x: x.place(v).toFixed(1), y: bottom + 16, class: "x" }, text),
+      ),
+      make("path", { class: "frame", d: `M${left} 6V${bottom}H${right}` }),
+      make("text", { x: (left + right) / 2, y: height - 3, class: "x" }, panel.x_label),
+    );
+    if (standing && base < bottom) {
+      grid.append(make("line", { class: "zero", x1: left, x2: right, y1: base, y2: base }));
+    }
+    const box = { x: left - 2, y: 3, width: right - left + 6, height: bottom - 1 };
+    for (const [name, value] of Object.entries(box)) clip.setAttribute(name, value);
+    for (const [name, value] of [["y1", 6], ["y2", bottom]]) cursor.setAttribute(name, value);
+    for (const [name, value] of [["y", 6], ["height", bottom - 6]]) span.setAttribute(name, value);
+    for (const curve of fixed) draw(curve, curve.values);
+  }
+
+  function resize() {
+    width = Math.max(160, Math.floor(el.clientWidth));
+    height = Math.round(Math.min(230, Math.max(150, width * 0.6)));
+    svg.setAttribute("width", width);
+    svg.setAttribute("height", height);
+    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    layout();
+  }
+
+  function redraw(all) {
+    const [a, b] = presentRange(all);
+    if (a !== low || b !== high) {
+      [low, high] = a < b ? [a, b] : [a - 1, a + 1];
+      layout();
+    }
+    for (const curve of moving) draw(curve, all[curve.name]);
+    const places = panel.cursor.map((name) => all[name][0]);
+    if (places.length === 1) point(places[0]);
+    if (places.length === 2) shade(...places);
+  }
+
+  // A vertical line; nothing where it would lie beyond the axis.
+  function point(at) {
+    if (!x) return; // not laid out yet
+    const inside = at >= ends[0] && at <= ends[1];
+    cursor.setAttribute("visibility", inside ? "visible" : "hidden");
+    if (inside) for (const end of ["x1", "x2"]) cursor.setAttribute(end, short(x.place(at)));
+  }
+
+  function shade(a, b) {
+    const [from, to] = [Math.min(a, b), Math.max(a, b)].map((v) =>
+      x.place(Math.min(ends[1], Math.max(ends[0], v))),
+    );
+    span.setAttribute("visibility", "visible");
+    span.setAttribute("x", short(from));
+    span.setAttribute("width", short(to - from));
+  }
+
+  function describe(all) {
+    const parts = curves.map((curve) => {
+      const values = [...(curve.values ?? all[curve.name])];
+      const [a, b] = curve.values ? extremes([values]) : [ranges[curve.k].low, ranges[curve.k].high];
+      if (panel.ticks.length === values.length && values.length <= 8) {
+        const each = values.map((v, i) => `${panel.ticks[i][1]} ${format(v, a, b)}`);
+        return `${curve.legend}: ${each.join(", ")}`;
+      }
+      const [min, max] = extremes([values]);
+      return `${curve.legend} from ${format(min, a, b)} to ${format(max, a, b)}`;
+    });
+    svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}`);
+  }
+
+  return { el, panel, resize, redraw, describe, point };
+}

@@ -1,0 +1,167 @@
+"""The coefficients of splines as int16, where possible as a product of two narrow tables."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from ddlib.widgets.parameters import Choice, Parameter
+
+STEPS = {2: 32_767, 1: 127}
+"""Largest integer of two bytes, and of one byte: numbers are scaled to it."""
+
+FAINT = 5
+"""Components that never reach this many tolerances are stored in one byte a number."""
+
+TINY = 1e-12
+"""Keeps divisions by a size finite where all is zero."""
+
+SMALL = 100_000
+"""Size up to which leaving components out may cost little (see `SHARES`)."""
+
+SHARES = (0.05, 0.6)
+"""Share of the tolerance that leaving components out may cost at the grid points: the
+second where the first gives more than `SMALL` bytes."""
+
+
+class Table:
+    """Curves on a grid, as the coefficients of a spline.
+
+    The coefficients are a matrix with a row per grid point and a column per sample. Where
+    that is smaller, it is stored as a product of two narrow ones (its largest singular
+    components): the spline then runs through a few numbers, which mix a few shapes.
+
+    Parameters
+    ----------
+    parameters : sequence of Parameter or Choice
+        The axes of the grid.
+    values : ndarray, shape (points, ..., samples)
+        The curves at the grid points, each scaled to the range -1 to 1.
+    lengths : sequence of int
+        Samples of each curve.
+    cubic : bool
+        Cubic splines, otherwise linear ones.
+    tolerance : float
+        Acceptable deviation relative to the range of each curve.
+
+    Attributes
+    ----------
+    table : ndarray of int16, shape (points, ..., rank or samples)
+        Coefficients of the spline: of the shapes, or of the curves themselves.
+    shapes : ndarray of int16, shape (rank, samples)
+        What the coefficients mix; no rows if they are the curves themselves.
+    scale : ndarray, shape (rank or 1,)
+        What a unit of `table` (times a unit of `shapes`) is worth.
+    wide : int
+        How many columns of `table` and rows of `shapes` need two bytes a number; the others
+        are faint and fit into one.
+    """
+
+    def __init__(
+        self,
+        parameters: Sequence[Parameter | Choice],
+        values: np.ndarray,
+        lengths: Sequence[int],
+        cubic: bool,
+        tolerance: float,
+    ):
+        self.parameters, self.cubic = tuple(parameters), cubic
+        samples = values.shape[-1]
+        coefficients = _each_axis([p.coefficients(cubic) for p in parameters], values)
+        size, rows = coefficients.shape[:-1], coefficients.reshape(-1, samples)
+        weight = np.repeat(1 / np.sqrt(lengths), lengths)  # a number counts as much as a curve
+        left, shapes = _components(rows * weight)
+        shapes = shapes / weight
+        rank = self._least_rank(left.reshape(*size, -1), shapes, values, tolerance)
+        if rank:
+            table, shapes = left[:, :rank], shapes[:rank]
+            most = np.abs(table).max(0) + TINY, np.abs(shapes).max(1) + TINY
+            strong = most[0] * most[1] / 2 > FAINT * tolerance
+            self.wide = int(np.flatnonzero(strong).max(initial=-1)) + 1
+            steps = np.where(np.arange(rank) < self.wide, STEPS[2], STEPS[1])
+            self.scale = most[0] * most[1] / steps**2
+            table, shapes = steps * table / most[0], (steps / most[1])[:, None] * shapes
+        else:
+            self.wide = samples
+            self.scale = np.array([np.abs(rows).max() / STEPS[2] or 1.0])
+            table, shapes = rows / self.scale, np.empty((0, samples))
+        self.table = np.rint(table).astype("<i2").reshape(*size, -1)
+        self.shapes = np.rint(shapes).astype("<i2")
+
+    @property
+    def rank(self) -> int:
+        """Number of shapes; 0 if the coefficients are the curves' own."""
+        return len(self.shapes)
+
+    def _least_rank(self, left, shapes, values, tolerance) -> int:
+        """How many components to keep; 0 if that saves nothing."""
+        at_points = _each_axis([_at_points(p, self.cubic) for p in self.parameters], left)
+        points, samples = left[..., 0].size, shapes.shape[1]
+        at_points, values = (x.reshape(-1, x.shape[-1]) for x in (at_points, values))
+
+        def error(rank):
+            return np.abs(at_points[:, :rank] @ shapes[:rank] - values).max() / 2
+
+        most = min(len(shapes), int(0.9 * points * samples / (points + samples)))
+        for share in SHARES:
+            rank = _least(lambda r, allowed=share * tolerance: error(r) <= allowed, most)
+            if 2 * (rank * (points + samples) or points * samples) <= SMALL:
+                break
+        return rank
+
+    def tobytes(self) -> bytes:
+        """`table`, then `shapes`, the last axis fastest.
+
+        Of each first what needs two bytes a number (little-endian), then the rest.
+        """
+        table, shapes, wide = self.table, self.shapes, self.wide
+        parts = [table[..., :wide], table[..., wide:].astype("i1")]
+        parts += [shapes[:wide], shapes[wide:].astype("i1")]
+        return b"".join(part.tobytes() for part in parts)
+
+    def interpolate(self, values: Mapping) -> np.ndarray:
+        """The scaled curves at one value per parameter, shape ``(samples,)``."""
+        per_axis = [p.weights(values[p.name], self.cubic) for p in self.parameters]
+        total = np.zeros(self.table.shape[-1])
+        for corner in itertools.product(*per_axis):
+            index = tuple(i for i, _ in corner)
+            total += np.prod([w for _, w in corner]) * self.table[index]
+        return (self.scale * total) @ self.shapes if self.rank else self.scale * total
+
+
+def _each_axis(matrices, values) -> np.ndarray:
+    """`values` with the k-th matrix applied along the k-th axis."""
+    for axis, matrix in enumerate(matrices):
+        values = np.moveaxis(np.tensordot(matrix, values, (1, axis)), 0, axis)
+    return values
+
+
+def _at_points(parameter, cubic) -> np.ndarray:
+    """The matrix that makes values at the baked points from a spline's coefficients."""
+    matrix = np.zeros(parameter.coefficients(cubic).shape[::-1])
+    for k, point in enumerate(parameter.points()):
+        for i, weight in parameter.weights(point, cubic):
+            matrix[k, i] = weight
+    return matrix
+
+
+def _components(rows) -> tuple[np.ndarray, np.ndarray]:
+    """Two matrices whose product is `rows`, largest singular components first."""
+    tall = rows.shape[0] > rows.shape[1]
+    # an eigenproblem of the smaller side is quicker than a singular value decomposition
+    sizes, vectors = np.linalg.eigh(rows.T @ rows if tall else rows @ rows.T)
+    vectors = vectors[:, ::-1][:, : max(1, int((sizes > 1e-14 * sizes[-1]).sum()))]
+    return (rows @ vectors, vectors.T) if tall else (vectors, vectors.T @ rows)
+
+
+def _least(fits: Callable[[int], bool], most: int) -> int:
+    """The smallest number from 1 to `most` that fits, if larger ones do, too; 0 for none."""
+    if most < 1 or not fits(most):
+        return 0
+    low, high = 0, most
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if fits(middle) else (middle, high)
+    return high

@@ -1,0 +1,165 @@
+"""A weight function of a trained network, taken apart (section 5.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import traitlets as t
+
+from ddlib._check import integer
+from ddlib.filters import (
+    CLASSES,
+    basis,
+    classify,
+    content,
+    decompose,
+    frequency_response,
+    shares,
+)
+from ddlib.network import TorqueModel
+from ddlib.simulate import LOG_STEP
+from ddlib.widgets.base import SCRIPT, Panel, module
+from ddlib.widgets.hinton import (
+    EXACT,
+    JOINTS,
+    HintonWidget,
+    check_models,
+    diagram,
+    unit_names,
+    weight_functions,
+    width_choice,
+    zero_padded,
+)
+from ddlib.widgets.parameters import Choice
+
+FREQUENCIES = np.geomspace(0.5, 20.0, 31)
+"""Where the gain is shown, Hz."""
+
+FLOOR_DB = -60.0
+"""Lowest gain shown, dB below the filter's largest: a zero of the response has none."""
+
+
+class FilterExplorer(HintonWidget):
+    """Choose a weight function on a Hinton diagram; see its parts, shares and gain.
+
+    Filters of different windows share one axis: a filter of 11 samples is one of 41 samples
+    with zeros on both sides. The window itself is shaded. Everything is computed for the
+    choices there are; nothing is interpolated.
+
+    Parameters
+    ----------
+    models : mapping
+        Window size -> `TorqueModel` of an ensemble; two sizes or more.
+    members : sequence of int
+        Which networks of each ensemble can be chosen, by their seed; two or more.
+    **options
+        Passed on to `CurveWidget`.
+
+    Attributes
+    ----------
+    width, seed : int
+        Window size and network.
+    unit, joint : str
+        The unit ("shoulder torque", "hidden 3", ...) and whose window ("shoulder", "elbow").
+    """
+
+    _esm = module(*SCRIPT, "hinton.js", "explorer.js")
+
+    classes = t.List(list(CLASSES), read_only=True, help="names by the rule").tag(sync=True)
+
+    def __init__(
+        self, models: Mapping[int, TorqueModel], members: Sequence[int] = (0, 1, 2), **options
+    ):
+        self._weights = {width: model.weights for width, model in check_models(models, 1).items()}
+        for weights in self._weights.values():
+            for member in members:
+                integer("members", member, 0, len(weights) - 1)
+        some = next(iter(self._weights.values()))
+        reach = max(self._weights) // 2
+        time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
+        centre, window = "time from the centre, ms", ("first", "last")
+        parts = {name: name for name in ("constant", "even", "odd")}
+        gains = {
+            "gain": "whole",
+            "gain, varying": "without its constant",
+            "gain, ideal": "its main derivative alone",
+        }
+        super().__init__(
+            some[0],
+            reach,
+            self._curves,
+            [
+                width_choice(self._weights),
+                Choice("seed", "Network", {k: f"seed {k}" for k in members}, members[0]),
+                Choice("unit", "Unit", unit_names(some[0]), unit_names(some[0])[0]),
+                Choice("joint", "Window of", JOINTS, JOINTS[0]),
+            ],
+            [
+                Panel("Weights", "weights", centre, time, kind="stems", cursor=window, y_fit=True),
+                Panel("Parts of the weights", parts, centre, time, cursor=window, y_fit=True),
+                Panel(
+                    "Share of the energy",
+                    "shares",
+                    "responds to",
+                    np.arange(5),
+                    kind="bars",
+                    ticks=list(enumerate(("pos.", "vel.", "acc.", "jerk", "rest"))),
+                    y_range=(0.0, 1.0),
+                ),
+                Panel("Gain, dB", gains, "frequency, Hz", FREQUENCIES, x_scale="log", y_fit=True),
+            ],
+            title="Filter explorer",
+            alt=(
+                "The weights from the shoulder's window to the shoulder torque as stems, their "
+                "constant, even and odd parts, the share of position, velocity, acceleration and "
+                "jerk in their energy, and their gain over frequency."
+            ),
+            depends={
+                "weights of all units": ("width", "seed"),
+                **dict.fromkeys(window, ("width",)),
+            },
+            note=(
+                "20 dB are a factor of 10. From 1 to 10 Hz an ideal velocity filter gains 20 dB, "
+                "an ideal acceleration filter 40 dB."
+            ),
+            **{"tolerance": EXACT, **options},
+        )
+
+    @property
+    def filter(self) -> np.ndarray:
+        """The chosen weight function, shape ``(width,)``, oldest sample first."""
+        return self._filter(self.width, self.seed, self.unit, self.joint)
+
+    def _filter(self, width, seed, unit, joint):
+        weights = self._weights[width][seed]
+        return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
+
+    def _curves(self, width, seed, unit, joint) -> dict:
+        reach = max(self._weights) // 2
+        f = self._filter(width, seed, unit, joint)
+        parts = decompose(f)
+        half = (width // 2 + 0.5) * LOG_STEP * 1e3
+        return {
+            "weights": zero_padded(f, reach),
+            "constant": zero_padded(np.broadcast_to(parts.constant, f.shape), reach),
+            "even": zero_padded(parts.even, reach),
+            "odd": zero_padded(parts.odd, reach),
+            "shares": shares(f),
+            **_gains(f),
+            "class": CLASSES.index(classify(f)),
+            "first": -half,
+            "last": half,
+            "weights of all units": diagram(self._weights[width][seed], reach),
+        }
+
+
+def _gains(f) -> dict[str, np.ndarray]:
+    """Gain in dB of a filter, of its varying part, and of its main derivative's part alone."""
+    varying = f - f.mean()
+    main = 1 + np.argmax(np.abs(content(f)[1:]))
+    ideal = content(f)[main] * basis(f.size)[main]
+    gain = np.abs(frequency_response([f, varying, ideal], FREQUENCIES, LOG_STEP))
+    lowest = gain[0].max() * 10 ** (FLOOR_DB / 20)
+    decibels = 20 * np.log10(np.maximum(gain, lowest))
+    return dict(zip(("gain", "gain, varying", "gain, ideal"), decibels))

@@ -1,0 +1,128 @@
+"""The Hinton diagram of section 5 as a part of widgets: all weights, and a unit to choose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import traitlets as t
+
+from ddlib._check import one_of
+from ddlib.network import TorqueModel, Weights
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.parameters import Choice
+
+JOINTS = ("shoulder", "elbow")
+"""Names of the joints: of the input windows and of the torques."""
+
+EXACT = 1e-4
+"""Tolerance of widgets that bake every choice: what int16 can hold, and little else."""
+
+
+def unit_names(weights: Weights) -> tuple[str, ...]:
+    """Names of a network's units: the outputs, then the hidden ones, counted from 0."""
+    outputs = [f"{joint} torque" for joint in JOINTS]
+    return (*outputs, *(f"hidden {k}" for k in range(weights.hidden_bias.shape[-1])))
+
+
+def weight_functions(weights: Weights) -> np.ndarray:
+    """Weights from both windows to all units, ``(..., unit, joint, width)``, outputs first."""
+    return np.concatenate([weights.skip_weights, weights.hidden_weights], axis=-3)
+
+
+def zero_padded(f, reach: int) -> np.ndarray:
+    """A filter as the same filter of ``2 reach + 1`` samples: zeros on both sides.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weights of a window, its centre in the middle.
+    reach : int
+        Samples on either side of the centre.
+    """
+    f = np.asarray(f)
+    zeros = reach - f.shape[-1] // 2
+    if zeros < 0:
+        raise ValueError(f"reach must be {f.shape[-1] // 2} samples or more, got {reach}")
+    return np.pad(f, [(0, 0)] * (f.ndim - 1) + [(zeros, zeros)])
+
+
+def check_models(models, axes: int) -> dict[int, TorqueModel]:
+    """`models` as a dictionary if it maps window sizes to models, otherwise an error.
+
+    Parameters
+    ----------
+    models : mapping
+        Window size -> `TorqueModel`; two sizes or more.
+    axes : int
+        Leading axes of each model's weights: 0 for one network, 1 for an ensemble.
+    """
+    if not isinstance(models, Mapping) or len(models) < 2:
+        raise TypeError(f"models must map two window sizes or more to models, got {models!r}")
+    for width, model in models.items():
+        if not isinstance(model, TorqueModel):
+            raise TypeError(f"models must hold TorqueModels, got {model!r} for {width!r}")
+        if model.weights.width != width or model.weights.hidden_bias.ndim != axes + 1:
+            what = "one network" if axes == 0 else "an ensemble"
+            shape = model.weights.hidden_weights.shape
+            raise ValueError(
+                f"models must map each window size to {what} of that size, got weights of shape "
+                f"{shape} for {width!r}"
+            )
+    return dict(models)
+
+
+def width_choice(sizes) -> Choice:
+    """The menu of window sizes; the middle one is chosen at the start."""
+    sizes = sorted(sizes)
+    labels = {width: f"{width} samples" for width in sizes}
+    return Choice("width", "Window size", labels, sizes[len(sizes) // 2])
+
+
+def diagram(weights: Weights, reach: int) -> np.ndarray:
+    """All weights of one network in the order in which `hinton.js` draws them.
+
+    Unit by unit: the bias, the weights on top (from the hidden units to an output, from a
+    hidden unit to the outputs), and the zero-padded window of each joint.
+    """
+    windows = zero_padded(weight_functions(weights), reach)
+    biases = [*weights.output_bias, *weights.hidden_bias]
+    tops = [*weights.output_weights, *weights.output_weights.T]
+    units = [np.concatenate([[b], u, *w]) for b, u, w in zip(biases, tops, windows)]
+    return np.concatenate(units)
+
+
+class HintonWidget(CurveWidget):
+    """A `CurveWidget` with a Hinton diagram on which a unit, or one of its windows, is chosen.
+
+    The function's result has `diagram` under the name "weights of all units".
+
+    Parameters
+    ----------
+    weights : Weights
+        Any of the networks: it tells how many units there are.
+    reach : int
+        Samples on either side of the windows' centre in the diagram.
+    largest : {"now", "ever"}
+        The weight of full size: the largest at present, or of all settings.
+    *args, **options
+        Passed on to `CurveWidget`. A parameter "unit" is needed; with one named "joint" a
+        window is chosen; one named "width" is the window size shown.
+    """
+
+    _esm = module(*SCRIPT, "hinton.js")
+    _css = module(*STYLE, "hinton.css")
+
+    hinton = t.Dict(help="layout of the diagram", read_only=True).tag(sync=True)
+
+    def __init__(self, weights: Weights, reach: int, *args, largest: str = "now", **options):
+        one_of("largest", largest, ("now", "ever"))
+        layout = {
+            "units": list(unit_names(weights)),
+            "outputs": weights.output_bias.shape[-1],
+            "joints": list(JOINTS),
+            "reach": reach,
+            "largest": largest,
+        }
+        self.set_trait("hinton", layout)
+        super().__init__(*args, **options)

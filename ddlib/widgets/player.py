@@ -1,0 +1,142 @@
+"""Training as a film: weight functions and errors over the epochs (sections 3.3 and 5.1)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import finite_array, integer
+from ddlib.experiment import errors
+from ddlib.network import TorqueModel
+from ddlib.simulate import LOG_STEP, Recording
+from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
+from ddlib.widgets.hinton import (
+    EXACT,
+    JOINTS,
+    HintonWidget,
+    diagram,
+    unit_names,
+    weight_functions,
+)
+from ddlib.widgets.parameters import Choice
+
+ERRORS = {"training": "training", "test": "trajectory 6"}
+
+
+class TrainingPlayer(HintonWidget):
+    """Play a training run: from random weights to smooth filters.
+
+    The slider steps over the recorded epochs, which are equally spaced on a log scale.
+    Between them the error of a network trained with momentum swings; nothing is interpolated.
+
+    Parameters
+    ----------
+    epochs : array_like, shape (epochs,)
+        Epochs after which weights were kept, 0 for the initial ones.
+    model : TorqueModel
+        Weights with leading axes ``(epochs, members)``, as from `ddlib.results.course`.
+    recording : Recording
+        The six runs of Appendix I, on which the errors are taken.
+    member : int
+        Which network.
+    **options
+        Passed on to `CurveWidget`.
+
+    Attributes
+    ----------
+    epoch : int
+        One of the recorded epochs.
+    unit : str
+        "shoulder torque", "hidden 3", ...
+    """
+
+    _esm = module(*SCRIPT, "hinton.js", "player.js")
+    _css = module(*STYLE, "hinton.css", "player.css")
+
+    def __init__(
+        self, epochs, model: TorqueModel, recording: Recording, member: int = 0, **options
+    ):
+        epochs = finite_array("epochs", epochs).astype(int)
+        if epochs.ndim != 1 or (np.diff(epochs) <= 0).any() or epochs[0] < 0:
+            raise ValueError(f"epochs must increase from 0 or later, got {epochs}")
+        shape = model.weights.hidden_bias.shape
+        if len(shape) != 3 or shape[0] != len(epochs):
+            raise ValueError(
+                f"model must have leading axes ({len(epochs)} epochs, members), got {shape[:-1]}"
+            )
+        integer("member", member, 0, shape[1] - 1)
+        self._index = {epoch: k for k, epoch in enumerate(epochs.tolist())}
+        self._weights = model.weights[:, member]
+        every = errors(model[:, member], recording)
+        self._errors = {name: every[name] for name in ERRORS}
+        self._names = unit_names(self._weights[0])
+        self._reach = self._weights.width // 2
+        self._functions = weight_functions(self._weights)
+        places = np.log10(np.maximum(epochs, 1))
+        started, last = epochs > 0, places[-1]
+        # inside the axis by more than the rounding of baked values
+        self._places = np.clip(places, 1e-3 * last, (1 - 1e-3) * last)
+        super().__init__(
+            self._weights[0],
+            self._reach,
+            self._curves,
+            [
+                Choice("unit", "Unit", self._names, self._names[0]),
+                Choice(
+                    "epoch",
+                    "Epoch",
+                    {epoch: f"{epoch:,}" for epoch in self._index},
+                    int(epochs[0]),
+                    display="slider",
+                ),
+            ],
+            [
+                Panel(
+                    "Weights of the unit",
+                    {f"{joint} weights": f"from the {joint}'s window" for joint in JOINTS},
+                    "time from the centre, ms",
+                    np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3,
+                    y_range=("lowest", "highest"),
+                ),
+                Panel(
+                    "RMSS",
+                    (),
+                    "epoch",
+                    places[started],
+                    y_scale="log",
+                    y_range=_decades(list(self._errors.values())),
+                    fixed={name: self._errors[n][started] for n, name in ERRORS.items()},
+                    cursor="place",
+                    ticks=[(k, f"{10**k:,}") for k in range(int(last) + 1)],
+                ),
+            ],
+            title="Training player",
+            alt=(
+                "The weights of the shoulder torque's unit before training, and the network's "
+                f"RMSS on training runs and trajectory 6 over {epochs[-1]:,} epochs."
+            ),
+            scalars=[Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in ERRORS.items()],
+            depends={
+                **dict.fromkeys(("lowest", "highest"), ("unit",)),
+                **dict.fromkeys(("place", *(f"{n} RMSS" for n in ERRORS)), ("epoch",)),
+                "weights of all units": ("epoch",),
+            },
+            largest="ever",
+            **{"tolerance": EXACT, **options},
+        )
+
+    def _curves(self, unit, epoch) -> dict:
+        k, u = self._index[epoch], self._names.index(unit)
+        return {
+            **{f"{j} weights": f for j, f in zip(JOINTS, self._functions[k, u])},
+            "lowest": self._functions[:, u].min(),
+            "highest": self._functions[:, u].max(),
+            **{f"{n} RMSS": errors[k] for n, errors in self._errors.items()},
+            "place": self._places[k],
+            "weights of all units": diagram(self._weights[k], self._reach),
+        }
+
+
+def _decades(values) -> tuple[float, float]:
+    """The powers of ten around all values."""
+    low, high = np.log10(np.min(values)), np.log10(np.max(values))
+    return 10.0 ** np.floor(low), 10.0 ** np.ceil(high)

@@ -1,0 +1,132 @@
+"""What a network sees and does while its window slides along a recording (section 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ddlib._check import finite_array
+from ddlib.network import TorqueModel
+from ddlib.simulate import LOG_STEP, Recording
+from ddlib.widgets.base import CurveWidget, Panel, Scalar
+from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
+from ddlib.widgets.parameters import Choice
+from ddlib.windows import sliding_windows
+
+
+class SlidingWindow(CurveWidget):
+    """Slide the window along a motion: inputs, activities and torque at every sample.
+
+    Everything is computed for every sample of the motion; nothing is interpolated.
+
+    Parameters
+    ----------
+    models : mapping
+        Window size -> `TorqueModel` of one network; two sizes or more.
+    recording : Recording
+        One run, with rests long enough for the largest window.
+    **options
+        Passed on to `CurveWidget`.
+
+    Attributes
+    ----------
+    width : int
+        Window size.
+    sample : int
+        The window's centre, counted from the beginning of the motion.
+    """
+
+    def __init__(self, models: Mapping[int, TorqueModel], recording: Recording, **options):
+        finite_array("recording.q", recording.q, 2)
+        if recording.q.ndim != 2:
+            raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
+        self._models, self._measured = check_models(models, 0), recording.tau[recording.motion]
+        self._reach = max(self._models) // 2
+        self._time = recording.t[recording.motion]
+        self._seen, self._activity, self._torque = {}, {}, {}
+        around = sliding_windows(recording.q, 2 * self._reach + 1, recording.motion)
+        for width, model in self._models.items():
+            windows = sliding_windows(recording.q, width, recording.motion)
+            self._seen[width] = model.inputs.scale(around, joint_axis=-2)
+            self._activity[width] = np.hstack(model.weights.activity(model.scaled(windows)))
+            self._torque[width] = model.torque(windows)
+        hidden = self._activity[max(models)].shape[-1] - len(JOINTS)
+        units = [*map(str, range(hidden)), *(joint[0] for joint in JOINTS)]
+        centre = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
+        super().__init__(
+            self._curves,
+            [
+                width_choice(self._models),
+                Choice(
+                    "sample",
+                    "Centre of the window",
+                    {k: f"{x:.2f} s" for k, x in enumerate(self._time)},
+                    len(self._time) // 4,
+                    display="slider",
+                ),
+            ],
+            [
+                Panel(
+                    "Positions, scaled",
+                    {f"{joint} position": joint for joint in JOINTS},
+                    "time from the window's centre, ms",
+                    centre,
+                    cursor=("first", "last"),
+                ),
+                Panel(
+                    "Activities",
+                    "activity",
+                    "hidden units, outputs s and e",
+                    np.arange(len(units)),
+                    kind="bars",
+                    ticks=list(enumerate(units)),
+                    y_range=(0.0, 1.0),
+                ),
+                *(
+                    Panel(
+                        f"{joint.title()} torque, N m",
+                        {f"{joint} torque": "network"},
+                        "time, s",
+                        self._time,
+                        fixed={"measured": self._measured[:, j]},
+                        cursor=("from", "to"),
+                    )
+                    for j, joint in enumerate(JOINTS)
+                ),
+            ],
+            title="Sliding window",
+            alt=(
+                "Torques of a network and measured torques over the motion, with the window "
+                "shaded; the scaled positions in the window, and the activities of the hidden "
+                "and output units."
+            ),
+            scalars=[
+                Scalar(f"{joint} {what}", f"{joint.title()} torque, {what}", "N m")
+                for joint in JOINTS
+                for what in ("network", "measured")
+            ],
+            depends={
+                **{f"{joint} torque": ("width",) for joint in JOINTS},
+                **{f"{joint} measured": ("sample",) for joint in JOINTS},
+                **dict.fromkeys(("first", "last"), ("width",)),
+            },
+            **{"tolerance": EXACT, **options},
+        )
+
+    def _curves(self, width, sample) -> dict:
+        half = (width // 2 + 0.5) * LOG_STEP
+        torque, now = self._torque[width], self._time[sample]
+        curves = {"activity": self._activity[width][sample]}
+        for j, joint in enumerate(JOINTS):
+            curves[f"{joint} torque"] = torque[:, j]
+            curves[f"{joint} position"] = self._seen[width][sample, j]
+            curves[f"{joint} network"] = torque[sample, j]
+            curves[f"{joint} measured"] = self._measured[sample, j]
+        ends = np.clip([now - half, now + half], self._time[0], self._time[-1])
+        return {
+            **curves,
+            **dict(zip(("from", "to"), ends)),
+            "first": -1e3 * half,
+            "last": 1e3 * half,
+        }
