@@ -1,15 +1,14 @@
-"""The book's Sphinx extension: the notebooks' cache, a local MathJax, stills of widgets."""
+"""The book's Sphinx extension: the notebooks' cache, a local MathJax, slim pages."""
 
 from __future__ import annotations
 
 import hashlib
-import html
-import json
-import re
 import shutil
 import sys
 from importlib.metadata import files
 from pathlib import Path
+
+from slim import slim
 
 MATHJAX = "tex-svg-full.js"
 SKIP = {"__pycache__", ".ipynb_checkpoints"}
@@ -64,34 +63,14 @@ def copy_mathjax(app):
     shutil.copyfile(source.locate(), target)
 
 
-VIEW = re.compile(
-    r'<script type="application/vnd\.jupyter\.widget-view\+json">(.*?)</script>', flags=re.DOTALL
-)
-
-
-def add_stills(body: str, state: dict) -> str:
-    """After each widget with a trait `still` (a data: URI), show it where there is no script."""
-
-    def with_still(match):
-        entry = state.get(json.loads(match[1]).get("model_id"), {}).get("state", {})
-        if not entry.get("still"):
-            return match[0]
-        src, alt = html.escape(entry["still"]), html.escape(entry.get("still_alt", ""))
-        return f'{match[0]}<noscript><img class="still" src="{src}" alt="{alt}"></noscript>'
-
-    return VIEW.sub(with_still, body)
-
-
-def show_stills(app, pagename, templatename, context, doctree):
-    """Find the page's widget states where myst-nb keeps them, and add the stills."""
-    scripts = getattr(app.env, "nb_metadata", {}).get(pagename, {}).get("js_files", {})
-    if "ipywidgets_state" in scripts:
-        state = json.loads(scripts["ipywidgets_state"][1]["body"])["state"]
-        context["body"] = add_stills(context["body"], state)
+def slim_pages(app, exception):
+    """Trim what was written, once all of it is there."""
+    if app.builder.format == "html" and exception is None:
+        slim(Path(app.outdir))
 
 
 def setup(app):
     app.connect("config-inited", set_cache_path)
     app.connect("builder-inited", copy_mathjax)
-    app.connect("html-page-context", show_stills)
+    app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
