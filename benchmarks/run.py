@@ -1,79 +1,135 @@
-"""Speed as ratios, each pair measured in the same run: ``make bench``.
+"""Speed and memory, against others in the same run: ``make bench``.
 
-Writes ``book/results/benchmarks.json``. Times vary with the machine and its load; ratios
-much less.
+Writes ``book/results/benchmarks.json``, which the page *Status* shows. Each part runs in a
+process of its own, so that its peak memory is its own. Times vary with the machine and its
+load, ratios much less: the two of a pair take turns.
 """
 
 from __future__ import annotations
 
+import argparse
+import datetime
+import json
+import os
+import platform
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
 
-import numpy as np
-import torch
+from measure import limit, memory_row, met, not_measured
 
 from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
-from ddlib.network import Weights, WindowNetwork
-from ddlib.simulate import record
-from ddlib.training import TrainingSet, default_rate, train, train_ensemble
-from ddlib.trajectories import random_extents
+from ddlib.experiment import WINDOWS
+from ddlib.tables import number
+
+ROOT = Path(__file__).resolve().parent.parent
+BOOK_SECONDS = 120.0
+BUILT_FROM = ("_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml", "book", "ddlib")
 
 
-def seconds(work: Callable[[], object], repeats: int = 3) -> float:
-    """Shortest of some runs, after one to warm up."""
-    work()
-    times = []
-    for _ in range(repeats):
+def book() -> list[dict]:
+    """Rows of a cold build: notebooks executed and pages written, nothing kept from before."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name in BUILT_FROM:
+            copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+            copy(ROOT / name, Path(folder) / name)
+        command = [sys.executable, Path(folder) / "book" / "_ext" / "build.py", folder]
         started = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - started)
-    return min(times)
+        outcome = subprocess.run(command, capture_output=True, text=True)
+        seconds = time.perf_counter() - started
+    if outcome.returncode:
+        raise RuntimeError(f"the build failed:\n{outcome.stderr[-2000:]}")
+    rows = [limit("Time", "make book, cold", seconds, "s", BOOK_SECONDS)]
+    return [*rows, memory_row("largest process of make book", "children")]
 
 
-def training(width: int, members: int = 32, epochs: int = 200) -> dict:
-    """Networks x epochs a second: the ensemble against an eager PyTorch loop."""
-    data = TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], width)
-    options = dict(rate=default_rate(width), momentum=0.95, epochs=epochs, progress=False)
-    weights = Weights.random(members, width)
-    eager = seconds(lambda: train(WindowNetwork(width), data.x, data.y, **options)) / epochs
-    fast = seconds(lambda: train_ensemble(weights, data, **options)) / epochs / members
-    return {
-        "what": f"training, window {width}, {members} networks against an eager loop",
-        "eager, microseconds": 1e6 * eager,
-        "ensemble, microseconds": 1e6 * fast,
-        "ratio": eager / fast,
-    }
+def redraw() -> list[dict]:
+    """Rows of the widgets of the built pages: 95 % of the redraws take less."""
+    group = "Redraw of a widget after a move, 95th percentile"
+    try:
+        rows = import_module("redraw").rows()
+    except (FileNotFoundError, RuntimeError) as error:  # no browser, no built pages
+        return [not_measured(group, "all widgets", str(error))]
+    return [limit(group, r["what"], r["p95, ms"], "ms", r["most, ms"]) for r in rows]
 
 
-def simulation(runs: int = 200) -> dict:
-    """Recordings a second: many at once against one by one."""
-    extents = random_extents(runs, seed=0)
-    setup = STATE_FEEDBACK
-    options = dict(effects=setup.effects)
-    one = seconds(lambda: record(setup.arm, setup.controller, extents[0], **options))
-    all_at_once = seconds(lambda: record(setup.arm, setup.controller, extents, **options)) / runs
-    return {
-        "what": f"recording, {runs} runs at once against one by one",
-        "single, microseconds": 1e6 * one,
-        "batch, microseconds": 1e6 * all_at_once,
-        "ratio": one / all_at_once,
-    }
+PARTS: dict[str, Callable[[], list[dict]]] = {
+    **{f"training-{w}": lambda w=w: import_module("ensembles").measure(w) for w in WINDOWS},
+    **{f"solver-{w}": lambda w=w: import_module("solvers").measure(w) for w in WINDOWS},
+    "recordings": lambda: import_module("recordings").measure(),
+    "book": book,
+    "redraw": redraw,
+}
+"""What is measured, by name; each gives rows (see `measure`)."""
+
+
+def run(part: str) -> list[dict] | None:
+    """The rows of one part, measured in a process of its own; None if that failed."""
+    with tempfile.TemporaryDirectory() as folder:
+        answer = Path(folder) / "rows.json"
+        command = [sys.executable, __file__, "--measure", part, "--into", str(answer)]
+        failed = subprocess.run(command).returncode
+        return None if failed else json.loads(answer.read_text())
+
+
+def machine() -> dict:
+    """What the times depend on."""
+    model = platform.processor() or platform.machine()
+    if Path("/proc/cpuinfo").is_file():
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        model = next((x.split(":")[1].strip() for x in lines if x.startswith("model name")), model)
+    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
+    return {"processor": model, "cores": os.cpu_count(), "load before": load}
+
+
+def text(row: dict) -> str:
+    """A row in one line."""
+    what = f"{row['group']}: {row['what']}"
+    if "not measured" in row:
+        return f"{what}: not measured: {row['not measured']}"
+    value, unit = (row["ratio"], "times") if "ratio" in row else (row["value"], row["unit"])
+    bound = [f"{key} {number(row[key])}" for key in ("at least", "at most") if key in row]
+    verdict = {True: "met", False: "MISSED", None: ""}[met(row)]
+    details = [
+        f"{key} {number(value) if isinstance(value, float) else value}"
+        for key, value in row.get("details", {}).items()
+    ]
+    first = f"{what:75s} {number(value):>8s} {unit:5s} {' '.join(bound):14s} {verdict}".rstrip()
+    return "\n    ".join([first, *details])
 
 
 def main() -> None:
-    """Run all pairs, print the table and write it."""
-    rows = []
-    started = time.monotonic()
-    for work in [*(lambda w=w: training(w) for w in WINDOWS), simulation]:
-        rows.append(work())
-        print(f"{rows[-1]['what']:60s} {rows[-1]['ratio']:8.1f} times", flush=True)
-    made_by = results.stamp(seconds=time.monotonic() - started)
-    content = {"made by": made_by, "threads": torch.get_num_threads(), "rows": rows}
-    results.write_json(results.FOLDER / "benchmarks.json", content)
-    if not all(np.isfinite(row["ratio"]) for row in rows):
-        sys.exit("a ratio is not finite")
+    """Run all parts, print the table and write it; parts that are named are only printed."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("parts", nargs="*", help=f"among {', '.join(PARTS)}; default: all")
+    parser.add_argument("--measure", choices=PARTS, help=argparse.SUPPRESS)
+    parser.add_argument("--into", type=Path, help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    if options.measure:
+        options.into.write_text(json.dumps(PARTS[options.measure]()))
+        return
+    for name in options.parts:
+        if name not in PARTS:
+            parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
+    rows, failed, here, started = [], [], machine(), time.monotonic()
+    for name in options.parts or PARTS:
+        found = run(name)
+        failed += [name] * (found is None)
+        for row in found or ():
+            rows.append(row)
+            print(text(row), flush=True)
+    if failed:
+        sys.exit(f"failed: {', '.join(failed)}; nothing is written")
+    if options.parts:
+        return
+    now = datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d")
+    made_by = {**results.stamp(seconds=time.monotonic() - started), "date": now, **here}
+    results.write_json(results.FOLDER / "benchmarks.json", {"made by": made_by, "rows": rows})
 
 
 if __name__ == "__main__":

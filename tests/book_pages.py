@@ -22,3 +22,12 @@ def source(page: str) -> Path | None:
     """The file a page is written in, or None."""
     candidates = (ROOT / f"{page}{suffix}" for suffix in (".ipynb", ".md"))
     return next((path for path in candidates if path.is_file()), None)
+
+
+def has_widgets(page: str) -> bool:
+    """Whether a page's notebook makes widgets."""
+    path = source(page)
+    return path.suffix == ".ipynb" and "from ddlib.widgets" in path.read_text("utf-8")
+
+
+WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

@@ -15,6 +15,7 @@ HTML = ROOT / "_build" / "html"
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 HOW_TO_GET_ONE = "no browser found: apt-get install chromium, or set CHROMIUM=/path/to/chromium"
+POLICY = "default-src 'self' 'unsafe-inline' blob:"  # nothing but the site itself
 FLAGS = [
     "--disable-gpu",
     "--disable-quic",
@@ -51,13 +52,17 @@ def launch():
 
 
 class QuietHandler(SimpleHTTPRequestHandler):
+    def end_headers(self):
+        self.send_header("Content-Security-Policy", POLICY)
+        super().end_headers()
+
     def log_message(self, *args):
         pass
 
 
 @contextmanager
 def serve(folder: Path):
-    """Serve a folder on a free loopback port; yields its address."""
+    """Serve a folder under the strict `POLICY` on a free loopback port; yields its address."""
     handler = partial(QuietHandler, directory=str(folder))
     with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
         thread = threading.Thread(target=server.serve_forever, daemon=True)
@@ -69,13 +74,31 @@ def serve(folder: Path):
             thread.join()
 
 
+SETTLED = """
+async () => {
+  const until = async (what, done) => {
+    const end = performance.now() + 30_000;
+    while (!done()) {
+      if (performance.now() > end) throw new Error(`still waiting for ${what}`);
+      await new Promise(requestAnimationFrame);
+    }
+  };
+  await window.MathJax?.startup?.promise;
+  const widgets = 'script[type="application/vnd.jupyter.widget-view+json"]';
+  await until("widgets", () =>
+    !document.querySelector(widgets) || document.documentElement.dataset.widgets);
+  await document.fonts.ready;
+  for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);  // what starts, starts
+  const running = (animation) => animation.playState === "running";
+  await until("animations", () => !document.getAnimations().some(running));
+}
+"""
+
+
 def settle(page):
-    """Wait until MathJax has typeset, the widgets are mounted and nothing moves any more."""
-    page.evaluate("window.MathJax?.startup?.promise")
-    page.wait_for_function(
-        """!document.querySelector('script[type="application/vnd.jupyter.widget-view+json"]')
-           || document.documentElement.dataset.widgets""",
-        timeout=20_000,
-    )
-    page.evaluate("document.fonts.ready.then(() => true)")
-    page.wait_for_function("document.getAnimations().every((a) => a.playState !== 'running')")
+    """Wait until MathJax has typeset, the widgets are mounted and nothing moves any more.
+
+    By `evaluate` alone: Playwright's own `wait_for_function` needs ``eval``, which `POLICY`
+    forbids.
+    """
+    page.evaluate(SETTLED)

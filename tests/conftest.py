@@ -43,6 +43,7 @@ class Visit:
 
     def __init__(self, context, url: str, lands: str | None):
         self.problems: list[str] = []
+        self.responses: list = []
         self.home = url.split("/", 3)[2]  # host and port; empty for file:
         self.page = context.new_page()
         self.page.on("console", self._console)
@@ -66,6 +67,7 @@ class Visit:
             self.problems.append(f"external request: {request.url[:200]}")
 
     def _response(self, response):
+        self.responses.append(response)
         if response.status >= 400:
             self.problems.append(f"{response.status}: {response.url[:200]}")
 
@@ -74,14 +76,16 @@ class Visit:
 def visit(browser):
     """Open a page: `visit(url, scheme="light", width=1280)` -> Visit.
 
-    `lands` is the address pattern that the page redirects to.
+    `lands` is the address pattern that the page redirects to; other options are those of
+    Playwright's ``new_context``.
     """
     contexts = []
 
     def open_page(
-        url: str, scheme: str = "light", width: int = 1280, lands: str | None = None
+        url: str, scheme: str = "light", width: int = 1280, lands: str | None = None, **options
     ) -> Visit:
-        context = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 800})
+        size = {"width": width, "height": 800}
+        context = browser.new_context(color_scheme=scheme, viewport=size, **options)
         contexts.append(context)
         return Visit(context, url, lands)
 

@@ -11,7 +11,7 @@ import pytest
 from book_pages import ROOT
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-from dd_book import CELL_INPUTS, PAGE_INPUTS, add_stills, digest
+from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
 
 COUNTING = "from pathlib import Path\n\nwith Path('runs').open('a') as file:\n    file.write('x')"
 
@@ -118,16 +118,3 @@ def test_a_failing_build_keeps_failing(tiny, text, code, complaint):
         assert outcome.returncode != 0
         assert complaint in outcome.stdout + outcome.stderr
         assert "FAILED" in outcome.stderr
-
-
-def test_widgets_with_a_still_show_it_without_script():
-    view = '<script type="application/vnd.jupyter.widget-view+json">{"model_id": "%s"}</script>'
-    body = f"<p>{view % 'a'}</p><p>{view % 'b'}</p><p>{view % 'gone'}</p>"
-    state = {
-        "a": {"state": {"still": "data:,x", "still_alt": 'An "arm"'}},
-        "b": {"state": {}},
-    }
-    shown = add_stills(body, state)
-    still = '<noscript><img class="still" src="data:,x" alt="An &quot;arm&quot;"></noscript>'
-    assert shown.replace(still, "") == body
-    assert shown.index(still) < shown.index('"b"')

@@ -1,4 +1,4 @@
-"""Friction, actuator and sensors: symmetry, dissipation, rounding and seeded noise."""
+"""Sensors, delay, play and the collection of all effects: rounding, noise, memory, order."""
 
 from dataclasses import FrozenInstanceError
 
@@ -10,57 +10,19 @@ from hypothesis import strategies as st
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
+    Backlash,
+    ComputingTime,
     CoulombFriction,
+    Delay,
     Effects,
+    FlexibleJoint,
     Noise,
     Quantisation,
+    Ripple,
     Saturation,
     ViscousFriction,
-    pass_through,
+    started,
 )
-
-FRICTIONS = (
-    ViscousFriction((0.5, 0.15)),
-    CoulombFriction((0.5, 0.15)),
-    CoulombFriction((8.45, 2.35), smoothing=0.02),
-    Effects(friction=(ViscousFriction((5.3, 1.1)), CoulombFriction((8.45, 2.35)))),
-)
-
-
-def torque_of(friction):
-    return friction.friction_torque if isinstance(friction, Effects) else friction.torque
-
-
-@pytest.mark.parametrize("friction", FRICTIONS, ids=repr)
-@settings(deadline=None, max_examples=50)
-@given(qd=st.tuples(st.floats(-50, 50), st.floats(-50, 50)))
-def test_friction_is_odd_and_never_adds_energy(friction, qd):
-    qd, torque = np.array(qd), torque_of(friction)
-    np.testing.assert_array_equal(torque(-qd), -torque(qd))
-    assert (qd * torque(qd) >= 0).all()
-    assert (torque(qd)[np.abs(qd) > 1e-9] != 0).all()
-
-
-@pytest.mark.parametrize("friction", FRICTIONS, ids=repr)
-def test_friction_grows_with_speed_and_is_nothing_at_rest(friction):
-    qd = np.linspace(-3, 3, 2001)[:, None] * np.ones(2)
-    assert (np.diff(torque_of(friction)(qd), axis=0) >= 0).all()
-    assert not torque_of(friction)(np.zeros(2)).any()
-
-
-def test_viscous_friction_by_numbers():
-    np.testing.assert_allclose(ViscousFriction((5.3, 1.1)).torque([2.0, -3.0]), [10.6, -3.3])
-
-
-def test_coulomb_friction_is_its_level_once_the_joint_moves():
-    friction = CoulombFriction((8.45, 2.35))
-    np.testing.assert_allclose(friction.torque(np.array([0.5, -0.5])), [8.45, -2.35], rtol=1e-12)
-    # within the smoothing it is a steep viscous friction of slope level / smoothing
-    slope = friction.torque(np.array([1e-7, 1e-7])) / 1e-7
-    np.testing.assert_allclose(slope, np.array([8.45, 2.35]) / 2e-3, rtol=1e-6)
-    # at one smoothing width, tanh(1) of it
-    wide = CoulombFriction((1.0, 1.0), smoothing=0.1)
-    np.testing.assert_allclose(wide.torque(np.array([0.1, 0.2])), [0.761594, 0.964028], atol=1e-6)
 
 
 def test_frictions_add_up():
@@ -68,26 +30,6 @@ def test_frictions_add_up():
     both = Effects(friction=(viscous, coulomb)).friction_torque(np.array([2.0, -1.0]))
     np.testing.assert_allclose(both, [1 * 2 + 3, -(2 * 1 + 4)])
     assert not IDEAL.friction_torque(np.array([2.0, -1.0])).any()
-
-
-def test_friction_of_many_runs_at_once():
-    strength = np.array([[0.0, 0.0], [0.5, 0.15], [2.0, 0.6]])
-    qd = np.array([1.0, -1.0])
-    np.testing.assert_allclose(ViscousFriction(strength).torque(qd), strength * qd)
-    np.testing.assert_allclose(CoulombFriction(strength).torque(qd), strength * qd)
-
-
-@settings(deadline=None, max_examples=100)
-@given(x=st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=2))
-def test_saturation_clips_and_clips_only_once(x):
-    saturation, x = Saturation((100.0, 30.0)), np.array(x)
-    once = saturation.apply(x)
-    assert (np.abs(once) <= [100.0, 30.0]).all()
-    np.testing.assert_array_equal(saturation.apply(once), once)
-    inside = np.abs(x) <= [100.0, 30.0]
-    np.testing.assert_array_equal(once[inside], x[inside])
-    np.testing.assert_array_equal(np.sign(once), np.sign(x))
-    np.testing.assert_array_equal(np.abs(once)[~inside], np.array([100.0, 30.0])[~inside])
 
 
 @settings(deadline=None, max_examples=100)
@@ -139,21 +81,104 @@ def test_noise_is_seeded():
     np.testing.assert_array_equal(Noise((0.0, 0.0)).apply(x + 3, np.random.default_rng(7)), x + 3)
 
 
-def test_pass_through_keeps_the_order():
+def test_a_path_keeps_the_order():
     x, rng = np.array([0.149, 7.0]), np.random.default_rng(0)
     clip, coarse = Saturation((0.12, 0.12)), Quantisation(0.1)
-    np.testing.assert_allclose(pass_through((clip, coarse), x, rng), [0.1, 0.1])
-    np.testing.assert_allclose(pass_through((coarse, clip), x, rng), [0.1, 0.12])
-    assert pass_through((), x, rng) is x
+    np.testing.assert_allclose(started((clip, coarse), 0 * x)(x, rng), [0.1, 0.1])
+    np.testing.assert_allclose(started((coarse, clip), 0 * x)(x, rng), [0.1, 0.12])
+    assert started((), 0 * x)(x, rng) is x
 
 
+@settings(deadline=None, max_examples=50)
+@given(periods=st.integers(0, 12), samples=st.integers(1, 30))
+def test_delay_shifts_exactly(periods, samples):
+    x = np.random.default_rng(samples).normal(size=(samples, 2))
+    initial = np.array([5.0, -5.0])
+    late = Delay(periods).start(initial)
+    y = np.array([late(sample) for sample in x])
+    np.testing.assert_array_equal(y, np.array([initial] * periods + list(x))[:samples])
+
+
+def test_a_path_with_a_memory_starts_afresh_every_time():
+    effects = (Delay(2), Backlash((0.2, 0.2)))
+    x = np.random.default_rng(0).normal(size=(20, 3, 2))
+    first, second = (started(effects, x[0]) for _ in range(2))
+    early = [first(sample, None) for sample in x]
+    np.testing.assert_array_equal(early, [second(sample, None) for sample in x])
+
+
+# --- backlash: the play operator --------------------------------------------------------
+
+
+def play(x, gap, initial=None):
+    """The operator along a scalar history."""
+    x = np.asarray(x, dtype=float)
+    path = Backlash((gap, gap)).start(np.full(2, x[0] if initial is None else initial))
+    return np.array([path(np.full(2, sample))[0] for sample in x])
+
+
+HISTORY = st.lists(st.floats(-5, 5), min_size=2, max_size=12)
+GAP = st.floats(0, 3)
+
+
+@settings(deadline=None)
+@given(x=HISTORY, gap=GAP)
+def test_play_stays_within_half_the_gap(x, gap):
+    assert np.abs(play(x, gap) - x).max() <= gap / 2 * (1 + 1e-12) + 1e-15
+
+
+@settings(deadline=None, max_examples=50)
+@given(x=HISTORY, gap=GAP, between=st.lists(st.integers(1, 6), min_size=11, max_size=11))
+def test_play_does_not_depend_on_speed(x, gap, between):
+    """Samples on the way from one point to the next change nothing: only turning points do."""
+    slow, kept = [x[0]], [0]
+    for start, end, n in zip(x, x[1:], between):
+        slow += [start + (end - start) * k / n for k in range(1, n)] + [end]
+        kept.append(len(slow) - 1)
+    np.testing.assert_allclose(play(slow, gap)[kept], play(x, gap), atol=1e-12)
+
+
+@settings(deadline=None)
+@given(amplitude=st.floats(0.5, 10), gap=st.floats(0, 1))
+def test_area_of_the_hysteresis_loop(amplitude, gap):
+    """A parallelogram: the gap times the span of the reading, ``gap (2 amplitude - gap)``."""
+    corners = np.array([amplitude, amplitude - gap, -amplitude, gap - amplitude])
+    x = np.concatenate([[0.0], corners, corners])  # once to get into the loop, then around it
+    loop_x, loop_y = corners, play(x, gap)[5:]
+    area = 0.5 * abs(np.sum(loop_x * np.roll(loop_y, -1) - np.roll(loop_x, -1) * loop_y))
+    assert area == pytest.approx(gap * (2 * amplitude - gap), rel=1e-9, abs=1e-9)
+    assert np.abs(loop_y).max() == pytest.approx(amplitude - gap / 2)
+
+
+@settings(deadline=None)
+@given(x=HISTORY, y=HISTORY, gap=GAP)
+def test_play_never_spreads_histories_apart(x, y, gap):
+    """Two histories end up no further apart than they were at their furthest."""
+    n = min(len(x), len(y))
+    x, y = np.array(x[:n]), np.array(y[:n])
+    assert np.abs(play(x, gap) - play(y, gap)).max() <= np.abs(x - y).max() + 1e-12
+
+
+def test_play_by_hand_per_joint_and_without_gap():
+    x = np.array([0.0, 0.4, 1.0, 0.6, 0.2, -0.5, 0.0, 0.4])
+    np.testing.assert_allclose(play(x, 1.0), [0, 0, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0])
+    np.testing.assert_array_equal(play(x, 0.0), x)
+    path = Backlash(([[1.0, 0.0]], [[0.0, 1.0]])).start(np.zeros(2))
+    np.testing.assert_allclose(path(np.array([0.7, 0.7])), [[[0.2, 0.7]], [[0.7, 0.2]]])
+
+
+# --- the collection -----------------------------------------------------------------------
+
+SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
 FULL = Effects(
     friction=(ViscousFriction((0.5, 0.15)),),
     actuator=(Saturation((100.0, 30.0)),),
     encoder=(Quantisation.encoder(16),),
     torque_sensor=(Noise((0.1, 0.1)),),
+    motor=(Ripple((0.1, 0.1)),),
+    transmission=(SHAFT,),
 )
-PARTS = ("friction", "actuator", "encoder", "torque_sensor")
+PARTS = ("friction", "actuator", "encoder", "torque_sensor", "motor", "transmission")
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -169,7 +194,7 @@ def test_without_all_is_ideal_and_without_nothing_is_a_copy():
     assert FULL.without() == FULL
 
 
-@pytest.mark.parametrize("name", ["frictions", "", "motor", None])
+@pytest.mark.parametrize("name", ["frictions", "", "gears", None])
 def test_without_refuses_unknown_parts(name):
     with pytest.raises(ValueError, match="torque_sensor"):
         FULL.without("friction", name)
@@ -178,25 +203,20 @@ def test_without_refuses_unknown_parts(name):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: ViscousFriction((-0.1, 0.1)),
-        lambda: ViscousFriction((0.1,)),
-        lambda: ViscousFriction((np.nan, 0.1)),
-        lambda: CoulombFriction((0.1, -0.1)),
-        lambda: CoulombFriction((0.1, 0.1), smoothing=0.0),
-        lambda: CoulombFriction((0.1, 0.1), smoothing=-1.0),
-        lambda: Saturation((0.0, 30.0)),
-        lambda: Saturation((100.0, -30.0)),
-        lambda: Saturation((100.0, np.inf)),
         lambda: Quantisation(0.0),
         lambda: Quantisation(np.nan),
         lambda: Quantisation.encoder(0),
         lambda: Quantisation.encoder(64),
         lambda: Noise((-1.0, 1.0)),
         lambda: Noise((1.0, np.inf)),
+        lambda: Delay(-1),
+        lambda: Backlash((0.1, -0.1)),
+        lambda: Backlash((0.1, np.nan)),
+        lambda: Effects(transmission=(SHAFT, SHAFT)),
     ],
 )
 def test_bad_values_are_refused_when_the_effect_is_made(make):
-    with pytest.raises(ValueError, match=r"coefficient|level|smoothing|limit|step|bits|std"):
+    with pytest.raises(ValueError, match=r"^(step|bits|std|periods|gap|transmission) must"):
         make()
 
 
@@ -209,6 +229,12 @@ def test_bad_values_are_refused_when_the_effect_is_made(make):
         (lambda: Effects(encoder=(ViscousFriction((1, 1)),)), "encoder"),
         (lambda: Effects(friction=(Saturation((1, 1)),)), "friction"),
         (lambda: Effects(torque_sensor=[Noise((1, 1))]), "torque_sensor"),
+        (lambda: Effects(encoder=(ComputingTime(0.001),)), "encoder"),
+        (lambda: Effects(friction=(SHAFT,)), "friction"),
+        (lambda: Effects(motor=(ViscousFriction((1, 1)),)), "motor"),
+        (lambda: Effects(actuator=(Ripple(),)), "actuator"),
+        (lambda: Effects(transmission=(Backlash((0.1, 0.1)),)), "transmission"),
+        (lambda: Delay(1.0), "periods"),
     ],
 )
 def test_wrong_kinds_are_refused_by_name(make, name):
@@ -222,9 +248,9 @@ def test_surrogate_effects_by_numbers():
     np.testing.assert_allclose(effects.friction_torque(np.array([1.0, -1.0])), [1.0, -0.3])
     np.testing.assert_allclose(effects.friction_torque(np.array([2.0, -2.0])), [1.5, -0.45])
     rng = np.random.default_rng(0)
-    torque = pass_through(effects.actuator, np.array([500.0, -500.0]), rng)
+    torque = started(effects.actuator, np.zeros(2))(np.array([500.0, -500.0]), rng)
     assert torque.tolist() == [100.0, -30.0]
-    reading = pass_through(effects.encoder, np.array([1.0, -1.0]), rng)
+    reading = started(effects.encoder, np.zeros(2))(np.array([1.0, -1.0]), rng)
     np.testing.assert_allclose(reading * 65536 / (2 * np.pi), [10430, -10430], rtol=1e-12)
 
 

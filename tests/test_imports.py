@@ -15,24 +15,32 @@ ROOT = Path(ddlib.__file__).parent
 # A new module is written down here first.
 ORDER = [
     ("_check",),
-    ("metrics", "filters"),  # of plain arrays: they stand alone, anything may use them
+    ("sweeps",),  # maps any function over any table
+    # of plain arrays: they stand alone, anything may use them
+    ("metrics", "filters", "friction", "actuators", "counting", "formulations"),
     ("arm", "effects", "paper"),
-    ("trajectories",),
-    ("controllers", "linear"),
-    ("simulate",),
-    ("windows",),
+    ("trajectories", "serial", "derivation"),
+    ("controllers", "linear", "plant", "delays", "costs", "identification", "simplified"),
+    ("simulate", "velocity"),
+    ("windows", "unmodelled", "modulation", "loops"),
     ("network",),
-    ("training",),
+    ("descent",),
+    ("training", "state_space"),
+    ("gauss_newton",),
+    ("solver",),
     ("rivals",),
-    ("experiment",),
+    ("experiment", "units"),
     ("results", "style", "tables"),
-    ("figures", "diagrams"),
+    ("claims",),
+    ("measures",),
+    ("figures", "diagrams", "figures_dynamics", "figures_effects", "control_figures"),
     ("widgets",),
+    ("studies",),
     ("reproduce",),
 ]
 STAGE = {name: i for i, names in enumerate(ORDER) for name in names}
-TORCH = {"network", "training"}
-SINGLE_STAGE_FREE = {"widgets", "rivals"}  # packages of several modules
+TORCH = {"network", "descent", "training", "gauss_newton", "solver"}
+SINGLE_STAGE_FREE = {"widgets", "rivals", "studies", "measures"}  # packages of several modules
 
 
 def name_of(path) -> str:

@@ -8,8 +8,15 @@ from hypothesis import strategies as st
 
 from ddlib.arm import CMU_DD_ARM_II, Arm
 from ddlib.controllers import PID
-from ddlib.effects import Effects, ViscousFriction
-from ddlib.linear import closed_loop, loop_gain, plant, proportional_limit
+from ddlib.effects import Delay, Effects, ViscousFriction
+from ddlib.linear import (
+    closed_loop,
+    loop_gain,
+    margins,
+    opened_loop,
+    plant,
+    proportional_limit,
+)
 from ddlib.simulate import follow
 from ddlib.trajectories import Trajectory
 
@@ -86,8 +93,9 @@ def test_pd_overshoot_is_the_textbooks():
 # --- sampled loops --------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("delay", [0, 1, 4])
 @pytest.mark.parametrize("ki", [(0.0, 0.0), KI], ids=["PD", "PID"])
-def test_sampled_loop_is_the_simulated_one(ki):
+def test_sampled_loop_is_the_simulated_one(ki, delay):
     """On an arm whose equations are linear, sample by sample, with two coupled joints."""
     t = np.arange(500) * STEP
     target = np.deg2rad([3.0, -2.0]) * (t > 0)[:, None]
@@ -96,10 +104,10 @@ def test_sampled_loop_is_the_simulated_one(ki):
         PID(KP, ki, KD),
         Trajectory(target, 0 * target, 0 * target),
         t,
-        effects=Effects((ViscousFriction(VISCOUS),)),
+        effects=Effects((ViscousFriction(VISCOUS),), (Delay(delay),)),
         log_every=1,
     )
-    loop = closed_loop(plant(inertia_of(LINEAR_ARM), VISCOUS), KP, ki, KD, STEP)
+    loop = closed_loop(plant(inertia_of(LINEAR_ARM), VISCOUS), KP, ki, KD, STEP, delay)
     inputs = np.vstack([target.T, np.zeros((2, t.size))])
     answer = control.forced_response(loop, t, inputs).outputs.T
     assert np.abs(answer).max() > np.deg2rad(3)
@@ -115,6 +123,85 @@ def test_fast_sampling_is_continuous_control():
         gaps.append(abs(np.sort_complex(np.log(poles) / period) - slow).max())
     assert gaps[1] < 0.05
     assert gaps[0] / gaps[1] == pytest.approx(2, abs=0.1)
+
+
+# --- opened loops and margins ---------------------------------------------------------
+
+GAINS = [(200.0, 0.0, 0.0), (200.0, 0.0, 20.0), (200.0, 90.0, 20.0)]
+
+
+@pytest.mark.parametrize("gains", GAINS)
+def test_opened_loop_of_one_joint_is_its_loop_gain(gains):
+    s = np.array([0.3j, 2j, 1 + 5j])
+    opened, expected = opened_loop(plant(6.0, 0.5), *gains), loop_gain(6.0, 0.5, *gains)
+    np.testing.assert_allclose([opened(x) for x in s], expected(s))
+
+
+@pytest.mark.parametrize("period, delay", [(None, 0), (STEP, 0), (STEP, 3)])
+@pytest.mark.parametrize("joint", [0, 1])
+def test_closing_an_opened_loop_gives_the_closed_one(joint, period, delay):
+    """Unity feedback around what was cut open has the closed loop's poles."""
+    joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
+    opened = opened_loop(joints, KP, KI, KD, period, delay, joint=joint)
+    poles = control.feedback(opened, 1).poles()
+    expected = closed_loop(joints, KP, KI, KD, period, delay).poles()
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(expected), atol=1e-6)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 5])
+@pytest.mark.parametrize("gains", GAINS[1:])
+def test_margins_are_python_controls(gains, delay):
+    """From its frequency-response data on the unit circle: no polynomials in between."""
+    loop = opened_loop(plant(6.0, 0.5), *gains, STEP, delay)
+    omega = np.geomspace(0.3, 0.999 * np.pi / STEP, 5000)
+    answer = control.frd(loop(np.exp(1j * omega * STEP)), omega, smooth=True)
+    factors, angles, _, _, crossovers, _ = control.stability_margins(answer, returnall=True)
+    found = margins(loop)
+    assert found.phase_deg == pytest.approx(np.min(angles), abs=1e-3)
+    assert found.crossover == pytest.approx(crossovers[np.argmin(angles)], rel=1e-5)
+    if delay:
+        assert found.most == pytest.approx(min(factors[factors > 1]), rel=1e-3)
+
+
+@pytest.mark.parametrize("gains", GAINS)
+def test_continuous_margins_are_python_controls(gains):
+    loop = loop_gain(6.0, 0.5, *gains)
+    gain, phase, _, crossover = control.margin(loop)
+    found = margins(loop)
+    assert (found.phase_deg, found.crossover) == pytest.approx((phase, crossover))
+    if gains[1]:  # conditionally stable: the margin is downwards
+        assert found.least == pytest.approx(gain) and found.most == np.inf
+    else:
+        assert (found.most, found.least) == (np.inf, 0)
+
+
+@pytest.mark.parametrize("delay", [0, 1, 5])
+@pytest.mark.parametrize("gains", GAINS)
+def test_margins_are_where_the_loop_loses_its_stability(gains, delay):
+    joints = plant(6.0, 3.0)
+
+    def largest(factor):
+        scaled = np.multiply(factor, gains)
+        return abs(closed_loop(joints, *scaled, STEP, delay).poles()).max()
+
+    found = margins(opened_loop(joints, *gains, STEP, delay))
+    assert largest(1.0) < 1 and found.phase_deg > 0
+    assert largest(0.999 * found.most) < 1 < largest(1.001 * found.most)
+    if found.least:
+        assert largest(1.001 * found.least) < 1 < largest(0.999 * found.least)
+
+
+def test_delay_takes_crossover_times_lateness():
+    loops = [opened_loop(plant(6.0, 0.5), *GAINS[2], STEP, delay) for delay in (0, 1, 5)]
+    continuous = margins(loop_gain(6.0, 0.5, *GAINS[2]))
+    for late, loop in zip((0.5, 1.5, 5.5), loops):
+        lost = np.rad2deg(continuous.crossover * late * STEP)
+        assert margins(loop).phase_deg == pytest.approx(continuous.phase_deg - lost, abs=0.02)
+
+
+def test_derivative_gain_raises_the_phase_margin():
+    angles = [margins(loop_gain(6.0, 0.5, 200.0, 0.0, kd)).phase_deg for kd in (0, 10, 20, 40)]
+    assert (np.diff(angles) > 5).all()
 
 
 # --- the limit of proportional control --------------------------------------------------
@@ -162,6 +249,10 @@ def test_limit_is_continuous_where_its_series_ends():
         (lambda: closed_loop(plant(1.0, 0.5), [1.0, 2.0]), "kp"),
         (lambda: closed_loop(plant(1.0, 0.5), 1.0, ki=-1.0), "ki"),
         (lambda: closed_loop(plant(1.0, 0.5), 1.0, period=0.0), "period"),
+        (lambda: closed_loop(plant(1.0, 0.5), 1.0, period=STEP, delay=-1), "delay"),
+        (lambda: closed_loop(plant(1.0, 0.5), 1.0, delay=1), "delay"),
+        (lambda: opened_loop(plant(1.0, 0.5), 1.0, joint=1), "joint"),
+        (lambda: margins(loop_gain(1.0, 0.5, 0.0)), "loop"),
         (lambda: proportional_limit(1.0, -1.0, STEP), "viscous"),
         (lambda: proportional_limit(1.0, 1.0, 0.0), "period"),
     ],

@@ -97,3 +97,8 @@ def test_refusals(arguments, options, words):
 def test_words_are_not_numbers():
     with pytest.raises(TypeError, match="predicted must be an array of real numbers"):
         rmss([["a", "b"]], [[1.0, 2.0]])
+
+
+def test_no_cases_have_no_error():
+    with pytest.raises(ValueError, match=r"shape \(..., cases, joint\), got \(0, 2\)"):
+        rmss(np.zeros((0, 2)), np.zeros((0, 2)))

@@ -334,3 +334,15 @@ def test_a_damaged_file(tmp_path, kind):
     damaged(path, kind)
     with pytest.raises(ValueError, match="is not a model file"):
         TorqueModel.load(path)
+
+
+def test_activity_wants_a_list_of_windows():
+    with pytest.raises(ValueError, match=r"x must have shape \(cases, 2, 5\), got \(2, 5\)"):
+        Weights.random(1, 5)[0].activity(np.zeros((2, 5)))
+
+
+def test_stacked_networks_keep_their_places():
+    parts = [Weights.random(3, 5, seed=k) for k in (0, 10)]
+    stacked = Weights.stack(parts)
+    assert stacked.hidden_weights.shape == (2, 3, 10, 2, 5)
+    np.testing.assert_array_equal(stacked[1].skip_weights, parts[1].skip_weights)

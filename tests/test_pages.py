@@ -9,23 +9,26 @@ from functools import lru_cache
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
+import chromium
 import numpy as np
 import pytest
-from book_pages import PAGES, ROOT
+from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS
 from bs4 import BeautifulSoup
 
 browser_test = pytest.mark.browser
 built_test = pytest.mark.built
 
+STATE_TAG = r'<script type="application/vnd\.jupyter\.widget-state\+json">'
 VIEW_TAG = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
 VIEW = 'script[type="application/vnd.jupyter.widget-view+json"]'
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
 # name -> colour scheme, width in px, opened as a file or over http
 VARIANTS = {
-    "light": ("light", 1280, "file"),
+    "light": ("light", 1280, "http"),
     "dark": ("dark", 1280, "http"),
     "narrow": ("light", 400, "http"),
+    "file": ("light", 1280, "file"),
 }
 
 # Runs in the page; returns what a reader would see as wrong.
@@ -50,6 +53,9 @@ CHECKS = r"""
       if ((getComputedStyle(el).display !== "none") !== wanted) found.push(`only-${kind} is wrong`);
     }
   }
+  const code = all(".highlight-ipython3 pre").map((el) => el.textContent).join("");
+  const shades = new Set(all(".highlight-ipython3 span").map((el) => getComputedStyle(el).color));
+  if (/\bimport\b.*"/s.test(code) && shades.size < 3) found.push("code without colours");
   for (const el of all("mjx-merror")) found.push(`bad TeX: ${el.textContent}`);
   const prose = document.querySelector("article").cloneNode(true);
   prose.querySelectorAll("pre, code, script, style, mjx-container").forEach((el) => el.remove());
@@ -79,6 +85,57 @@ def test_page_is_clean(name, variant, built, site, visit):
 
 
 @browser_test
+@pytest.mark.parametrize(
+    "fault",
+    [
+        '<img alt="x" src="data:image/svg+xml,%3Csvg xmlns=%22http://www.w3.org/2000/svg%22/%3E">',
+        '<script>new Function("return 1")()</script>',
+        '<script src="https://example.org/x.js"></script>',
+        '<style>@import "https://example.org/x.css";</style>',
+        '<script src="gone.js"></script>',
+    ],
+)
+def test_what_the_policy_forbids_is_seen(fault, tmp_path, visit):
+    (tmp_path / "favicon.ico").touch()
+    (tmp_path / "page.html").write_text(f"<!doctype html><title>t</title><body>{fault}</body>")
+    with chromium.serve(tmp_path) as address:
+        assert visit(f"{address}/page.html").problems
+
+
+@browser_test
+@pytest.mark.parametrize("name", CHAPTERS)
+def test_chapter_is_light(name, site, visit):
+    """At most 1 MB for a page beside MathJax, as a host without compression sends it."""
+    opened = visit(f"{site}/{name}.html")
+    sizes = {
+        r.url: len(r.body())
+        for r in opened.responses
+        if r.url.startswith("http") and "/mathjax/" not in r.url
+    }
+    assert 50_000 < sum(sizes.values()) <= 1_000_000, sorted(sizes.items(), key=lambda s: -s[1])[:5]
+
+
+@built_test
+def test_pages_with_widgets_are_known(built):
+    pages = {name: (built / f"{name}.html").read_text(encoding="utf-8") for name in PAGES}
+    assert [name for name in PAGES if "jupyter.widget-view+json" in pages[name]] == WITH_WIDGETS
+
+
+@built_test
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_widgets_are_light(name, built):
+    """At most 400 kB of baked values for a widget."""
+    page = (built / f"{name}.html").read_text(encoding="utf-8")
+    saved = json.loads(re.search(rf"{STATE_TAG}(.*?)</script>", page, re.DOTALL)[1])["state"]
+    baked = {
+        model: sum(len(base64.b64decode(b["data"])) for b in entry.get("buffers", ()))
+        for model, entry in saved.items()
+    }
+    assert max(baked.values()) > 0
+    assert max(baked.values()) <= 400_000
+
+
+@browser_test
 @pytest.mark.parametrize("kind", ["file", "http"])
 def test_root_leads_to_the_book(kind, built, site, visit):
     opened = visit(address("index", kind, built, site), lands=f"**/{PAGES[0]}.html")
@@ -87,10 +144,30 @@ def test_root_leads_to_the_book(kind, built, site, visit):
 
 
 @browser_test
-def test_search_finds_a_chapter(site, visit):
-    opened = visit(f"{site}/search.html?q=torque")
-    opened.page.wait_for_selector("#search-results li a", timeout=10_000)
+@pytest.mark.parametrize("kind", ["file", "http"])
+def test_search_finds_a_chapter(kind, built, site, visit):
+    opened = visit(address("search", kind, built, site) + "?q=torque")
+    opened.page.wait_for_selector("#search-results li a", timeout=30_000)
+    opened.page.wait_for_load_state("networkidle")
     assert not opened.problems
+
+
+@browser_test
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_stills_stand_in_where_there_is_no_script(name, site, browser):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    problems = []
+    page.on("console", lambda message: problems.append(message.text))
+    page.on("requestfailed", lambda request: problems.append(request.url))
+    page.goto(f"{site}/{name}.html")
+    stills = page.locator("img.still")
+    assert stills.count() == page.locator(VIEW).count() > 0
+    for still in stills.all():
+        assert still.is_visible() and still.bounding_box()["height"] > 50
+        assert still.get_attribute("alt")
+    assert not problems
+    context.close()
 
 
 @browser_test

@@ -12,7 +12,7 @@ import pytest
 from ddlib import paper, reproduce, results
 from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, errors
 from ddlib.network import TorqueModel, Weights
-from ddlib.reproduce import PARTS
+from ddlib.studies import PARTS
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
 
@@ -63,18 +63,19 @@ def test_words_and_layout_do_not_count(copy, before):
     copy("metrics", '    """Root mean square error', '    """Words')
     copy("windows", "import numpy as np\n", "\n\n# a remark\nimport numpy as np  # another\n")
     copy("experiment", '"""Window sizes of Table 4-1."""', '"""Other words."""')
-    copy("reproduce", '"""The parts by the name of their result."""', "")
+    copy("studies/table", '"""State feedback trained three times', '"""Words')
+    copy("studies/__init__", '"""The studies by the name of their result."""', "")
     copy("paper", '    """A pair of printed errors', '    """A couple of printed errors')
     assert hashes() == before
 
 
 def test_layout_of_every_module_does_not_count(copy, before):
-    for path in copy.folder.glob("*.py"):
+    for path in copy.folder.rglob("*.py"):
         path.write_text(ast.unparse(ast.parse(path.read_text())))
     assert hashes() == before
 
 
-@pytest.mark.parametrize("module", results.MODULES)
+@pytest.mark.parametrize("module", results.modules("clean"))
 def test_code_of_every_module_counts(copy, before, module):
     path = copy.folder / f"{module}.py"
     path.write_text(path.read_text() + "\nADDED = 1\n")
@@ -86,13 +87,13 @@ def test_code_of_every_module_counts(copy, before, module):
     [
         ("training", "TARGET_RANGE = (0.2, 0.8)", "TARGET_RANGE = (0.2, 0.9)"),
         ("training", "return 33.0 / integer", "return 34.0 / integer"),
-        ("training", "momentum: float = 0.95", "momentum: float = 0.96"),
+        ("training", "momentum=0.95", "momentum=0.96"),
         ("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.97"),
         ("experiment", "KP = (300.0, 90.0)", "KP = (300.0, -90.0)"),
         ("metrics", "scale = target.std(-2) if", "scale = target.std(-1) if"),
         ("network", "0.5 * (1 + np.tanh", "0.5 * (1 - np.tanh"),
         ("windows", "width // 2", "width / 2"),
-        ("reproduce", "history.best_test", "history.best_tests"),  # in a private helper
+        ("studies/table", "history.best_test", "history.best_tests"),  # in a private helper
     ],
 )
 def test_changed_code_changes_every_hash(copy, before, module, old, new):
@@ -101,7 +102,7 @@ def test_changed_code_changes_every_hash(copy, before, module, old, new):
 
 
 def test_a_part_stales_alone(copy, before):
-    copy("reproduce", "def gains(members=8)", "def gains(members=9)")
+    copy("studies/table", "def gains(members=8)", "def gains(members=9)")
     after = hashes()
     assert {name for name in PARTS if after[name] != before[name]} == {"gains"}
 
@@ -111,25 +112,16 @@ def test_a_result_that_nothing_makes():
         results.code_hash("table-9-9")
 
 
-def test_the_modules_are_all_that_results_are_made_of():
-    """Followed through the imports, from what `ddlib.reproduce` computes with."""
-
-    def imports(module):
-        found = set()
-        for node in ast.walk(ast.parse((results.PACKAGE / f"{module}.py").read_text())):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib"):
-                below = node.module.partition(".")[2]
-                found |= {below} if below else {alias.name for alias in node.names}
-        return found
-
-    reached, waiting = set(), {"experiment"}
-    while waiting:
-        module = waiting.pop()
-        reached.add(module)
-        waiting |= imports(module) - reached
-    assert reached - {"_check"} == set(results.MODULES)
-    # what else the parts may use: the files themselves, and pictures of results
-    assert imports("reproduce") - reached <= {"results", "figures", "filters"}
+def test_modules_are_followed_through_the_imports(copy):
+    found = results.modules("clean")
+    assert {"experiment", "training", "descent", "simulate", "arm", "paper"} <= set(found)
+    assert not {"_check", "results", "figures", "tables", "widgets"} & set(found)
+    (copy.folder / "deep.py").write_text("VALUE = 1\n")
+    copy("metrics", "import numpy as np", "import numpy as np\nfrom ddlib.deep import VALUE")
+    assert set(results.modules("clean")) == {*found, "deep"}
+    before = results.code_hash("clean")
+    (copy.folder / "deep.py").write_text("VALUE = 2\n")
+    assert results.code_hash("clean") != before
 
 
 # --- files --------------------------------------------------------------------------------
@@ -152,6 +144,7 @@ def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
         "count": np.int64(1234567),
         "scalar": np.float32(0.000123456),
         "plain": [1, 0.1 + 0.2, "text", None],
+        "gone": (np.nan, float("inf")),
     }
     results.write_json(path, content)
     assert json.loads(path.read_text()) == {
@@ -159,7 +152,8 @@ def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
         "mask": [True, False],
         "count": 1234567,
         "scalar": 0.00012346,
-        "plain": [1, 0.1 + 0.2, "text", None],
+        "plain": [1, 0.3, "text", None],
+        "gone": [None, None],
     }
     assert '"count": 1234567,' in path.read_text() and "true" in path.read_text()
     assert [p.name for p in path.parent.iterdir()] == ["a.json"]
@@ -211,7 +205,7 @@ def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     assert "==> clean: up to date" in capsys.readouterr().out
     reproduce.main([])
     assert parts == ["clean", "gains"]
-    copy("reproduce", "def gains(members=8)", "def gains(members=9)")
+    copy("studies/table", "def gains(members=8)", "def gains(members=9)")
     reproduce.main([])
     assert parts == ["clean", "gains", "gains"] and results.read("gains")["value"] == 3
     reproduce.main(["--force", "clean"])
@@ -248,8 +242,8 @@ def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
 def test_every_file_has_its_own_name():
     cells = [(s, w) for s in SETUPS for w in WINDOWS]
     paths = {results.networks_path(s, w) for s, w in cells}
-    paths |= {results.snapshot_path(w, e) for w in WINDOWS for e in (0, 1, 10, 100)}
-    assert len(paths) == len(cells) + 12
+    paths |= {results.course_path(w) for w in WINDOWS}
+    assert len(paths) == len(cells) + len(WINDOWS)
     assert all(p.suffix == ".npz" and " " not in p.name for p in paths)
     assert all(results.FOLDER in p.parents for p in paths)
 
@@ -321,12 +315,13 @@ def test_committed_networks_measure_what_the_table_says(table, setup, width):
 
 
 @pytest.mark.parametrize("width", WINDOWS)
-def test_snapshots_begin_at_the_seed_and_end_at_the_networks(width):
-    first = TorqueModel.load(results.snapshot_path(width, 0)).weights
+def test_courses_begin_at_the_seed_and_end_at_the_networks(width):
+    epochs, model = results.course(width)
+    assert epochs[0] == 0 and epochs[-1] == paper.EPOCHS and (np.diff(epochs) > 0).all()
+    assert model.weights.hidden_bias.shape[:2] == (len(epochs), 2)
     seeded = Weights.random(2, width, initial=STATE_FEEDBACK.initial)
-    last = TorqueModel.load(results.snapshot_path(width, paper.EPOCHS)).weights
     networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width)).weights
     for name in ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias"):
-        own, wanted = getattr(first, name), getattr(seeded, name)
-        np.testing.assert_array_equal(own, wanted.astype(np.float32), err_msg=STALE)
-        np.testing.assert_array_equal(getattr(last, name), getattr(networks[:2], name))
+        own, wanted = getattr(model.weights, name), getattr(seeded, name)
+        np.testing.assert_array_equal(own[0], wanted.astype(np.float32), err_msg=STALE)
+        np.testing.assert_array_equal(own[-1], getattr(networks[:2], name))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import simpson, solve_ivp
 
 from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm, Link
-from ddlib.controllers import PID, ComputedTorque, pd, proportional
+from ddlib.controllers import ComputedTorque, pd, proportional
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
@@ -21,7 +21,7 @@ from ddlib.effects import (
     ViscousFriction,
 )
 from ddlib.experiment import STATE_FEEDBACK
-from ddlib.simulate import Recording, follow, free_motion, record, rk4_step, substeps
+from ddlib.simulate import Recording, follow, free_motion, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM = CMU_DD_ARM_II
@@ -116,41 +116,6 @@ def test_viscous_friction_decays_at_its_closed_form():
     t, q, qd = free_motion(arm, [0.0, 0.0], [1.0, -1.0], 2.0, 0.01, effects=effects)
     np.testing.assert_allclose(qd[:, 0], np.exp(-2.0 / 4.0 * t), rtol=1e-8)
     np.testing.assert_allclose(q[:, 0], 2 * (1 - np.exp(-t / 2)), atol=1e-8)
-
-
-def test_runge_kutta_is_of_fourth_order():
-    arm, tau = REYES_KELLY_ARM, np.array([20.0, -3.0])
-    effects = Effects(friction=(ViscousFriction((2.3, 0.2)),))
-
-    def rate(_, y):
-        net = tau - effects.friction_torque(y[2:])
-        return [*y[2:], *arm.forward_dynamics(y[:2], y[2:], net)]
-
-    start = np.array([0.4, 0.6, 1.0, -0.5])
-    exact = solve_ivp(rate, (0, 0.4), start, "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
-    errors = []
-    for steps in (10, 20, 40):
-        q, qd = start[:2], start[2:]
-        for _ in range(steps):
-            q, qd = rk4_step(arm, effects, q, qd, tau, 0.4 / steps)
-        errors.append(np.linalg.norm([*q, *qd] - exact))
-    order = np.log2(np.array(errors[:-1]) / errors[1:])
-    np.testing.assert_allclose(order, 4.0, atol=0.4)
-    assert errors[-1] < 1e-5
-
-
-@settings(deadline=None, max_examples=20)
-@given(
-    q=st.tuples(st.floats(-3, 3), st.floats(-3, 3)),
-    qd=st.tuples(st.floats(-3, 3), st.floats(-3, 3)),
-    tau=st.tuples(st.floats(-50, 50), st.floats(-20, 20)),
-)
-def test_one_step_can_be_taken_back(q, qd, tau):
-    """Without friction the dynamics run backwards as well as forwards."""
-    q, qd, tau = map(np.array, (q, qd, tau))
-    there = rk4_step(REYES_KELLY_ARM, IDEAL, q, qd, tau, 1e-4)
-    back = rk4_step(REYES_KELLY_ARM, IDEAL, *there, tau, -1e-4)
-    np.testing.assert_allclose(back, (q, qd), atol=1e-9)
 
 
 def test_free_motions_at_once_and_broadcast():
@@ -374,34 +339,6 @@ def test_tracking_error_is_true_position_minus_reference():
     assert recording.tracking_error.max() > 0  # the arm lags behind a falling reference
 
 
-@pytest.mark.parametrize(
-    "controller",
-    [PD, PID((200, 80), (100, 40), (30, 12)), ComputedTorque(ARM, (100, 100), (20, 20))],
-    ids=["PD", "PID", "computed torque"],
-)
-def test_a_batch_of_runs_equals_single_runs(controller):
-    effects = SENSORS.without("torque_sensor")
-    t, reference = short(extents=APPENDIX_I)
-    together = follow(ARM, controller, reference, t, effects=effects)
-    for i in range(6):
-        own = Trajectory(*(x[i] for x in reference))
-        alone = follow(ARM, controller, own, t, effects=effects)
-        for name in ARRAYS:
-            np.testing.assert_allclose(
-                getattr(together, name)[i], getattr(alone, name), rtol=0, atol=1e-14, err_msg=name
-            )
-
-
-def test_runs_may_differ_in_friction_alone():
-    scale = np.array([[0.0, 0.0], [1.0, 1.0], [4.0, 4.0]])
-    level = scale * [0.5, 0.15]
-    together = run(effects=Effects(friction=(ViscousFriction(level),)))
-    assert together.q.shape == (3, 40, 2)
-    for i in range(3):
-        alone = run(effects=Effects(friction=(ViscousFriction(tuple(level[i])),)))
-        np.testing.assert_allclose(together.q[i], alone.q, rtol=0, atol=1e-14)
-
-
 def test_the_reference_is_not_touched():
     t, reference = short()
     before = [x.copy() for x in reference]
@@ -501,22 +438,3 @@ def test_follow_refuses_wrong_kinds(change, words):
     good = dict(controller=PD, reference=Trajectory(*np.zeros((3, 3, 2))), t=[0.0, 0.1, 0.2])
     with pytest.raises(TypeError, match=words):
         follow(ARM, **{**good, **change})
-
-
-def test_substeps_agree_with_an_implicit_solver():
-    friction = (ViscousFriction((5.3, 1.1)), CoulombFriction((8.45, 2.35)))
-    effects = Effects(friction=friction)
-
-    def slide(_, state):
-        qd = state[2:]
-        net = -effects.friction_torque(qd)
-        return np.concatenate([qd, IMI_ARM.forward_dynamics(state[:2], qd, net)])
-
-    start = np.array([0.0, 0.3, 1.0, -2.0])
-    implicit = solve_ivp(slide, (0, 1.0), start, method="Radau", rtol=1e-9, atol=1e-11).y[:, -1]
-    parts = substeps(IMI_ARM, effects, 0.002)
-    assert parts > 4 and substeps(CMU_DD_ARM_II, Effects(), 0.002) == 1
-    _, q, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002 / parts, effects)
-    assert np.allclose(q[-1], implicit[:2], atol=1e-5)
-    _, wild, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002, effects)
-    assert not np.allclose(wild[-1], implicit[:2], atol=1e-5)  # without them it chatters

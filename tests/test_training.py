@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ddlib import training
+from ddlib.descent import Descent, prepare
 from ddlib.experiment import STATE_FEEDBACK
 from ddlib.metrics import rmss
 from ddlib.network import Weights, WindowNetwork
@@ -177,6 +178,25 @@ def test_the_rule_of_1988(data, momentum):
             close(network.weights(), w, rtol=0, atol=1e-4 * moved)
 
 
+@pytest.mark.parametrize("momentum, first", [(0.9, 0.5), (0.3, 0.3)])
+def test_the_warm_up_limits_the_momentum(data, momentum, first):
+    """Three gentle steps, then five with the momentum asked for; the last step is carried on."""
+    start = Weights.random(2, WIDTH, 5, initial=0.5, seed=7)
+    options = dict(rate=4.0, momentum=momentum, epochs=8, progress=False)
+    model, *_ = train_ensemble(start, data, warm_up=3, **options)
+    w = [p.copy() for p in parts(start[1])]
+    dw = [np.zeros_like(p) for p in w]
+    for step in range(8):
+        alpha = first if step < 3 else momentum
+        slopes = gradient(w, data.x, data.y)
+        dw = [-4.0 / len(data.x) * g + alpha * d for g, d in zip(slopes, dw)]
+        w = [p + d for p, d in zip(w, dw)]
+    moved = max(np.abs(a - b).max() for a, b in zip(w, parts(start[1])))
+    close(model.weights[1], w, rtol=0, atol=1e-4 * moved)
+    with pytest.raises(ValueError, match="warm_up must be an integer from 0"):
+        train_ensemble(start, data, warm_up=-1, **options)
+
+
 LONG = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
 
 
@@ -191,15 +211,55 @@ def reference(data):
     return trained
 
 
-@pytest.mark.parametrize("workers", [1, 2, 5])
-def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers):
-    """200 epochs, five members in one to five blocks, against autograd member by member."""
+@pytest.mark.parametrize("workers, block", [(1, 8), (2, 8), (2, 1), (5, 8)])
+def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers, block):
+    """200 epochs, five members in one to six blocks, against autograd member by member."""
     monkeypatch.setattr(training, "WORKERS", workers)
+    monkeypatch.setattr(training, "BLOCK", block)
     model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
     assert history.training.shape == (len(check_points(200)), 5)
     for k, wanted in reference.items():
         largest = max(np.abs(p).max() for p in wanted)
         close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
+
+
+def test_members_may_have_their_own_rate_momentum_and_targets(data, other):
+    """Together as alone; the errors are relative to the spread of the shared targets."""
+    start, rates, momenta = Weights.random(4, WIDTH), [1.0, 2.0, 4.0, 3.0], [0.0, 0.5, 0.9, 0.95]
+    noise = np.random.default_rng(3).normal(size=(4, *data.y.shape))
+    targets = data.y + np.array([0.0, 0.01, 0.02, 0.05])[:, None, None] * noise
+    options = dict(epochs=30, test=other, progress=False)
+    together, errors, _ = train_ensemble(
+        start, data, rate=rates, momentum=momenta, targets=targets, **options
+    )
+    for k in range(4):
+        own = TrainingSet(data.x, targets[k], data.inputs, data.outputs)
+        alone, history, _ = train_ensemble(
+            start[k : k + 1], own, rate=rates[k], momentum=momenta[k], **options
+        )
+        close(together.weights[k], [p[0] for p in parts(alone.weights)], rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(errors.test[:, k], history.test[:, 0], rtol=1e-5)
+        out = together.weights[k].activity(data.x)[1]
+        wanted = np.sqrt((((out - targets[k]) / data.y.std(0)) ** 2).mean())
+        assert errors.training[-1, k] == pytest.approx(wanted, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (dict(rate=[1.0, 2.0]), r"rate must be one number or 3, got shape \(2,\)"),
+        (dict(rate=[1.0, 2.0, np.nan]), "rate must be finite"),
+        (dict(rate=[1.0, 2.0, 0.0]), "rate must lie in"),
+        (dict(momentum=[0.9, 0.9, 1.0]), "momentum must lie in"),
+        (dict(targets=np.zeros((3, 2))), "targets must have shape"),
+        (dict(targets=np.full((3, 80, 2), np.inf)), "targets must be finite"),
+        (dict(snapshots=[6]), "snapshots must be an integer from 0 to 5, got 6"),
+        (dict(snapshots=[-1]), "snapshots must be an integer from 0 to 5"),
+    ],
+)
+def test_options_per_member_are_checked(data, options, words):
+    with pytest.raises(ValueError, match=words):
+        train_ensemble(Weights.random(3, WIDTH), data, epochs=5, progress=False, **options)
 
 
 def test_training_learns(data, other):
@@ -294,6 +354,25 @@ def test_slope_of_a_power_law_is_its_exponent(power, start):
     np.testing.assert_allclose(history.slope(), [power, 0.0], atol=1e-9)
 
 
+def test_members_settle_when_the_slope_is_small():
+    history = History()
+    for epoch in check_points(1000):
+        history.append(int(epoch), [epoch**-0.05, epoch**-0.2, 1.0])
+    np.testing.assert_array_equal(history.settled(), [True, False, True])
+    np.testing.assert_array_equal(history.settled(0.3), [True, True, True])
+    with pytest.raises(ValueError, match="steepest must lie in"):
+        history.settled(-0.1)
+
+
+def test_histories_that_are_too_short_say_so():
+    history = History()
+    history.append(1, [0.5])
+    with pytest.raises(ValueError, match="two points or more, got 1"):
+        history.slope()
+    with pytest.raises(ValueError, match="no test errors"):
+        _ = history.best_test
+
+
 def test_slope_looks_at_the_end_only():
     """Fast descent that has stopped by half the epochs counts as stopped."""
     history = History()
@@ -338,7 +417,6 @@ def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
         np.testing.assert_allclose(history.test[:, k], clean.test[:, k], rtol=1e-5)
 
 
-@pytest.mark.filterwarnings("ignore:All-NaN")
 def test_divergence_of_all_members_is_an_error_that_keeps_the_history(data):
     start = Weights.random(2, WIDTH)
     start = with_member(with_member(start, 0, np.nan), 1, np.nan)
@@ -350,20 +428,22 @@ def test_divergence_of_all_members_is_an_error_that_keeps_the_history(data):
     assert history.derailed.all()
 
 
-@pytest.mark.parametrize("name", ["hidden_weights", "output_weights"])
+@pytest.mark.parametrize("name", NAMES)
 def test_errors_of_members_without_finite_weights_are_nan(data, name):
-    """Also if the step that lost one layer has not reached the other yet."""
+    """Also if the step that lost one weight has not reached the others yet."""
     start = Weights.random(3, WIDTH)
     getattr(start, name)[1].flat[0] = np.inf
-    found = training._error(start, data.x, data.y)
+    descent = Descent(start, data.x, data.y, 0.01, 0.9)
+    found = np.sqrt(descent.mean_square(*prepare(data.x, data.y)).mean(-1))
     np.testing.assert_array_equal(np.isnan(found), [False, True, False])
-    np.testing.assert_allclose(found[0], rmss(start[0].activity(data.x)[1], data.y))
+    out = start[0].activity(data.x)[1]
+    assert found[0] == pytest.approx(np.sqrt(((out - data.y) ** 2).mean()), rel=1e-5)
 
 
 def test_divergence_of_one_network_is_an_error_that_keeps_the_history(data):
     """Sigmoid units saturate at large steps; it takes one beyond float32 to lose the sum."""
-    with pytest.raises(TrainingDiverged, match=r"lower the rate \(1e\+39\)") as info:
-        train(WindowNetwork(WIDTH), data.x, data.y, rate=1e39, momentum=0.95, progress=False)
+    with pytest.raises(TrainingDiverged, match=r"lower the rate \(1e\+38\)") as info:
+        train(WindowNetwork(WIDTH), data.x, data.y, rate=1e38, momentum=0.999, progress=False)
     history = info.value.history
     at = int(re.search(r"at epoch (\d+)", str(info.value))[1])
     assert history.epochs[-1] == at > 1 and len(history.training) == len(history.epochs) > 1
@@ -386,6 +466,7 @@ def test_a_far_too_large_rate_is_seen_as_derailed(data):
         (dict(rate=-1.0), "rate"),
         (dict(rate=np.nan), "rate"),
         (dict(rate=np.inf), "rate"),
+        (dict(rate=1e39), "rate"),
         (dict(momentum=-0.1), "momentum"),
         (dict(momentum=1.0), "momentum"),
         (dict(momentum=np.nan), "momentum"),
@@ -463,7 +544,6 @@ def two_threads():
     torch.set_num_threads(before)
 
 
-@pytest.mark.filterwarnings("ignore:All-NaN")
 def test_torch_gets_its_threads_back(data, two_threads):
     train_ensemble(Weights.random(3, WIDTH), data, epochs=3, progress=False)
     assert torch.get_num_threads() == 2
@@ -481,5 +561,6 @@ def test_progress_is_shown_when_asked_for(data, capsys):
     train_ensemble(Weights.random(2, WIDTH), data, progress=True, **options)
     shown = capsys.readouterr().err
     assert "a cell of the table: 100%" in shown and "median_rmss=" in shown
+    assert "200/200" in shown  # members times epochs
     train_ensemble(Weights.random(2, WIDTH), data, progress=False, **options)
     assert capsys.readouterr().err == ""

@@ -190,3 +190,23 @@ def test_scalers_refuse_bad_values(make, words):
 def test_scalers_refuse_data_of_another_number_of_joints():
     with pytest.raises(ValueError):
         Scaler([0, 0], [1, 1]).scale(np.zeros((5, 3)))
+
+
+@pytest.mark.parametrize("cases", [[1, 2], 5, (3, 4)])
+def test_cases_are_a_slice(cases):
+    with pytest.raises(TypeError, match="cases must be a slice"):
+        sliding_windows(np.zeros((9, 2)), 3, cases)
+
+
+@pytest.mark.parametrize("method", ["scale", "unscale"])
+def test_scalers_refuse_data_that_does_not_fit(method):
+    scaler = Scaler(np.zeros(2), np.ones(2))
+    for data, words in (
+        (np.zeros((4, 1)), r"data must have 2 joints along axis -1, got \(4, 1\)"),
+        (np.float64(1.0), "data must have 2 joints"),
+        (np.array([[0.0, np.nan]]), "data must be finite"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            getattr(scaler, method)(data)
+    with pytest.raises(ValueError, match="data must hold at least one value"):
+        Scaler.fit(np.zeros((0, 2)))

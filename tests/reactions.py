@@ -1,0 +1,74 @@
+"""What a reader does with a widget, and what becomes of its picture."""
+
+from __future__ import annotations
+
+# What a widget draws: where its shapes are, and the pixels of its canvases.
+PICTURE = """
+(widget) => {
+  const places = ["d", "points", "transform", "x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r",
+                  "width", "height", "class"];
+  const shapes = [...widget.querySelectorAll("svg *")].map(
+    (el) => places.map((name) => el.getAttribute(name) ?? "").join(" "));
+  const pixels = [...widget.querySelectorAll("canvas")].map((el) => el.toDataURL());
+  return [...shapes, ...pixels].join("\\n");
+}
+"""
+FRAMES = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
+DRAWING, SLIDER = 'svg[tabindex="0"]', 'input[type="range"]'
+
+
+def handles(root) -> list[Handle]:
+    """The first drawing that can be dragged in and the first slider of a widget."""
+    found = [root.locator(kind).locator("visible=true") for kind in (DRAWING, SLIDER)]
+    return [Handle(root, kind.first) for kind in found if kind.count()]
+
+
+class Handle:
+    """Something in a mounted widget that takes a drag, keys and a touch."""
+
+    def __init__(self, root, handle):
+        self.root, self.handle, self.page = root, handle, root.page
+
+    def picture(self) -> str:
+        """All that is drawn, two frames from now."""
+        self.page.evaluate(FRAMES)
+        return self.root.evaluate(PICTURE)
+
+    def _stands(self) -> float | None:
+        """How far along its way a slider stands."""
+        return self.handle.evaluate(
+            "(el) => (el.max ? (el.value - el.min) / (el.max - el.min) : null)"
+        )
+
+    def _far(self) -> float:
+        """How far across the handle is a place away from where it stands."""
+        stands = self._stands()
+        return 0.7 if stands is None else 0.9 if stands < 0.5 else 0.1
+
+    def _point(self, across: float, up: float = 0.5) -> tuple[float, float]:
+        """A place on the handle, by parts of its width and height."""
+        self.handle.scroll_into_view_if_needed()
+        box = self.handle.bounding_box()
+        return box["x"] + across * box["width"], box["y"] + (1 - up) * box["height"]
+
+    def drag(self) -> None:
+        """With the mouse, from the middle to a place far from where the handle stands."""
+        far = self._far()
+        self.page.mouse.move(*self._point(0.5))
+        self.page.mouse.down()
+        for part in (0.25, 0.5, 0.75, 1.0):
+            self.page.mouse.move(*self._point(0.5 + part * (far - 0.5), 0.5 + 0.1 * part))
+        self.page.mouse.up()
+
+    def press(self) -> None:
+        """A key that goes to where there is room."""
+        stands, before = self._stands(), self.picture()
+        keys = ("ArrowRight", "ArrowLeft") if stands is None else ("End", "Home")
+        self.handle.focus()
+        self.page.keyboard.press(keys[0] if (stands or 0) < 0.5 else keys[1])
+        if stands is None and self.picture() == before:
+            self.page.keyboard.press(keys[1])
+
+    def tap(self) -> None:
+        """With a finger."""
+        self.page.touchscreen.tap(*self._point(self._far()))

@@ -1,0 +1,68 @@
+"""No page breaks any rule of axe-core, in light or in dark, widgets included."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+import chromium
+import pytest
+from book_pages import PAGES
+
+pytestmark = pytest.mark.browser
+
+AXE = (files("axe_playwright_python") / "axe.min.js").read_text(encoding="utf-8")
+
+# Rules of levels A, AA and AAA, best practices and experimental ones: none is left out.
+RUN = """
+async () => {
+  const rules = axe.getRules().map((rule) => rule.ruleId);
+  const runOnly = { type: "rule", values: rules };
+  const { violations } = await axe.run(document, { runOnly, resultTypes: ["violations"] });
+  return violations.flatMap(({ id, impact, nodes }) =>
+    nodes.map(({ target, failureSummary }) =>
+      `${id} (${impact}) at ${target.join(" ")}: ${failureSummary.split("\\n")[1].trim()}`));
+}
+"""
+OPEN_ALL = "document.querySelectorAll('details').forEach((el) => { el.open = true; })"
+
+
+def violations(page) -> list[str]:
+    """What axe finds, with everything unfolded that a reader can unfold."""
+    page.evaluate(OPEN_ALL)
+    chromium.settle(page)
+    page.evaluate(AXE)
+    return page.evaluate(RUN)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("name", [*PAGES, "search", "genindex", "py-modindex"])
+def test_page_breaks_no_rule(name, scheme, site, visit):
+    opened = visit(f"{site}/{name}.html", scheme)
+    assert opened.page.evaluate("document.documentElement.dataset.theme") == scheme
+    assert not violations(opened.page)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_narrow_page_breaks_no_rule(scheme, site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html", scheme, 400)
+    assert not violations(opened.page)
+
+
+@pytest.mark.parametrize("opener", [".search-button-field", ".dropdown-download-buttons > button"])
+def test_what_opens_breaks_no_rule(opener, site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html")
+    opened.page.locator(opener).click()
+    chromium.settle(opened.page)
+    assert not violations(opened.page)
+
+
+def test_faults_are_found(tmp_path, visit):
+    faults = (
+        '<p style="color:#666">pale</p><img src="favicon.svg"><h1>one</h1><h4>four</h4>'
+        "<button></button><details><summary>more</summary><input></details>"
+    )
+    page = tmp_path / "page.html"
+    page.write_text(f'<!doctype html><html lang="en"><title>Faulty</title><main>{faults}</main>')
+    found = " ".join(violations(visit(page.as_uri()).page))
+    for rule in ("image-alt", "button-name", "label", "color-contrast-enhanced", "heading-order"):
+        assert f"{rule} (" in found

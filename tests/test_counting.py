@@ -1,0 +1,115 @@
+"""Numbers that count: right values, every rule of the tally, and a hand-made count."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ddlib.counting import Counted, Operations, Tape
+
+
+def made(**values):
+    """A tape with the named unknown numbers."""
+    tape = Tape()
+    return tape, *(tape.unknown(x) for x in values.values())
+
+
+def test_every_operation_counts_once():
+    tape, x, y = made(x=3.0, y=4.0)
+    results = [x + y, x - y, x * y, x / y, np.sin(x), np.cos(y), 2 / x, 5 - y]
+    wanted = [7.0, -1.0, 12.0, 0.75, math.sin(3.0), math.cos(4.0), 2 / 3, 1.0]
+    assert [r.value for r in results] == pytest.approx(wanted, rel=1e-15)
+    assert tape.executed == Operations(1, 3, 2, 2)
+    assert tape.executed == tape.needed(results)
+
+
+def test_powers_are_repeated_multiplications():
+    tape, x = made(x=1.5)
+    assert (x**3).value == pytest.approx(1.5**3)
+    assert tape.executed == Operations(2, 0)
+    assert (x**1) is x
+    with pytest.raises(ValueError, match="power"):
+        x**0
+    with pytest.raises(TypeError, match="power"):
+        x**0.5
+
+
+def test_what_is_known_is_free():
+    tape, x = made(x=3.0)
+    c = tape.known(2.0)
+    before = c * 5 + np.sin(c) / 7 - np.cos(c) * c**2
+    assert before.value == pytest.approx(10 + math.sin(2) / 7 - math.cos(2) * 4)
+    assert tape.executed == Operations(0, 0)
+    assert (x * before).recipe is not None and tape.executed == Operations(1, 0)
+    assert (x / c).value == 1.5
+    assert tape.executed == Operations(2, 0), "dividing by a constant is one multiplication"
+
+
+def test_zeros_ones_and_signs_are_free():
+    tape, x, y = made(x=3.0, y=4.0)
+    assert (x + 0) is x and (0 + x) is x and (x - 0) is x and (x * 1) is x
+    assert (x * 0)._is(0.0) and (0.0 * x).value == 0.0
+    opposite = -x
+    assert -opposite is x and (x * -1).value == -3.0
+    assert tape.executed == Operations(0, 0)
+    for product in (-x * y, x * -y, y * -x):
+        assert product.value == -12.0
+    assert (-x * -y).value == 12.0
+    assert tape.needed([-x * y, x * -y, -x * -y]) == Operations(1, 0), "one product, two signs"
+    for total in (-x - y, -(x + y), -y + -x):
+        assert total.value == -7.0
+    assert tape.needed([-x - y, -(x + y)]) == Operations(0, 1)
+    assert (y - x).value == 1.0 and (x - y).value == -1.0 and (-x + y).value == 1.0
+
+
+def test_needed_counts_no_repetition_and_nothing_in_vain():
+    tape, x, y = made(x=3.0, y=4.0)
+    first, again, vain = x * y + 1, y * x + 1, x * x * x
+    assert again is first and vain.value == 27.0
+    assert tape.executed == Operations(4, 2)
+    assert tape.needed([first]) == tape.needed([first, again]) == Operations(1, 1)
+    assert tape.needed([x, 5.0, tape.known(2.0)]) == Operations(0, 0)
+
+
+def test_a_matrix_product_costs_what_it_must():
+    tape = Tape()
+    a = [[tape.unknown(i + j + 1.0) for j in range(4)] for i in range(4)]
+    plain = np.array([[x.value for x in row] for row in a])
+    product = [[sum((a[i][k] * a[k][j] for k in range(1, 4)), a[i][0] * a[0][j])
+                for j in range(4)] for i in range(4)]  # fmt: skip
+    np.testing.assert_allclose([[x.value for x in row] for row in product], plain @ plain)
+    assert tape.executed == Operations(64, 48)
+
+
+numbers = st.floats(-10, 10)
+
+
+@given(x=numbers, y=numbers, c=numbers)
+def test_values_are_those_of_plain_arithmetic(x, y, c):
+    def formula(x, y):
+        return (x - c) * -(y * x) + np.cos(x + y) * (2 - y) - -x * np.sin(-y) + c * c * x
+
+    tape = Tape()
+    counted = formula(tape.unknown(x), tape.unknown(y))
+    assert float(counted) == pytest.approx(formula(x, y), rel=1e-9, abs=1e-9)
+    needed, executed = tape.needed([counted]), tape.executed
+    assert all(n <= e for n, e in zip(needed, executed))
+
+
+def test_numpy_numbers_keep_the_tally():
+    _, x = made(x=3.0)
+    for result in (np.float64(2.0) * x, x * np.float64(2.0), np.float64(4.0) + x + 2.0 - 3.0):
+        assert isinstance(result, Counted) and result.value == 6.0
+    assert repr(x) == "Counted(3.0)"
+
+
+def test_refusals():
+    tape, x = made(x=3.0)
+    with pytest.raises(ValueError, match="same tape"):
+        x + Tape().unknown(1.0)
+    with pytest.raises(ValueError, match="value must be finite"):
+        tape.unknown(np.nan)
+    with pytest.raises(TypeError, match="value"):
+        x * "2"

@@ -1,0 +1,131 @@
+"""Figures of the dynamics chapter: sound, accessible, and showing what they were given."""
+
+import inspect
+import re
+import warnings
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from ddlib import figures_dynamics
+from ddlib.arm import CMU_DD_ARM_II
+from ddlib.counting import Operations
+from ddlib.identification import Equations, least_squares
+from ddlib.style import COLOURS, INK, Illustration
+from ddlib.trajectories import APPENDIX_I
+
+SVG = "{http://www.w3.org/2000/svg}"
+NAMES = ("x", "y")
+COUNTS = {
+    "steep": {n: Operations(10**n, 3) for n in (2, 3, 4)},
+    "level": {n: Operations(500, 3) for n in (2, 3, 4)},
+}
+PUBLISHED = {"book": (4, 9000), "paper": (3, 600)}
+
+
+def fitted(repetitions=None, offset=0.0):
+    """Estimates of two parameters of which the truth is 1 and 2."""
+    rng = np.random.default_rng(0)
+    a = rng.normal(size=(50, 2))
+    shape = (50,) if repetitions is None else (repetitions, 50)
+    y = a @ [1.0 + offset, 2.0 + offset] + 0.1 * rng.normal(size=shape)
+    a = np.broadcast_to(a, (*shape, 2))
+    return least_squares(Equations(NAMES, (a,), (y,)))
+
+
+EXAMPLES = {
+    "hand_paths": lambda: figures_dynamics.hand_paths(CMU_DD_ARM_II, APPENDIX_I),
+    "operations": lambda: figures_dynamics.operations(COUNTS, PUBLISHED, (200, 1000)),
+    "estimates": lambda: figures_dynamics.estimates(
+        {"fair": fitted(100), "off": fitted(100, 0.5), "once": fitted()}, [1.0, 2.0], NAMES, 20.0
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return {name: make() for name, make in EXAMPLES.items()}
+
+
+def test_every_figure_has_an_example():
+    functions = inspect.getmembers(figures_dynamics, inspect.isfunction)
+    own = {n for n, f in functions if f.__module__ == figures_dynamics.__name__ and n[0] != "_"}
+    assert own == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_sound_and_accessible(made, name):
+    figure = made[name]
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.attrib["role"] == "img" and root.attrib["aria-label"] == figure.alt
+    assert "nan" not in figure.alt and not re.search(r"\bnan\b", figure.svg)
+    assert INK not in figure.svg and "currentColor" in figure.svg
+    assert len(figure.svg) < 150_000
+    fixed = set(re.findall(r"(?:fill|stroke): (#000000|#ffffff|black|white)", figure.svg))
+    assert not fixed or (name, fixed) == ("hand_paths", {"#ffffff"}), "the joints are white"
+
+
+def test_alt_texts_say_the_numbers(made):
+    l1, l2 = CMU_DD_ARM_II.lengths
+    bend = np.deg2rad(45.0)  # the largest elbow angle is the shortest reach
+    near = np.sqrt(l1**2 + l2**2 + 2 * l1 * l2 * np.cos(bend))
+    assert f"from {near:.2f} to {l1 + l2:.2f} m" in made["hand_paths"].alt
+    assert "steep: 10,000; level: 500" in made["operations"].alt
+    assert "off: x 50, y 25" in made["estimates"].alt and "fair: x" in made["estimates"].alt
+
+
+def lines(svg, colour):
+    """Vertices of the open paths of a colour, ``(points, 2)`` each, y downwards."""
+    found = []
+    for e in ET.fromstring(svg).iter(f"{SVG}path"):
+        if f"stroke: {colour}" in e.attrib.get("style", "") and "clip-path" in e.attrib:
+            found.append(np.array(re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", e.attrib["d"]), float))
+    return found
+
+
+def test_counts_are_drawn_on_a_logarithmic_scale(made):
+    steep = max(lines(made["operations"].svg, COLOURS[0]), key=len)
+    assert len(steep) == 3
+    assert np.ptp(np.diff(steep[:, 1])) < 0.02 and (np.diff(steep[:, 1]) < 0).all()
+    level = max(lines(made["operations"].svg, COLOURS[1]), key=len)
+    assert np.ptp(level[:, 1]) < 0.01
+
+
+def test_hand_paths_begin_in_one_point_and_end_where_the_arm_does(made):
+    ends = []
+    for colour in COLOURS:
+        path = max(lines(made["hand_paths"].svg, colour), key=len)
+        ends.append((path[0], path[-1]))
+    starts, turns = np.array(ends).swapaxes(0, 1)
+    assert np.ptp(starts, axis=0).max() < 0.02
+    t = np.deg2rad(-APPENDIX_I)
+    l1, l2 = CMU_DD_ARM_II.lengths
+    x = l1 * np.cos(t[:, 0]) + l2 * np.cos(t.sum(1))
+    y = l1 * np.sin(t[:, 0]) + l2 * np.sin(t.sum(1))
+    for drawn, data in ((turns[:, 0], x), (turns[:, 1], y)):
+        fit = np.polyfit(data, drawn, 1)
+        np.testing.assert_allclose(drawn, np.polyval(fit, data), atol=0.02)
+
+
+def test_shares_stand_beside_repeated_estimates_only(made):
+    texts = re.findall(r"<!-- (\d+) % -->", made["estimates"].svg)
+    assert len(texts) == 4, "two rows with repetitions, two panels"
+    fair = fitted(100).covers([1.0, 2.0]).mean(0)
+    assert texts[:2] == [f"{100 * fair[0]:.0f}", "0"] and texts[2] == f"{100 * fair[1]:.0f}"
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: figures_dynamics.hand_paths(CMU_DD_ARM_II, [np.nan, 0.0]), "extents_deg must"),
+        (lambda: figures_dynamics.estimates({"a": fitted()}, [1.0, 2.0], NAMES, 0.0), "limit"),
+        (lambda: figures_dynamics.estimates({"a": fitted()}, [1.0], NAMES, 5.0), "truth must"),
+    ],
+)
+def test_refusals(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()

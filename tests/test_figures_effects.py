@@ -1,0 +1,91 @@
+"""Figures of the chapter on unmodelled effects: accessible, and true to the numbers given."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from ddlib import figures_effects
+from ddlib.style import COLOURS, INK, Illustration
+
+SVG = "{http://www.w3.org/2000/svg}"
+X = np.linspace(1.0, 10.0, 5)
+PANELS = {
+    ("a", "b"): {"one": (X, X), "two": (X, X**2)},
+    ("c", "d"): {"two": (X, 2 * X), "three": (X, 3 * X)},
+    ("e", "f"): {"alone": (X, X)},
+}
+SIZES = {"small": [0.02, 0.01], "large": [8.0, 2.0], "middle": [0.5, 0.9]}
+EXAMPLES = {
+    "panels": lambda: figures_effects.side_by_side(PANELS, "three panels"),
+    "logarithmic": lambda: figures_effects.side_by_side(PANELS, "the same", log=True),
+    "ranking": lambda: figures_effects.ranking(SIZES),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {name: make() for name, make in EXAMPLES.items()}
+
+
+def strokes(figure, colour) -> list[np.ndarray]:
+    """Vertices of the curves of a colour, y downwards."""
+    found = []
+    for element in ET.fromstring(figure.svg).iter(f"{SVG}path"):
+        style = element.attrib.get("style", "")
+        if f"stroke: {colour}" in style and "clip-path" in element.attrib:
+            numbers = re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", element.attrib["d"])
+            found.append(np.array(numbers, float))
+    return found
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_sound_and_accessible(made, name):
+    figure = made[name]
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.attrib["role"] == "img" and root.attrib["aria-label"] == figure.alt
+    assert INK not in figure.svg and "currentColor" in figure.svg
+    assert not re.search(r"\bnan\b", figure.svg) and len(figure.svg) < 150_000
+
+
+def test_a_curve_looks_the_same_in_every_panel(made):
+    """One: first colour, and the one that stands alone; two: second, twice; three: third."""
+    assert [len(strokes(made["panels"], c)) for c in COLOURS[:4]] == [2, 2, 1, 0]
+
+
+def test_curves_are_drawn_to_scale(made):
+    """Both axes linear: a straight line in both; logarithmic: a power is a line, twice as steep."""
+    line, square = strokes(made["panels"], COLOURS[0])[0], strokes(made["panels"], COLOURS[1])[0]
+    assert np.ptp(np.diff(line[:, 1])) < 0.05 and np.ptp(np.diff(square[:, 1])) > 1
+    one, two = (strokes(made["logarithmic"], c)[0] for c in COLOURS[:2])
+    slopes = [np.diff(p[:, 1]) / np.diff(p[:, 0]) for p in (one, two)]
+    np.testing.assert_allclose(slopes[1], 2 * slopes[0], rtol=0.01)
+
+
+def test_bars_stand_in_order_and_are_as_long_as_their_logarithms(made):
+    figure = made["ranking"]
+    assert figure.alt == (
+        "Bars of torque in N m for shoulder and elbow, largest first: large 8.0 and 2.0; "
+        "middle 0.50 and 0.90; small 0.020 and 0.010."
+    )
+    bars = []
+    for element in ET.fromstring(figure.svg).iter(f"{SVG}path"):
+        if (
+            f"fill: {COLOURS[0]}" in element.attrib.get("style", "")
+            and "clip-path" in element.attrib
+        ):
+            corners = np.array(re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", element.attrib["d"]), float)
+            bars.append((corners[:, 1].mean(), np.ptp(corners[:, 0])))
+    lengths = np.array([length for _, length in sorted(bars)])
+    np.testing.assert_allclose(
+        np.diff(lengths) / lengths[0], np.diff(np.log10([8.0, 0.5, 0.02])) / np.log10(8.0 / 0.01),
+        rtol=0.01,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("bad", [[0.0, 1.0], [-1.0, 1.0], [np.nan, 1.0], [1.0]])
+def test_torques_without_a_logarithm_are_refused(bad):
+    with pytest.raises(ValueError, match="sizes"):
+        figures_effects.ranking({"good": [1.0, 1.0], "bad": bad})

@@ -1,0 +1,216 @@
+"""Chapters with widgets in a real JupyterLab: run all, move a control, kill the kernel, go on."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+
+import pytest
+from book_pages import ROOT, WITH_WIDGETS, source
+from reactions import Handle, handles
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+TOKEN = "token-of-the-test"
+STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
+NOTE = "The kernel does not answer"
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    """The address of a JupyterLab on a copy of the book, with settings of its own."""
+    home = tmp_path_factory.mktemp("lab")
+    shutil.copytree(ROOT / "book", home / "book", ignore=shutil.ignore_patterns(".*", "_*"))
+    settings = home / "settings" / "@jupyterlab" / "notebook-extension"
+    settings.mkdir(parents=True)
+    # every cell is in the page, so that every widget is
+    (settings / "tracker.jupyterlab-settings").write_text('{"windowingMode": "none"}')
+    folders = {
+        "JUPYTER_CONFIG_DIR": "config",
+        "JUPYTER_DATA_DIR": "data",
+        "JUPYTER_RUNTIME_DIR": "runtime",
+        "JUPYTERLAB_SETTINGS_DIR": "settings",
+        "JUPYTERLAB_WORKSPACES_DIR": "workspaces",
+        "IPYTHONDIR": "ipython",
+    }
+    options = [
+        "--no-browser",
+        "--ServerApp.ip=127.0.0.1",
+        "--ServerApp.port=0",
+        f"--ServerApp.root_dir={home}",
+        f"--IdentityProvider.token={TOKEN}",
+        "--LabApp.expose_app_in_browser=True",
+        "--LabApp.extension_manager=readonly",
+        "--LabApp.news_url=None",
+        "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate",
+        *(["--allow-root"] if os.geteuid() == 0 else []),
+    ]
+    log = home / "log.txt"
+    with log.open("w") as output:
+        server = subprocess.Popen(
+            [sys.executable, "-m", "jupyterlab", *options],
+            env={
+                **os.environ,
+                "OMP_NUM_THREADS": "1",
+                **{name: str(home / folder) for name, folder in folders.items()},
+            },
+            stdout=output,
+            stderr=subprocess.STDOUT,
+        )
+        try:
+            yield address(home / "runtime", server, log)
+        finally:
+            server.terminate()
+            server.wait(30)
+
+
+def address(runtime: Path, server: subprocess.Popen, log: Path) -> str:
+    """Where the server listens, once it answers."""
+    end = time.monotonic() + STARTING
+    while time.monotonic() < end and server.poll() is None:
+        for info in runtime.glob("jpserver-*.json"):
+            try:
+                url = json.loads(info.read_text())["url"]
+                request(url + "api/status")
+                return url
+            except (OSError, ValueError):  # half-written, or not yet listening
+                pass
+        time.sleep(0.2)
+    pytest.fail(f"JupyterLab did not start:\n{log.read_text()[-3000:]}")
+
+
+def request(url: str, method: str = "GET"):
+    """What the server's REST interface answers."""
+    headers = {"Authorization": f"token {TOKEN}"}
+    with urllib.request.urlopen(
+        urllib.request.Request(url, method=method, headers=headers), timeout=30
+    ) as answer:
+        text = answer.read()
+    return json.loads(text) if text else None
+
+
+OPEN = """
+async (path) => {
+  const app = window.jupyterapp;
+  await app.restored;
+  const panel = await app.commands.execute("docmanager:open", { path, factory: "Notebook" });
+  await panel.context.ready;
+  await panel.sessionContext.ready;
+  while (panel.sessionContext.session?.kernel?.status !== "idle") {
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  window.panel = panel;
+  app.commands.execute("notebook:run-all-cells");
+}
+"""
+# Every code cell has its prompt number, or one has failed.
+RAN = """
+() => {
+  const cells = [...window.panel.content.model.cells].filter((cell) => cell.type === "code");
+  const errors = cells.flatMap((cell) => cell.outputs.toJSON())
+    .filter((output) => output.output_type === "error" || output.name === "stderr");
+  const todo = cells.filter((cell) => cell.executionCount === null);
+  return { todo: todo.length, errors: errors.map((e) => (e.evalue ?? e.text).slice(0, 500)) };
+}
+"""
+# Models of the widgets that cells have shown, in the order of the page.
+SHOWN = """
+() => [...window.panel.content.model.cells].filter((cell) => cell.type === "code")
+  .flatMap((cell) => cell.outputs.toJSON())
+  .map((output) => output.data?.["application/vnd.jupyter.widget-view+json"]?.model_id)
+  .filter(Boolean)
+"""
+ASK = """
+async (code) => {
+  const kernel = window.panel.sessionContext.session.kernel;
+  const future = kernel.requestExecute({ code, store_history: false });
+  let text = "";
+  future.onIOPub = ({ content }) => {
+    text += content.text ?? content.traceback?.join("\\n") ?? "";
+  };
+  await future.done;
+  return text;
+}
+"""
+
+
+def wait(page, what: str, condition, seconds: float):
+    """Until the condition holds; its value."""
+    end = time.monotonic() + seconds
+    while not (value := condition()):
+        assert time.monotonic() < end, f"still waiting for {what}"
+        page.wait_for_timeout(100)
+    return value
+
+
+def values(page, model: str) -> dict:
+    """The parameters of a widget, as Python has them."""
+    code = (
+        "import json as _json\n"
+        "from ipywidgets.widgets.widget import _instances\n"
+        f"print(_json.dumps(_instances[{model!r}].values))"
+    )
+    return json.loads(page.evaluate(ASK, code))
+
+
+def run_all(page):
+    def done():
+        state = page.evaluate(RAN)
+        assert not state["errors"]
+        return state["todo"] == 0
+
+    wait(page, "the last prompt number", done, RUNNING)
+
+
+def reacts(page, handle: Handle, model: str):
+    """A change reaches Python, and exact values come back."""
+    before, picture = values(page, model), handle.picture()
+    handle.press()
+    assert handle.picture() != picture
+    wait(page, "the trait in Python", lambda: values(page, model) != before, ANSWER)
+    exact = handle.root.and_(page.locator("[data-values=exact]"))
+    wait(page, "exact values", lambda: exact.count() == 1, ANSWER)
+    assert not handle.root.get_by_text(NOTE).is_visible()
+
+
+def reacts_alone(page, handle: Handle):
+    """A change is drawn from baked values, and the reader is told so."""
+    picture = handle.picture()
+    handle.press()
+    wait(page, "a redraw without kernel", lambda: handle.picture() != picture, ANSWER)
+    note = handle.root.get_by_text(NOTE)
+    wait(page, "the note", note.is_visible, ANSWER)
+    interpolated = handle.root.and_(page.locator("[data-values=interpolated]"))
+    wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
+
+
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, browser):
+    context = browser.new_context(viewport={"width": 1400, "height": 900})
+    context.set_default_timeout(1000 * STARTING)
+    page = context.new_page()
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.goto(f"{lab}lab?token={TOKEN}&reset")
+    page.wait_for_selector("#jp-main-dock-panel")
+    page.evaluate(OPEN, f"book/{source(name).name}")
+    run_all(page)
+
+    models = page.evaluate(SHOWN)
+    roots = page.locator(".jp-OutputArea-output .ddlib-widget")
+    wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)
+    firsts = [handles(roots.nth(k))[0] for k in range(len(models))]
+    for handle, model in zip(firsts, models):
+        reacts(page, handle, model)
+    kernel = page.evaluate("window.panel.sessionContext.session.kernel.id")
+    request(f"{lab}api/kernels/{kernel}", "DELETE")
+    for handle in firsts:
+        reacts_alone(page, handle)
+    assert not errors
+    context.close()

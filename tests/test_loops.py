@@ -1,0 +1,212 @@
+"""Loops around the arm: prediction against simulation, Figure 2-1 as a program, scores."""
+
+import numpy as np
+import pytest
+
+from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.controllers import PID, Feedforward, pd, proportional
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.experiment import KD, KP
+from ddlib.loops import (
+    Load,
+    SecondOrderModel,
+    fast_pick_and_place,
+    feedforward_system,
+    predicted_response,
+    run_system,
+    score,
+    simulated_response,
+)
+from ddlib.simulate import Recording, follow, record
+from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
+
+ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)
+PD, KI = pd(KP, KD), (150.0, 45.0)
+
+
+def still(t, posture=(0.0, 0.0)):
+    q = np.zeros((t.size, 2)) + posture
+    return Trajectory(q, 0 * q, 0 * q)
+
+
+# --- linear analysis against the simulation -------------------------------------------
+
+
+@pytest.mark.parametrize("joint", [0, 1])
+@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.3, -1.0), (0.0, 1.6)])
+@pytest.mark.parametrize("law", [PD, PID(KP, KI, KD)], ids=["PD", "PID"])
+def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
+    options = {"viscous": VISCOUS, "posture": posture, "joint": joint}
+    predicted = predicted_response(ARM, law, **options)
+    simulated = simulated_response(ARM, law, **options)
+    assert simulated.overshoot == pytest.approx(predicted.overshoot, rel=0.05)
+    assert simulated.bandwidth == pytest.approx(predicted.bandwidth, rel=0.05)
+    # a steady error relative to that of the spring alone: an integral leaves none
+    spring = 1 / KP[joint]
+    assert simulated.compliance / spring == pytest.approx(predicted.compliance / spring, abs=0.05)
+    assert predicted.compliance == pytest.approx(0 if law.ki[joint] else spring, abs=1e-9)
+
+
+def test_prediction_and_simulation_agree_for_a_ringing_loop():
+    law, options = proportional(KP), {"viscous": VISCOUS, "joint": 0}
+    predicted = predicted_response(ARM, law, **options)
+    simulated = simulated_response(ARM, law, **options)
+    assert simulated.overshoot == pytest.approx(predicted.overshoot, rel=0.05)
+    assert simulated.compliance == pytest.approx(predicted.compliance, rel=0.05)
+    assert predicted.overshoot > 0.8 and np.isnan(simulated.bandwidth)
+
+
+def test_agreement_has_its_limits():
+    """Bent arms swing away from where they were linearised; dry friction is not linear at all."""
+    options = {"viscous": VISCOUS, "posture": (0.0, 1.6), "joint": 1}
+    predicted = predicted_response(ARM, PD, **options)
+    far = simulated_response(ARM, PD, step_deg=120, seconds=3.0, **options)
+    assert abs(far.overshoot / predicted.overshoot - 1) > 0.1
+    dry = Effects(friction=(CoulombFriction((0.5, 0.15)),))
+    tiny = simulated_response(ARM, PD, step_deg=0.1, seconds=3.0, effects=dry, **options)
+    assert tiny.overshoot < 0.1 * predicted.overshoot
+
+
+def test_gain_raises_bandwidth_and_lowers_compliance():
+    soft, hard = (
+        predicted_response(ARM, pd(n * np.array(KP), KD), viscous=VISCOUS) for n in (1, 2)
+    )
+    assert hard.bandwidth > soft.bandwidth
+    assert hard.compliance == pytest.approx(soft.compliance / 2)
+
+
+def test_load_displaces_a_spring():
+    t = np.arange(5000) * 0.002
+    effects = Effects(friction=(ViscousFriction(VISCOUS),), actuator=(Load((3.0, -0.9)),))
+    q = follow(ARM, PD, still(t), t, effects=effects).q_true[-1]
+    np.testing.assert_allclose(q, np.array([3.0, -0.9]) / KP, rtol=1e-6)
+
+
+# --- the second-order model -----------------------------------------------------------
+
+
+def test_second_order_model_is_the_arm_at_its_posture_and_at_rest():
+    rng = np.random.default_rng(0)
+    qdd = rng.normal(size=(5, 2))
+    for posture in ((0.0, 0.0), (0.4, -1.1)):
+        model = SecondOrderModel(ARM, posture, VISCOUS)
+        q = np.zeros((5, 2)) + posture
+        np.testing.assert_allclose(model(q, 0 * qdd, qdd), ARM.inverse_dynamics(q, 0 * qdd, qdd))
+        np.testing.assert_allclose(model(q, qdd, 0 * qdd), qdd * VISCOUS)
+
+
+def test_second_order_model_decouples_the_elbow():
+    """Trajectory 4 moves the shoulder alone; the elbow's reference rests."""
+    error = [
+        np.abs(record(ARM, law, APPENDIX_I[3]).tracking_error[150:300, 1]).max()
+        for law in (PD, Feedforward(SecondOrderModel(ARM), PD))
+    ]
+    assert error[1] < 0.5 * error[0]
+
+
+# --- Figure 2-1 as a program ----------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", [ARM, SecondOrderModel(ARM)], ids=["full", "second order"])
+def test_interconnected_system_is_the_simulators_loop(model):
+    """The same motion twice: continuous by python-control, sampled by `follow`; and the gap
+    between them is the hold's, so it shrinks with the control period."""
+    system = feedforward_system(ARM, model, KP, KD, VISCOUS)
+    t = np.arange(150) * 0.01
+    extents = APPENDIX_I[1]
+    drawn = run_system(system, pick_and_place(extents, t), t)
+    gaps = []
+    for period in (0.002, 0.001):
+        fine = np.arange(round(1.5 / period)) * period
+        built = follow(
+            ARM, Feedforward(model, PD), pick_and_place(extents, fine), fine,
+            effects=Effects(friction=(ViscousFriction(VISCOUS),)),
+            log_every=round(0.01 / period),
+        )  # fmt: skip
+        gaps.append(np.abs(np.rad2deg(drawn.q - built.q_true)).max())
+        assert np.abs(drawn.tau - built.tau_true).max() < 0.05 * np.abs(built.tau_true).max()
+    assert gaps[0] < 0.05 and gaps[1] < 0.7 * gaps[0]
+
+
+def test_interconnected_system_has_the_figures_blocks():
+    system = feedforward_system(ARM, ARM, KP, KD)
+    assert {block.name for block in system.syslist} == {
+        "inverse_arm", "comparison", "feedback", "sum", "arm",
+    }  # fmt: skip
+    assert (system.ninputs, system.noutputs, system.nstates) == (6, 6, 4)
+    # one evaluation by hand: torque = inverse arm + gains * error
+    reference, x = np.array([0.1, -0.2, 0.3, 0.4, -0.5, 0.6]), np.array([0.2, 0.1, -0.3, 0.2])
+    q, qd, qdd = np.split(reference, 3)
+    tau = ARM.inverse_dynamics(q, qd, qdd) + KP * (q - x[:2]) + KD * (qd - x[2:])
+    np.testing.assert_allclose(system.output(0.0, x, reference), [*x, *tau])
+    rate = system.dynamics(0.0, x, reference)
+    np.testing.assert_allclose(rate[2:], ARM.forward_dynamics(x[:2], x[2:], tau))
+
+
+def test_gravity_belongs_to_the_system_too():
+    """A vertical arm, held by a perfect model, stays."""
+    t = np.arange(100) * 0.01
+    posture = (0.5, 0.3)
+    arm = REYES_KELLY_ARM
+    held = run_system(feedforward_system(arm, arm, KP, KD), still(t, posture), t)
+    np.testing.assert_allclose(held.q, still(t, posture).q, atol=1e-6)
+    free = run_system(
+        feedforward_system(arm, lambda q, qd, qdd: 0 * q, KP, KD), still(t, posture), t
+    )
+    assert np.abs(free.q - posture).max() > 0.01
+
+
+# --- references and scores ------------------------------------------------------------
+
+
+def test_fast_member_is_the_same_path_in_less_time():
+    t = np.linspace(0.0, 0.99, 100)
+    slow, fast = pick_and_place(APPENDIX_I[0], 3 * t), fast_pick_and_place(APPENDIX_I[0], t, 3)
+    np.testing.assert_array_equal(fast.q, slow.q)
+    np.testing.assert_allclose(np.gradient(fast.q[:, 0], t)[1:-1], fast.qd[1:-1, 0], atol=0.01)
+    np.testing.assert_allclose(np.gradient(fast.qd[:, 0], t)[1:-1], fast.qdd[1:-1, 0], atol=0.01)
+    unchanged = fast_pick_and_place(APPENDIX_I[0], t, 1)
+    np.testing.assert_array_equal(unchanged.qdd, pick_and_place(APPENDIX_I[0], t).qdd)
+
+
+def test_scores_of_a_made_up_recording():
+    """A constant error of 1 degree at the elbow, 3 degrees in the first third."""
+    t = time_grid(0.01, 0.5)
+    reference = still(t)
+    q = np.zeros((2, t.size, 2))
+    q[:, :, 1] = np.deg2rad(np.where((t >= 0) & (t < 1), 3.0, 1.0))
+    q[:, t < 0] = 7.0  # outside the motion nothing counts
+    tau = np.broadcast_to([3.0, 4.0], q.shape)
+    result = score(ARM, Recording(t, reference, q, tau, q, 0 * q, tau))
+    np.testing.assert_allclose(result["largest, °"], 3)
+    np.testing.assert_allclose(result["settled, °"], np.sqrt(0.5))
+    np.testing.assert_allclose(result["whole, °"], np.sqrt((9 + 1 + 1) / 6))
+    chord = 2e3 * ARM.lengths[1] * np.sin(np.deg2rad(0.5))
+    np.testing.assert_allclose(result["hand, mm"], chord)
+    np.testing.assert_allclose(result["turn, mm"], chord)
+    np.testing.assert_allclose(result["effort, N m"], 5)
+    assert result["turn, mm"].shape == (2,)
+
+
+# --- refusals -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: Load((1.0, np.nan)), "torque"),
+        (lambda: SecondOrderModel(ARM, (0.0,)), "posture"),
+        (lambda: SecondOrderModel(ARM, viscous=(-1.0, 0.0)), "viscous"),
+        (lambda: predicted_response(ARM, PD, viscous=VISCOUS, joint=2), "joint"),
+        (lambda: predicted_response(ARM, PD, viscous=(-1, 0)), "viscous"),
+        (lambda: simulated_response(ARM, PD, viscous=VISCOUS, joint=2), "joint"),
+        (lambda: simulated_response(ARM, PD, viscous=VISCOUS, step_deg=0), "step_deg"),
+        (lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD), "kp"),
+        (lambda: feedforward_system(ARM, ARM, KP, (-1, 0)), "kd"),
+        (lambda: fast_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
+        (lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0), "seconds"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        call()

@@ -1,0 +1,367 @@
+"""The plant: order of the integrator, joints that truly stick, springs and their energy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from ddlib.actuators import FlexibleJoint, Ripple
+from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
+from ddlib.effects import IDEAL, Effects
+from ddlib.friction import (
+    CoulombFriction,
+    StickSlipFriction,
+    StribeckFriction,
+    ViscousFriction,
+)
+from ddlib.plant import Plant, substeps
+from ddlib.simulate import free_motion
+
+ARM = CMU_DD_ARM_II
+STICKY = StickSlipFriction((0.5, 0.15), (0.65, 0.2))
+SHAFT = FlexibleJoint((2e3, 6e2), (0.4, 0.15))
+PAIR = st.tuples(st.floats(-3, 3), st.floats(-3, 3)).map(np.array)
+
+
+def stick(*frictions, **parts):
+    return Effects(friction=frictions or (STICKY,), **parts)
+
+
+def march(plant, x, v, tau, step, count):
+    """States along `count` steps under a constant torque."""
+    states = [(x, v)]
+    for _ in range(count):
+        states.append(plant.advance(*states[-1], tau, step))
+    return [np.stack(series) for series in zip(*states)]
+
+
+def total_energy(arm, shaft, x, v):
+    mass = shaft.mass_matrix(arm, x[..., :2])
+    kinetic = 0.5 * np.einsum("...i,...ij,...j", v, mass, v)
+    potential = arm.potential_energy(x[..., :2]) + shaft.energy(x[..., 2:] - x[..., :2])
+    return kinetic + potential
+
+
+# --- the integrator ---------------------------------------------------------------------
+
+
+def test_runge_kutta_is_of_fourth_order():
+    arm, tau = REYES_KELLY_ARM, np.array([20.0, -3.0])
+    effects = Effects(friction=(ViscousFriction((2.3, 0.2)),))
+
+    def rate(_, y):
+        net = tau - effects.friction_torque(y[2:])
+        return [*y[2:], *arm.forward_dynamics(y[:2], y[2:], net)]
+
+    start = np.array([0.4, 0.6, 1.0, -0.5])
+    exact = solve_ivp(rate, (0, 0.4), start, "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    errors = []
+    for steps in (10, 20, 40):
+        q, qd = march(Plant(arm, effects), start[:2], start[2:], tau, 0.4 / steps, steps)
+        errors.append(np.linalg.norm([*q[-1], *qd[-1]] - exact))
+    order = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(order, 4.0, atol=0.4)
+    assert errors[-1] < 1e-5
+
+
+@settings(deadline=None, max_examples=20)
+@given(q=PAIR, qd=PAIR, tau=st.tuples(st.floats(-50, 50), st.floats(-20, 20)).map(np.array))
+def test_one_step_can_be_taken_back(q, qd, tau):
+    """Without friction the dynamics run backwards as well as forwards."""
+    plant = Plant(REYES_KELLY_ARM, IDEAL)
+    there = plant.advance(q, qd, tau, 1e-4)
+    back = plant.advance(*there, tau, -1e-4)
+    np.testing.assert_allclose(back, (q, qd), atol=1e-9)
+
+
+def test_cogging_stores_energy_and_gives_it_back():
+    """Its torque is minus the slope of ``cogging / cycles cos(cycles q)``."""
+    ripple = Ripple(cogging=(2.0, 0.5), cycles=(7, 12), phase=0.4)
+    _, q, qd = free_motion(ARM, [0.3, 0.5], [1.0, -2.5], 4.0, effects=Effects(motor=(ripple,)))
+    stored = np.array([2.0, 0.5]) / [7, 12] * np.cos(np.array([7, 12]) * q + 0.4)
+    moving = ARM.kinetic_energy(q, qd)
+    np.testing.assert_allclose(moving + stored.sum(-1), moving[0] + stored[0].sum(), rtol=1e-6)
+    assert np.ptp(moving) > 0.1
+
+
+@pytest.mark.parametrize("flexible", [False, True], ids=["rigid", "flexible"])
+def test_mobility_is_the_inverse_of_the_mass_matrix(flexible):
+    arm, q = REYES_KELLY_ARM, np.random.default_rng(0).normal(size=(20, 2))
+    shaft = FlexibleJoint((2e3, 6e2), (0.2, 0.02))
+    plant = Plant(arm, Effects(transmission=(shaft,) if flexible else ()))
+    mass = shaft.mass_matrix(arm, q) if flexible else arm.mass_matrix(q)
+    columns = plant._mobility(plant.rest(q)[0])
+    np.testing.assert_allclose(columns, np.linalg.inv(mass)[..., -2:], rtol=1e-9, atol=1e-12)
+
+
+# --- joints that stick ------------------------------------------------------------------
+
+
+@settings(deadline=None, max_examples=50)
+@given(q=PAIR, share=st.tuples(st.floats(-1, 1), st.floats(-1, 1)).map(np.array))
+def test_a_stuck_arm_does_not_move_at_all(q, share):
+    """Up to the breakaway torque friction equals the applied torque, and does no work."""
+    x, v = march(Plant(ARM, stick()), q, np.zeros(2), share * STICKY.breakaway, 0.002, 20)
+    assert (x == q).all() and not v.any()
+
+
+@settings(deadline=None, max_examples=100)
+@given(q=PAIR, tau=PAIR)
+def test_friction_at_rest_is_as_large_as_it_has_to_be_and_no_larger(q, tau):
+    """What friction was follows from the motion: within its limits, and at them if it moves."""
+    step = 1e-6
+    _, v = Plant(ARM, stick()).advance(q, np.zeros(2), tau, step)
+    friction = tau - ARM.inverse_dynamics(q, np.zeros(2), v / step)
+    limit = np.array(STICKY.breakaway)
+    assert (np.abs(friction) <= limit + 1e-5).all()
+    moving = v != 0
+    np.testing.assert_allclose(friction[moving], (limit * np.sign(v))[moving], atol=1e-5)
+    # Gauss: no other choice of sticking and sliding is consistent with that
+    assert not moving.any() or (np.abs(tau) > limit).any()
+
+
+@pytest.mark.parametrize("flexible", [False, True], ids=["rigid", "flexible"])
+@pytest.mark.parametrize("arm", [ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
+def test_friction_never_creates_energy(arm, flexible):
+    shaft = FlexibleJoint((2e3, 6e2), (0.2, 0.02))
+    friction = StickSlipFriction((5.0, 1.5), (7.0, 2.0))
+    plant = Plant(arm, stick(friction, transmission=(shaft,) if flexible else ()))
+    q, qd = np.random.default_rng(1).uniform(-3, 3, (2, 40, 2))
+    x, v = plant.rest(q)
+    v = v + (np.tile(qd, 2) if flexible else qd)
+    x, v = march(plant, x, v, np.zeros(2), 0.001, 400)
+    if flexible:
+        energy = total_energy(arm, shaft, x, v)
+    else:
+        energy = arm.potential_energy(x) + arm.kinetic_energy(x, v)
+    assert np.diff(energy, axis=0).max() < 1e-7 * np.ptp(energy)
+    assert (~v[..., -2:].astype(bool)).any((0, 2)).mean() > 0.5  # many have come to a stop
+    assert (energy[-1] < energy[0] - 0.1).all()
+
+
+def test_an_arm_that_slides_to_a_stop_stays_there():
+    q, v = march(Plant(ARM, stick()), np.zeros(2), np.array([0.1, -0.15]), np.zeros(2), 0.002, 1500)
+    last = np.flatnonzero(v.any(-1))[-1]
+    assert 100 < last < 1400
+    assert (q[last + 1 :] == q[-1]).all() and not v[last + 1 :].any()
+
+
+def test_a_hanging_arm_rests_where_it_is_held():
+    """Gravity within the breakaway torque holds it away from its lowest point; smooth
+    friction lets it creep."""
+    arm, q = REYES_KELLY_ARM, np.array([0.1, 0.2])
+    limit = 1.01 * np.abs(arm.gravity(q))
+    _, held, _ = free_motion(arm, q, [0, 0], 2.0, 0.002, stick(StickSlipFriction(limit, limit)))
+    assert (held == q).all()
+    _, creeping, _ = free_motion(
+        arm, q, [0, 0], 2.0, 0.002, Effects(friction=(CoulombFriction(limit, 0.02),))
+    )
+    assert np.abs(creeping[-1] - q).max() > 1e-3
+
+
+def test_sliding_distance_in_closed_form():
+    """One joint against constant friction stops after J v^2 / (2 F) and J v / F seconds."""
+    level = np.array([2.0, 1e6])  # the elbow cannot move
+    plant = Plant(ARM, stick(StickSlipFriction(level, level)))
+    inertia = ARM.mass_matrix([0.0, 0.4])[0, 0]
+    errors = []
+    for step in (0.002, 0.001):
+        count = round(1.2 / step)
+        x, v = march(plant, np.array([0.0, 0.4]), np.array([0.3, 0.0]), np.zeros(2), step, count)
+        assert (x[:, 1] == 0.4).all() and not v[:, 1].any()
+        assert np.count_nonzero(v[:, 0]) == pytest.approx(inertia * 0.3 / 2.0 / step, abs=1)
+        errors.append(x[-1, 0] - inertia * 0.3**2 / (2 * 2.0))
+    assert np.abs(errors).max() < 2.0 / inertia * 0.002**2
+
+
+def test_stick_slip_against_its_closed_form():
+    """A spring pulled steadily: stick until the breakaway torque F_s, slip, stick again.
+
+    With friction that falls at once to F_c the spring's stretch swings about F_c / k while
+    the joint slips: it begins A = (F_s - F_c) / k above and ends as far below, after
+    2 (pi - arctan(A w / V)) / w with w = sqrt(k / J) and the pull's speed V.
+    """
+    k, pull, coulomb, breakaway = 400.0, 0.05, 1.0, 3.0
+    friction = StickSlipFriction((coulomb, 1e6), (breakaway, 1e6), speed=1e-6)
+    w = np.sqrt(k / ARM.mass_matrix([0.0, 0.0])[0, 0])
+    swing = (breakaway - coulomb) / k
+    slip = 2 * (np.pi - np.arctan(swing * w / pull)) / w
+    rest, jump = 2 * swing / pull, pull * slip + 2 * swing
+
+    def simulated(step):
+        """Errors of the first stop, of the rest that follows, and of the jumps."""
+        plant, x, v, path = Plant(ARM, stick(friction)), np.zeros(2), np.zeros(2), []
+        for n in range(round((breakaway / k / pull + 2.2 * slip + rest) / step)):
+            middle = pull * (n + 0.5) * step - x[0] - 0.5 * step * v[0]  # of a held torque
+            x, v = plant.advance(x, v, np.array([k * middle, 0.0]), step)
+            path.append((x[0], v[0] != 0))
+        angle, moving = np.array(path).T
+        starts, stops = (np.flatnonzero(np.diff(moving) == s) for s in (1, -1))
+        assert len(starts) == len(stops) == 2
+        return np.array([
+            starts[0] * step - breakaway / k / pull, (stops[0] - starts[0]) * step - slip,
+            (starts[1] - stops[0]) * step - rest, *(np.diff(angle[[0, *stops]]) - jump),
+        ])  # fmt: skip
+
+    errors = np.abs(simulated(2e-3))
+    assert (errors[:3] <= 2.5 * 2e-3).all() and (errors[3:] < 2e-3 * jump).all()
+
+
+def test_sticking_without_any_friction_is_the_free_arm():
+    q, tau = np.array([0.2, 0.3]), np.array([2.0, -1.0])
+    for level in ((0.0, 0.0), (0.0, 0.5)):
+        sticky = Plant(ARM, stick(StickSlipFriction(level, level)))
+        x, v = march(sticky, q, np.zeros(2), tau, 0.002, 200)
+        if level == (0.0, 0.0):
+            np.testing.assert_allclose([x, v], march(Plant(ARM), q, 0 * q, tau, 0.002, 200))
+        assert (np.abs(v[1:]) > 0).all()
+
+
+def test_two_frictions_that_stick_add_up():
+    limit = np.array([[0.5, 0.15], [0.5, 0.15]])
+    sticky = StickSlipFriction(limit, limit)
+    x, v = march(
+        Plant(ARM, stick(sticky, sticky)), np.zeros(2), np.zeros(2), 1.9 * limit, 0.002, 10
+    )
+    assert not v.any() and not x[-1].any()
+
+
+def test_runs_that_stick_and_runs_that_slide_do_not_mix():
+    level = np.array([[0.0, 0.0], [0.5, 0.15], [5.0, 1.5]])
+    tau = np.array([[0.3, -0.2], [0.8, 0.1], [2.0, -1.0]])
+    q, qd = np.array([0.2, 0.3]), np.array([[0.0, 0.1], [0.05, 0.0], [-0.01, 0.0]])
+    together = Plant(ARM, stick(StickSlipFriction(level, 1.3 * level)))
+    x, v = march(together, np.tile(q, (3, 1)), qd, tau, 0.002, 100)
+    for i in range(3):
+        alone = Plant(ARM, stick(StickSlipFriction(level[i], 1.3 * level[i])))
+        xi, vi = march(alone, q, qd[i], tau[i], 0.002, 100)
+        np.testing.assert_allclose(x[:, i], xi, rtol=0, atol=1e-13)
+        np.testing.assert_allclose(v[:, i], vi, rtol=0, atol=1e-13)
+
+
+# --- springs between motor and link -----------------------------------------------------
+
+
+@pytest.mark.parametrize("gap", [(0.0, 0.0), (0.02, 0.05)], ids=["springs", "with play"])
+@pytest.mark.parametrize("arm", [ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
+def test_springs_and_rotors_keep_their_energy(arm, gap):
+    """The kinetic energy is a quadratic form of its own: this checks the equations of motion."""
+    shaft = FlexibleJoint((2e3, 6e2), (0.3, 0.05), gap=gap)
+    x = np.array([[0.3, 0.5, 0.32, 0.4], [-1.0, 2.0, -1.0, 2.0]])
+    v = np.array([[1.0, -0.5, 0.0, 3.0], [0.8, 1.5, -2.0, 1.5]])
+    step = 1e-4 if gap[0] else 5e-4
+    states = march(Plant(arm, Effects(transmission=(shaft,))), x, v, np.zeros(2), step, 3000)
+    energy = total_energy(arm, shaft, *states)
+    np.testing.assert_allclose(energy, np.tile(energy[0], (3001, 1)), rtol=2e-4)
+    twist = np.abs(states[0][..., 2:] - states[0][..., :2])
+    assert (twist.max((0, 1)) > np.array(gap) / 2).all()  # every spring has been pressed
+
+
+def test_damping_takes_energy_out_of_the_springs():
+    shaft = FlexibleJoint((2e3, 6e2), (0.3, 0.05), damping=(3.0, 1.0), gap=(0.01, 0.0))
+    x, v = np.array([0.3, 0.5, 0.32, 0.4]), np.array([1.0, -0.5, 0.0, 3.0])
+    states = march(Plant(ARM, Effects(transmission=(shaft,))), x, v, np.zeros(2), 2e-4, 5000)
+    energy = total_energy(ARM, shaft, *states)
+    assert np.diff(energy).max() < 1e-6 * energy[0] and energy[-1] < 0.9 * energy[0]
+
+
+def test_no_torque_crosses_the_gap():
+    shaft = FlexibleJoint((2e3, 6e2), (0.3, 0.05), gap=(0.5, 0.5))
+    plant = Plant(ARM, Effects(transmission=(shaft,)))
+    x, _ = march(plant, *plant.rest(np.array([0.2, 0.3])), np.array([0.6, 0.0]), 0.001, 300)
+    np.testing.assert_allclose(x[:, 2], 0.2 + 0.5 * 0.6 / 0.3 * (np.arange(301) * 0.001) ** 2)
+    assert (x[:, 0] == 0.2).all() and (x[:, 1] == 0.3).all()
+
+
+def test_a_stiff_shaft_is_the_rigid_arm():
+    """The motion differs by the twist, which falls as 1 / stiffness."""
+    differences = []
+    for factor in (1.0, 4.0):
+        shaft = FlexibleJoint((factor * 2e5, factor * 6e4), (0.4, 0.15), (300.0, 60.0))
+        effects = Effects(transmission=(shaft,))
+        parts = int(substeps(ARM, effects, 0.002))
+        runs = []
+        for plant, n in ((Plant(ARM), 1), (Plant(ARM, effects), parts)):
+            x, v = plant.rest(np.array([0.2, 0.3]))
+            for k in range(200):
+                tau = np.array([20.0, -5.0]) * np.sin(0.02 * k)
+                for _ in range(n):
+                    x, v = plant.advance(x, v, tau, 0.002 / n)
+            runs.append(x[:2])
+        differences.append(np.abs(runs[1] - runs[0]).max())
+    assert differences[0] < 2e-4
+    assert differences[0] / differences[1] == pytest.approx(4.0, rel=0.25)
+
+
+def test_a_small_twist_swings_at_the_mode_that_is_predicted():
+    shaft = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
+    q = np.array([0.2, 0.8])
+    squared, shapes = np.linalg.eig(
+        np.linalg.solve(
+            shaft.mass_matrix(ARM, q),
+            np.block([[(k := np.diag(shaft.stiffness)), -k], [-k, k]]),
+        )
+    )
+    fastest = squared.real.argmax()
+    plant = Plant(ARM, Effects(transmission=(shaft,)))
+    x, v = plant.rest(q)
+    step = 1e-4
+    x, _ = march(plant, x + 1e-6 * shapes[:, fastest].real, v, np.zeros(2), step, 2000)
+    twist = x[:, 3] - x[:, 1]
+    sign = np.flatnonzero(np.diff(np.sign(twist)) > 0)
+    crossing = sign - twist[sign] / (twist[sign + 1] - twist[sign])
+    measured = 2 * np.pi / (np.diff(crossing).mean() * step)
+    assert measured == pytest.approx(shaft.mode_frequencies(ARM, q)[1], rel=1e-4)
+
+
+# --- how many steps a control period needs ----------------------------------------------
+
+
+def test_substeps_agree_with_an_implicit_solver():
+    friction = (ViscousFriction((5.3, 1.1)), CoulombFriction((8.45, 2.35)))
+    effects = Effects(friction=friction)
+
+    def slide(_, state):
+        qd = state[2:]
+        net = -effects.friction_torque(qd)
+        return np.concatenate([qd, IMI_ARM.forward_dynamics(state[:2], qd, net)])
+
+    start = np.array([0.0, 0.3, 1.0, -2.0])
+    implicit = solve_ivp(slide, (0, 1.0), start, method="Radau", rtol=1e-9, atol=1e-11).y[:, -1]
+    parts = int(substeps(IMI_ARM, effects, 0.002))
+    assert parts > 4 and substeps(CMU_DD_ARM_II, Effects(), 0.002) == 1
+    _, q, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002 / parts, effects)
+    assert np.allclose(q[-1], implicit[:2], atol=1e-5)
+    _, wild, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002, effects)
+    assert not np.allclose(wild[-1], implicit[:2], atol=1e-5)  # without them it chatters
+
+
+def test_substeps_count_for_each_run_by_itself():
+    level = np.array([[0.0, 0.0], [0.5, 0.15], [8.0, 2.0]])
+    smooth = ViscousFriction((0.5, 0.15)), StribeckFriction(level, level)
+    together = substeps(ARM, Effects(friction=smooth), 0.002)
+    alone = [
+        int(substeps(ARM, Effects(friction=(smooth[0], StribeckFriction(x, x))), 0.002))
+        for x in level
+    ]
+    assert together.tolist() == alone and alone[0] == 1 < alone[2]
+
+
+def test_substeps_follow_the_fastest_swing():
+    """A period of it takes 8 pi steps or more, whatever the posture."""
+    stiffness = np.array([[2e4, 6e3], [2e6, 6e5]])
+    effects = Effects(transmission=(FlexibleJoint(stiffness, (0.4, 0.15)),))
+    parts = substeps(ARM, effects, 0.002)
+    q = np.stack([np.zeros(9), np.linspace(-3, 3, 9)], -1)
+    for count, k in zip(parts, stiffness):
+        fastest = FlexibleJoint(tuple(k), (0.4, 0.15)).mode_frequencies(ARM, q).max()
+        assert 8 * np.pi <= 2 * np.pi / fastest / (0.002 / count) < 30 * np.pi
+    damped = Effects(transmission=(FlexibleJoint((2e4, 6e3), (0.4, 0.15), (1e4, 1e4)),))
+    assert substeps(ARM, damped, 0.002) > substeps(ARM, effects, 0.002)[0]
+
+
+def test_arm_must_carry_its_motors():
+    light = Arm("light", a=1.0, b=0.1, d=0.1, lengths=(1.0, 1.0))
+    with pytest.raises(ValueError, match="motor_inertia"):
+        Plant(light, Effects(transmission=(SHAFT,)))

@@ -1,0 +1,68 @@
+"""Every widget of every built page answers a drag, a key and a touch, with no kernel behind it."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from book_pages import ROOT, WITH_WIDGETS
+from reactions import Handle, handles
+
+sys.path.insert(0, str(ROOT / "benchmarks"))
+import redraw
+
+pytestmark = pytest.mark.browser
+
+
+def all_handles(opened) -> list[Handle]:
+    """One or two of each widget, at least one."""
+    roots = opened.page.locator(".ddlib-widget")
+    found = [handles(roots.nth(k)) for k in range(roots.count())]
+    assert found and all(found)
+    return [handle for one in found for handle in one]
+
+
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_mouse_and_keys_change_the_picture(name, site, visit):
+    opened = visit(f"{site}/{name}.html")
+    for handle in all_handles(opened):
+        before = handle.picture()
+        handle.drag()
+        dragged = handle.picture()
+        assert dragged != before
+        handle.press()
+        assert handle.picture() != dragged
+        assert handle.handle.evaluate("(el) => el.matches(':focus-visible')")
+    assert not opened.problems
+
+
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_touch_changes_the_picture(name, site, visit):
+    opened = visit(f"{site}/{name}.html", width=400, has_touch=True, is_mobile=True)
+    for handle in all_handles(opened):
+        before = handle.picture()
+        handle.tap()
+        assert handle.picture() != before
+    assert not opened.problems
+
+
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_nothing_moves_by_itself_under_reduced_motion(name, site, visit):
+    opened = visit(f"{site}/{name}.html", reduced_motion="reduce")
+    before = [handle.picture() for handle in all_handles(opened)]
+    opened.page.evaluate("() => new Promise((f) => setTimeout(f, 300))")
+    assert [handle.picture() for handle in all_handles(opened)] == before
+
+
+def test_the_benchmark_times_each_way_of_moving(site, visit):
+    opened = visit(f"{site}/{WITH_WIDGETS[0]}.html")
+    widget = opened.page.locator(".ddlib-widget").first
+    before = handles(widget)[0].picture()
+    rows = redraw.of_widget(widget, "first", moves=20)
+    assert len(rows) == len(handles(widget))
+    assert handles(widget)[0].picture() != before
+    for row in rows:
+        assert row["moves"] == 20
+        assert 0 < row["median, ms"] <= row["p95, ms"]
+        assert row["ratio"] == pytest.approx(row["most, ms"] / row["p95, ms"])
+    assert not opened.problems

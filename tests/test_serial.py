@@ -1,0 +1,163 @@
+"""Arms in space: two formulations against each other, the planar arm, and another library."""
+
+import numpy as np
+import pytest
+
+from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm, Link
+from ddlib.serial import PUMA_560, PUMA_560_GEARS, PUMA_560_ROTORS, SerialArm, SpatialLink
+
+CMU = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
+VERTICAL = (Link(23.902, 0.45, 0.091, 1.266), Link(3.880, 0.45, 0.048, 0.093))
+READY = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])
+REST = np.zeros(6)
+
+
+def states(joints, n=200, seed=0):
+    rng = np.random.default_rng(seed)
+    return rng.uniform(-1, 1, (3, n, joints)) * np.array([np.pi, 5.0, 20.0])[:, None, None]
+
+
+def random_arm(joints, seed) -> SerialArm:
+    """General links: any twist, offset, centre of mass and inertia; gravity askew."""
+    rng = np.random.default_rng(seed)
+
+    def link():
+        root = rng.normal(size=(3, 3))
+        inertia = root @ root.T
+        place = rng.uniform(-180, 180), *rng.uniform(-1, 1, 2)
+        return SpatialLink(*place, rng.uniform(0.1, 5), rng.normal(size=3), inertia + inertia.T)
+
+    return SerialArm([link() for _ in range(joints)], rng.normal(size=3) * 5)
+
+
+@pytest.mark.parametrize("joints", range(1, 7))
+def test_newton_and_lagrange_agree_on_general_arms(joints):
+    arm, motion = random_arm(joints, seed=joints), states(joints, n=20)
+    newton, lagrange = arm.newton_euler(*motion), arm.lagrange_euler(*motion)
+    assert newton.shape == (20, joints)
+    np.testing.assert_allclose(newton, lagrange, atol=1e-10 * np.abs(newton).max())
+
+
+@pytest.mark.parametrize(
+    "links, plane, gravity",
+    [(CMU, CMU_DD_ARM_II, 0.0), (VERTICAL, REYES_KELLY_ARM, 9.81)],
+    ids=["horizontal", "vertical"],
+)
+def test_planar_arms_agree_with_the_two_link_equations(links, plane, gravity):
+    motion = states(2, n=1000)
+    tau = plane.inverse_dynamics(*motion)
+    arm = SerialArm.planar(links, gravity)
+    np.testing.assert_allclose(arm.newton_euler(*motion), tau, atol=1e-10)
+    np.testing.assert_allclose(arm.lagrange_euler(*motion), tau, atol=1e-10)
+    made = Arm.from_links("same", *links, gravity=gravity)
+    np.testing.assert_allclose(
+        arm.newton_euler(*motion), made.inverse_dynamics(*motion), atol=1e-10
+    )
+
+
+@pytest.mark.parametrize("joints", [3, 6])
+def test_power_at_the_joints_is_the_rate_of_kinetic_energy(joints):
+    """Without gravity: the mass matrix comes from the torques, the energy from it."""
+    arm = SerialArm(random_arm(joints, seed=20).links)
+    q, qd, qdd = (x[:5] for x in states(joints, seed=3))
+
+    def energy(q, qd):
+        columns = [arm.newton_euler(q, 0 * q, np.eye(joints)[j] + 0 * q) for j in range(joints)]
+        return 0.5 * np.einsum("ni,jni,nj->n", qd, np.array(columns), qd)
+
+    h = 1e-5
+    after = energy(q + h * qd + h**2 / 2 * qdd, qd + h * qdd)
+    before = energy(q - h * qd + h**2 / 2 * qdd, qd - h * qdd)
+    power = (qd * arm.newton_euler(q, qd, qdd)).sum(-1)
+    np.testing.assert_allclose((after - before) / (2 * h), power, rtol=1e-6)
+
+
+# --- the Puma 560: numbers that Corke's Robotics Toolbox tests itself with ---------------
+
+
+def test_weight_of_the_puma():
+    known = [0.0, 31.6399, 6.0351, 0.0, 0.0283, 0.0]
+    np.testing.assert_allclose(PUMA_560.newton_euler(READY, REST, REST), known, atol=6e-5)
+
+
+def test_inertia_of_the_puma_with_its_rotors():
+    weight = PUMA_560.newton_euler(READY, REST, REST)
+    links = PUMA_560.newton_euler(READY, REST, np.eye(6)) - weight
+    rotors = np.array(PUMA_560_ROTORS) * np.array(PUMA_560_GEARS) ** 2
+    known = [
+        [3.6594, -0.4044, 0.1006, -0.0025, 0.0, 0.0],
+        [-0.4044, 4.4137, 0.3509, 0.0, 0.0024, 0.0],
+        [0.1006, 0.3509, 0.9378, 0.0, 0.0015, 0.0],
+        [-0.0025, 0.0, 0.0, 0.1925, 0.0, 0.0],
+        [0.0, 0.0024, 0.0015, 0.0, 0.1713, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.1941],
+    ]
+    np.testing.assert_allclose(links + np.diag(rotors), known, atol=6e-5)
+
+
+def test_velocity_torques_of_the_puma():
+    qd = np.array([1.0, 2.0, 3.0, 1.0, 2.0, 3.0])
+    known = [
+        [-0.1735, -2.0494, -0.1178, -0.0002, -0.0045, 0.0001],
+        [0.6274, 1.1572, 1.9287, -0.0015, -0.0003, 0.0],
+        [-0.3608, -0.7734, -0.0018, -0.0009, -0.0064, 0.0],
+        [0.0011, 0.0005, -0.0001, 0.0002, 0.0002, -0.0001],
+        [-0.0002, 0.0028, 0.0046, -0.0002, 0.0, 0.0],
+        [0.0001, 0.0, 0.0, 0.0, 0.0, 0.0],
+    ]
+    weight = PUMA_560.newton_euler(READY, REST, REST)
+    moving = PUMA_560.newton_euler(READY, qd, REST) - weight
+    np.testing.assert_allclose(moving, np.array(known) @ qd, atol=6e-5 * np.abs(qd).sum())
+
+
+# --- shapes and refusals ----------------------------------------------------------------
+
+
+def test_states_broadcast():
+    arm, (q, qd, qdd) = random_arm(3, seed=1), states(3, n=4)
+    together = arm.newton_euler(q[:, None], qd[None], 0.0 * qdd[0])
+    assert together.shape == (4, 4, 3)
+    single = arm.newton_euler(q[2], qd[1], 0 * qdd[0])
+    np.testing.assert_allclose(together[2, 1], single, atol=1e-12)
+
+
+def test_an_arm_cut_off_is_the_arm_with_fewer_links():
+    arm = random_arm(5, seed=2)
+    assert arm.first(3) == SerialArm(arm.links[:3], arm.gravity) and arm.first(5) == arm
+    assert arm.joints == 5 and arm.first(1).joints == 1
+    for wrong in (0, 6):
+        with pytest.raises(ValueError, match="joints must be"):
+            arm.first(wrong)
+
+
+GOOD = dict(twist_deg=0.0, length=1.0, offset=0.0, mass=1.0, com=(0, 0, 0), inertia=np.eye(3))
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (dict(mass=-1.0), "mass must lie"),
+        (dict(length=np.nan), "length must be finite"),
+        (dict(com=(0.0, 0.0)), "com must have"),
+        (dict(com=np.zeros((2, 3))), "com must have shape"),
+        (dict(inertia=np.eye(2)), "inertia must have"),
+        (dict(inertia=np.triu(np.ones((3, 3)))), "inertia must be a symmetric"),
+    ],
+)
+def test_links_refuse_what_is_no_link(change, words):
+    with pytest.raises(ValueError, match=words):
+        SpatialLink(**{**GOOD, **change})
+
+
+def test_arms_refuse_what_is_no_arm():
+    link = SpatialLink(**GOOD)
+    with pytest.raises(TypeError, match="links must be"):
+        SerialArm([])
+    with pytest.raises(TypeError, match="links must be"):
+        SerialArm([CMU[0]])
+    with pytest.raises(ValueError, match="gravity must have"):
+        SerialArm([link], (0.0, -9.81))
+    with pytest.raises(ValueError, match="qd must be finite"):
+        SerialArm([link]).newton_euler([0.0], [np.inf], [0.0])
+    with pytest.raises(ValueError, match="q must have a last axis"):
+        SerialArm([link]).lagrange_euler([0.0, 1.0], [0.0], [0.0])

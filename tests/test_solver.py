@@ -1,0 +1,381 @@
+"""Levenberg-Marquardt against autograd, scipy and the conditions of an optimum."""
+
+import re
+import warnings
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+import torch
+from scipy.optimize import least_squares, minimize
+
+from ddlib import gauss_newton
+from ddlib.experiment import STATE_FEEDBACK, split
+from ddlib.filters import roughness
+from ddlib.gauss_newton import Objective, penalty
+from ddlib.metrics import rmss
+from ddlib.network import Weights
+from ddlib.results import read
+from ddlib.solver import NotConverged, solve
+from ddlib.training import TrainingSet, train_ensemble
+from ddlib.windows import sliding_windows
+
+NAMES = tuple(field.name for field in fields(Weights))
+WIDTH, HIDDEN = 7, 3
+PENALTIES = pytest.mark.parametrize(
+    ("decay", "smoothness"), [(0.0, 0.0), (0.02, 0.0), (0.0, 0.3), (1e-3, 0.1)]
+)
+
+
+def some_cases(n=80, width=WIDTH, seed=0):
+    """Windows of two smooth signals with noise, and a torque that bends with velocity."""
+    t = np.arange(n + width - 1) * 0.1
+    rng = np.random.default_rng(seed)
+    q = np.stack([np.sin(t + 0.3) + 0.3 * np.sin(2.7 * t), np.cos(1.3 * t)], -1)
+    q += 0.01 * rng.normal(size=q.shape)
+    windows = sliding_windows(q, width)
+    speed = windows[..., -1] - windows[..., 0]
+    torque = np.stack([np.tanh(3 * speed[:, 0]), speed[:, 1] * windows[:, 0, width // 2]], -1)
+    return windows, torque + 0.02 * rng.normal(size=torque.shape)
+
+
+@pytest.fixture(scope="module")
+def data():
+    return TrainingSet.from_arrays(*some_cases())
+
+
+@pytest.fixture(scope="module")
+def other(data):
+    return data.transform(*some_cases(50, seed=1))
+
+
+@pytest.fixture(scope="module")
+def start():
+    return Weights.random(3, WIDTH, HIDDEN)
+
+
+def flat(weights) -> np.ndarray:
+    return np.concatenate([getattr(weights, name).ravel() for name in NAMES])
+
+
+def shaped(vector, like) -> list[torch.Tensor]:
+    sizes = [getattr(like, name).size for name in NAMES]
+    parts = torch.split(torch.as_tensor(vector, dtype=torch.float64), sizes)
+    return [part.reshape(getattr(like, name).shape) for part, name in zip(parts, NAMES)]
+
+
+def unflat(vector, like) -> Weights:
+    return Weights(*(part.numpy() for part in shaped(vector, like)))
+
+
+def residuals(vector, like, data, decay=0.0, smoothness=0.0):
+    """Errors and penalties as one list, written out unit by unit for autograd."""
+    a, b, c, d, e = shaped(vector, like)
+    x, y = torch.as_tensor(data.x), torch.as_tensor(data.y)
+    hidden = torch.sigmoid(torch.einsum("nji,hji->nh", x, a) + b)
+    output = torch.sigmoid(torch.einsum("nji,oji->no", x, d) + hidden @ c.T + e)
+    bends = [(w[..., 2:] - 2 * w[..., 1:-1] + w[..., :-2]).flatten() for w in (a, d)]
+    penalties = [decay**0.5 * w.flatten() for w in (a, c, d)]
+    penalties += [smoothness**0.5 * bend for bend in bends]
+    return torch.cat([(output - y).flatten(), *penalties])
+
+
+def jacobian(vector, *args) -> np.ndarray:
+    vector = torch.as_tensor(vector, dtype=torch.float64)
+    function = lambda v: residuals(v, *args)  # noqa: E731
+    return torch.autograd.functional.jacobian(function, vector, vectorize=True).numpy()
+
+
+def hessian(vector, *args) -> np.ndarray:
+    vector = torch.as_tensor(vector, dtype=torch.float64)
+    half = lambda v: 0.5 * residuals(v, *args).square().sum()  # noqa: E731
+    return torch.autograd.functional.hessian(half, vector, vectorize=True).numpy()
+
+
+def by_hand(weights, data, *penalties) -> tuple[float, np.ndarray]:
+    """Objective and its gradient by the weights."""
+    vector = flat(weights)
+    r = residuals(vector, weights, data, *penalties).numpy()
+    return 0.5 * float(r @ r), jacobian(vector, weights, data, *penalties).T @ r
+
+
+def quietly(*args, **options):
+    """`solve` where it is not meant to converge."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotConverged)
+        return solve(*args, progress=False, **options)
+
+
+@PENALTIES
+def test_value_gradient_and_matrix_are_those_of_autograd(data, start, decay, smoothness):
+    w = start[0]
+    penalties = decay, smoothness
+    objective = Objective(w, data, *penalties)
+    vector = objective.pack(w)
+    value, gradient = by_hand(w, data, *penalties)
+    j = jacobian(flat(w), w, data, *penalties)
+    assert objective.value(vector)[0] == pytest.approx(value, rel=1e-12)
+    assert objective.value(vector)[1] == pytest.approx(rmss(w.activity(data.x)[1], data.y))
+    units = [objective.pack(unflat(unit, w)).numpy() for unit in np.eye(j.shape[1])]
+    to_vector = np.column_stack(units)
+    to_weights = np.linalg.inv(to_vector)
+    for exact, expected in ((False, j.T @ j), (True, hessian(flat(w), w, data, *penalties))):
+        lower, found, lengths = (x.numpy() for x in objective.normal(vector, exact))
+        matrix = np.tril(lower) + np.tril(lower, -1).T
+        np.testing.assert_allclose(to_vector.T @ found, gradient, atol=1e-11)
+        np.testing.assert_allclose(to_vector.T @ matrix @ to_vector, expected, atol=1e-10)
+        np.testing.assert_allclose(lengths, np.linalg.norm(j @ to_weights, axis=0), rtol=1e-9)
+
+
+def test_blocks_of_cases_add_up(data, start, monkeypatch):
+    whole = Objective(start[0], data)
+    vector = whole.pack(start[0])
+    monkeypatch.setattr(gauss_newton, "_BLOCK", 7)
+    pieces = Objective(start[0], data)
+    for one, other in zip(whole.normal(vector), pieces.normal(vector)):
+        np.testing.assert_allclose(one, other, atol=1e-11)
+
+
+def test_parameters_come_back_and_inputs_are_white(data, start):
+    objective = Objective(start[1], data)
+    for name in NAMES:
+        back = getattr(objective.unpack(objective.pack(start[1])), name)
+        np.testing.assert_allclose(back, getattr(start[1], name), atol=1e-12)
+    z = objective._z.numpy()
+    np.testing.assert_allclose(z @ z.T / z.shape[1], np.eye(len(z)), atol=1e-6)
+
+
+def test_penalty_of_known_weights():
+    bend, line = np.zeros((2, 5)), np.tile(np.arange(5.0), (2, 1))
+    bend[0, 2] = 1.0  # second differences 1, -2, 1
+    for w, expected in ((bend, 0.1 * 1 + 3.0 * 6), (line, 0.1 * 60)):
+        matrix = penalty(2, 5, decay=0.1, smoothness=3.0)
+        assert w.ravel() @ matrix @ w.ravel() == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("decay", "smoothness"), [(0.02, 0.0), (1e-3, 0.1)])
+def test_at_the_end_the_gradient_is_zero(data, start, decay, smoothness):
+    solution = solve(start, data, decay=decay, smoothness=smoothness, progress=False)
+    assert solution.converged.all() and (solution.ended == "gradient").all()
+    assert (solution.gradient <= 1e-6).all()
+    for k in range(len(start)):
+        value, gradient = by_hand(solution.model.weights[k], data, decay, smoothness)
+        before = by_hand(start[k], data, decay, smoothness)
+        assert solution.objective[k] == pytest.approx(value, rel=1e-9)
+        assert value < before[0]
+        assert np.abs(gradient).max() < 1e-5 * np.abs(before[1]).max()
+
+
+def test_scipy_finds_the_same_optimum(data):
+    """By a trust region with autograd's Hessian, from each of three starts."""
+    starts, penalties = Weights.random(3, WIDTH, 1), (0.02, 0.1)
+    ours = solve(starts, data, decay=0.02, smoothness=0.1, progress=False)
+    for k in range(len(starts)):
+        rest = (starts[k], data, *penalties)
+        theirs = minimize(
+            lambda v, rest=rest: by_hand(unflat(v, rest[0]), *rest[1:]),
+            flat(starts[k]),
+            jac=True,
+            hess=lambda v, rest=rest: hessian(v, *rest),
+            method="trust-exact",
+        )
+        assert ours.objective[k] == pytest.approx(theirs.fun, rel=1e-8)
+        np.testing.assert_allclose(
+            ours.model.weights[k].activity(data.x)[1],
+            unflat(theirs.x, starts[k]).activity(data.x)[1],
+            atol=1e-4,
+        )
+
+
+def test_scipy_cannot_lower_it(data, start):
+    solution = solve(start[:1], data, decay=1e-3, smoothness=0.1, progress=False)
+    w = solution.model.weights[0]
+    rest = (w, data, 1e-3, 0.1)
+    theirs = least_squares(
+        lambda v: residuals(v, *rest).numpy(), flat(w), lambda v: jacobian(v, *rest), method="lm"
+    )
+    assert theirs.cost == pytest.approx(solution.objective[0], rel=1e-8)
+
+
+def test_a_linear_problem_takes_one_step(data):
+    """Targets that vary by 1e-5 about a half, from a network that gives a half."""
+    shapes = Weights.random(1, WIDTH, 1)[0]
+    zero = Weights(*(0 * getattr(shapes, name) for name in NAMES))
+    y = 0.5 + 1e-5 * (data.y - 0.5)
+    x = np.column_stack([data.x.reshape(len(y), -1), np.ones(len(y))])
+    best = x @ np.linalg.lstsq(x, y, rcond=None)[0]
+    solution = quietly(zero, replace(data, y=y), steps=1, damping=0.0)
+    assert solution.steps[0] == 1
+    np.testing.assert_allclose(solution.model.weights.activity(data.x)[1], best, atol=1e-9)
+    assert solution.history.training[1, 0] == pytest.approx(float(rmss(best, y)), rel=1e-4)
+
+
+def test_near_a_perfect_fit_each_step_squares_the_error(data, start):
+    truth = Weights.random(1, WIDTH, 1, initial=2.0, seed=3)[0]
+    nearby = Weights(*(getattr(truth, name) * 1.01 for name in NAMES))
+    exact = replace(data, y=truth.activity(data.x)[1])
+    history = quietly(nearby, exact, steps=2, damping=0.0).history.training[:, 0]
+    assert history[0] > 0.01
+    assert history[1] < 2 * history[0] ** 2
+    assert history[2] < 2 * history[1] ** 2
+
+
+def test_an_ensemble_is_its_members(data, other, start):
+    options = dict(decay=0.01, test=other, steps=40)
+    together = quietly(start, data, **options)
+    for k in range(len(start)):
+        alone = quietly(start[k], data, **options)
+        assert alone.model.weights.hidden_bias.shape == (HIDDEN,)
+        assert alone.ended[0] == together.ended[k]
+        np.testing.assert_array_equal(flat(alone.model.weights), flat(together.model.weights[k]))
+        steps = alone.steps[0]
+        assert together.steps[k] == steps
+        for name in ("training", "test"):
+            path = getattr(together.history, name)[:, k]
+            np.testing.assert_array_equal(path[: steps + 1], getattr(alone.history, name)[:, 0])
+            assert (path[steps:] == path[steps]).all()
+
+
+def test_history_is_that_of_the_networks(data, other, start):
+    solution = quietly(start, data, test=other, steps=5)
+    history, weights = solution.history, solution.model.weights
+    np.testing.assert_array_equal(history.epochs, np.arange(6))
+    np.testing.assert_allclose(history.training[0], rmss(start.activity(data.x)[1], data.y))
+    np.testing.assert_allclose(history.training[-1], rmss(weights.activity(data.x)[1], data.y))
+    np.testing.assert_allclose(history.test[-1], rmss(weights.activity(other[0])[1], other[1]))
+    assert (np.diff(history.training, axis=0) < 0.1).all()
+    assert quietly(start, data, steps=2).history.test.size == 0
+
+
+def test_without_penalties_every_step_lowers_the_squared_error(data, start):
+    weights, values = start[2], []
+    for steps in range(6):
+        end = quietly(weights, data, steps=steps).model.weights if steps else weights
+        values.append(by_hand(end, data)[0])
+    assert (np.diff(values) < 0).all()
+
+
+def test_penalties_do_what_they_say(data, start):
+    """More decay: smaller weights. More smoothness: smoother weight functions."""
+    size, rough, error = [], [], []
+    for decay in (1e-3, 1e-2, 1e-1):
+        w = solve(start, data, decay=decay, steps=1000, progress=False).model.weights
+        size.append(np.mean([(flat(w[k]) ** 2).sum() for k in range(3)]))
+        error.append(np.mean(rmss(w.activity(data.x)[1], data.y)))
+    assert size[0] > size[1] > size[2] and error[0] < error[1] < error[2]
+    for smoothness in (0.0, 0.01, 1.0):
+        found = solve(start, data, decay=1e-3, smoothness=smoothness, steps=1000, progress=False)
+        rough.append(np.median(roughness(found.model.weights.hidden_weights)))
+    assert rough[0] > rough[1] > rough[2]
+
+
+def test_reaches_what_descent_reaches_in_a_few_steps():
+    table = read("table-4-1")["setups"][STATE_FEEDBACK.name]["21"]
+    target = float(np.median(table["errors"]["training"]))
+    cases = TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], 21)
+    solution = solve(Weights.random(3, 21), cases, target_rmss=target, progress=False)
+    assert (solution.ended == "target").all()
+    assert (solution.history.training[-1] <= target).all()
+    assert (solution.steps <= 10).all()
+
+
+def test_descent_does_not_get_below_the_optimum(data, start):
+    solution = quietly(start, data, steps=300)
+    _, history, _ = train_ensemble(start, data, rate=0.3, epochs=2000, progress=False)
+    assert (solution.history.training[-1] < history.training[-1]).all()
+
+
+def test_who_has_not_converged_says_so(data, start):
+    with pytest.warns(NotConverged, match=r"3 of 3 networks .*\(ended by steps\).* 1e-06") as w:
+        solution = solve(start, data, steps=2, progress=False)
+    assert w[0].filename == __file__
+    assert not solution.converged.any() and (solution.ended == "steps").all()
+    assert (solution.gradient > 1e-6).all() and (solution.steps == 2).all()
+
+
+def test_a_tolerance_below_rounding_ends_without_descent(data, start):
+    with pytest.warns(NotConverged, match="no descent"):
+        solution = solve(start[0], data, decay=0.05, tolerance=0.0, steps=3000, progress=False)
+    assert solution.ended[0] == "no descent"
+    assert solution.gradient[0] < 1e-6
+
+
+def test_inputs_that_do_not_vary_are_no_obstacle(data, start):
+    """Only the sum of the weights from a joint at rest matters: the rest stays, or decays."""
+    x = data.x.copy()
+    x[:, 1] = 0.5
+    still = replace(data, x=x)
+    for options in (dict(), dict(decay=0.01)):
+        solution = quietly(start[0], still, steps=100, **options)
+        assert np.isfinite(flat(solution.model.weights)).all()
+        from_rest = solution.model.weights.hidden_weights[:, 1]
+        kept = 0.0 if options else np.diff(start[0].hidden_weights[:, 1])
+        np.testing.assert_allclose(np.diff(from_rest), kept, atol=1e-6)
+        predicted = solution.model.weights.activity(x)[1]
+        assert solution.history.training[-1, 0] == pytest.approx(float(rmss(predicted, data.y)))
+
+
+def test_threads_are_left_as_they_were(data, start):
+    before = torch.get_num_threads()
+    quietly(start, data, steps=1)
+    assert torch.get_num_threads() == before
+
+
+def test_progress_goes_to_stderr_only_if_asked(data, start, capfd):
+    quietly(start, data, steps=1)
+    assert capfd.readouterr() == ("", "")
+    with pytest.warns(NotConverged):
+        solve(start, data, steps=4, label="to the optimum")
+    out, err = capfd.readouterr()
+    assert out == "" and "to the optimum: 100%" in err and "12/12" in err and "rmss=" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        (dict(decay=-1), ValueError, "decay must lie in [0, inf], got -1"),
+        (dict(decay=np.nan), ValueError, "decay must be finite"),
+        (dict(smoothness=[1, 2]), TypeError, "smoothness must be a single number"),
+        (dict(steps=0), ValueError, "steps must be an integer from 1"),
+        (dict(steps=2.5), TypeError, "steps must be an integer"),
+        (dict(tolerance=2), ValueError, "tolerance must lie in [0, 1], got 2"),
+        (dict(target_rmss=-0.1), ValueError, "target_rmss must lie in [0, inf]"),
+        (dict(damping=-1e-3), ValueError, "damping must lie in [0, inf]"),
+        (dict(test=(np.zeros((4, 2, 5)), np.zeros((4, 2)))), ValueError, "test must have x"),
+    ],
+)
+def test_options_out_of_range_are_refused(data, start, options, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        solve(start, data, progress=False, **options)
+
+
+def test_unfit_weights_and_data_are_refused(data, start):
+    nan = replace(start, hidden_bias=start.hidden_bias + np.nan)
+    deep = Weights(*(getattr(start, name)[None] for name in NAMES))
+    holes, flat_y = data.x.copy(), data.y.copy()
+    holes[3, 0, 0], flat_y[:, 1] = np.nan, 0.5
+    for weights, cases, message in (
+        (nan, data, "weights.hidden_bias must be finite"),
+        (deep, data, "one network, or of an ensemble along one axis"),
+        (Weights.random(2, 9, HIDDEN), data, "data must have x of shape (cases, 2, 9)"),
+        (Weights.random(2, WIDTH, outputs=3), data, "y of shape (cases, 3)"),
+        (start, replace(data, x=holes), "x of data must be finite"),
+        (start, replace(data, y=flat_y), "y of data must vary in each column"),
+        (start, replace(data, x=data.x[:-1]), "data must have x"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(message)):
+            solve(weights, cases, progress=False)
+
+
+def test_a_saturated_network_does_not_pass_for_an_optimum(data, start):
+    """Its gradient is zero, as are all derivatives."""
+    weights = replace(start, output_bias=start.output_bias + 1e4)
+    solution = quietly(weights, data, steps=20)
+    assert (solution.ended == "no descent").all() and not solution.converged.any()
+    assert np.isfinite(flat(solution.model.weights)).all()
+
+
+def test_weights_too_large_to_add_up_are_refused(data, start):
+    weights = replace(start, skip_weights=np.full_like(start.skip_weights, 1e308))
+    with pytest.raises(ValueError, match="weights must be small enough to add up"):
+        solve(weights, data, progress=False)

@@ -1,0 +1,120 @@
+"""The page *Status*: what its tables say about times, ratios and targets."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import pytest
+from book_pages import PAGES, ROOT, source
+from bs4 import BeautifulSoup
+from docutils import nodes
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_status
+
+PAIR = {
+    "group": "Training",
+    "what": "window 21",
+    "ours": {"name": "ensemble", "seconds": 2.5e-5},
+    "other": {"name": "loop", "seconds": 4.5e-4},
+    "ratio": 18.0,
+    "at least": 8.0,
+    "details": {"share of the rate": 0.423, "largest error, rad": 2e-7, "operations": 3},
+}
+LIMIT = {"group": "Time", "what": "book", "value": 130.0, "unit": "s", "at most": 120.0}
+MISSING = {"group": "Training", "what": "MuJoCo", "not measured": "pip install .[bench]"}
+
+
+def cells(table) -> list[list[str]]:
+    found = [[entry.astext() for entry in row] for row in table.findall(nodes.row)]
+    return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in found]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shown"),
+    [
+        (120.0, "120 s"),
+        (1.0, "1.00 s"),
+        (0.0251, "25.1 ms"),
+        (2.5e-5, "25.0 µs"),
+        (3e-7, "0.300 µs"),
+    ],
+)
+def test_durations_have_the_unit_that_suits_them(seconds, shown):
+    assert dd_status.duration(seconds).split() == shown.split()
+
+
+@pytest.mark.parametrize(
+    ("row", "shown"),
+    [
+        (PAIR, "≥ 8.0: met"),
+        (PAIR | {"ratio": 7.99}, "≥ 8.0: missed"),
+        (LIMIT, "≤ 120: missed"),
+        (LIMIT | {"value": 120.0}, "≤ 120: met"),
+        (MISSING, "not measured: pip install .[bench]"),
+        ({key: value for key, value in PAIR.items() if key != "at least"}, "none"),
+    ],
+)
+def test_a_missed_target_is_said_to_be_missed(row, shown):
+    assert dd_status.outcome(row).replace("\N{NO-BREAK SPACE}", " ") == shown
+
+
+def test_pairs_have_both_times_and_what_is_not_measured_stays():
+    table, *beside = dd_status.benchmark_table([PAIR, MISSING])
+    assert cells(table) == [
+        ["what", "ensemble", "loop", "ratio", "share of the rate", "target"],
+        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "≥ 8.0: met"],
+        ["MuJoCo", "–", "–", "–", "–", "not measured: pip install .[bench]"],
+    ]
+    assert [node.astext() for node in beside] == ["window 21: largest error, rad: 2.00e-07."]
+
+
+def test_every_group_has_its_table(tmp_path):
+    made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}
+    made |= {"python": "3.11", "versions": {"numpy": "2.4"}, "seconds": 9.0}
+    content = {"made by": made, "rows": [PAIR, LIMIT, MISSING]}
+    (tmp_path / "benchmarks.json").write_text(json.dumps(content))
+    where, *rest = dd_status.benchmarks(tmp_path)
+    assert "2026-01-31: X, 2 cores" in where.astext()
+    titles = [node.astext() for node in rest if isinstance(node, nodes.rubric)]
+    assert titles == ["Training", "Time"]
+    shown = sum(len(cells(node)) - 1 for node in rest if isinstance(node, nodes.table))
+    assert shown == 3
+
+
+def test_without_measurements_the_page_says_so(tmp_path):
+    (only,) = dd_status.benchmarks(tmp_path)
+    assert "make bench" in only.astext()
+
+
+@pytest.mark.parametrize(("seconds", "verdict"), [(500.0, "met"), (500.1, "missed")])
+def test_times_of_the_results_are_added_up(tmp_path, seconds, verdict):
+    for name, made in {
+        "a": {"code": "1", "seconds": 100.0},
+        "b": {"code": "2", "seconds": seconds},
+        "benchmarks": {"seconds": 900.0},  # not of make reproduce
+    }.items():
+        (tmp_path / f"{name}.json").write_text(json.dumps({"made by": made}))
+    (table,) = dd_status.made_results(tmp_path)
+    assert [row[0] for row in cells(table)] == ["result", "a", "b", "all"]
+    assert cells(table)[-1][1].endswith(verdict)
+
+
+@pytest.mark.built
+def test_every_notebook_has_its_time_and_share(built):
+    page = BeautifulSoup(
+        (built / "book" / "status.html").read_text(encoding="utf-8"), "html.parser"
+    )
+    rows = [
+        [cell.get_text(strip=True) for cell in row.find_all("td")]
+        for row in page.find(id="chapters").find_all("tr")
+    ]
+    *chapters, total = [row for row in rows if row]
+    links = [a["href"].removesuffix(".html") for a in page.select("#chapters td a")]
+    notebooks = [p for p in PAGES if source(p).suffix == ".ipynb"]
+    assert [f"book/{link}" for link in links] == notebooks
+    assert sum(float(row[1].split()[0]) for row in chapters) == pytest.approx(
+        float(total[1].split()[0]), abs=0.5 + 0.05 * len(chapters)
+    )
+    assert sum(int(row[2].rstrip("%")) for row in chapters) == pytest.approx(100, abs=len(chapters))

@@ -1,0 +1,115 @@
+"""Hidden units at work: saturation, transition regions, ablation, cancellation, matching."""
+
+import numpy as np
+import pytest
+
+from ddlib.metrics import rmss
+from ddlib.network import TorqueModel, Weights
+from ddlib.training import TrainingSet
+from ddlib.units import ablation, cancellation, match, net_inputs, saturated, transition_width
+
+RNG = np.random.default_rng(5)
+
+
+@pytest.fixture(scope="module")
+def cases():
+    windows = RNG.normal(size=(120, 2, 5))
+    return windows, RNG.normal(size=(120, 2))
+
+
+@pytest.fixture(scope="module")
+def model(cases):
+    data = TrainingSet.from_arrays(*cases)
+    return TorqueModel(Weights.random(3, 5, 6, initial=2.0), data.inputs, data.outputs)
+
+
+def test_saturated_counts_both_ends():
+    activity = np.array([[0.05, 0.5], [0.95, 0.5], [0.5, 0.95], [0.2, 0.85]])
+    np.testing.assert_allclose(saturated(activity), [0.5, 0.25])
+    np.testing.assert_allclose(saturated(activity, 0.25), [0.75, 0.5])
+    assert saturated(np.stack([activity] * 3)).shape == (3, 2)
+
+
+def test_net_inputs_are_the_logits_of_the_activities(model, cases):
+    hidden, _ = model.weights.activity(model.scaled(cases[0]))
+    np.testing.assert_allclose(
+        net_inputs(model, cases[0]), np.log(hidden / (1 - hidden)), atol=1e-9
+    )
+
+
+def test_the_transition_is_narrow_where_weights_are_large(model, cases):
+    net = net_inputs(model, cases[0])
+    width = transition_width(net)
+    np.testing.assert_allclose(transition_width(10 * net), width / 10)
+    k = np.unravel_index(width.argmin(), width.shape)
+    inside = np.abs(net[k[0], :, k[1]]) < np.log(9)
+    assert inside.mean() == pytest.approx(1 - saturated(1 / (1 + np.exp(-net)))[k])
+
+
+def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
+    """Rebuilt with the unit's weight taken out and its mean put into the output bias."""
+    one, (windows, torque) = model[0], cases
+    groups, errors = ablation(one, windows, torque)
+    assert groups == [(k,) for k in range(6)]
+    hidden, _ = one.weights.activity(one.scaled(windows))
+    for (k,), error in zip(groups, errors, strict=True):
+        w = one.weights
+        out = w.output_weights.copy()
+        out[:, k] = 0
+        bias = w.output_bias + w.output_weights[:, k] * hidden[:, k].mean()
+        rebuilt = Weights(w.hidden_weights, w.hidden_bias, out, w.skip_weights, bias)
+        own = TorqueModel(rebuilt, one.inputs, one.outputs)
+        assert error == pytest.approx(rmss(own.torque(windows), torque))
+
+
+def test_pairs_of_units(model, cases):
+    groups, errors = ablation(model[1], *cases, group=2)
+    assert len(groups) == len(errors) == 15 and groups[0] == (0, 1)
+    with pytest.raises(ValueError, match="group must be an integer from 1 to 2"):
+        ablation(model[1], *cases, group=3)
+    with pytest.raises(ValueError, match="model must be a single network, got 3"):
+        ablation(model, *cases)
+
+
+def test_cancellation_of_twins_and_rivals(cases):
+    data = TrainingSet.from_arrays(*cases)
+    half = RNG.normal(size=(1, 2, 5))
+    zero = dict(hidden_bias=np.zeros(2), skip_weights=np.zeros((2, 2, 5)), output_bias=np.zeros(2))
+    hidden = np.concatenate([half, half])
+    weights = Weights(
+        hidden_weights=hidden, output_weights=np.array([[1.0, 1.0], [2.0, -2.0]]), **zero
+    )
+    model = TorqueModel(weights, data.inputs, data.outputs)
+    np.testing.assert_allclose(cancellation(model, cases[0]), [0, 1], atol=1e-9)
+
+
+def test_matching_finds_a_permutation_with_mirrors():
+    first = RNG.uniform(size=(200, 5))
+    order = np.array([3, 0, 4, 1, 2])
+    second = first[:, order].copy()
+    second[:, 1] = 1 - second[:, 1]
+    partner, alike = match(first, second)
+    np.testing.assert_array_equal(order[partner], np.arange(5))
+    np.testing.assert_allclose(alike, 1)
+    strangers = match(first, RNG.uniform(size=(200, 5)))[1]
+    assert strangers.max() < 0.4
+    still = first.copy()
+    still[:, 0] = 0.5
+    assert match(still, first)[1].min() == 0
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: saturated(np.array([0.5, 0.5])),
+        lambda: saturated(np.array([[0.5, 1.5]])),
+        lambda: saturated(np.array([[0.5, np.nan]])),
+        lambda: saturated(np.array([[0.5, 0.5]]), 0.6),
+        lambda: transition_width(np.ones((5, 2)), 0.0),
+        lambda: match(np.zeros((5, 2)), np.zeros((5, 3))),
+        lambda: match(np.zeros((2, 5, 2)), np.zeros((2, 5, 2))),
+    ],
+)
+def test_refusals(call):
+    with pytest.raises(ValueError, match=r"must"):
+        call()

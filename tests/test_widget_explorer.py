@@ -1,0 +1,257 @@
+"""The filter explorer and its Hinton diagram, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from scipy.signal import freqz
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, page_of, settings
+
+from ddlib import results
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS
+from ddlib.filters import CLASSES, classify, savitzky_golay
+from ddlib.network import TorqueModel, Weights
+from ddlib.simulate import LOG_STEP
+from ddlib.widgets.explorer import FLOOR_DB, FREQUENCIES, FilterExplorer
+from ddlib.widgets.hinton import diagram, zero_padded
+
+CELLS = "weights of all units"
+MEMBERS = (1, 6)
+REACH = max(WINDOWS) // 2
+
+
+@pytest.fixture(scope="module")
+def models():
+    return {w: TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, w)) for w in WINDOWS}
+
+
+@pytest.fixture(scope="module")
+def explorer(models):
+    return FilterExplorer(models, MEMBERS)
+
+
+def weights_of(models, width, seed, unit, joint) -> np.ndarray:
+    weights = models[width].weights
+    j = ("shoulder", "elbow").index(joint)
+    kind, name = unit.split()
+    if kind == "hidden":
+        return weights.hidden_weights[seed, int(name), j]
+    return weights.skip_weights[seed, ("shoulder", "elbow").index(kind), j]
+
+
+def decibels(f) -> np.ndarray:
+    return 20 * np.log10(np.abs(freqz(f, worN=FREQUENCIES, fs=1 / LOG_STEP)[1]))
+
+
+def test_baked_curves_are_the_exact_ones(explorer):
+    assert explorer.baked_bytes < 110_000 and explorer.spec["error"] < 1e-4
+    assert explorer.interpolation_error(100, seed=4) < 1e-4
+    assert FilterExplorer(explorer_models(explorer), (1, 6, 10, 21), checks=5).baked_bytes < 200_000
+
+
+def explorer_models(explorer) -> dict:
+    """Models of the same size as the explorer's, of random weights."""
+    scaler = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, 11)).inputs
+    return {w: TorqueModel(Weights.random(22, w), scaler, scaler) for w in WINDOWS}
+
+
+def test_truths_of_every_filter(explorer, models):
+    for values in settings(explorer, 60, seed=2):
+        f = weights_of(models, **values)
+        shown = explorer.interpolate(**values)
+        step = 2e-5 * np.abs(f).max() + 2e-3  # of the table
+        inside = slice(REACH - len(f) // 2, REACH + len(f) // 2 + 1)
+        padded = np.zeros(2 * REACH + 1)
+        padded[inside] = f
+        np.testing.assert_allclose(shown["weights"], padded, atol=step)
+        parts = [shown[name] for name in ("constant", "even", "odd")]
+        np.testing.assert_allclose(sum(parts), padded, atol=3 * step)
+        np.testing.assert_allclose(parts[1], parts[1][::-1], atol=2 * step)
+        np.testing.assert_allclose(parts[2], -parts[2][::-1], atol=2 * step)
+        assert parts[1][inside].mean() == pytest.approx(0, abs=step)
+
+        x = np.linspace(-1, 1, len(f))
+        rest = f - np.polynomial.Polynomial.fit(x, f, 3)(x)
+        assert shown["shares"].sum() == pytest.approx(1, abs=1e-4)
+        assert shown["shares"][4] == pytest.approx((rest @ rest) / (f @ f), abs=1e-4)
+        assert shown["shares"][0] == pytest.approx(len(f) * f.mean() ** 2 / (f @ f), abs=1e-4)
+        assert CLASSES[round(shown["class"][0])] == classify(f)
+        assert shown["last"][0] == pytest.approx(10 * (len(f) // 2) + 5, abs=0.01)
+
+
+def test_gains_are_scipys(explorer, models):
+    for values in settings(explorer, 40, seed=3):
+        f = weights_of(models, **values)
+        shown = explorer.interpolate(**values)
+        lowest = decibels(f).max() + FLOOR_DB
+        for name, g in (("gain", f), ("gain, varying", f - f.mean())):
+            expected = np.maximum(decibels(g), lowest)
+            np.testing.assert_allclose(shown[name], expected, atol=0.01)
+        order = 1 + np.argmax(shown["shares"][1:4])
+        textbook = savitzky_golay(len(f), order, LOG_STEP, degree=order)
+        scale = np.sqrt(shown["shares"][order] * (f @ f) / (textbook @ textbook))
+        if shown["shares"][order] > 0.01:
+            expected = np.maximum(decibels(scale * textbook), lowest)
+            np.testing.assert_allclose(shown["gain, ideal"], expected, atol=0.05)
+
+
+def test_diagram_holds_every_weight_once(models):
+    weights = models[11].weights[6]
+    cells = diagram(weights, 8).reshape(-1)
+    fields = ("hidden_weights", "hidden_bias", "skip_weights", "output_bias")
+    counted = np.concatenate([getattr(weights, name).ravel() for name in fields])
+    # the weights between hidden and output units are drawn at both ends
+    both = np.repeat(weights.output_weights.ravel(), 2)
+    expected = np.sort(np.concatenate([counted, both]))
+    np.testing.assert_array_equal(np.sort(cells[cells != 0]), expected)
+    assert len(cells) == 12 * (1 + 2 * 17) + 2 * 10 * 2
+    hidden = cells[2 * (1 + 10 + 34) :].reshape(10, 1 + 2 + 34)
+    np.testing.assert_array_equal(hidden[:, 1:3], weights.output_weights.T)
+    np.testing.assert_array_equal(hidden[3, 3 + 3 : 3 + 14], weights.hidden_weights[3, 0])
+
+
+def test_zero_padding_needs_room():
+    np.testing.assert_array_equal(zero_padded([1, 2, 3], 2), [0, 1, 2, 3, 0])
+    with pytest.raises(ValueError, match="reach must be 10 samples or more, got 9"):
+        zero_padded(np.ones(21), 9)
+
+
+def test_chosen_filter_is_a_trait_away(explorer, models):
+    explorer.width, explorer.seed, explorer.unit, explorer.joint = 41, 6, "hidden 9", "elbow"
+    np.testing.assert_array_equal(explorer.filter, models[41].weights.hidden_weights[6, 9, 1])
+    explorer.unit = "elbow torque"
+    np.testing.assert_array_equal(explorer.filter, models[41].weights.skip_weights[6, 1, 1])
+    explorer.width = 21
+
+
+@pytest.mark.parametrize(
+    "name, bad", [("width", 13), ("width", np.nan), ("seed", 0), ("unit", "hidden 10"),
+                  ("joint", "wrist"), ("unit", None)],
+)  # fmt: skip
+def test_bad_choices_are_refused(explorer, name, bad):
+    with pytest.raises(TraitError, match=f"{name} must be one of"):
+        setattr(explorer, name, bad)
+
+
+def test_bad_models_are_refused(models):
+    with pytest.raises(TypeError, match="two window sizes or more"):
+        FilterExplorer({21: models[21]})
+    with pytest.raises(TypeError, match="models must hold TorqueModels"):
+        FilterExplorer({21: models[21], 41: 3})
+    with pytest.raises(ValueError, match=r"an ensemble of that size.* for 11"):
+        FilterExplorer({11: models[21], 21: models[21]})
+    with pytest.raises(ValueError, match="an ensemble of that size"):
+        FilterExplorer({w: model[0] for w, model in models.items()})
+    with pytest.raises(ValueError, match="members must be an integer from 0 to 24, got 25"):
+        FilterExplorer(models, (0, 25))
+
+
+# In a page without a kernel
+
+DOTS = r"""() => {
+  const svg = document.querySelector('.chart > svg');
+  const ys = [...svg.querySelectorAll('text.y')].map(
+    (t) => [Number(t.getAttribute('y')), Number(t.textContent.replace('−', '-'))]);
+  const [[y0, v0], [y1, v1]] = [ys[0], ys.at(-1)];
+  return svg.querySelector('.dots').getAttribute('d').split('M').slice(1)
+    .map((s) => v0 + (parseFloat(s.split(' ')[1]) - y0) * (v1 - v0) / (y1 - y0));
+}"""
+CHOSEN = "document.querySelector('.hinton [aria-selected=true]').getAttribute('aria-label')"
+
+
+def squares(page, sign) -> np.ndarray:
+    """Areas of the diagram's squares of one sign."""
+    path = page.locator(f"svg.hinton .{sign}").get_attribute("d")
+    return np.array([float(a) for a in re.findall(r"h([\d.]+)v", path)]) ** 2
+
+
+def assert_shown(page, explorer, models, **values):
+    page.evaluate(NEXT_FRAME)
+    f = weights_of(models, **values)
+    expected = zero_padded(f, REACH)
+    allowed = 2e-4 * np.abs(models[values["width"]].weights.largest).max() + 0.01 * np.ptp(f)
+    np.testing.assert_allclose(page.evaluate(DOTS), expected, atol=allowed)
+    assert page.evaluate(CHOSEN) == f"{values['unit']}, {values['joint']}'s window"
+    assert page.locator(".verdict").inner_text().endswith(f": {classify(f)}")
+    cells = explorer.interpolate(**values)[CELLS]
+    large = cells[np.abs(cells) > 0.02 * np.abs(cells).max()]
+    areas = {sign: squares(page, sign) for sign in ("positive", "negative")}
+    sums = np.array([areas["positive"].sum(), areas["negative"].sum()])
+    weights = np.array([cells[cells > 0].sum(), -cells[cells < 0].sum()])
+    np.testing.assert_allclose(sums / sums.sum(), weights / weights.sum(), atol=0.02)
+    assert sum(map(len, areas.values())) >= len(large)
+
+
+@pytest.mark.browser
+def test_pointer_keys_and_menus_choose(tmp_path, visit, explorer, models):
+    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
+    opened = visit(page_of(tmp_path / "page.html", explorer))
+    page = opened.page
+    values = {"width": 21, "seed": 1, "unit": "shoulder torque", "joint": "shoulder"}
+    assert_shown(page, explorer, models, **values)
+
+    def place(unit, joint):
+        label = f"{unit}, {joint}'s window"
+        box = page.locator(f'[role=gridcell][aria-label="{label}"]').bounding_box()
+        return box["x"] + 0.3 * box["width"], box["y"] + 0.6 * box["height"]
+
+    page.mouse.click(*place("hidden 2", "elbow"))
+    assert_shown(page, explorer, models, **{**values, "unit": "hidden 2", "joint": "elbow"})
+    page.mouse.move(*place("hidden 2", "shoulder"))
+    page.mouse.down()
+    page.mouse.move(*place("hidden 7", "elbow"), steps=6)
+    page.mouse.up()
+    values |= {"unit": "hidden 7", "joint": "elbow"}
+    assert_shown(page, explorer, models, **values)
+
+    diagram_ = page.locator("svg.hinton")
+    diagram_.focus()
+    page.keyboard.press("ArrowUp")  # hidden 7, shoulder
+    page.keyboard.press("ArrowUp")  # hidden 5, elbow
+    page.keyboard.press("ArrowLeft")
+    values |= {"unit": "hidden 4"}
+    assert_shown(page, explorer, models, **values)
+    active = diagram_.get_attribute("aria-activedescendant")
+    assert page.locator(f"#{active}").get_attribute("aria-selected") == "true"
+    for _ in range(15):
+        page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowLeft")
+    values |= {"unit": "shoulder torque", "joint": "shoulder"}
+    assert_shown(page, explorer, models, **values)
+
+    page.get_by_label("Window size").select_option(label="41 samples")
+    page.get_by_label("Network").select_option(label="seed 6")
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 9")
+    values |= {"width": 41, "seed": 6, "unit": "hidden 9"}
+    assert_shown(page, explorer, models, **values)
+    page.get_by_label("Network").press("ArrowUp")
+    values |= {"seed": 1}
+    assert_shown(page, explorer, models, **values)
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_touch_chooses_and_scrolls(tmp_path, browser, explorer, models):
+    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
+    size = {"width": 380, "height": 700}
+    context = browser.new_context(viewport=size, has_touch=True, is_mobile=True)
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", explorer))
+    page.wait_for_selector(".hinton .positive[d]", state="attached")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    box = page.locator('[aria-label="hidden 6, shoulder\'s window"]').bounding_box()
+    page.touchscreen.tap(box["x"] + 20, box["y"] + box["height"] / 2)
+    values = {"width": 21, "seed": 1, "unit": "hidden 6", "joint": "shoulder"}
+    assert_shown(page, explorer, models, **values)
+    client = context.new_cdp_session(page)
+    for k in range(12):  # a finger that moves up over the diagram
+        point = {"x": 190, "y": box["y"] - 15 * k}
+        kind = "touchMove" if k else "touchStart"
+        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+    client.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    page.wait_for_function("scrollY > 100")
+    assert_shown(page, explorer, models, **values)
+    context.close()

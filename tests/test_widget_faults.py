@@ -1,0 +1,210 @@
+"""Damaged data, and kernels that are silent, go and come back; in a browser."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, shown_values
+from widget_samples import make
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture(scope="module")
+def widget():
+    return make()
+
+
+# Damage
+
+
+def buffer(name, change):
+    def damage(entry):
+        where = next(b for b in entry["buffers"] if b["path"] == [name])
+        data = bytearray(base64.b64decode(where["data"]))
+        where["data"] = base64.b64encode(change(data)).decode()
+
+    damage.__name__ = f"{name} {change.__name__}"
+    return damage
+
+
+def flipped(data):
+    data[99] ^= 1
+    return data
+
+
+def shortened(data):
+    return data[:-2]
+
+
+def emptied(data):
+    return b""
+
+
+def without(*path):
+    def damage(entry):
+        node = entry["state"]
+        for key in path[:-1]:
+            node = node[key]
+        del node[path[-1]]
+
+    damage.__name__ = "without " + ".".join(map(str, path))
+    return damage
+
+
+def with_value(value, *path):
+    def damage(entry):
+        node = entry["state"]
+        for key in path[:-1]:
+            node = node[key]
+        node[path[-1]] = value
+
+    damage.__name__ = f"{value!r} at {'.'.join(map(str, path))}"
+    return damage
+
+
+def no_buffer(entry):
+    entry["buffers"] = [b for b in entry["buffers"] if b["path"] != ["baked"]]
+
+
+def damages(widget) -> list:
+    """Everything that is broken one at a time; each must be reported."""
+    spec = widget.spec
+    found = [buffer("baked", change) for change in (flipped, shortened, emptied)]
+    found += [no_buffer, without("spec"), *(with_value(v, "spec") for v in (None, 3, [], "x"))]
+    found += [without("spec", key) for key in spec]
+    for part in ("parameters", "curves", "panels", "scalars", "groups"):
+        found += [without("spec", part, 0, key) for key in spec[part][0] if key != "digits"]
+        found += [with_value(v, "spec", part) for v in (None, 3)]
+    found += [without("spec", "pad", key) for key in spec["pad"]]
+    found += [with_value([["no such curve", "x"]], "spec", "panels", 0, "curves")]
+    found += [without("gain"), *(with_value(v, "gain") for v in (None, "10", 101, [10], True))]
+    return found
+
+
+def test_any_damage_is_reported_in_place(tmp_path, visit, widget):
+    broken = damages(widget)
+    assert len(broken) > 60
+    opened = visit(page_of(tmp_path / "page.html", widget, damages=broken))
+    page = opened.page
+    page.evaluate(NEXT_FRAME)
+    views = page.locator("main > div")
+    texts = page.evaluate(
+        "[...document.querySelectorAll('main > div')].map((el) => [el.className, el.textContent])"
+    )
+    assert views.count() == 1 + len(broken)
+    quiet = [
+        damage.__name__
+        for damage, (name, text) in zip(broken, texts[1:])
+        if "ddlib-widget-error" not in name or "are damaged: " not in text
+    ]
+    assert not quiet
+    before = page.evaluate(PATHS)
+    page.get_by_label("Gain").press("End")  # the undamaged one lives
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(PATHS) != before and len(before) == 2
+    assert not opened.problems
+
+
+HARMLESS = [
+    *(buffer("exact", change) for change in (shortened, emptied)),
+    *(without(name) for name in ("answer", "exact", "still")),
+    *(with_value(value, "answer") for value in ("x", {"values": 3})),
+]
+
+
+@pytest.mark.parametrize("damage", HARMLESS, ids=lambda damage: damage.__name__)
+def test_damage_that_does_not_matter(tmp_path, visit, widget, damage):
+    def change(entry):
+        if damage.__name__ == "without exact":  # it is among the buffers only
+            entry["buffers"] = [b for b in entry["buffers"] if b["path"] != ["exact"]]
+        else:
+            damage(entry)
+
+    opened = visit(page_of(tmp_path / "page.html", widget, change=change))
+    page = opened.page
+    page.get_by_label("Gain").press("ArrowRight")
+    page.evaluate(NEXT_FRAME)
+    assert page.locator("[data-values=interpolated]").count() == 1
+    assert page.locator("[role=alert]:visible").count() == 0
+    gain = shown_values(page)[0]
+    expected = widget.interpolate(gain=gain)["position"]
+    np.testing.assert_allclose(page.evaluate(READ, 0)[0], expected, atol=0.06)
+    assert not opened.problems
+
+
+def test_damage_that_comes_later_is_reported_in_place(tmp_path, visit, widget):
+    opened = visit(page_of(tmp_path / "page.html", widget, make(), extra=LIVE))
+    page = opened.page
+    page.evaluate("kernel.model.set('gain', 'abc')")
+    page.evaluate(NEXT_FRAME)
+    alert = page.locator(".ddlib-widget-error")
+    assert alert.count() == 1 and "gain is abc" in alert.inner_text()
+    page.get_by_label("Gain").press("ArrowRight")  # there is one left
+    assert not opened.problems
+
+
+# A kernel that answers, one that does not, and one that goes and comes back
+
+SILENCE = "The kernel does not answer: showing baked values."
+
+
+@pytest.fixture
+def live(tmp_path, visit, widget):
+    opened = visit(page_of(tmp_path / "page.html", widget, extra=LIVE))
+    samples = len(widget.exact) // 4
+    opened.page.evaluate(f"kernel.reply = Array({samples}).fill(1.25)")
+    yield opened.page
+    assert not opened.problems
+
+
+def usable(page):
+    """Whether a key press changes the picture."""
+    before = page.evaluate(PATHS)
+    page.get_by_role("slider", name="Decay").press("ArrowRight")
+    page.evaluate(NEXT_FRAME)
+    return page.evaluate(PATHS) != before
+
+
+def answers(page):
+    page.evaluate("kernel.alive = true; kernel.closed = false")
+    gain = page.get_by_label("Gain")
+    gain.press("ArrowRight")
+    gain.press("ArrowRight")
+    page.wait_for_selector("[data-values=exact]")
+    page.wait_for_selector(".note[hidden]", state="attached")
+    return page.evaluate(READ, 0)[0] == pytest.approx([1.25] * 41, abs=0.01)
+
+
+def test_kernel_that_is_silent_and_then_answers(live):
+    live.get_by_label("Gain").press("ArrowRight")
+    live.wait_for_selector(".note:not([hidden])", timeout=5000)
+    assert live.locator(".note").inner_text() == SILENCE
+    assert live.locator(".ddlib-widget").get_attribute("data-values") == "interpolated"
+    assert usable(live)
+    assert answers(live)
+
+
+def test_closed_connection_is_noted_at_once(live):
+    assert answers(live)
+    live.evaluate("kernel.closed = true")
+    live.get_by_label("Gain").press("ArrowLeft")
+    assert live.locator(".note").inner_text() == SILENCE
+    assert usable(live) and usable(live)
+    live.wait_for_selector("[data-values=interpolated]")
+    assert answers(live)
+
+
+@pytest.mark.parametrize("which, status", [(0, "dead"), (0, "restarting"), (1, None)])
+def test_a_kernel_that_goes_is_noted_without_a_move(live, which, status):
+    assert answers(live)
+    tell = "([which, ...status]) => kernel.watchers[which].forEach((f) => f(null, ...status))"
+    live.evaluate(tell, [0, "busy"])
+    assert not live.locator(".note").is_visible()
+    live.evaluate("kernel.alive = false")
+    live.evaluate(tell, [which, status] if status else [which])
+    assert live.locator(".note").inner_text() == SILENCE
+    assert usable(live)
+    assert answers(live)

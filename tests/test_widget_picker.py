@@ -1,0 +1,348 @@
+"""The trajectory picker: its Python side, and in a browser without a kernel."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from test_accessibility import violations
+from traitlets import TraitError
+from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings, shown_values
+
+from ddlib import results
+from ddlib.experiment import STATE_FEEDBACK, errors, predict, run
+from ddlib.metrics import rmss
+from ddlib.trajectories import APPENDIX_I
+from ddlib.widgets import TrajectoryPicker, median_networks
+from ddlib.widgets.baked import MAX_BYTES
+from ddlib.widgets.picker import inside_hull
+
+
+@pytest.fixture(scope="module")
+def picker():
+    """Motion and rigid torques alone."""
+    return TrajectoryPicker()
+
+
+@pytest.fixture(scope="module")
+def networks():
+    return median_networks()
+
+
+@pytest.fixture(scope="module")
+def full(networks):
+    """With the networks of the chapter."""
+    return TrajectoryPicker(networks)
+
+
+# Python
+
+
+def test_picker_knows_the_hull():
+    assert inside_hull(APPENDIX_I[:5]).all()
+    assert not inside_hull(APPENDIX_I[5])
+    assert inside_hull(APPENDIX_I[:5].mean(0))
+    assert not inside_hull([0.0, 0.0])
+
+
+def test_extents_and_sliders_follow_each_other():
+    picker = TrajectoryPicker(checks=5)
+    assert picker.extents_deg == tuple(APPENDIX_I[5]) and not picker.interpolates
+    picker.extents_deg = (20, 30)
+    assert (picker.shoulder_deg, picker.elbow_deg) == (20, 30) and picker.interpolates
+    picker.elbow_deg = 40
+    assert picker.extents_deg == (20, 40)
+    picker.extents_deg = np.array([1.5, 2.5])
+    assert picker.values == {"shoulder_deg": 1.5, "elbow_deg": 2.5}
+
+
+@pytest.mark.parametrize(
+    "bad, message",
+    [
+        ((20, 46), r"extents_deg must lie in \[0, 45\], got 46"),
+        ((-1, 3), r"extents_deg must lie in \[0, 45\], got -1"),
+        ((1, np.nan), "extents_deg must be finite, got NaN"),
+        ((np.inf, 1), "extents_deg must be finite, got NaN or infinity"),
+        (3, r"extents_deg must have a last axis of length 2, got shape \(\)"),
+        ((1, 2, 3), r"extents_deg must have a last axis of length 2, got shape \(3,\)"),
+        ([[1, 2]], r"extents_deg must have shape \(2,\), got \(1, 2\)"),
+        ("ab", "extents_deg must be an array of real numbers, got 'ab'"),
+        (None, "extents_deg must be an array of real numbers, got None"),
+        ((True, 2), "extents_deg must be a single number, got True"),
+        ((1, "x"), "extents_deg must be an array of real numbers"),
+    ],
+)
+def test_bad_extents_name_value_and_range(picker, bad, message):
+    before = picker.extents_deg
+    with pytest.raises(TraitError, match=message):
+        picker.extents_deg = bad
+    assert picker.extents_deg == before == (picker.shoulder_deg, picker.elbow_deg)
+
+
+@pytest.mark.parametrize("name", ["shoulder_deg", "elbow_deg"])
+def test_bad_joint_extents_name_joint_value_and_range(picker, name):
+    for bad in (45.1, -0.1):
+        with pytest.raises(TraitError, match=rf"{name} must lie in \[0, 45\], got {bad}"):
+            setattr(picker, name, bad)
+
+
+def test_arm_and_status_are_read_only(picker):
+    for name in ("arm", "record_status"):
+        with pytest.raises(TraitError, match="read-only"):
+            setattr(picker, name, {})
+
+
+def test_each_change_computes_once():
+    picker, calls = TrajectoryPicker(checks=5), []
+    function = picker._function
+    picker._function = lambda **values: calls.append(values) or function(**values)
+    picker.set_state({"shoulder_deg": 3.0, "elbow_deg": 4.0, "request": 1})
+    assert calls == [{"shoulder_deg": 3.0, "elbow_deg": 4.0}]
+    picker.extents_deg = (5, 6)
+    assert calls[1:] == [{"shoulder_deg": 5.0, "elbow_deg": 6.0}]
+    assert picker.answer == {"request": 1, "values": [5.0, 6.0]}
+
+
+def test_recording_from_the_page():
+    calls = []
+    picker = TrajectoryPicker(on_record=lambda e: calls.append(e) or len(calls), checks=5)
+    picker._handle_custom_msg({"type": "record", "extents_deg": [10, 20.5]}, [])
+    assert calls == [(10, 20.5)] and picker.recording == 1 and picker.elbow_deg == 20.5
+    assert "Recorded 10.0° and 20.5°" in picker.record_status["text"]
+    picker._handle_custom_msg({"type": "record", "extents_deg": [10, 99]}, [])
+    assert len(calls) == 1 and "must lie in [0, 45], got 99" in picker.record_status["text"]
+    picker._handle_custom_msg({"type": "something else"}, [])
+    assert len(calls) == 1 and picker.record_status["count"] == 2
+
+
+def test_recording_is_the_experiments():
+    picker = TrajectoryPicker(checks=5)
+    expected = STATE_FEEDBACK.record(picker.extents_deg)
+    np.testing.assert_array_equal(picker.record().tau, expected.tau)
+
+
+def test_networks_are_those_of_median_test_error(networks):
+    cells = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
+    recording = STATE_FEEDBACK.record()
+    for width, (name, network) in zip((11, 21, 41), networks.items(), strict=True):
+        assert name == f"window {width}" and network.weights.width == width
+        test = errors(network, recording)["test"]
+        assert test == pytest.approx(np.median(cells[str(width)]["errors"]["test"]), rel=1e-3)
+
+
+def test_networks_see_what_the_simulator_records(full, networks):
+    assert full.spec["error"] <= 0.01 and full.baked_bytes <= 250_000
+    assert len(json.dumps(saved(full)["state"][full.model_id])) < MAX_BYTES + 60_000  # with script
+    quiet = STATE_FEEDBACK.effects.without("encoder", "torque_sensor")
+    setup = type(STATE_FEEDBACK)(STATE_FEEDBACK.name, STATE_FEEDBACK.controller, effects=quiet)
+    batch = setup.record(APPENDIX_I)
+    deviation = batch.tau[:5, batch.motion].reshape(-1, 2).std(0)
+    recording, curves = run(batch, 5), full.curves
+    torque = recording.tau[recording.motion]
+    np.testing.assert_allclose(curves["elbow torque, recorded"][:-1], torque[::4, 1])
+    for name, network in networks.items():
+        predicted = predict(network, recording)
+        np.testing.assert_allclose(curves[f"shoulder torque, {name}"][:-1], predicted[::4, 0])
+        error = rmss(predicted, torque, scale=deviation)
+        assert curves[f"RMSS, {name}"][0] == pytest.approx(error)
+
+
+def test_without_sensors_errors_are_much_the_same(full, networks):
+    recording = STATE_FEEDBACK.record()
+    for name, network in networks.items():
+        noisy = errors(network, recording)["test, training's deviation"]
+        assert full.curves[f"RMSS, {name}"][0] == pytest.approx(noisy, rel=0.02)
+
+
+def test_interpolation_is_within_one_percent(full):
+    assert full.interpolation_error(600, seed=4) <= 0.01
+
+
+def test_a_finer_grid_where_the_first_is_too_coarse(networks, monkeypatch):
+    options = {"tolerance": 0.15, "checks": 40}
+    monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (3, 20))
+    picker = TrajectoryPicker(networks, **options)
+    assert [p["grid"] for p in picker.spec["parameters"]] == [20, 20]
+    monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (2, 3))
+    with pytest.raises(ValueError, match=r"grid must interpolate to 0.15 of each curve's range"):
+        TrajectoryPicker(networks, **options)
+
+
+@pytest.mark.parametrize("bad", [lambda e: 0, 3, "ensemble"])
+def test_models_must_be_single_networks(networks, bad):
+    if bad == "ensemble":
+        bad = type(networks["window 11"]).load(results.networks_path("state feedback", 11))
+    with pytest.raises(TypeError, match="models must be single networks by name, got mine"):
+        TrajectoryPicker({"mine": bad})
+    with pytest.raises(TypeError, match="models must be single networks by name, got recorded"):
+        TrajectoryPicker({"recorded": networks["window 11"]})
+    with pytest.raises(TypeError, match="on_record must be callable, got 3"):
+        TrajectoryPicker(on_record=3)
+
+
+# In a page without a kernel
+
+browser_test = pytest.mark.browser
+
+
+def assert_drawn(page, widget, extents):
+    """The charts show what Python computes, within one percent of each curve's range."""
+    values = dict(zip(("shoulder_deg", "elbow_deg"), extents))
+    exact = widget._function(**values)
+    ranges = {c["name"]: c["high"] - c["low"] for c in widget.spec["curves"]}
+    for number, panel in enumerate(widget.spec["panels"]):
+        drawn = page.evaluate(READ, number)
+        for (name, _), got in zip(panel["curves"], drawn, strict=True):
+            np.testing.assert_allclose(got, exact[name], atol=0.01 * ranges[name], err_msg=name)
+    shown = page.locator(".scalars output").all_inner_texts()
+    for scalar, text in zip(widget.spec["scalars"], shown, strict=True):
+        allowed = 0.01 * ranges[scalar["name"]] + 0.006
+        got = float(text.split()[0].replace("−", "-"))
+        assert got == pytest.approx(float(exact[scalar["name"]]), abs=allowed)
+
+
+@browser_test
+def test_random_extents_look_as_python_computes(tmp_path, visit, full):
+    opened = visit(page_of(tmp_path / "page.html", full))
+    page = opened.page
+    assert_drawn(page, full, APPENDIX_I[5])
+    for values in settings(full, 8, seed=6):
+        steps = {name: round(2 * value) for name, value in values.items()}  # of half a degree
+        for name, step in steps.items():
+            page.locator(f"input[id$={name}]").fill(str(step))
+        page.evaluate(NEXT_FRAME)
+        assert_drawn(page, full, [step / 2 for step in steps.values()])
+    assert not opened.problems
+
+
+@browser_test
+def test_drag_and_keys(tmp_path, visit, full):
+    opened = visit(page_of(tmp_path / "page.html", full))
+    page = opened.page
+    before = page.evaluate(PATHS)
+    assert len(before) == 12 and all(before)
+    assert "extrapolates" in page.locator(".verdict").inner_text()
+    box = page.locator(".pad .frame").bounding_box()
+    page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 0.7 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 3, steps=5)
+    page.mouse.up()
+    page.evaluate(NEXT_FRAME)
+    dragged = page.evaluate(PATHS)
+    assert all(a != b for a, b in zip(before, dragged))
+    assert "interpolates" in page.locator(".verdict").inner_text()
+    shoulder, elbow, _ = shown_values(page)
+    assert (shoulder, elbow) == (pytest.approx(22.5, abs=0.4), pytest.approx(30, abs=0.4))
+
+    page.locator("input[id$=shoulder_deg]").focus()
+    page.keyboard.press("Home")
+    for _ in range(20):
+        page.keyboard.press("ArrowRight")
+    page.locator("input[id$=elbow_deg]").press("End")
+    page.locator(".pad").focus()
+    page.keyboard.press("Shift+ArrowDown")
+    page.keyboard.press("ArrowLeft")
+    page.evaluate(NEXT_FRAME)
+    assert shown_values(page)[:2] == [9.5, 40.0]
+    assert_drawn(page, full, (9.5, 40.0))
+    assert page.locator(".record button").is_disabled()
+    assert "kernel" in page.locator(".record p").inner_text()
+    assert not opened.problems
+
+
+@browser_test
+def test_touch_drags_the_pad(tmp_path, browser, full):
+    context = browser.new_context(viewport={"width": 380, "height": 800}, has_touch=True)
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", full))
+    page.wait_for_selector(".pad")
+    page.evaluate(NEXT_FRAME)
+    before = page.evaluate(PATHS)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    box = page.locator(".pad .frame").bounding_box()
+    client = context.new_cdp_session(page)
+    x, y = box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"]
+
+    def touch(kind, *points):
+        where = [{"x": a, "y": b} for a, b in points]
+        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": where})
+
+    touch("touchStart", (x, y))
+    touch("touchMove", (x, y + 0.25 * box["height"]))
+    touch("touchMove", (x, y + 0.3 * box["height"]))
+    touch("touchEnd")
+    page.evaluate(NEXT_FRAME)
+    assert shown_values(page)[:2] == [pytest.approx(22.5, abs=0.3), pytest.approx(9, abs=0.3)]
+    assert all(a != b for a, b in zip(before, page.evaluate(PATHS)))
+    assert page.evaluate("scrollY") == 0  # the page did not take the drag
+    context.close()
+
+
+@browser_test
+def test_player_moves_the_arm(tmp_path, visit, picker):
+    opened = visit(page_of(tmp_path / "page.html", picker))
+    page = opened.page
+    hand = page.locator(".arm .hand")
+    page.locator("input[id$=time]").press("Home")
+    assert float(hand.get_attribute("cx")) == pytest.approx(230, abs=0.1)  # stretched out
+    page.locator(".player button").click()
+    page.wait_for_function("Number(document.querySelector('.arm .hand').getAttribute('cx')) < 229")
+    page.locator(".player button", has_text="Pause").click()
+    assert page.locator(".player button").inner_text() == "Play"
+    page.locator("input[id$=time]").press("End")
+    assert page.locator("output[for$=time]").inner_text() == "3.00\u00a0s"
+    assert not opened.problems
+
+
+@browser_test
+def test_reduced_motion_shows_poses(tmp_path, browser, picker):
+    context = browser.new_context(reduced_motion="reduce")
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", picker))
+    page.locator("input[id$=time]").press("Home")
+    page.evaluate("""() => {
+      window.seen = new Set();
+      const output = document.querySelector("output[for$=time]");
+      new MutationObserver(() => seen.add(output.textContent)).observe(output, {childList: true});
+    }""")
+    page.locator(".player button").click()
+    page.wait_for_function("[...seen].some((text) => text.startsWith('1.50'))")
+    shown = {float(text.split("\u00a0")[0]) for text in page.evaluate("[...seen]")}
+    assert shown <= {0, 0.5, 1, 1.5, 2}
+    context.close()
+
+
+@browser_test
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_accessible(tmp_path, visit, scheme, full):
+    assert not violations(visit(page_of(tmp_path / "page.html", full), scheme).page)
+
+
+@browser_test
+def test_recording_asks_the_kernel(tmp_path, visit, picker):
+    opened = visit(page_of(tmp_path / "page.html", picker, extra=LIVE))
+    page = opened.page
+    button, said = page.locator(".record button"), page.locator(".record p")
+    button.click()
+    assert page.evaluate("kernel.sent") == [
+        {"type": "record", "extents_deg": APPENDIX_I[5].tolist()}
+    ]
+    assert button.is_disabled() and said.inner_text() == "Recording…"
+    page.evaluate("kernel.model.set('record_status', {text: 'Recorded.', count: 1})")
+    assert button.is_enabled() and said.inner_text() == "Recorded."
+    page.evaluate("kernel.closed = true")
+    button.click()
+    assert said.inner_text() == "The kernel does not answer: nothing was recorded."
+    assert button.is_enabled() and not opened.problems
+
+
+@browser_test
+def test_damaged_arm_is_reported_in_place(tmp_path, visit, picker):
+    def change(entry):
+        del entry["state"]["arm"]
+
+    opened = visit(page_of(tmp_path / "page.html", picker, change=change))
+    alert = opened.page.locator("[role=alert]")
+    assert alert.count() == 1 and "are damaged: " in alert.inner_text()
+    assert not opened.problems

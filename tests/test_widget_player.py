@@ -1,0 +1,232 @@
+"""The training player, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, READ, page_of, settings
+
+from ddlib.experiment import STATE_FEEDBACK, split
+from ddlib.network import TorqueModel, Weights
+from ddlib.training import TrainingSet, cases
+from ddlib.widgets.hinton import diagram
+from ddlib.widgets.player import TrainingPlayer
+
+EPOCHS = np.array([0, 1, 2, 5, 10, 30, 100, 300, 1000, 20_000])
+WIDTH = 11
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return STATE_FEEDBACK.record()
+
+
+@pytest.fixture(scope="module")
+def model(recording):
+    """Random weights that grow, for two members."""
+    points = [Weights.random(2, WIDTH, initial=0.3 + 0.1 * k) for k in range(len(EPOCHS))]
+    data = TrainingSet.from_recording(split(recording)[0], WIDTH)
+    return TorqueModel(Weights.stack(points), data.inputs, data.outputs)
+
+
+@pytest.fixture(scope="module")
+def rmss(model, recording):
+    """RMSS on the training runs and on run 6 at every epoch, from its definition."""
+    found = {"training": [], "test": []}
+    for name, part in zip(found, split(recording)):
+        windows, torque = cases(part, WIDTH)
+        for k in range(len(EPOCHS)):
+            difference = model[k, 1].torque(windows) - torque
+            found[name].append(np.sqrt(np.mean((difference / torque.std(0)) ** 2)))
+    return found
+
+
+@pytest.fixture(scope="module")
+def truth(model, rmss):
+    return model, rmss
+
+
+@pytest.fixture(scope="module")
+def player(model, recording):
+    return TrainingPlayer(EPOCHS, model, recording, member=1)
+
+
+def test_baked_curves_are_the_exact_ones(player):
+    assert max(player.interpolation_error(100, seed=3), player.spec["error"]) < 1e-4
+
+
+def test_curves_are_the_recorded_ones(player, model, rmss):
+    for values in settings(player, 40, seed=1):
+        k = EPOCHS.tolist().index(values["epoch"])
+        weights, shown = model.weights[k, 1], player.interpolate(**values)
+        kind, name = values["unit"].split()
+        number = int(name) if kind == "hidden" else ("shoulder", "elbow").index(kind)
+        part = "hidden_weights" if kind == "hidden" else "skip_weights"
+        f = getattr(weights, part)[number]
+        np.testing.assert_allclose(shown["shoulder weights"], f[0], atol=2e-4)
+        np.testing.assert_allclose(shown["elbow weights"], f[1], atol=2e-4)
+        np.testing.assert_allclose(shown["weights of all units"], diagram(weights, 5), atol=2e-4)
+        for name in ("training", "test"):
+            assert shown[f"{name} RMSS"][0] == pytest.approx(rmss[name][k], rel=1e-3)
+        reached = getattr(model.weights, part)[:, 1, number]
+        ends = [shown[name][0] for name in ("lowest", "highest")]
+        assert ends == pytest.approx([reached.min(), reached.max()], abs=1e-4)
+
+
+def test_errors_are_those_of_every_recorded_epoch(player, rmss):
+    panel = player.spec["panels"][1]
+    np.testing.assert_allclose(10 ** np.array(panel["x"]), EPOCHS[1:], rtol=1e-6)
+    assert panel["ticks"] == [[k, f"{10**k:,}"] for k in range(5)]
+    drawn = dict(panel["fixed"])
+    np.testing.assert_allclose(drawn["training"], rmss["training"][1:], rtol=1e-5)
+    np.testing.assert_allclose(drawn["trajectory 6"], rmss["test"][1:], rtol=1e-5)
+    low, high = panel["y_range"]
+    everything = [*rmss["training"], *rmss["test"]]
+    assert low <= min(everything) < 10 * low and high / 10 < max(everything) <= high
+
+
+@pytest.mark.parametrize("name, bad", [("epoch", 3), ("epoch", np.nan), ("unit", "hidden 10")])
+def test_bad_values_are_refused(player, name, bad):
+    with pytest.raises(TraitError, match=f"{name} must be one of"):
+        setattr(player, name, bad)
+
+
+def test_bad_arguments_are_refused(model, recording):
+    with pytest.raises(ValueError, match="member must be an integer from 0 to 1, got 2"):
+        TrainingPlayer(EPOCHS, model, recording, member=2)
+    with pytest.raises(ValueError, match=r"leading axes \(9 epochs, members\), got \(10, 2\)"):
+        TrainingPlayer(EPOCHS[:-1], model, recording)
+    with pytest.raises(ValueError, match=r"leading axes \(10 epochs, members\), got \(10,\)"):
+        TrainingPlayer(EPOCHS, model[:, 0], recording)
+    with pytest.raises(ValueError, match="epochs must increase"):
+        TrainingPlayer(EPOCHS[::-1], model, recording)
+    with pytest.raises(ValueError, match="epochs must be finite"):
+        TrainingPlayer(EPOCHS * np.nan, model, recording)
+    with pytest.raises(ValueError, match="recording must hold the six runs"):
+        TrainingPlayer(EPOCHS, model, split(recording)[1])
+
+
+# In a page without a kernel
+
+AT = """Number(
+  document.querySelectorAll('.chart > svg')[1].querySelector('line.cursor').getAttribute('x1'))"""
+
+
+def shown_epoch(page) -> int:
+    page.evaluate(NEXT_FRAME)
+    return int(page.locator("output[for$=epoch]").inner_text().replace(",", ""))
+
+
+def assert_shown(page, truth, epoch, unit):
+    """The page shows the weights of a hidden unit, and the errors, at an epoch."""
+    model, rmss = truth
+    assert shown_epoch(page) == epoch
+    k = EPOCHS.tolist().index(epoch)
+    course = model.weights.hidden_weights[:, 1, unit]
+    np.testing.assert_allclose(page.evaluate(READ, 0), course[k], atol=3e-3 * np.ptp(course))
+    texts = page.locator(".scalars output").all_inner_texts()
+    errors = [rmss[name][k] for name in ("training", "test")]
+    assert [float(x) for x in texts] == pytest.approx(errors, abs=0.051)
+
+
+@pytest.mark.browser
+def test_slider_diagram_and_menu(tmp_path, visit, player, truth):
+    player.unit, player.epoch = "hidden 0", 0
+    opened = visit(page_of(tmp_path / "page.html", player))
+    page, slider = opened.page, opened.page.get_by_role("slider")
+    assert_shown(page, truth, 0, 0)
+    slider.press("End")
+    assert_shown(page, truth, 20_000, 0)
+    last = page.evaluate(AT)
+    for _ in range(3):
+        slider.press("ArrowLeft")
+    assert_shown(page, truth, 100, 0)
+    first = page.evaluate(AT)
+    assert first < last  # the cursor follows the epoch
+    box = slider.bounding_box()
+    page.mouse.move(box["x"] + 0.69 * box["width"], box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.34 * box["width"], box["y"] + box["height"] / 2, steps=4)
+    page.mouse.up()
+    assert_shown(page, truth, 5, 0)
+    cells = page.locator("[role=gridcell]")
+    assert cells.count() == 12
+    cells.nth(5).click()
+    assert_shown(page, truth, 5, 3)
+    page.locator("svg.hinton").focus()
+    page.keyboard.press("ArrowDown")
+    assert_shown(page, truth, 5, 5)
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 8")
+    assert_shown(page, truth, 5, 8)
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_squares_grow_with_the_weights(tmp_path, visit, player, truth):
+    player.unit, player.epoch = "hidden 0", 0
+    opened = visit(page_of(tmp_path / "page.html", player))
+    page, areas = opened.page, []
+    read = "document.querySelector('.hinton .positive').getAttribute('d').match(/h([\\d.]+)v/g)"
+    for key, k in (("Home", 0), ("End", -1)):
+        page.get_by_role("slider").press(key)
+        page.evaluate(NEXT_FRAME)
+        drawn = [float(side[1:-1]) ** 2 for side in page.evaluate(read)]
+        cells = diagram(truth[0].weights[k, 1], 5)
+        areas.append(sum(drawn) / cells[cells > 0].sum())
+    assert areas[0] == pytest.approx(areas[1], rel=0.02)  # one scale for the whole film
+
+
+@pytest.mark.browser
+def test_film_runs_and_stops(tmp_path, visit, player, truth):
+    player.unit, player.epoch = "hidden 0", 0
+    opened = visit(page_of(tmp_path / "page.html", player))
+    page, button = opened.page, opened.page.get_by_role("button", name="Play")
+    button.click()
+    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '5'")
+    page.get_by_role("button", name="Pause").click()
+    stopped = shown_epoch(page)
+    page.wait_for_timeout(400)
+    assert shown_epoch(page) == stopped < 20_000
+    button.click()
+    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '20,000'")
+    assert_shown(page, truth, 20_000, 0)
+    button.wait_for()  # the film has ended by itself
+    button.click()
+    page.wait_for_timeout(150)
+    page.get_by_role("slider").press("End")  # the reader's hand stops it
+    button.wait_for()
+    page.wait_for_timeout(300)
+    assert shown_epoch(page) == 20_000
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_reduced_motion_shows_a_few_pictures(tmp_path, browser, player):
+    player.unit, player.epoch = "hidden 0", 0
+    context = browser.new_context(reduced_motion="reduce")
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", player))
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(500)
+    assert shown_epoch(page) == 0  # still, where the film would have run on
+    page.wait_for_function(
+        "document.querySelector('output[for$=epoch]').textContent === '20,000'", timeout=5000
+    )
+    context.close()
+
+
+@pytest.mark.browser
+def test_touch_moves_the_slider(tmp_path, browser, player, truth):
+    player.unit, player.epoch = "hidden 0", 0
+    context = browser.new_context(
+        viewport={"width": 380, "height": 900}, has_touch=True, is_mobile=True
+    )
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", player))
+    page.wait_for_selector(".hinton .positive[d]", state="attached")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    box = page.get_by_role("slider").bounding_box()
+    page.touchscreen.tap(box["x"] + box["width"] - 3, box["y"] + box["height"] / 2)
+    assert_shown(page, truth, 20_000, 0)
+    context.close()

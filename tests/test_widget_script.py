@@ -1,0 +1,269 @@
+"""The widgets' script: in Node against Python, and in a browser without a kernel."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from test_accessibility import violations
+from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings, shown_values
+from widget_samples import T, axes, make, make_kinds, parameters, parts, wave
+
+from ddlib.widgets import CurveWidget, Pad, Panel, Parameter
+
+CI = os.environ.get("CI", "").lower() in {"1", "true"}
+
+
+@pytest.fixture(scope="module")
+def widget():
+    return make()
+
+
+@pytest.fixture(scope="module")
+def waves():
+    return make_kinds()
+
+
+# In Node
+
+
+@pytest.fixture(scope="module")
+def node():
+    path = shutil.which("node")
+    if path is None:
+        (pytest.fail if CI else pytest.skip)("no Node.js found: install nodejs")
+    return path
+
+
+SCRIPT = """
+import fs from "node:fs";
+const [module, input] = process.argv.slice(2);
+const { interpolate, readTables, insidePolygon, fromFraction, toFraction, ticks, around } =
+  await import(module);
+const { spec, baked, settings, points } = JSON.parse(fs.readFileSync(input));
+const bytes = Uint8Array.from(Buffer.from(baked, "base64"));
+const tables = readTables(spec, new DataView(bytes.buffer));
+const ranged = spec.parameters.map((p, k) => [p, k]).filter(([p]) => !p.options);
+console.log(JSON.stringify({
+  curves: settings.map((values) => [...interpolate(spec, tables, values)]),
+  inside: points.map((p) => insidePolygon(spec.pad?.region ?? [], ...p)),
+  back: settings.map((v) => ranged.map(([p, k]) => fromFraction(p, toFraction(p, v[k])))),
+  ticks: [[-4, 4, 3], [0, 1, 2], [-0.35, 7.2, 4]].map((t) => ticks(...t)),
+  around: [[-3.4, 8.1], [0, 0], [5, 5], [0.2, 30, true]].map((a) => around(...a)),
+}));
+"""
+
+
+def run_script(node, folder, widget, chosen, points=()):
+    data = {
+        "spec": widget.spec,
+        "baked": base64.b64encode(widget.baked).decode(),
+        "settings": [list(values.values()) for values in chosen],
+        "points": points,
+    }
+    files = {"in.json": json.dumps(data), "run.mjs": SCRIPT, "widget.mjs": widget._esm}
+    for name, text in files.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    command = [node, "run.mjs", (folder / "widget.mjs").as_uri(), "in.json"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def assert_same(out, widget, chosen):
+    for values, got in zip(chosen, out["curves"], strict=True):
+        expected = np.concatenate(list(widget.interpolate(**values).values()))
+        np.testing.assert_allclose(got, expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("interpolation", ["cubic", "linear"])
+def test_script_interpolates_as_python_does(node, tmp_path, interpolation):
+    region = [(0, 0), (1, -1), (2, 1)]
+    widget = make(interpolation=interpolation, tolerance=1, pad=Pad("decay", "phase", (), region))
+    corners = ([1, 0, -1], [100, 2, 1], [10, 1, 0])
+    ends = [{p.name: x for p, x in zip(parameters(), corner)} for corner in corners]
+    chosen = [*settings(widget, 30), *ends]
+    points = [(1, 0), (0.1, 0.5), (2, 1), (1.9, -1)]
+    out = run_script(node, tmp_path, widget, chosen, points)
+    assert_same(out, widget, chosen)
+    np.testing.assert_allclose(out["back"], [list(v.values()) for v in chosen], atol=1e-9)
+    assert out["inside"] == [True, False, True, False]
+    assert out["ticks"][0] == [-4, -2, 0, 2, 4] and out["ticks"][1] == [0, 0.5, 1]
+    assert out["around"] == [[-5, 10], [0, 0.25], [4, 6], [0.1, 100]]
+
+
+def test_script_takes_choices_as_python_does(node, tmp_path, waves):
+    chosen = list(settings(waves, 40))
+    assert {v["bits"] for v in chosen} == {3, 5, 8} and {v["twice"] for v in chosen} == {
+        False,
+        True,
+    }
+    assert_same(run_script(node, tmp_path, waves, chosen), waves, chosen)
+
+
+def test_script_reads_tables_of_some_parameters(node, tmp_path):
+    depends = {"a": ["a"], "k": ["k"], "c": []}
+    crowded = [Parameter("a", "a", 0, 2, 1, grid=6, crowd=1.7), *axes()[1:]]
+    widget = CurveWidget(parts, crowded, [Panel("a", "a", "x", T)], alt="a", depends=depends)
+    chosen = list(settings(widget, 40))
+    assert_same(run_script(node, tmp_path, widget, chosen), widget, chosen)
+
+
+def test_script_reads_numbers_of_one_byte(node, tmp_path):
+    b = np.arange(30)
+
+    def function(a):
+        return {"y": np.cos(b * a) @ np.exp(-0.3 * b[:, None] * (1 + T)), "end": a}
+
+    a = Parameter("a", "a", 0, 3, 1, grid=60)
+    widget = CurveWidget(function, [a], [Panel("y", "y", "x", T)], alt="a")
+    (group,) = widget.spec["groups"]
+    assert 0 < group["wide"] < group["rank"]
+    chosen = list(settings(widget, 40))
+    assert_same(run_script(node, tmp_path, widget, chosen), widget, chosen)
+
+
+# In a page without a kernel
+
+pytestmark = pytest.mark.browser
+
+
+def test_sliders_of_two_widgets(tmp_path, visit, widget):
+    opened = visit(page_of(tmp_path / "page.html", widget, make()))
+    page = opened.page
+    ids = page.evaluate("[...document.querySelectorAll('[id]')].map((el) => el.id)")
+    assert len(ids) == len(set(ids)) >= 6
+    first = page.locator(".ddlib-widget").first
+    first.get_by_label("Gain").press("End")
+    page.evaluate(NEXT_FRAME)
+    assert first.locator(".slider output").first.inner_text() == "100\u00a0N m/rad"
+    final = widget.interpolate(gain=100)["final"][0]
+    shown = first.locator(".scalars output").inner_text().replace("−", "-").split()[0]
+    assert float(shown) == pytest.approx(final, abs=0.006)
+    second = page.locator(".ddlib-widget").nth(1)
+    assert second.locator(".slider output").first.inner_text() == "10.0\u00a0N m/rad"
+    page.wait_for_function("document.querySelector('.spoken').textContent.includes('Gain 100')")
+    assert "Gain" not in second.locator(".spoken").inner_text()
+    assert not opened.problems
+
+
+def test_every_control_of_a_choice(tmp_path, visit, waves):
+    opened = visit(page_of(tmp_path / "page.html", waves))
+    page = opened.page
+    drawn = [page.evaluate(PATHS)]
+
+    def changed():
+        page.evaluate(NEXT_FRAME)
+        drawn.append(page.evaluate(PATHS))
+        return drawn[-1] != drawn[-2]
+
+    page.get_by_label("Shape").select_option(label="a cosine")
+    assert changed()
+    page.get_by_role("switch", name="Twice as much").press("Space")
+    assert changed() and page.locator(".switch output").inner_text() == "on"
+    encoder = page.get_by_label("Encoder")
+    encoder.press("ArrowLeft")
+    assert changed() and encoder.get_attribute("aria-valuetext") == "3 bits"
+    page.get_by_label("Gain").press("End")
+    assert changed()
+    exact = wave(5, "cosine", True, 3)
+    line = page.evaluate(READ, 0)
+    np.testing.assert_allclose(line[1], exact["y"], atol=0.06)
+    np.testing.assert_allclose(line[0], 1, atol=0.06)  # the fixed curve is drawn first
+    stems = page.evaluate(READ, 1)
+    np.testing.assert_allclose(stems[1], exact["taps"], atol=0.2)
+    page.wait_for_function(
+        "document.querySelector('.spoken').textContent.includes('Shape a cosine')"
+    )
+    spoken = page.locator(".spoken").inner_text()
+    assert "Twice as much on. Encoder 3 bits. Begin 0.5\u00a0s." in spoken
+    assert "A note." in page.locator(".remark").inner_text()
+    assert not opened.problems
+
+
+def test_cursors_ticks_and_ranges(tmp_path, visit, waves):
+    page = visit(page_of(tmp_path / "page.html", waves)).page
+    charts = page.locator(".chart > svg")
+    x = "(el) => ['x1', 'x2', 'x', 'width'].map((n) => Number(el.getAttribute(n)))"
+
+    def place(chart, value):
+        """Where a value of x lies, from the frame of the chart."""
+        path = charts.nth(chart).locator(".frame").get_attribute("d")
+        left, right = float(path[1:].split(" ")[0]), float(path.split("H")[1])
+        margin = {0: 0, 1: 0.05}[chart]  # half a step beside the first and the last stem
+        return left + (value + margin) / (1 + 2 * margin) * (right - left)
+
+    assert charts.nth(0).locator(".cursor").evaluate(x)[0] == pytest.approx(place(0, 0.2), abs=0.6)
+    begin, width = charts.nth(1).locator(".span").evaluate(x)[2:]
+    assert begin == pytest.approx(place(1, 0.2), abs=0.6)
+    assert begin + width == pytest.approx(place(1, 0.5), abs=0.6)
+    assert charts.nth(2).locator("text.x").all_text_contents() == ["a", "c", "x"]
+    ys = charts.nth(3).locator("text.y").all_text_contents()
+    assert [float(y.replace("−", "-")) for y in ys] == [-2, -1, 0]  # up to 0.5
+    clip = charts.nth(3).locator(".curve").get_attribute("clip-path")
+    assert charts.nth(3).locator(f"clipPath[id='{clip[5:-1]}']").count() == 1
+    page.get_by_label("Gain").press("End")
+    page.evaluate(NEXT_FRAME)
+    assert charts.nth(0).locator(".cursor").evaluate(x)[0] == pytest.approx(place(0, 0.5), abs=0.6)
+
+
+def test_axes_follow_curves_where_asked(tmp_path, visit, waves):
+    page = visit(page_of(tmp_path / "page.html", waves)).page
+    tops = []
+    for key in ("Home", "End"):
+        page.get_by_label("Gain").press(key)
+        page.evaluate(NEXT_FRAME)
+        tops.append([c.locator("text.y").last.text_content() for c in page.locator(".chart").all()])
+    (fitted, kept, *_), (larger, same, *_) = tops
+    assert float(fitted) == 1 and float(larger) >= 5 and kept == same
+
+
+def test_pad_by_keyboard(tmp_path, visit, widget):
+    page = visit(page_of(tmp_path / "page.html", widget)).page
+    pad = page.locator(".pad")
+    seen = {}
+    for key in ("Home", "PageUp", "End", "PageDown", "ArrowLeft", "Shift+ArrowUp"):
+        pad.press(key)
+        page.evaluate(NEXT_FRAME)
+        seen[key] = shown_values(page)[1:3]
+    assert seen["Home"][0] == 0 and seen["PageUp"] == [0, 1] and seen["End"] == [2, 1]
+    assert seen["PageDown"] == [2, -1]
+    assert seen["ArrowLeft"] == [1.98, -1] and seen["Shift+ArrowUp"] == [1.98, -0.8]
+    name = pad.get_attribute("aria-label")
+    assert "Now 1.98\u00a01/s, −0.80\u00a0rad" in name
+    assert pad.evaluate("(el) => el.matches(':focus-visible')")
+    assert pad.evaluate("(el) => getComputedStyle(el).outlineWidth") == "2px"
+    assert pad.evaluate("(el) => getComputedStyle(el).touchAction") == "none"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_accessible_from_the_start(tmp_path, visit, scheme, widget, waves):
+    page = visit(page_of(tmp_path / "page.html", widget, waves), scheme).page
+    unnamed = "[...document.querySelectorAll('[role=img],[role=application],[role=group]')]"
+    assert page.evaluate(f"{unnamed}.filter((el) => !el.getAttribute('aria-label')).length") == 0
+    for control in page.locator("input, select").all():
+        assert control.evaluate("(el) => el.labels.length === 1 && !!el.labels[0].textContent")
+        if control.get_attribute("type") == "range":
+            spoken = control.get_attribute("aria-valuetext")
+            output = page.locator(f"output[for='{control.get_attribute('id')}']")
+            assert spoken and output.inner_text() == spoken
+    assert not violations(page)
+
+
+def test_on_paper_there_are_pictures_and_nothing_to_press(tmp_path, visit, widget, waves):
+    page = visit(page_of(tmp_path / "page.html", widget, waves), "dark", 700).page
+    ink = "getComputedStyle(document.querySelector('.ddlib-curves .title')).color"
+    assert page.evaluate(ink) == "rgb(230, 233, 236)"
+    page.emulate_media(media="print")
+    assert page.evaluate(ink) == "rgb(31, 35, 40)"
+    assert not any(el.is_visible() for el in page.locator("input, button").all())
+    charts = page.locator(".chart > svg")
+    assert charts.count() == 6 and all(el.is_visible() for el in charts.all())
+    assert all(el.is_visible() for el in page.locator(".slider output, .pad").all())
+    page.set_viewport_size({"width": 500, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 500

@@ -1,0 +1,203 @@
+"""The real-arm switches, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
+
+from ddlib.arm import CMU_DD_ARM_II
+from ddlib.controllers import pd
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
+from ddlib.experiment import KD, KP
+from ddlib.simulate import CONTROL_STEP, record
+from ddlib.trajectories import APPENDIX_I
+from ddlib.widgets.switches import (
+    CLOSE_UP,
+    DELAY,
+    QUANTISATION,
+    SATURATION,
+    TIMES,
+    RealArmSwitches,
+    _many,
+)
+
+ARM = CMU_DD_ARM_II
+NAMES = ("friction", "dead_zone", "saturation", "quantisation", "delay")
+OFF = dict.fromkeys(NAMES, "off")
+DEVIATIONS = [f"{j} {what}" for what in ("position", "torque") for j in ("shoulder", "elbow")]
+
+
+@pytest.fixture(scope="module")
+def switches():
+    return RealArmSwitches()
+
+
+def recorded(effects, times):
+    """Shoulder error (degrees) and torque by `record`, at the given times of the motion."""
+    options = {"effects": effects, "velocity": "difference", "log_step": CONTROL_STEP}
+    recording = record(ARM, pd(KP, KD), APPENDIX_I[5], **options)
+    at = np.searchsorted(recording.t, times - 1e-9)
+    assert recording.t[at] == pytest.approx(times, abs=1e-9)
+    return np.rad2deg(recording.tracking_error[at, 0]), recording.tau_true[at, 0]
+
+
+def test_every_combination_is_baked_exactly(switches):
+    """To half a step of 16 bits: nothing is interpolated."""
+    assert switches.spec["error"] < 1e-5
+    assert switches.interpolation_error(60, seed=4) < 1e-5
+    assert switches.baked_bytes < 150_000
+
+
+@pytest.mark.parametrize(
+    "levels, effects",
+    [
+        ({}, IDEAL),
+        (
+            {"friction": "assumed", "quantisation": "assumed"},
+            CMU_DD_ARM_II_EFFECTS.without("actuator", "torque_sensor"),
+        ),
+        ({"delay": "strong"}, Effects(actuator=(Delay(DELAY["strong"]),))),
+    ],
+    ids=["off", "as assumed", "delay"],
+)
+def test_curves_are_the_recorded_ones(switches, levels, effects):
+    shown = switches.interpolate(**OFF | levels)
+    moving = TIMES < 3  # a rest after the motion has its own start
+    error, torque = recorded(effects, TIMES[moving])
+    np.testing.assert_allclose(shown["error"][moving], error, atol=2e-4)
+    np.testing.assert_allclose(shown["torque"][moving], torque, atol=1e-3)
+    np.testing.assert_allclose(shown["close-up"], recorded(effects, CLOSE_UP)[1], atol=1e-3)
+
+
+def test_all_off_is_the_ideal_arm(switches):
+    exact = switches._function(**OFF)
+    assert [exact[name] for name in DEVIATIONS] == [0, 0, 0, 0]
+    for panel, name in zip(switches.spec["panels"], ("error", "torque", "close-up")):
+        np.testing.assert_allclose(exact[name], dict(panel["fixed"])["ideal"], rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_stronger_the_further_from_the_ideal_arm(switches, name):
+    levels = switches._parameters[name].points()
+    off, weak, strong = (switches._function(**OFF | {name: level}) for level in levels)
+    for deviation in DEVIATIONS:
+        assert off[deviation] == 0 < weak[deviation] < strong[deviation]
+
+
+def test_saturation_clips_every_torque(switches):
+    for level, *others in itertools.product(("weak", "strong"), *(("off", "strong"),) * 3):
+        values = dict(zip(("friction", "quantisation", "delay"), others), saturation=level)
+        shown = switches.interpolate(**OFF | values)
+        for name in ("torque", "close-up"):
+            assert np.abs(shown[name]).max() <= SATURATION[level] + 1e-3
+        assert np.abs(shown["torque"]).max() > 0.99 * SATURATION[level]
+
+
+def test_quantisation_roughens_the_torque_not_the_position(switches):
+    rough, away = [], []
+    for level in QUANTISATION:
+        exact = switches._function(**OFF | {"quantisation": level})
+        rough.append(np.abs(np.diff(exact["close-up"], 2)).mean())
+        away.append(exact["shoulder position"])
+    # one step of the encoder in one period, seen by the derivative gain
+    for bits, got in zip((16, 14), rough[1:]):
+        step = KD[0] * 2 * np.pi / 2**bits / CONTROL_STEP
+        assert 0.1 < got / step < 2
+    assert rough[0] < 0.02 * rough[1] < 0.02 * rough[2]
+    assert max(away) < 0.002  # degrees
+
+
+def test_a_batch_is_its_single_runs(switches):
+    some = list(settings(switches, 6, seed=8))
+    batch = _many(ARM, {name: [values[name] for values in some] for name in NAMES})
+    for k, values in enumerate(some):
+        for name, curve in switches._function(**values).items():
+            np.testing.assert_allclose(batch[name][k], curve, atol=1e-9)
+
+
+def test_labels_name_strengths_and_what_is_assumed(switches):
+    labels = {p["label"]: [text for _, text in p["options"]] for p in switches.spec["parameters"]}
+    assert labels == {
+        "Friction": ["off", "0.5 N m, as assumed", "2 N m"],
+        "Dead zone": ["off", "0.1 N m", "2 N m"],
+        "Torque limit": ["off", "±20 N m", "±15 N m"],
+        "Encoder": ["off", "16 bits, as assumed", "14 bits"],
+        "Delay": ["off", "2 ms", "20 ms"],
+    }
+
+
+@pytest.mark.parametrize(
+    "name, bad", [("friction", "weak"), ("delay", 1), ("quantisation", None), ("dead_zone", "on"),
+                  ("saturation", np.nan)],
+)  # fmt: skip
+def test_bad_values_are_refused(switches, name, bad):
+    before = switches.values
+    with pytest.raises(TraitError, match=f"{name} must be one of 'off'"):
+        setattr(switches, name, bad)
+    assert switches.values == before
+
+
+# In a page without a kernel
+
+
+def assert_shown(page, switches, **levels):
+    page.evaluate(NEXT_FRAME)
+    exact = switches._function(**{**switches.values, **levels})
+    for panel, name in enumerate(("error", "torque", "close-up")):
+        ideal, real = page.evaluate(READ, panel)  # what stays is drawn below
+        low, high = (f(np.concatenate([exact[name], ideal])) for f in (np.min, np.max))
+        np.testing.assert_allclose(real, exact[name], atol=1e-3 * (high - low))
+    texts = page.locator(".scalars output").all_inner_texts()
+    shown = [float(text.replace("°", " ").split()[0]) for text in texts]
+    assert shown == pytest.approx([exact[name] for name in DEVIATIONS], abs=0.0051)
+
+
+@pytest.mark.browser
+def test_drag_and_keys(tmp_path, visit, switches):
+    opened = visit(page_of(tmp_path / "page.html", switches))
+    page = opened.page
+    page.evaluate(NEXT_FRAME)
+    assert_shown(page, switches)
+    before = page.evaluate(PATHS)
+    box = page.locator("input[id$=saturation]").bounding_box()
+    y = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 8, y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.95 * box["width"], y, steps=5)
+    page.mouse.up()
+    page.evaluate(NEXT_FRAME)
+    assert page.locator("output[for$=saturation]").inner_text() == "±15 N m"
+    dragged = page.evaluate(PATHS)
+    real = [k for k in range(6) if k % 2]
+    assert len(before) == 6 and all(before[k] != dragged[k] for k in real)
+    assert_shown(page, switches, saturation="strong")
+    page.locator("input[id$=friction]").press("ArrowRight")
+    page.locator("input[id$=quantisation]").press("Home")
+    page.locator("input[id$=delay]").press("End")
+    page.locator("input[id$=dead_zone]").press("ArrowRight")
+    levels = {"friction": "strong", "dead_zone": "weak", "quantisation": "off", "delay": "strong"}
+    assert_shown(page, switches, saturation="strong", **levels)
+    assert page.locator("input[id$=delay]").get_attribute("aria-valuetext") == "20 ms"
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_touch(tmp_path, browser, switches):
+    context = browser.new_context(viewport={"width": 380, "height": 900}, has_touch=True)
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", switches))
+    page.wait_for_selector(".chart")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    before = page.evaluate(PATHS)
+    box = page.locator("input[id$=delay]").bounding_box()
+    page.touchscreen.tap(box["x"] + 0.97 * box["width"], box["y"] + box["height"] / 2)
+    page.evaluate(NEXT_FRAME)
+    assert page.locator("output[for$=delay]").inner_text() == "20 ms"
+    assert page.evaluate(PATHS) != before
+    assert_shown(page, switches, delay="strong")
+    context.close()

@@ -1,0 +1,174 @@
+"""The sliding window, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, READ, page_of, settings
+
+from ddlib import results
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
+from ddlib.network import TorqueModel
+from ddlib.simulate import Recording
+from ddlib.widgets.window import SlidingWindow
+from ddlib.windows import sliding_windows
+
+MEMBER = 1
+
+
+@pytest.fixture(scope="module")
+def test_run():
+    return split(STATE_FEEDBACK.record())[1]
+
+
+@pytest.fixture(scope="module")
+def models():
+    networks = {}
+    for width in WINDOWS:
+        path = results.networks_path(STATE_FEEDBACK.name, width)
+        networks[width] = TorqueModel.load(path)[MEMBER]
+    return networks
+
+
+@pytest.fixture(scope="module")
+def widget(models, test_run):
+    return SlidingWindow(models, test_run)
+
+
+def test_baked_curves_are_the_exact_ones(widget):
+    assert max(widget.interpolation_error(100, seed=3), widget.spec["error"]) < 1e-4
+    assert widget.baked_bytes < 200_000
+
+
+def test_truths_at_every_sample(widget, models, test_run):
+    for values in settings(widget, 40, seed=1):
+        width, sample = values["width"], values["sample"]
+        model, shown = models[width], widget.interpolate(**values)
+        windows = sliding_windows(test_run.q, width, test_run.motion)
+        torque = model.torque(windows)
+        at = test_run.motion.start + sample
+        for j, joint in enumerate(("shoulder", "elbow")):
+            wide = np.ptp(torque[:, j])
+            np.testing.assert_allclose(shown[f"{joint} torque"], torque[:, j], atol=1e-4 * wide)
+            assert shown[f"{joint} network"][0] == pytest.approx(torque[sample, j], abs=2e-3)
+            assert shown[f"{joint} measured"][0] == pytest.approx(test_run.tau[at, j], abs=2e-3)
+            strip = shown[f"{joint} position"]
+            inside = strip[20 - width // 2 : 21 + width // 2]
+            np.testing.assert_allclose(inside, model.scaled(windows)[sample, j], atol=1e-4)
+            around = test_run.q[at - 20 : at + 21, j]
+            np.testing.assert_allclose(np.corrcoef(strip, around)[0, 1], 1, atol=1e-4)
+        hidden, output = model.weights.activity(model.scaled(windows[[sample]]))
+        expected = np.concatenate([hidden[0], output[0]])
+        np.testing.assert_allclose(shown["activity"], expected, atol=1e-4)
+        # the output activities are the torque
+        back = model.outputs.unscale(shown["activity"][-2:])
+        np.testing.assert_allclose(back, torque[sample], atol=0.02)
+        assert shown["last"][0] - shown["first"][0] == pytest.approx(10 * width, abs=0.02)
+
+
+def test_shade_ends_with_the_motion(widget):
+    start, middle, end = (widget.interpolate(width=41, sample=k) for k in (0, 150, 299))
+    assert [start["from"][0], start["to"][0]] == pytest.approx([0, 0.205], abs=1e-3)
+    assert [middle["from"][0], middle["to"][0]] == pytest.approx([1.295, 1.705], abs=1e-3)
+    assert [end["from"][0], end["to"][0]] == pytest.approx([2.785, 2.99], abs=1e-3)
+
+
+def test_measured_torque_is_drawn_whole(widget, test_run):
+    for j, panel in enumerate(widget.spec["panels"][2:]):
+        drawn = dict(panel["fixed"])["measured"]
+        np.testing.assert_allclose(drawn, test_run.tau[test_run.motion, j], rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    "name, bad", [("width", 31), ("sample", 300), ("sample", -1), ("sample", 1.5),
+                  ("sample", np.nan)],
+)  # fmt: skip
+def test_bad_values_are_refused(widget, name, bad):
+    with pytest.raises(TraitError, match=f"{name} must be one of"):
+        setattr(widget, name, bad)
+
+
+def test_bad_arguments_are_refused(models, test_run):
+    with pytest.raises(ValueError, match="one network of that size"):
+        SlidingWindow({11: models[21], 21: models[21]}, test_run)
+    with pytest.raises(TypeError, match="two window sizes or more"):
+        SlidingWindow({}, test_run)
+    several = STATE_FEEDBACK.record()
+    with pytest.raises(ValueError, match="recording must be one run"):
+        SlidingWindow(models, several)
+    damaged = Recording(**{**vars(test_run), "q": test_run.q * np.nan})
+    with pytest.raises(ValueError, match=r"recording\.q must be finite"):
+        SlidingWindow(models, damaged)
+
+
+# In a page without a kernel
+
+BARS = r"""() => {
+  const svg = document.querySelectorAll('.chart > svg')[1];
+  const ys = [...svg.querySelectorAll('text.y')].map(
+    (t) => [Number(t.getAttribute('y')), Number(t.textContent)]);
+  const [[y0, v0], [y1, v1]] = [ys[0], ys.at(-1)];
+  return svg.querySelector('.bar').getAttribute('d').match(/V[\d.]+h/g)
+    .map((s) => v0 + (parseFloat(s.slice(1)) - y0) * (v1 - v0) / (y1 - y0));
+}"""
+
+
+def assert_shown(page, widget, width, sample):
+    page.evaluate(NEXT_FRAME)
+    assert page.locator("output[for$=sample]").inner_text() == f"{0.01 * sample:.2f} s"
+    exact = widget._curves(width, sample)
+    np.testing.assert_allclose(page.evaluate(BARS), exact["activity"], atol=0.01)
+    strips = [exact["shoulder position"], exact["elbow position"]]
+    np.testing.assert_allclose(page.evaluate(READ, 0), strips, atol=0.01)
+    for panel, joint in ((2, "shoulder"), (3, "elbow")):
+        torque = exact[f"{joint} torque"]
+        _, shown = page.evaluate(READ, panel)  # the measured torque is drawn below the network's
+        np.testing.assert_allclose(shown, torque, atol=0.01 * np.ptp(torque))
+    texts = page.locator(".scalars output").all_inner_texts()
+    names = [f"{j} {what}" for j in ("shoulder", "elbow") for what in ("network", "measured")]
+    values = [float(text.replace("−", "-").split()[0]) for text in texts]
+    assert values == pytest.approx([exact[name] for name in names], abs=0.06)
+
+
+@pytest.mark.browser
+def test_slider_and_menu(tmp_path, visit, widget):
+    widget.width, widget.sample = 21, 75
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page, slider = opened.page, opened.page.get_by_role("slider")
+    assert_shown(page, widget, 21, 75)
+    slider.press("ArrowRight")
+    assert_shown(page, widget, 21, 76)
+    slider.press("Home")
+    assert_shown(page, widget, 21, 0)
+    slider.press("End")
+    assert_shown(page, widget, 21, 299)
+    box = slider.bounding_box()
+    page.mouse.move(box["x"] + box["width"] - 8, box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2, steps=5)
+    page.mouse.up()
+    sample = int(slider.input_value())
+    assert 145 < sample < 155
+    assert_shown(page, widget, 21, sample)
+    page.get_by_label("Window size").select_option(label="41 samples")
+    assert_shown(page, widget, 41, sample)
+    page.get_by_label("Window size").press("Home")
+    assert_shown(page, widget, 11, sample)
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_touch_slides_the_window(tmp_path, browser, widget):
+    widget.width, widget.sample = 21, 75
+    context = browser.new_context(
+        viewport={"width": 380, "height": 900}, has_touch=True, is_mobile=True
+    )
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", widget))
+    page.wait_for_selector(".chart .bar[d]", state="attached")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    box = page.get_by_role("slider").bounding_box()
+    page.touchscreen.tap(box["x"] + 3, box["y"] + box["height"] / 2)
+    assert_shown(page, widget, 21, 0)
+    context.close()

@@ -1,0 +1,126 @@
+"""Pages with widgets and no kernel, for the tests of widgets."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+from ipywidgets.embed import embed_data
+
+ROOT = Path(__file__).resolve().parent.parent
+MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
+
+VIEW = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
+STATE = '<script type="application/vnd.jupyter.widget-state+json">%s</script>'
+
+PATHS = "[...document.querySelectorAll('.chart > svg > .curve')].map((p) => p.getAttribute('d'))"
+"""What is drawn, as text: changes with the curves."""
+
+READ = r"""(panel) => {
+  const svg = document.querySelectorAll('.chart > svg')[panel];
+  const ys = [...svg.querySelectorAll('text.y')].map(
+    (t) => [Number(t.getAttribute('y')), Number(t.textContent.replace('−', '-'))]);
+  const [[y0, v0], [y1, v1]] = [ys[0], ys.at(-1)];
+  return [...svg.querySelectorAll('.curve')].map((p) => p.getAttribute('d').split(/[ML]/).slice(1)
+    .map((s) => v0 + (parseFloat(s.split(' ')[1]) - y0) * (v1 - v0) / (y1 - y0)));
+}"""
+"""What a reader would see: the curves of a panel in the units of its ticks."""
+
+NEXT_FRAME = "() => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
+
+
+def settings(widget, n, seed=1):
+    """`n` random settings of a widget's parameters."""
+    rng = np.random.default_rng(seed)
+    for fractions in rng.uniform(size=(n, len(widget.values))):
+        yield {p.name: p.place(f) for p, f in zip(widget._parameters.values(), fractions)}
+
+
+def saved(*widgets) -> dict:
+    """The state as a notebook keeps it: whole, with script and style."""
+    return embed_data(list(widgets), drop_defaults=False)["manager_state"]
+
+
+def page_of(path: Path, *widgets, change=None, extra="", mount=MOUNT, damages=()) -> str:
+    """Write a page that shows the widgets; returns its address.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    *widgets
+        Shown one below the other.
+    change : callable, optional
+        Changes the first widget's saved entry in place.
+    extra : str
+        Markup before the script that mounts.
+    mount : str
+        Address of that script.
+    damages : sequence of callables
+        Each changes a copy of the first widget's entry; the copies are shown after the widgets.
+    """
+    state = saved(*widgets)
+    ids = [widget.model_id for widget in widgets]
+    for k, damage in enumerate(damages):
+        entry = copy.deepcopy(state["state"][ids[0]])
+        damage(entry)
+        state["state"][f"damaged-{k}"] = entry
+        ids.append(f"damaged-{k}")
+    if change:
+        change(state["state"][ids[0]])
+    views = "".join(VIEW % json.dumps({"model_id": model_id}) for model_id in ids)
+    head = '<!doctype html><html lang="en"><meta charset="utf-8"><link rel="icon" href="data:,">'
+    dark = "@media screen and (prefers-color-scheme: dark) { body { background: #121212; "
+    dark += "color: #eee } }"
+    look = f"<style>body {{ margin: 8px }} {dark}</style>"
+    scripts = f'{STATE % json.dumps(state)}{extra}<script src="{mount}" defer></script>'
+    viewport = '<meta name="viewport" content="width=device-width">'
+    title = "<title>page</title>"
+    body = f"<body><main><h1>Page</h1>{views}</main>{scripts}"
+    path.write_text(f"{head}{viewport}{title}{look}{body}", encoding="utf-8")
+    return path.as_uri()
+
+
+def shown_values(page) -> list[float]:
+    """The numbers beside the sliders."""
+    texts = page.locator(".slider output").all_inner_texts()
+    return [float(re.match(r"[−\d.]+", x)[0].replace("−", "-")) for x in texts]
+
+
+LIVE = """<script>
+{
+  window.kernel = { alive: false, closed: false, sent: [] };
+  const blob = Blob;
+  window.Blob = class extends blob {
+    constructor([text], options) {
+      const live = text.replace("export default { render };", `
+      export default { render({ model, el }) {
+        delete model.kernelless;
+        model.save_changes = () => {
+          if (kernel.closed) throw new Error("Comm is closed");
+          if (kernel.alive) setTimeout(() => {
+            const values = model.get("spec").parameters.map((p) => model.get(p.name));
+            const exact = new DataView(new Float32Array(kernel.reply).buffer);
+            model.set({ exact, answer: { request: model.get("request"), values } });
+          }, 50);
+        };
+        model.send = (content) => {
+          if (kernel.closed) throw new Error("Comm is closed");
+          kernel.sent.push(content);
+        };
+        const signal = (set) => ({ connect: (f) => set.add(f), disconnect: (f) => set.delete(f) });
+        kernel.watchers = [new Set(), new Set()];
+        const [statusChanged, disposed] = kernel.watchers.map(signal);
+        model.widget_manager = { kernel: { statusChanged, disposed } };
+        kernel.model = model;
+        return render({ model, el });
+      } };`);
+      super([live], options);
+    }
+  };
+}
+</script>"""
+"""A kernel that answers if `kernel.alive`: the same script with a live model, for `extra`."""
