@@ -49,7 +49,7 @@ class Visit:
         self.page.on("console", self._console)
         self.page.on("pageerror", lambda error: self.problems.append(f"page error: {error}"))
         self.page.on("request", self._request)
-        self.page.on("requestfailed", lambda r: self.problems.append(f"failed: {r.url[:200]}"))
+        self.page.on("requestfailed", lambda request: self._failed(request, bool(lands)))
         self.page.on("response", self._response)
         self.page.goto(url)
         if lands:
@@ -65,6 +65,11 @@ class Visit:
         local = scheme in {"data", "blob", "file"} or rest.split("/")[2] == self.home
         if not local:
             self.problems.append(f"external request: {request.url[:200]}")
+
+    def _failed(self, request, leaving: bool):
+        """A page that sends its reader on may be left before its icon has come."""
+        if not (leaving and request.failure == "net::ERR_ABORTED"):
+            self.problems.append(f"failed: {request.url[:200]} ({request.failure})")
 
     def _response(self, response):
         self.responses.append(response)
