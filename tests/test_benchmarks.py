@@ -117,10 +117,11 @@ def test_mujoco_gets_the_same_arm():
     assert tuple(float(j.get("frictionloss")) for j in joints) == coulomb.level
 
 
+@pytest.mark.parametrize("written", [recordings.Written, recordings.Textbook])
 @pytest.mark.parametrize("quantised", [True, False])
-def test_python_control_repeats_our_loop(quantised):
+def test_python_control_repeats_our_loop(quantised, written):
     t, u, start = recordings.commands()
-    loop = recordings.sampled_system()
+    loop = recordings.sampled_system(written())
     theirs = recordings.respond(loop, t, u, start, params={"quantised": quantised})
     off = ("torque_sensor",) if quantised else ("torque_sensor", "encoder")
     ours = recordings.ours(1, STATE_FEEDBACK.effects.without(*off), log_step=0.002)

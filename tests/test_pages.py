@@ -171,6 +171,24 @@ def test_stills_stand_in_where_there_is_no_script(name, site, browser):
 
 
 @browser_test
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_paper_is_white(scheme, site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html", scheme=scheme)
+    shown = "getComputedStyle(document.body).backgroundColor"
+    opened.page.evaluate(
+        f"""() => {{
+          window.seen = [{shown}];
+          for (const when of ["beforeprint", "afterprint"])
+            addEventListener(when, () => window.seen.push({shown}));
+        }}"""
+    )
+    opened.page.pdf()
+    before, printed, after = opened.page.evaluate("window.seen")
+    assert printed == "rgb(255, 255, 255)" and before == after
+    assert (before == printed) == (scheme == "light")
+
+
+@browser_test
 def test_there_is_one_search_field(built, site, visit):
     opened = visit(address(PAGES[1], "http", built, site))
     fields = opened.page.locator("button.search-button-field")
