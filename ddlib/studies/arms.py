@@ -1,4 +1,4 @@
-"""Which arms would have produced Table 4-1: many arms at random, the same training for each."""
+"""Which arms would have produced Table 4-1: many arms at random, and how well each was trained."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ from ddlib.sweeps import sweep
 
 RANGES = {
     "position gain": (0.25, 8.0),
-    "damping": (0.02, 1.0),
-    "friction": (0.125, 8.0),
-    "torque noise": (0.125, 8.0),
+    "damping": (0.01, 1.0),
+    "friction": (0.0625, 4.0),
+    "torque noise": (0.125, 4.0),
+    "descent": (0.4, 4.0),
     "encoder bits": (12.0, 17.0),
 }
-"""What is varied, and between which bounds. All but the bits are factors of the default arm's
-values and are drawn on a logarithmic scale; the damping is the velocity gain relative to the
-one that keeps the default damping ratio."""
+"""What is varied, and between which bounds. All but the bits are factors of the default values
+and are drawn on a logarithmic scale. The damping is the velocity gain relative to the one that
+keeps the default damping ratio; the descent is ``1 / (1 - momentum)``, which says how far the
+same number of epochs leads."""
 
 
 def draw(count: int, seed: int = 0) -> list[dict]:
@@ -68,7 +70,10 @@ def setup(arm: dict):
     )
     kd = arm["damping"] * np.sqrt(gain) * np.array(KD)
     controller = pd(tuple(gain * np.array(KP)), tuple(kd))
-    return replace(STATE_FEEDBACK, name="an arm", controller=controller, effects=effects)
+    momentum = 1 - (1 - STATE_FEEDBACK.momentum) / arm["descent"]
+    return replace(
+        STATE_FEEDBACK, name="an arm", controller=controller, effects=effects, momentum=momentum
+    )
 
 
 def _arm(arm: dict, members: int, seed: int = 0) -> dict:

@@ -1,0 +1,64 @@
+"""The floor that the sensors leave: against noise that is really added, and the paper's facts."""
+
+import numpy as np
+import pytest
+
+from ddlib.arm import CMU_DD_ARM_II
+from ddlib.filters import savitzky_golay
+from ddlib.noise_floor import acceleration_noise_gain, noise_floor
+from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
+
+GOOD = dict(arm=CMU_DD_ARM_II, deviation=(7.0, 2.0), width=21, bits=16.0, torque_noise=0.02,
+            period=0.01)  # fmt: skip
+
+
+@pytest.mark.parametrize("width, gain", [(11, 683.0), (21, 133.5), (41, 25.0)])
+def test_gains_are_those_of_a_parabola(width, gain):
+    """Closed form: variance 720 / (n (n^2 - 1) (n^2 - 4)) over the fourth power of the period."""
+    n = width
+    closed = np.sqrt(720 / (n * (n**2 - 1) * (n**2 - 4))) / 0.01**2
+    assert acceleration_noise_gain(width, 0.01) == pytest.approx(closed, rel=1e-10)
+    assert closed == pytest.approx(gain, rel=0.01)
+
+
+@pytest.mark.parametrize("width", [11, 21, 41])
+@pytest.mark.parametrize("bits", [12.0, 16.0])
+def test_floor_is_what_rounded_positions_give(width, bits):
+    """Round the reference's positions, filter, put into the arm's equations, add torque noise."""
+    arm, share = CMU_DD_ARM_II, 0.024
+    t = time_grid(0.01)
+    q, qd, qdd = pick_and_place(APPENDIX_I[:5], t)
+    tau = arm.inverse_dynamics(q, qd, qdd)
+    deviation = tau.std((0, 1))
+    rng = np.random.default_rng(0)
+    step = 2 * np.pi / 2**bits
+    noise = rng.uniform(-step / 2, step / 2, (40, *q.shape))
+    filtered = np.apply_along_axis(
+        np.convolve, -2, noise, savitzky_golay(width, 2, 0.01, degree=2), mode="same"
+    )[:, :, width:-width]
+    wrong = np.einsum("...ij,...j", arm.mass_matrix(q[:, width:-width]), filtered)
+    wrong = wrong + share * deviation * rng.standard_normal(wrong.shape)
+    measured = np.sqrt(((wrong / deviation) ** 2).mean())
+    assert noise_floor(arm, deviation, width, bits, share, 0.01) == pytest.approx(measured, rel=0.1)
+
+
+def test_without_rounding_the_torque_noise_is_left():
+    assert noise_floor(**{**GOOD, "bits": 40.0}) == pytest.approx(0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (dict(deviation=(0.0, 1.0)), "deviation must be two numbers above 0"),
+        (dict(deviation=(1.0, 1.0, 1.0)), "deviation"),
+        (dict(deviation=(np.nan, 1.0)), "deviation"),
+        (dict(width=20), "odd"),
+        (dict(width=1), "width"),
+        (dict(bits=0.5), "bits"),
+        (dict(torque_noise=-0.1), "torque_noise"),
+        (dict(period=0.0), "period"),
+    ],
+)
+def test_bad_arguments_are_named(change, words):
+    with pytest.raises((TypeError, ValueError), match=words):
+        noise_floor(**{**GOOD, **change})
