@@ -102,9 +102,9 @@ def test_changed_code_changes_every_hash(copy, before, module, old, new):
 
 
 def test_a_part_stales_alone(copy, before):
-    copy("studies/table", "def gains(members=8)", "def gains(members=9)")
+    copy("studies/table", "def longer(members=8", "def longer(members=9")
     after = hashes()
-    assert {name for name in PARTS if after[name] != before[name]} == {"gains"}
+    assert {name for name in PARTS if after[name] != before[name]} == {"longer"}
 
 
 def test_a_result_that_nothing_makes():
@@ -128,8 +128,8 @@ def test_modules_are_followed_through_the_imports(copy):
 
 
 def test_stamp():
-    made = results.stamp(12.345, "gains")
-    assert made["code"] == results.code_hash("gains") and made["seconds"] in (12.3, 12.4)
+    made = results.stamp(12.345, "longer")
+    assert made["code"] == results.code_hash("longer") and made["seconds"] in (12.3, 12.4)
     assert set(made["versions"]) == {"numpy", "torch", "scipy"}
     assert made["versions"]["numpy"] == np.__version__
     assert "code" not in results.stamp(1.0)
@@ -193,7 +193,7 @@ def parts(copy, tmp_path, monkeypatch):
         return lambda: ran.append(name) or {"value": len(ran)}
 
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
-    monkeypatch.setattr(reproduce, "PARTS", {n: part(n) for n in ("gains", "clean")})
+    monkeypatch.setattr(reproduce, "PARTS", {n: part(n) for n in ("longer", "clean")})
     monkeypatch.setattr(reproduce, "picture", lambda: None)
     return ran
 
@@ -201,18 +201,27 @@ def parts(copy, tmp_path, monkeypatch):
 def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     reproduce.main(["clean"])
     reproduce.main([])
-    assert parts == ["clean", "gains"]
+    assert parts == ["clean", "longer"]
     assert "==> clean: up to date" in capsys.readouterr().out
     reproduce.main([])
-    assert parts == ["clean", "gains"]
-    copy("studies/table", "def gains(members=8)", "def gains(members=9)")
+    assert parts == ["clean", "longer"]
+    copy("studies/table", "def longer(members=8", "def longer(members=9")
     reproduce.main([])
-    assert parts == ["clean", "gains", "gains"] and results.read("gains")["value"] == 3
+    assert parts == ["clean", "longer", "longer"] and results.read("longer")["value"] == 3
     reproduce.main(["--force", "clean"])
     assert parts[3:] == ["clean"]
     with pytest.raises(SystemExit):
         reproduce.main(["table-9-9"])
-    assert "parts must be among gains, clean, got 'table-9-9'" in capsys.readouterr().err
+    assert "parts must be among longer, clean, got 'table-9-9'" in capsys.readouterr().err
+
+
+def test_studies_hide_their_helpers():
+    """A result's hash leaves out other public functions of its file: they must be results."""
+    names = {name.replace("-", "_") for name in PARTS}
+    for path in (results.PACKAGE / results.STUDIES).glob("*.py"):
+        body = ast.parse(path.read_text(encoding="utf-8")).body
+        functions = {node.name for node in body if isinstance(node, ast.FunctionDef)}
+        assert {name for name in functions if not name.startswith("_")} <= names, path.name
 
 
 def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
@@ -222,21 +231,21 @@ def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
     monkeypatch.setitem(reproduce.PARTS, "clean", interrupted)
     with pytest.raises(KeyboardInterrupt):
         reproduce.main([])
-    assert [p.name for p in results.FOLDER.iterdir()] == ["gains.json"]
-    assert results.read("gains")["made by"]["code"] == results.code_hash("gains")
+    assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
+    assert results.read("longer")["made by"]["code"] == results.code_hash("longer")
 
 
 def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
     """Code that changes while a long part runs does not get the credit for it."""
-    before = results.code_hash("gains")
+    before = results.code_hash("longer")
 
     def slow():
         copy("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.5")
         return {}
 
-    monkeypatch.setitem(reproduce.PARTS, "gains", slow)
-    reproduce.main(["gains"])
-    assert results.read("gains")["made by"]["code"] == before != results.code_hash("gains")
+    monkeypatch.setitem(reproduce.PARTS, "longer", slow)
+    reproduce.main(["longer"])
+    assert results.read("longer")["made by"]["code"] == before != results.code_hash("longer")
 
 
 def test_every_file_has_its_own_name():

@@ -7,17 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ddlib.studies import state_space, table, windows
+from ddlib.studies import arms, inputs, nulls, state_space, state_space_sizes, table, windows
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
-    "gains": table.gains,
+    "arms": arms.arms,
     "longer": table.longer,
     "clean": table.clean,
     "window-sizes": windows.window_sizes,
     "hidden-units": windows.hidden_units,
     "memory": windows.memory,
+    "state-inputs": inputs.state_inputs,
+    "null-controls": nulls.null_controls,
     "table-6-1": state_space.table_6_1,
     "state-space-choices": state_space.state_space_choices,
+    "state-space-sizes": state_space_sizes.state_space_sizes,
 }
 """The studies by the name of their result."""

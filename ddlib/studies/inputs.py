@@ -12,17 +12,12 @@ from ddlib.simulate import LOG_STEP, Recording
 from ddlib.training import TrainingSet, cases, train_ensemble
 
 
-def states(recording: Recording, kind: str) -> np.ndarray:
-    """Position, velocity and acceleration of both joints, shape ``(cases, joint, 3)``.
+def _states(recording: Recording, kind: str) -> np.ndarray:
+    """Position, velocity and acceleration of both joints at every sample, ``(cases, 2, 3)``.
 
-    Parameters
-    ----------
-    recording : Recording
-        One run or several; cases are the samples of the motions.
-    kind : {"exact", "differences", "least squares"}
-        What a perfect sensor reads (its acceleration by central differences of the true
-        velocity), or estimates from the measured positions: differences of neighbouring
-        samples, or parabolas fitted to 21 samples.
+    "exact" is what a perfect sensor reads, its acceleration by central differences of the true
+    velocity; "differences" are those of neighbouring measured positions; "least squares" fits
+    parabolas to 21 of them.
     """
     if kind == "exact":
         acceleration = np.gradient(recording.qd_true, LOG_STEP, axis=-2)
@@ -44,7 +39,7 @@ def state_inputs(members=6) -> dict:
     (_, tau), (_, tau6) = cases(training, 3), cases(test, 3)
     rows = []
     for kind in ("exact", "differences", "least squares"):
-        x, x6 = states(training, kind), states(test, kind)
+        x, x6 = _states(training, kind), _states(test, kind)
         low, high = x.min(0), x.max(0)
         x, x6 = (x - low) / (high - low), (x6 - low) / (high - low)
         data = TrainingSet.from_arrays(x, tau)

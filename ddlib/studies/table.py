@@ -1,24 +1,11 @@
-"""Table 4-1, and what the controller, the length of training and the sensors decide in it."""
+"""Table 4-1, and what the length of training and the sensors decide in it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from ddlib import results
-from ddlib.controllers import pd
-from ddlib.experiment import (
-    COURSE,
-    KD,
-    KP,
-    SETUPS,
-    STATE_FEEDBACK,
-    WINDOWS,
-    Setup,
-    errors,
-    train_windows,
-)
+from ddlib.experiment import COURSE, SETUPS, STATE_FEEDBACK, WINDOWS, errors, train_windows
 from ddlib.network import TorqueModel, Weights
 
 
@@ -54,28 +41,6 @@ def table_4_1(members=25) -> dict:
                 course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
                 TorqueModel(course, model.inputs, model.outputs).save(results.course_path(width))
     return {"members": members, "setups": table}
-
-
-def gains(members=8) -> dict:
-    """What the assumed gains decide: Table 4-1 for softer and stiffer controllers."""
-    factors = ((0.25, 0.5), (0.5, 0.7), (2.0, 1.4), (4.0, 2.0), (0.5, 0.0), (4.0, 0.0))
-    rows = []
-    for position, velocity in factors:
-        kp, kd = position * np.array(KP), velocity * np.array(KD)
-        setup = Setup(f"kp x {position:g}, kd x {velocity:g}", pd(tuple(kp), tuple(kd)))
-        recording = setup.record()
-        tracking = np.rad2deg(np.abs(recording.tracking_error[:, recording.motion]).max())
-        row = {"kp": kp, "kd": kd, "largest tracking error, degrees": tracking, "windows": {}}
-        for width in WINDOWS:
-            cell, *_ = _cell(setup, recording, width, members)
-            row["windows"][str(width)] = {
-                "training": cell["errors"]["training"],
-                "test": cell["errors"]["test"],
-                "best test": cell["best test"],
-                "largest weight": cell["largest weight"],
-            }
-        rows.append(row)
-    return {"members": members, "rows": rows}
 
 
 def longer(members=8, epochs=60_000) -> dict:

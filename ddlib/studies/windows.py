@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.experiment import STATE_FEEDBACK, errors, split, train_windows
-from ddlib.filters import roughness, savitzky_golay
+from ddlib.filters import CLASSES, classify, roughness, savitzky_golay
 from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
 from ddlib.training import TrainingSet, cases, train_ensemble
@@ -85,12 +85,14 @@ def memory(members=6) -> dict:
             epochs=STATE_FEEDBACK.epochs,
             label=f"shuffled torques, window {width}",
         )
+        classes = classify(model.weights.hidden_weights)
         rows.append(
             {
                 "width": width,
                 "training": history.training[-1],
                 "largest weight": model.weights.largest,
                 "roughness, hidden": np.median(roughness(model.weights.hidden_weights), (-2, -1)),
+                "classes": {name: (classes == name).mean((-2, -1)) for name in CLASSES},
             }
         )
     return {"members": members, "rows": rows}
