@@ -1,0 +1,220 @@
+"""Sections 1.1, 1.2 and 3.3: the unit, the rule, acceleration, and parity as an example."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib import paper, parity, results
+from ddlib.claims import Measured
+from ddlib.descent import Descent
+from ddlib.experiment import INITIAL, STATE_FEEDBACK, split
+from ddlib.network import Weights, WindowNetwork
+from ddlib.tables import number, spread
+from ddlib.training import History, TrainingSet, default_rate, train_ensemble
+
+SEEDS = 8
+"""Networks of a training run."""
+
+LEVEL = 0.75
+"""Training RMSS to which runs with and without acceleration are timed."""
+
+
+@cache
+def _data(width: int = 21) -> TrainingSet:
+    return TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], width)
+
+
+def unit() -> Measured:
+    """Largest difference between the networks' hidden activities and the printed formula."""
+    data, weights = _data(), Weights.random(1, 21, initial=INITIAL)[0]
+    x = data.x.reshape(len(data.x), -1)
+    net = x @ weights.hidden_weights.reshape(-1, x.shape[1]).T + weights.hidden_bias
+    gap = np.abs(weights.activity(data.x)[0] - (1 + np.exp(-net)) ** -1).max()
+    return Measured(float(gap), f"largest difference {gap:.0e}")
+
+
+def chain_rule() -> Measured:
+    """Largest difference between a step of `Descent` and one by autograd, over the largest."""
+    data, network = _data(), WindowNetwork(21)
+    start = Weights.stack([network.weights()])
+    descent = Descent(start, data.x, data.y, 1 / len(data.x), 0.0)
+    descent.epoch()
+    x, y = (network.output_bias.new_tensor(part) for part in (data.x, data.y))
+    (0.5 * (network(x) - y).square().sum() / len(data.x)).backward()
+    after, largest, gap = descent.weights(), 0.0, 0.0
+    for name, parameter in network.named_parameters():
+        step = getattr(after, name)[0] - getattr(start, name)[0]
+        wanted = -parameter.grad.numpy()
+        gap = max(gap, float(np.abs(step - wanted).max()))
+        largest = max(largest, float(np.abs(wanted).max()))
+    return Measured(gap / largest, f"{gap / largest:.0e} of the largest derivative")
+
+
+def reach(history: History, level: float = LEVEL) -> np.ndarray:
+    """Epochs after which each member's training error first falls below a level.
+
+    Parameters
+    ----------
+    history : History
+    level : float
+        RMSS.
+
+    Returns
+    -------
+    ndarray, shape (members,)
+        Interpolated between the noted epochs; infinite if it never does.
+    """
+    found = []
+    for error in history.training.T:
+        below = np.flatnonzero(error < level)
+        if not below.size:
+            found.append(np.inf)
+        elif below[0] == 0:
+            found.append(float(history.epochs[0]))
+        else:
+            k = slice(below[0] - 1, below[0] + 1)
+            found.append(float(np.interp(-level, -error[k], history.epochs[k])))
+    return np.array(found)
+
+
+def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
+    """How much more acceleration speeds up learning here than in another domain, parity.
+
+    The speed-up is the median number of epochs without over that with acceleration, at the same
+    step size and from the same initial weights: to a training RMSS of `LEVEL` on the windows of
+    21, and to the first time that all inputs are right on parity.
+
+    Parameters
+    ----------
+    momentum : float
+        With acceleration: the share of the last step.
+    bits : int
+        Inputs and hidden units of the parity networks.
+    """
+    start = Weights.random(SEEDS, 21, initial=INITIAL)
+    windows, other = {}, {}
+    for alpha, epochs in ((0.0, 2200), (momentum, 500)):
+        options = dict(rate=default_rate(21), momentum=alpha, epochs=epochs, progress=False)
+        windows[alpha] = np.median(reach(train_ensemble(start, _data(), **options)[1]))
+        learned = parity.learn(bits, bits, members=16, momentum=alpha, epochs=2 * epochs, every=10)
+        other[alpha] = np.median(learned[1])
+    here, there = (float(runs[0.0] / runs[momentum]) for runs in (windows, other))
+    text = f"{number(here, 2)} times faster here, {number(there, 2)} times on parity of {bits} bits"
+    return Measured(here / there, text)
+
+
+def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
+    """Right answers on fresh noisy patterns, as a part of the best that is possible.
+
+    The task is parity of a few bits, so that neighbours in every direction differ, with
+    Gaussian noise on the inputs of training and test. Best possible: the nearest corner.
+
+    Parameters
+    ----------
+    bits : int
+        Number of inputs.
+    noise : float
+        Standard deviation; the corners are 1 apart.
+    """
+    x, y = parity.cases(bits)
+    rng = np.random.default_rng(0)
+
+    def draw(copies):
+        clean, wanted = np.repeat(x, copies, axis=0), np.repeat(y, copies, axis=0)
+        return clean + rng.normal(0.0, noise, clean.shape), wanted
+
+    (training, targets), (fresh, wanted) = draw(50), draw(250)
+    start = Weights.random(20, bits, 2 * bits, 1, 1, initial=1.0)
+    descent = Descent(start, training, targets, 8.0 / len(training), 0.9)
+    for _ in range(1500):
+        descent.epoch()
+    share = parity.right(descent.weights(), fresh, wanted)
+    corner = np.round(fresh[:, 0]).clip(0, 1)
+    best = np.mean(parity.parity(corner) == parity.parity(np.repeat(x[:, 0], 250, axis=0)))
+    text = f"{spread(100 * share, 3)} % right, at best {number(100 * best, 3)} %"
+    return Measured(float(np.median(share) / best), text)
+
+
+def polynomial(coding: str = "bits", most: int = 10) -> Measured:
+    """Growth of the number of coefficients of parity as a polynomial, in doublings per bit.
+
+    Parameters
+    ----------
+    coding : {"bits", "signs"}
+        How the inputs are written.
+    most : int
+        Largest number of bits.
+    """
+    bits = np.arange(2, most + 1)
+    counts = [
+        np.count_nonzero(parity.monomials(parity.parity(parity.patterns(n)), coding)) for n in bits
+    ]
+    growth = float(np.polyfit(bits, np.log2(counts), 1)[0])
+    return Measured(growth, f"{counts[0]} at {bits[0]} bits, {counts[-1]:,} at {most}")
+
+
+def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> Measured:
+    """Growth of a network's coefficients beyond ``n log2 n``, from few bits to many.
+
+    Parameters
+    ----------
+    name : str
+        One of `ddlib.parity.NETWORKS`.
+    most : int
+        Up to this length all inputs are checked; an error is raised if one is wrong.
+    large : int
+        Length to which the count is followed, checked there for every number of bits on.
+    """
+    make = parity.NETWORKS[name]
+    for n in range(2, most + 1):
+        x = parity.patterns(n)
+        if (make(n).output(x) != parity.parity(x)).any():
+            raise AssertionError(f"{name} is wrong at {n} bits")
+    x = np.tri(large + 1, large, -1)
+    if (make(large).output(x) != parity.parity(x)).any():
+        raise AssertionError(f"{name} is wrong at {large} bits")
+    few, many = (make(n).coefficients for n in (most, large))
+    ratio = many / (large * np.log2(large)) / (few / (most * np.log2(most)))
+    return Measured(float(ratio), f"{few} coefficients at {most} bits, {many:,} at {large:,}")
+
+
+def stable(width: int = 21) -> Measured:
+    """Change of all weights over the second half of training, relative to their size."""
+    epochs, model = results.course(width)
+    half = int(np.argmin(np.abs(epochs - paper.EPOCHS / 2)))
+    last = int(np.flatnonzero(epochs == paper.EPOCHS)[0])
+    names = ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias")
+    parts = [getattr(model.weights, name) for name in names]
+    weights = np.concatenate([p.reshape(*p.shape[:2], -1) for p in parts], -1)
+    change = np.linalg.norm(weights[last] - weights[half], axis=-1)
+    share = change / np.linalg.norm(weights[last], axis=-1)
+    text = f"{number(100 * np.median(share), 2)} % from epoch {epochs[half]:,} to {epochs[last]:,}"
+    return Measured(float(np.median(share)), text)
+
+
+def settling(steepest: float = 0.1) -> Measured:
+    """Epochs from which on the median slope of the error stays flat, the largest over windows.
+
+    The end of the longest runs if it is still steep there: then it is a lower bound.
+
+    Parameters
+    ----------
+    steepest : float
+        Flat: ``d ln(error) / d ln(epoch)`` no steeper than this, as in `History.settled`.
+    """
+    needed, words = [], []
+    for record in results.read("longer")["windows"].values():
+        epochs = np.array(record["history"]["epochs"])
+        errors = np.array(record["history"]["training"]).T
+        flat = [
+            np.median(np.abs(History(epochs[:k], errors[:k]).slope())) <= steepest
+            for k in range(2, len(epochs) + 1)
+        ]
+        steep = np.flatnonzero(~np.array(flat))
+        last = -1 if not steep.size else steep[-1]
+        flat_at_all = last < len(flat) - 1
+        needed.append(int(epochs[last + 2] if flat_at_all else epochs[-1]))
+        words.append(f"{needed[-1]:,}" if flat_at_all else f"over {needed[-1]:,}")
+    return Measured(float(max(needed)), "epochs: " + ", ".join(words))

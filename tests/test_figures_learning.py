@@ -1,0 +1,57 @@
+"""Figures of learning: every network a curve, the median on top, errors that name the family."""
+
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+
+from ddlib.figures_learning import families
+from ddlib.style import COLOURS, Illustration
+
+SVG = "{http://www.w3.org/2000/svg}"
+X = np.linspace(1.0, 10.0, 6)
+FAN = X[:, None] * [1.0, 2.0, 6.0]
+LABELS = ("epoch", "error")
+
+
+def strokes(figure, colour) -> dict[float, list[np.ndarray]]:
+    """Vertices of the curves of a colour, by line width."""
+    found = {}
+    for element in ET.fromstring(figure.svg).iter(f"{SVG}path"):
+        style = element.attrib.get("style", "")
+        if f"stroke: {colour}" in style and "clip-path" in element.attrib:
+            width = float(re.search(r"stroke-width: ([\d.]+)", style)[1])
+            numbers = re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", element.attrib["d"])
+            found.setdefault(width, []).append(np.array(numbers, float))
+    return found
+
+
+def test_every_network_and_the_median_are_drawn():
+    figure = families({"": {"slow": (X, FAN)}}, LABELS, "three networks and their median")
+    assert isinstance(figure, Illustration)
+    curves = strokes(figure, COLOURS[0])
+    assert len(curves[0.6]) == 3 and len(curves[2.2]) == 1
+    np.testing.assert_allclose(curves[2.2][0], curves[0.6][1], atol=0.02)
+
+
+def test_a_family_looks_the_same_in_every_panel():
+    panels = {"a": {"one": (X, FAN)}, "b": {"two": (X, FAN), "one": (X, FAN)}}
+    figure = families(panels, LABELS, "two panels", y_log=True)
+    assert len(strokes(figure, COLOURS[0])[2.2]) == 2
+    assert len(strokes(figure, COLOURS[1])[2.2]) == 1
+    assert figure.alt == "two panels" and 'role="img"' in figure.svg
+
+
+@pytest.mark.parametrize(
+    "panels, words",
+    [
+        ({}, "panels must hold one panel or more"),
+        ({"": {"a": (X, X)}}, "x and y of 'a' must have shapes"),
+        ({"": {"a": (X[:3], FAN)}}, "x and y of 'a' must have shapes"),
+        ({"": {"a": (X, FAN * np.nan)}}, "y of 'a' must be finite"),
+    ],
+)
+def test_refusals(panels, words):
+    with pytest.raises(ValueError, match=words):
+        families(panels, LABELS, "text")
