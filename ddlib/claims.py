@@ -5,9 +5,9 @@ An entry has these fields:
 ``id``
     A name, unique.
 ``where``
-    Section, table, figure or page of the paper.
+    Section, table, figure or appendix of the paper, like "section 3.1" or "Figure 5-4".
 ``chapter``
-    The page of the book that deals with it.
+    The page of the book that deals with it; `LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
@@ -29,6 +29,8 @@ from __future__ import annotations
 
 import importlib
 import json
+import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -43,8 +45,29 @@ from ddlib.tables import Table, number
 FILE = Path(__file__).parent.parent / "book" / "claims.yml"
 """Where the claims are kept."""
 
+LEDGER = "ledger"
+"""The page of all claims, and the chapter of those that no other page deals with."""
+
 VERDICTS = ("reproduced", "qualitative", "not reproduced", "not testable")
 """All verdicts, best first."""
+
+SECTIONS = {
+    "0": "Abstract",
+    "1": "1. Introduction",
+    "2": "2. Problem definition",
+    "3": "3. Network architecture",
+    "4": "4. Results",
+    "5": "5. Analysis",
+    "6": "6. Preliminary results from simulation",
+    "7": "7. Conclusion",
+    "8": "Appendix I. Trajectories used",
+}
+"""Titles of the paper's sections; abstract and appendix are numbered so that they sort."""
+
+_PLACE = re.compile(
+    r"(?P<abstract>Abstract)|(?P<appendix>Appendix I\b)"
+    r"|section (?P<section>\d)(?:\.(?P<part>\d))?|(?P<float>Table|Figure) (?P<in>\d)-(?P<no>\d)"
+)
 
 
 class Measured(NamedTuple):
@@ -60,6 +83,10 @@ class Measured(NamedTuple):
 
     value: float | bool
     text: str
+
+
+class MeasureError(RuntimeError):
+    """A claim's measuring function failed; the message names the claim."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +110,7 @@ class Claim:
             value = getattr(self, name)
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
+        self.place()
         one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
         testable = self.verdict != "not testable"
         if testable != bool(self.measure) or testable != bool(self.band):
@@ -105,6 +133,35 @@ class Claim:
                 f"got {bounds['factor']} and {self.printed!r}"
             )
 
+    def place(self) -> tuple[str, int, int]:
+        """Where the claim stands: key of `SECTIONS`, subsection, number of a table or figure.
+
+        What comes first in ``where`` counts. Tables and figures come after their section's
+        text, whose subsections come in order: sort by this.
+
+        Raises
+        ------
+        ValueError
+            If ``where`` names none of the paper's parts.
+        """
+        found = _PLACE.search(self.where)
+        if found is None or (section := self._section(found)) not in SECTIONS:
+            raise ValueError(
+                f"where of claim {self.id!r} must name a section from 1 to 7, a table, a figure, "
+                f"'Appendix I' or 'Abstract' of the paper, got {self.where!r}"
+            )
+        after_text = 10 if found["float"] == "Table" else 20
+        if found["float"]:
+            return section, after_text, int(found["no"])
+        return section, int(found["part"] or 0), 0
+
+    @staticmethod
+    def _section(found: re.Match) -> str:
+        if found["abstract"] or found["appendix"]:
+            return "0" if found["abstract"] else "8"
+        number = found["section"] or found["in"]
+        return number if "1" <= number <= "7" else ""
+
     def measured(self) -> Measured:
         """What we find, by the claim's measuring function.
 
@@ -112,10 +169,19 @@ class Claim:
         ------
         ValueError
             If the claim is not testable.
+        MeasureError
+            If its function is missing, fails, or returns what cannot be judged.
         """
         if not self.measure:
             raise ValueError(f"claim {self.id!r} is not testable: it has no measure")
-        return _measured(self.measure, json.dumps(dict(self.arguments), sort_keys=True))
+        try:
+            return _measured(self.measure, json.dumps(dict(self.arguments), sort_keys=True))
+        except Exception as error:
+            given = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
+            raise MeasureError(
+                f"claim {self.id!r} could not be measured by {self.measure}({given}): "
+                f"{type(error).__name__}: {error}"
+            ) from error
 
     def judge(self) -> str:
         """The verdict that the bands give for the measured value."""
@@ -142,6 +208,8 @@ def _measured(measure: str, arguments: str) -> Measured:
     result = found(**json.loads(arguments))
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
+    if not math.isfinite(result.value) or not str(result.text).strip():
+        raise ValueError(f"{measure} must return a finite value and a text, got {result!r}")
     return result
 
 
@@ -205,8 +273,91 @@ def chapter_table(chapter: str) -> Table:
     )
 
 
+def of_section(section: str) -> list[Claim]:
+    """The claims of a section of the paper, in the paper's order.
+
+    Parameters
+    ----------
+    section : str
+        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
+    """
+    one_of("section", section, tuple(SECTIONS))
+    return sorted((c for c in load() if c.place()[0] == section), key=Claim.place)
+
+
+def ledger_table(section: str) -> Table:
+    """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
+
+    The place in the paper is a link to the chapter that deals with the claim.
+
+    Parameters
+    ----------
+    section : str
+        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
+    """
+    header = ("claim", "printed", "here", "verdict (judged by)", "why")
+    return Table(
+        header,
+        [
+            (f"{c.claim} ({_linked(c)})", _printed(c), _found(c), _judged(c), c.why)
+            for c in of_section(section)
+        ],
+    )
+
+
+def _judged(claim: Claim) -> str:
+    return f"{claim.judge()} ({bands(claim)})" if claim.measure else claim.judge()
+
+
+def bands(claim: Claim) -> str:
+    """The value that is judged and what decides the verdict, in words.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if not claim.measure:
+        return "not measured"
+    value = claim.measured().value
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number(float(value), 2)
+    text = f"{shown}; reproduced {_bounds(claim.band)}"
+    return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
+
+
+def _bounds(bounds: Mapping) -> str:
+    if "is" in bounds:
+        return "if yes" if bounds["is"] else "if no"
+    if "factor" in bounds:
+        return f"within a factor of {bounds['factor']:g}"
+    words = [f"{name} {bounds[name]:g}" for name in ("from", "to") if name in bounds]
+    return " ".join(words)
+
+
+def _linked(claim: Claim) -> str:
+    """The claim's place in the paper, as a link to its chapter."""
+    names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
+    page = next((name for name in names if FILE.with_name(name).is_file()), None)
+    own = claim.chapter == LEDGER or page is None
+    return claim.where if own else f"[{claim.where}]({page})"
+
+
+def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
+    """How many claims of each section of the paper have which verdict.
+
+    Returns
+    -------
+    dict
+        ``{title of the section: {verdict: number}}``, sections without claims left out.
+    """
+    found: dict[str, dict[str, int]] = {}
+    for claim in sorted(claims, key=Claim.place):
+        row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
+        row[claim.judge()] += 1
+    return found
+
+
 def summary(claims: Iterable[Claim]) -> Table:
     """How many claims have which verdict."""
     verdicts = [claim.judge() for claim in claims]
-    rows = [(verdict, number(float(verdicts.count(verdict)), 3)) for verdict in VERDICTS]
+    rows = [(verdict, str(verdicts.count(verdict))) for verdict in VERDICTS]
     return Table(("verdict", "claims"), [*rows, ("all", str(len(verdicts)))])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -46,6 +47,7 @@ PUBLISHED_CUSTOMISED = Operations(224, 174)
 """Newton-Euler after symbolic simplification by the program ARM (Corke 2002, Table 1)."""
 
 
+@cache
 def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> Operations:
     """Operations of one evaluation of the torques of an arm.
 

@@ -6,16 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
-from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from ddlib._check import finite_array
 from ddlib.arm import Arm
 from ddlib.filters import decompose
 from ddlib.network import Weights
-from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
+from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate, plain_ticks
 
 JOINTS = ("shoulder", "elbow")
 """Names of joint 0 and joint 1."""
@@ -66,10 +64,10 @@ def curves(
             axis.set_ylabel(label)
             if x_log:
                 axis.set_xscale("log")
-                _plain_ticks(axis.xaxis)
+                plain_ticks(axis.xaxis)
             if y_log:
                 axis.set_yscale("log")
-                _plain_ticks(axis.yaxis)
+                plain_ticks(axis.yaxis)
             if len(named) > 1 and not shared:
                 axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
         if shared:
@@ -80,15 +78,6 @@ def curves(
             axis.remove()
 
     return illustrate(draw, alt, 7.0, height * rows + 0.4)
-
-
-def _plain_ticks(axis: Axis):
-    """Ticks at 1, 2, 5, 10, ... as plain numbers, if a logarithmic axis spans few decades."""
-    low, high = axis.get_view_interval()
-    if high / low < 1000:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 200 else (1,)))
-        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(NullFormatter())
 
 
 def arm_sketch(arm: Arm, q) -> Illustration:

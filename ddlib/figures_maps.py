@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
-from matplotlib.ticker import LogFormatter, NullFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array
-from ddlib.style import COLOURS, INK, Illustration, illustrate
+from ddlib.style import COLOURS, INK, Illustration, illustrate, plain_ticks
 
 COLOUR_MAP = "viridis"
 
@@ -77,14 +78,15 @@ def plane(
             axis.plot(*np.transpose(test), "D", color=COLOURS[1], mec="white", ms=8, label="test")
         axis.set(xlabel=labels[0], ylabel=labels[1])
         axis.grid(False)
-        bar = figure.colorbar(mesh, ax=axis, label=labels[2], format=LogFormatter())
-        bar.ax.yaxis.set_minor_locator(NullLocator())
-        ticks = [t for t in (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10) if norm.vmin <= t <= norm.vmax]
-        if len(ticks) > 1:
-            bar.set_ticks(ticks, labels=[f"{t:g}" for t in ticks])
-        bar.outline.set_visible(False)
+        _finish(figure.colorbar(mesh, ax=axis, label=labels[2]))
 
     return illustrate(draw, alt, 5.6, height)
+
+
+def _finish(bar: Colorbar):
+    plain_ticks(bar.ax.yaxis)
+    bar.ax.yaxis.set_minor_locator(NullLocator())
+    bar.outline.set_visible(False)
 
 
 def _hull(points):
@@ -139,13 +141,12 @@ def scatter(
             if chosen is not None:
                 axis.plot(x[chosen], y[chosen], "o", mfc="none", mec=COLOURS[1], ms=11, mew=2)
             axis.set(xscale="log", yscale="log", xlabel=name)
-            axis.xaxis.set_minor_formatter(NullFormatter())
+            plain_ticks(axis.xaxis)
+            plain_ticks(axis.yaxis)
         for axis in axes[: len(points) : columns]:
             axis.set_ylabel(y_label)
         for axis in axes[len(points) :]:
             axis.remove()
-        bar = figure.colorbar(shown, ax=list(axes[: len(points)]), label=value_label)
-        bar.ax.yaxis.set_minor_formatter(NullFormatter())
-        bar.outline.set_visible(False)
+        _finish(figure.colorbar(shown, ax=list(axes[: len(points)]), label=value_label))
 
     return illustrate(draw, alt, 7.0, 2.1 * rows + 0.3)

@@ -285,6 +285,33 @@ def fast_pick_and_place(extents_deg, t, speed: float) -> Trajectory:
     return Trajectory(slow.q, speed * slow.qd, speed**2 * slow.qdd)
 
 
+def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
+    """Out and back to the same extents, from rest to rest: ``phi = -theta sin(pi s t / 3)^2``.
+
+    Unlike the paper's family its velocity does not jump, so that an arm can follow it.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (..., 2)
+        Extents theta of shoulder and elbow, degrees.
+    t : array_like, shape (time,)
+        Times, s; the motion lasts ``3 / speed``, before and after it the reference rests.
+    speed : float
+        The s of the formula: velocities grow by it, accelerations by its square.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape ``(..., time, 2)``.
+    """
+    number("speed", speed, 0.0, open_low=True)
+    size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2
+    t, rate = finite_array("t", t), speed * 2 * np.pi / MOTION_SECONDS
+    moving = ((t >= 0) & (speed * t < MOTION_SECONDS))[:, None]
+    cosine, sine = np.cos(rate * t)[:, None] * moving, np.sin(rate * t)[:, None] * moving
+    return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
+
+
 def score(arm: Arm, recording: Recording, seconds: float = MOTION_SECONDS) -> dict:
     """What a controller made of a motion: errors and effort of every run, shape (...).
 

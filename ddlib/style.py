@@ -10,7 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import matplotlib as mpl
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 
 INK = "#010203"
 """Colour of text and axes; becomes the page's own text colour in the SVG."""
@@ -106,6 +108,25 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
         stream = io.StringIO()
         figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
     return Illustration(_inline(stream.getvalue(), alt), alt)
+
+
+def plain_ticks(axis: Axis) -> None:
+    """Plain numbers on a logarithmic axis that spans few decades, at 1, 2, 5, 10 or finer.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+        Its data must be there already. An axis over three decades or more stays as it is.
+    """
+    low, high = axis.get_view_interval()
+    if high / low >= 1000:
+        return
+    if high / low < 4:
+        axis.set_major_locator(MaxNLocator(4))
+    else:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 200 else (1,)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _inline(svg: str, alt: str) -> str:

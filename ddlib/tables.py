@@ -105,19 +105,3 @@ def verdict(value: float, printed: float, factor: float) -> str:
             f"got {value}, {printed}, {factor}"
         )
     return "reproduced" if 1 / factor <= value / printed <= factor else "not reproduced"
-
-
-def claims(rows: Iterable[tuple[str, str, str, str]]) -> Table:
-    """The closing table of a chapter: claim, what the paper prints, what we find, verdict.
-
-    Raises
-    ------
-    ValueError
-        If a verdict is none of "reproduced", "qualitative", "not reproduced", "not testable".
-    """
-    known = ("reproduced", "qualitative", "not reproduced", "not testable")
-    rows = list(rows)
-    for row in rows:
-        if row[-1] not in known:
-            raise ValueError(f"verdict must be one of {known}, got {row[-1]!r}")
-    return Table(("claim", "printed", "here", "verdict"), rows)

@@ -27,7 +27,11 @@ def source(page: str) -> Path | None:
 def has_widgets(page: str) -> bool:
     """Whether a page's notebook makes widgets."""
     path = source(page)
-    return path.suffix == ".ipynb" and "from ddlib.widgets" in path.read_text("utf-8")
+    return (
+        path is not None
+        and path.suffix == ".ipynb"
+        and "from ddlib.widgets" in path.read_text("utf-8")
+    )
 
 
 WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

@@ -9,7 +9,7 @@ import yaml
 from book_pages import CHAPTERS
 
 from ddlib import claims
-from ddlib.claims import VERDICTS, Claim, Measured
+from ddlib.claims import LEDGER, SECTIONS, VERDICTS, Claim, Measured, MeasureError
 
 ALL = claims.load()
 MEASURED = [claim for claim in ALL if claim.measure]
@@ -39,7 +39,71 @@ def test_measuring_functions_exist_and_take_the_arguments(claim):
 
 def test_every_claim_has_its_chapter():
     pages = {chapter.removeprefix("book/") for chapter in CHAPTERS}
-    assert {claim.chapter for claim in ALL} <= pages
+    assert {claim.chapter for claim in ALL} <= pages | {LEDGER}
+
+
+FLOATS = [
+    "Figure 2-1", "Figure 2-2", "Figure 3-1", "Figure 4-1", "Table 4-1",
+    *(f"Figure 5-{k}" for k in range(1, 9)), "Figure 6-1", "Figure 6-2", "Table 6-1",
+    "Appendix I",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FLOATS)
+def test_every_table_and_figure_of_the_paper_has_a_claim(name):
+    assert [c.id for c in ALL if re.search(rf"\b{name}\b", c.where)], f"no claim names {name}"
+
+
+def test_the_paper_is_covered():
+    assert len(ALL) >= 60
+    assert {claim.place()[0] for claim in ALL} == set(SECTIONS)
+
+
+@pytest.mark.parametrize(
+    "where, place",
+    [
+        ("Abstract", ("0", 0, 0)),
+        ("section 1", ("1", 0, 0)),
+        ("section 3.1", ("3", 1, 0)),
+        ("section 4, footnote", ("4", 0, 0)),
+        ("Table 4-1", ("4", 10, 1)),
+        ("Figure 5-8 and section 5.1", ("5", 20, 8)),
+        ("Appendix I", ("8", 0, 0)),
+    ],
+)
+def test_places_in_the_paper(where, place):
+    assert make(where=where).place() == place
+
+
+@pytest.mark.parametrize("where", ["page 3", "section 8", "section 0", "Figure 9-1", "Appendix II"])
+def test_places_that_the_paper_does_not_have(where):
+    with pytest.raises(ValueError, match="where of claim 'a' must name a section from 1 to 7"):
+        make(where=where)
+
+
+@pytest.mark.parametrize(
+    "measure, arguments, words",
+    [
+        ("networks.nowhere", {}, "AttributeError"),
+        ("nowhere.slope", {}, "ModuleNotFoundError"),
+        ("networks.slope", {"colour": "red"}, r"slope\(colour='red'\): TypeError"),
+        ("networks.memory", {"width": 12}, r"memory\(width=12\): KeyError: 12"),
+    ],
+)
+def test_a_failing_measure_names_its_claim(measure, arguments, words):
+    claim = make(measure=measure, arguments=arguments)
+    for ask in (claim.measured, claim.judge):
+        with pytest.raises(MeasureError, match=f"claim 'a' could not be measured by .*{words}"):
+            ask()
+
+
+@pytest.mark.parametrize("result", [Measured(float("nan"), "text"), Measured(1.0, " "), 1.0])
+def test_measures_that_cannot_be_judged(monkeypatch, result):
+    from ddlib.measures import networks
+
+    monkeypatch.setattr(networks, "slope", lambda wrong: result)
+    with pytest.raises(MeasureError, match=r"claim 'a' could not be measured.* must return"):
+        make(arguments={"wrong": repr(result)}).measured()
 
 
 @pytest.mark.parametrize(
@@ -87,8 +151,10 @@ def test_claims_refuse_bad_entries(changes, words):
 
 
 def test_the_file_is_checked(tmp_path):
-    entry = dict(id="a", where="w", chapter="c", claim="x", printed="p", verdict="not testable",
-                 why="y")  # fmt: skip
+    entry = dict(
+        id="a", where="section 1", chapter="c", claim="x", printed="p",
+        verdict="not testable", why="y",
+    )  # fmt: skip
     path = tmp_path / "claims.yml"
     path.write_text(yaml.safe_dump([entry]))
     assert claims.load(path)[0].judge() == "not testable"
@@ -114,3 +180,42 @@ def test_tables():
         claims.of_chapter("nowhere")
     total = claims.summary(ALL)._repr_markdown_().splitlines()[-1]
     assert str(len(ALL)) in total
+
+
+def test_the_ledger_holds_every_claim_once_in_the_order_of_the_paper():
+    listed = [claim for section in SECTIONS for claim in claims.of_section(section)]
+    assert sorted(c.id for c in listed) == sorted(c.id for c in ALL)
+    assert [c.place() for c in listed] == sorted(c.place() for c in ALL)
+    with pytest.raises(ValueError, match="section must be one of"):
+        claims.of_section("9")
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_ledger_tables(section):
+    expected = claims.of_section(section)
+    lines = claims.ledger_table(section)._repr_markdown_().splitlines()[2:]
+    assert len(lines) == len(expected)
+    for line, claim in zip(lines, expected):
+        assert claim.claim.replace("|", r"\|") in line
+        assert claim.why.replace("|", r"\|") in line
+        assert f" | {claim.judge()}" in line
+        links = re.findall(r"\]\(([\w-]+)\.ipynb\)", line)
+        assert links == ([] if claim.chapter == LEDGER else [claim.chapter])
+
+
+def test_bands_in_words(monkeypatch):
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(0.5, "text"))
+    assert claims.bands(make()) == "0.50; reproduced within a factor of 1.5"
+    both = make(band={"to": 0.1}, loose={"from": 0.2, "to": 1})
+    assert claims.bands(both) == "0.50; reproduced to 0.1, qualitative from 0.2 to 1"
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(True, "text"))
+    assert claims.bands(make(band={"is": True})) == "yes; reproduced if yes"
+
+
+def test_counts_add_up():
+    table = claims.counts(ALL)
+    assert list(table) == [title for title in SECTIONS.values() if title in table]
+    assert sum(sum(row.values()) for row in table.values()) == len(ALL)
+    found = [claim.judge() for claim in ALL]
+    for verdict in VERDICTS:
+        assert sum(row[verdict] for row in table.values()) == found.count(verdict)

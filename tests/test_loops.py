@@ -16,6 +16,7 @@ from ddlib.loops import (
     run_system,
     score,
     simulated_response,
+    smooth_pick_and_place,
 )
 from ddlib.simulate import Recording, follow, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
@@ -191,6 +192,22 @@ def test_scores_of_a_made_up_recording():
 # --- refusals -------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("speed", [1.0, 2.5])
+def test_the_smooth_motion_goes_out_and_back_without_a_jump(speed):
+    t = np.linspace(-0.2, 3.2, 34_001)
+    motion = smooth_pick_and_place(APPENDIX_I, t, speed)
+    assert motion.q.shape == (6, t.size, 2)
+    half = np.argmin(np.abs(speed * t - 1.5))
+    np.testing.assert_allclose(np.rad2deg(motion.q[:, half]), -APPENDIX_I, atol=1e-6)
+    assert not motion.q[:, [0, -1]].any()
+    for lower, upper in ((motion.q, motion.qd), (motion.qd, motion.qdd)):
+        slope = np.gradient(lower, t, axis=-2)
+        inside = np.abs(t * speed - 1.5) < 1.49
+        np.testing.assert_allclose(slope[:, inside], upper[:, inside], atol=2e-3 * speed**2)
+    steps = np.abs(np.diff(motion.qd, axis=-2)).max()
+    assert steps < 2 * np.abs(motion.qdd).max() * (t[1] - t[0])  # continuous at both ends
+
+
 @pytest.mark.parametrize(
     "call, name",
     [
@@ -204,6 +221,8 @@ def test_scores_of_a_made_up_recording():
         (lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD), "kp"),
         (lambda: feedforward_system(ARM, ARM, KP, (-1, 0)), "kd"),
         (lambda: fast_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
+        (lambda: smooth_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
+        (lambda: smooth_pick_and_place([1, 2, 3], [0.0, 0.1]), "extents_deg"),
         (lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0), "seconds"),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.tables import Table, claims, number, quote, spread, verdict
+from ddlib.tables import Table, number, quote, spread, verdict
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -169,23 +169,3 @@ def test_too_large_counts_like_too_small(a, b, factor):
 def test_verdict_refuses_what_has_no_ratio(arguments):
     with pytest.raises(ValueError, match="value and printed must be positive"):
         verdict(*arguments)
-
-
-def test_claims():
-    rows = [
-        ("error, window 21", "0.027", "0.03 (0.02 to 0.04)", "reproduced"),
-        ("hidden units act as filters", "yes", "most", "qualitative"),
-        ("error, window 41", "0.024", "0.1", "not reproduced"),
-        ("time on a Sun", "9 h", "–", "not testable"),
-    ]
-    table = claims(iter(rows))
-    assert table.header[-1] == "verdict" and table.rows == rows
-    assert cells(table._repr_markdown_().split("\n")[3])[0] == "hidden units act as filters"
-
-
-@pytest.mark.parametrize("word", ["", "Reproduced", "yes", "not  testable"])
-def test_claims_refuse_other_verdicts(word):
-    with pytest.raises(ValueError, match="verdict must be one of"):
-        claims([("a", "b", "c", "reproduced"), ("a", "b", "c", word)])
-    with pytest.raises(ValueError, match="4 cells"):
-        claims([("a", "b", "reproduced")])

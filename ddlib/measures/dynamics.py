@@ -61,6 +61,15 @@ def recursion() -> Measured:
     return Measured(ratio, f"six joints: {ratio:.0f} times fewer multiplications")
 
 
+def extra_links() -> Measured:
+    """Multiplications with four joints over those with two, each model customised."""
+    two, four = (
+        costs.count(newton_euler, PUMA_560.first(n), "arm").multiplications for n in (2, 4)
+    )
+    text = f"{two} multiplications with two joints of a Puma, {four} with four"
+    return Measured(four / two, text)
+
+
 def ignoring_terms() -> Measured:
     """Share of the multiplications that is left without velocity terms, and the error."""
     full, cheap = (

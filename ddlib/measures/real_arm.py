@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ddlib.actuators import FlexibleJoint
+from ddlib import linear
+from ddlib.actuators import DeadZone, FlexibleJoint
 from ddlib.claims import Measured
+from ddlib.delays import late_poles
 from ddlib.effects import Effects
 from ddlib.experiment import STATE_FEEDBACK
 from ddlib.filters import savitzky_golay
@@ -88,3 +91,87 @@ def snap() -> Measured:
         f"{noise / left:.0f} times below the torque noise"
     )
     return Measured(float(left / noise), text)
+
+
+@cache
+def _shaken(gap: float) -> np.ndarray:
+    """Torque left at both joints by the springy shaft with some play, the whole motion."""
+    run = _drive(transmission=(replace(SHAFT, gap=(gap, gap)),))
+    return residual_torque(SETUP.arm, run)[run.motion]
+
+
+def _share(left, what: str) -> Measured:
+    """RMS torque over the rigid body's: the larger share is judged, both are told."""
+    share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
+    text = f"{what}: {100 * share[0]:.0f} % of the torque at the shoulder, "
+    return Measured(float(share.max()), text + f"{100 * share[1]:.0f} % at the elbow")
+
+
+def backlash(gap: float = 1e-3) -> Measured:
+    """Torque that play adds behind a springy shaft, over the rigid body's.
+
+    Parameters
+    ----------
+    gap : float
+        Play, rad.
+    """
+    return _share(_shaken(gap) - _shaken(0.0), f"play of {np.rad2deg(gap):.2f}°, if it had gears")
+
+
+def high_frequency() -> Measured:
+    """Torque that a springy shaft leaves, the ringing at the start included."""
+    return _share(_shaken(0.0), "springy shaft")
+
+
+def dead_zone(width: float = 0.1) -> Measured:
+    """Torque that a dead zone swallows, over the rigid body's.
+
+    Parameters
+    ----------
+    width : float
+        Half the zone, N m, at both joints.
+    """
+    tau = _ideal().tau_true[_ideal().motion]
+    lost = DeadZone((width, width)).inverse(tau) - tau
+    return _share(lost, f"dead zone of {width:g} N m")
+
+
+def saturation() -> Measured:
+    """Largest torque of the motion over the torque limit, the joint that comes closer."""
+    limit = np.array(SETUP.effects.actuator[0].limit)
+    share = (np.abs(_ideal().tau_true).max(0) / limit).max()
+    text = f"the motion takes {100 * share:.0f} % of the limit at most"
+    return Measured(float(share), text)
+
+
+def sampling(late: float = 1.2e-3) -> Measured:
+    """Growth rate of position feedback whose torque is held and late, 1/s; negative is stable.
+
+    Parameters
+    ----------
+    late : float
+        Delay between reading and torque, s.
+    """
+    viscous = SETUP.effects.friction[0].coefficient
+    joints = linear.plant(SETUP.arm.mass_matrix([0.0, 0.0]), viscous)
+    gain = np.hstack([np.diag(SETUP.controller.kp), np.zeros((2, 2))])
+    held, delayed = (
+        np.log(np.abs(late_poles(joints, gain, CONTROL_STEP, d)).max()) / CONTROL_STEP
+        for d in (0.0, late)
+    )
+    text = (
+        f"position feedback: swings grow at {delayed:.2f} 1/s if the torque is {1e3 * late:g} ms "
+    )
+    text += f"late, {held:.2f} 1/s if it is only held"
+    return Measured(float(delayed), text)
+
+
+def sensor_noise() -> Measured:
+    """Noise in torque from second differences of rounded positions, over the rigid body's."""
+    run = _ideal()
+    log = run.q_true[:: round(LOG_STEP / CONTROL_STEP)]
+    torque = []
+    for q in (log, SETUP.effects.encoder[0].apply(log)):
+        qd, qdd = (q[2:] - q[:-2]) / (2 * LOG_STEP), np.diff(q, 2, axis=0) / LOG_STEP**2
+        torque.append(SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd))
+    return _share(torque[1] - torque[0], "16 bits, second differences at 100 a second")

@@ -1,0 +1,211 @@
+"""Sections 5 and 7: further claims on weights and hidden units of the committed networks."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib import results
+from ddlib.claims import Measured
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
+from ddlib.filters import classify, shares
+from ddlib.metrics import rmss
+from ddlib.network import TorqueModel, Weights
+from ddlib.simulate import LOG_STEP, Recording
+from ddlib.tables import number
+from ddlib.training import TrainingSet, cases, train_ensemble
+from ddlib.units import saturated
+
+NAMED = ("velocity", "acceleration", "velocity + acceleration")
+"""Classes of filters that control theory uses."""
+
+
+@cache
+def _model(width: int) -> TorqueModel:
+    return TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width))
+
+
+@cache
+def _training() -> Recording:
+    return split(STATE_FEEDBACK.record())[0]
+
+
+def _filters(width: int, layer: str) -> np.ndarray:
+    return getattr(_model(width).weights, f"{layer}_weights").reshape(-1, width)
+
+
+def explained(layer: str = "skip") -> Measured:
+    """Median share of position, velocity and acceleration in filters, the least of three windows.
+
+    Parameters
+    ----------
+    layer : {"skip", "hidden"}
+        Direct weights, or those of hidden units.
+    """
+    medians = [float(np.median(shares(_filters(w, layer))[:, :3].sum(-1))) for w in WINDOWS]
+    text = ", ".join(f"{100 * m:.0f} % at {w}" for m, w in zip(medians, WINDOWS))
+    return Measured(min(medians), f"{text} of the energy")
+
+
+def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
+    """Share of direct filters with two zero crossings whose middle is off the centre.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    shift : float
+        Off the centre: by this many samples or more.
+    """
+    off = []
+    for f in _filters(width, "skip"):
+        k = np.flatnonzero(np.diff(np.sign(f)))
+        if k.size == 2:
+            crossings = k + f[k] / (f[k] - f[k + 1]) - width // 2
+            off.append(abs(crossings.mean()) >= shift)
+    return Measured(float(np.mean(off)), f"{sum(off)} of {len(off)} filters with two crossings")
+
+
+def adjacency(width: int = 11, epochs: int = 100) -> Measured:
+    """Change of the trained weights when the samples of all windows are shuffled alike.
+
+    Initial weights are shuffled in the same way and the trained ones put back in order;
+    the largest difference relative to the largest weight.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    epochs : int
+        Length of training.
+    """
+    data = TrainingSet.from_recording(_training(), width)
+    order = np.random.default_rng(0).permutation(width)
+    start = Weights.random(1, width, initial=STATE_FEEDBACK.initial)
+    trained = []
+    for places in (np.arange(width), order):
+        mixed = TrainingSet(data.x[..., places], data.y, data.inputs, data.outputs)
+        weights = Weights(
+            start.hidden_weights[..., places], start.hidden_bias, start.output_weights,
+            start.skip_weights[..., places], start.output_bias,
+        )  # fmt: skip
+        model, *_ = train_ensemble(weights, mixed, momentum=0.9, epochs=epochs, progress=False)
+        trained.append(model.weights)
+    plain, shuffled = trained
+    back = np.argsort(order)
+    gap = max(
+        float(np.abs(getattr(shuffled, name)[..., back] - getattr(plain, name)).max())
+        for name in ("hidden_weights", "skip_weights")
+    )
+    relative = gap / float(plain.largest.max())
+    return Measured(relative, f"the weights differ by {relative:.0e} after {epochs} epochs")
+
+
+def untrained(width: int = 41) -> Measured:
+    """Share of random weight functions that the rule calls not analysable.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    found = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
+    rough = found == "not analysable"
+    return Measured(float(rough.mean()), f"{rough.sum()} of {rough.size} random functions")
+
+
+def weights_and_saturation() -> Measured:
+    """Rank correlation of a unit's largest weight and the time it is saturated, all windows."""
+    from scipy.stats import spearmanr
+
+    largest, share = [], []
+    for width in WINDOWS:
+        weights, (windows, _) = _model(width).weights, cases(_training(), width)
+        largest.append(np.abs(weights.hidden_weights).max((-2, -1)).ravel())
+        activity = weights.activity(_model(width).scaled(windows))[0]
+        share.append(saturated(activity).ravel())
+    found = float(spearmanr(np.concatenate(largest), np.concatenate(share)).statistic)
+    return Measured(found, f"rank correlation {found:.2f} over {3 * share[0].size} units")
+
+
+def interpretable(width: int = 21) -> Measured:
+    """Share of all filters that are velocity or acceleration filters, or a sum of both.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    found = {
+        layer: np.isin(classify(_filters(width, layer)), NAMED) for layer in ("hidden", "skip")
+    }
+    text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
+    text += f"{found['skip'].sum()} of {found['skip'].size} direct filters"
+    return Measured(float(np.concatenate(list(found.values())).mean()), text)
+
+
+def _held_still(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Torque of the networks, torque with all hidden units at their mean, measured torque."""
+    model, (windows, torque) = _model(width), cases(_training(), width)
+    hidden, output = model.weights.activity(model.scaled(windows))
+    shift = (hidden.mean(-2, keepdims=True) - hidden) @ np.swapaxes(
+        model.weights.output_weights, -1, -2
+    )
+    logit = np.log(output / (1 - output)) + shift
+    still = model.outputs.unscale(1 / (1 + np.exp(-logit)))
+    return model.outputs.unscale(output), still, torque
+
+
+def without_hidden_units(width: int = 21) -> Measured:
+    """Training error with all hidden units held at their mean over that of the whole network.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    whole, still, torque = _held_still(width)
+    ratio = rmss(still, torque) / rmss(whole, torque)
+    text = f"error {number(np.median(ratio), 2)} times as large without them"
+    return Measured(float(np.median(ratio)), text)
+
+
+def compensate_friction(width: int = 21) -> Measured:
+    """Share of the hidden units' non-linear part that friction explains, better of two joints.
+
+    The direct weights add a linear function of the window to the net input of an output unit;
+    whatever is not linear in it comes from the hidden units. Least squares takes the linear
+    part out of the hidden units' sum, of the true friction torque and of the rigid body's
+    torque; R² is the squared correlation of what is left, its median over networks.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    model, run = _model(width), _training()
+    windows = cases(run, width)[0]
+    hidden = model.weights.activity(model.scaled(windows))[0]
+    sums = np.einsum("mnh,moh->mno", hidden, model.weights.output_weights)
+    speed = run.qd_true[..., run.motion, :]
+    acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
+    torques = {
+        "friction": STATE_FEEDBACK.effects.friction_torque(speed),
+        "rigid body": STATE_FEEDBACK.arm.inverse_dynamics(
+            run.q_true[..., run.motion, :], speed, acceleration
+        ),
+    }
+    linear = np.column_stack([windows.reshape(len(windows), -1), np.ones(len(windows))])
+
+    def curved(y):
+        return y - linear @ np.linalg.lstsq(linear, y, rcond=None)[0]
+
+    parts = [curved(y) for y in sums]
+    fits = {}
+    for name, torque in torques.items():
+        left = curved(torque.reshape(-1, 2))
+        each = [[np.corrcoef(p[:, j], left[:, j])[0, 1] ** 2 for j in (0, 1)] for p in parts]
+        fits[name] = np.median(each, axis=0)
+    text = "; ".join(f"{name}: R² {a:.2f} and {b:.2f}" for name, (a, b) in fits.items())
+    return Measured(float(fits["friction"].max()), f"{text}, shoulder and elbow")

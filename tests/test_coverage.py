@@ -1,0 +1,60 @@
+"""How much of a space samples reach: counts by hand, volumes by chance, ranks by construction."""
+
+import numpy as np
+import pytest
+
+from ddlib.coverage import cells_reached, principal_deviations, reachable_share, used_dimensions
+
+
+def test_cells_are_counted_once_and_only_inside():
+    samples = [[-0.9, -0.9], [-0.8, -0.6], [0.1, 0.1], [1.0, 1.0], [-1.0, 1.0], [1.1, 0.0]]
+    # four cells an axis: two share a corner, one lies out, the upper faces belong to the cube
+    assert cells_reached(samples, 1.0, 4) == 4
+    assert cells_reached(samples, 1.0, 1) == 1
+    assert cells_reached(np.zeros((0, 3)), 1.0, 4) == 0
+
+
+@pytest.mark.parametrize("cells", [1, 3, 10])
+def test_a_dense_sample_reaches_every_cell(cells):
+    samples = np.random.default_rng(0).uniform(-2, 2, (20_000, 2))
+    assert cells_reached(samples, 2.0, cells) == cells**2
+
+
+@pytest.mark.parametrize("width, step", [(2, 0.1), (3, 0.2), (4, 0.3)])
+def test_the_bound_holds_for_random_windows_and_is_not_far_off(width, step):
+    windows = np.random.default_rng(1).uniform(0, 1, (400_000, width))
+    share = (np.abs(np.diff(windows)) <= step).all(-1).mean()
+    bound = 10 ** reachable_share(width, step)
+    assert 0.4 * bound < share < bound
+
+
+def test_bounds_of_one_sample_and_of_steps_as_large_as_half_the_edge():
+    assert reachable_share(1, 0.01) == 0
+    assert reachable_share(30, 0.5) == 0
+    assert reachable_share(21, 0.01) == pytest.approx(20 * np.log10(0.02))
+
+
+def test_deviations_are_those_of_a_known_distribution():
+    rng = np.random.default_rng(2)
+    turn = np.linalg.qr(rng.normal(size=(5, 5)))[0]
+    samples = rng.normal(size=(200_000, 5)) * [3, 2, 1, 0.1, 0] @ turn.T + 7
+    np.testing.assert_allclose(principal_deviations(samples), [3, 2, 1, 0.1, 0], atol=0.02)
+    assert [used_dimensions(samples, x) for x in (0.05, 0.5, 2.5, 10)] == [4, 3, 1, 0]
+
+
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: cells_reached([1.0, 2.0], 1.0, 4), "samples"),
+        (lambda: cells_reached([[np.nan, 2.0]], 1.0, 4), "samples"),
+        (lambda: cells_reached([[1.0, 2.0]], 0.0, 4), "radius"),
+        (lambda: cells_reached([[1.0, 2.0]], 1.0, 0), "cells"),
+        (lambda: reachable_share(0, 0.1), "width"),
+        (lambda: reachable_share(11, 0.6), "step"),
+        (lambda: principal_deviations([[1.0, 2.0]]), "samples"),
+        (lambda: used_dimensions([[1.0], [2.0]], -1), "resolution"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        call()

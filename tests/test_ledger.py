@@ -1,0 +1,127 @@
+"""The ledger's tables: their numbers against the results and the paper's own counts."""
+
+import json
+import re
+
+import nbformat
+import numpy as np
+import pytest
+from book_pages import BACK_MATTER, ROOT
+
+from ddlib import claims, ledger, results
+from ddlib.tables import number
+
+BOOK = ROOT / "book"
+
+
+@pytest.fixture(scope="module")
+def errata() -> list[tuple]:
+    return ledger.errata().rows
+
+
+@pytest.fixture(scope="module")
+def questions() -> dict[str, tuple]:
+    return {row[0]: row[1:] for row in ledger.open_questions().rows}
+
+
+def found(rows, where, words) -> str:
+    (text,) = [row[2] for row in rows if row[0] == where and words in row[1]]
+    return text
+
+
+@pytest.mark.parametrize("unit", [52, 85, 93])
+def test_units_of_the_figures_belong_to_one_window(unit):
+    fitting = [w for w in (11, 21, 41, 81) if ledger.unit_fits(unit, w)]
+    assert fitting == [21 if unit == 52 else 41]
+
+
+@pytest.mark.parametrize("unit, fits", [(42, False), (43, True), (54, True), (55, False)])
+def test_inputs_and_what_comes_after_them(unit, fits):
+    assert ledger.unit_fits(unit, 21) is fits  # 42 inputs, 10 hidden units, 2 outputs
+
+
+def test_errata_are_computed(errata):
+    assert "833 Hz" in found(errata, "section 1.1", "830")
+    assert "period of 6 s" in found(errata, "section 2", "period")
+    assert f"{np.pi / 3 * np.pi / 4:.2f} rad/s" in found(errata, "section 2", "pick-and-place")
+    assert found(errata, "Appendix I", "random").startswith("5 of 12 ")
+    assert "-45°" in found(errata, "Appendix I", "minus")
+    weights = 2 * 21 * 10 + 2 * 42 + 2 * 10
+    assert f"{1500 * weights:,} at 21" in found(errata, "Appendix I", "700,000")
+    text = found(errata, "Figures 5-4 to 5-8", "captions")
+    assert text.count("is no input at") == text.count("and an input at") == 3
+
+
+def test_errata_name_places_of_the_paper(errata):
+    sections = re.compile(r"(sections? \d(\.\d)?|Figures? \d-\d|Table \d-\d|Appendix I\b)")
+    assert not [row[0] for row in errata if not sections.match(row[0])]
+
+
+def test_open_questions_quote_the_results(questions):
+    table = results.read("table-4-1")["setups"]
+    for name, column in (("state feedback", 1), ("position feedback", 2)):
+        text = questions["What is “a proportional controller”?"][column]
+        for what in ("training", "test"):
+            for w in ("11", "21", "41"):
+                assert number(np.median(table[name][w]["errors"][what]), 2) in text
+    six = results.read("table-6-1")["errors"]["trajectory 6"]
+    row = questions["Table 6-1: whose standard deviation?"]
+    assert row[1].endswith(number(np.median(six["own deviation"]), 2))
+    assert row[2].endswith(number(np.median(six["deviation of set A"]), 2))
+
+
+def test_both_sides_have_the_same_number_of_networks(questions):
+    eight = results.read("clean")["members"]
+    state = results.read("table-4-1")["setups"]["state feedback"]
+    median = number(np.median(state["21"]["errors"]["test"][:eight]), 2)
+    assert f" · {median} · " in questions["How much friction and sensor noise?"][1]
+
+
+def changed(monkeypatch, name, change):
+    """Let `results.read` return a changed result."""
+    read = results.read
+    monkeypatch.setattr(results, "read", lambda asked: change() if asked == name else read(asked))
+
+
+def test_a_changed_result_changes_the_table(monkeypatch, questions):
+    question = "How many hidden units (window 21)?"
+    content = results.read("hidden-units")
+    content["rows"][0]["test"] = [12.5]
+    changed(monkeypatch, "hidden-units", lambda: content)
+    now = {row[0]: row[1:] for row in ledger.open_questions().rows}
+    assert "test 12" in now[question][2]
+    assert "test 12" not in questions[question][2]
+
+
+def test_arms_at_random(monkeypatch):
+    rows = [
+        {str(w): {"training": [0.1 * k], "test": [abs(w - best)]} for w in (11, 21, 41)}
+        for k, best in ((1, 21), (2, 21), (3, 41))
+    ]
+    changed(monkeypatch, "arms", lambda: {"rows": rows})
+    (row,) = [row for row in ledger.open_questions().rows if "gains" in row[0]]
+    assert row[3].startswith("3 arms at random: training 0.20 (0.10 to 0.30) · ")
+    assert row[3].endswith("least at window 11 on 0, 21 on 2, 41 on 1")
+
+
+def test_arms_that_were_not_trained_are_left_out(monkeypatch):
+    def missing():
+        raise FileNotFoundError("arms")
+
+    changed(monkeypatch, "arms", missing)
+    assert not [row for row in ledger.open_questions().rows if "gains" in row[0]]
+
+
+def test_the_page_shows_every_section_and_comes_first():
+    notebook = nbformat.read(BOOK / "ledger.ipynb", as_version=4)
+    source = "\n".join(cell.source for cell in notebook.cells)
+    for key, title in claims.SECTIONS.items():
+        assert f'ledger_table("{key}")' in source
+        assert f"### {title}" in source
+    assert BACK_MATTER[0] == "book/ledger"
+
+
+def test_readme_and_first_page_lead_to_it():
+    assert "book/ledger.ipynb" in (ROOT / "README.md").read_text(encoding="utf-8")
+    cells = json.loads((BOOK / "index.ipynb").read_text(encoding="utf-8"))["cells"]
+    assert any("{doc}`ledger`" in "".join(cell["source"]) for cell in cells)
