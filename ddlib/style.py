@@ -111,7 +111,7 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
 
 
 def plain_ticks(axis: Axis) -> None:
-    """Plain numbers on a logarithmic axis that spans few decades, at 1, 2, 5, 10 or finer.
+    """Plain numbers on a logarithmic axis that spans few decades, at 1, 2, 5 where there is room.
 
     Parameters
     ----------
@@ -124,7 +124,8 @@ def plain_ticks(axis: Axis) -> None:
     if high / low < 4:
         axis.set_major_locator(MaxNLocator(4))
     else:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 200 else (1,)))
+        fine = (1, 2, 5) if high / low < 60 else (1, 3) if high / low < 200 else (1,)
+        axis.set_major_locator(LogLocator(subs=fine))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
 
