@@ -58,7 +58,9 @@ notebooks: $(READY)
 
 pages: book
 	@echo "==> The built pages"
-	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser"
+	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser" || { \
+	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \
+	  $(BIN)/python -m pytest --last-failed --last-failed-no-failures none; }
 
 lab: $(READY)  ## JupyterLab on the book
 	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
