@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import matplotlib
 import numpy as np
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LogNorm
@@ -15,7 +16,8 @@ from scipy.spatial import ConvexHull
 from ddlib._check import finite_array
 from ddlib.style import COLOURS, INK, Illustration, illustrate, plain_ticks
 
-COLOUR_MAP = "viridis"
+COLOUR_MAP = matplotlib.colormaps["viridis"].resampled(32)
+"""Few enough steps that its bar is drawn and not an embedded picture, which pages forbid."""
 
 
 def plane(
