@@ -72,6 +72,8 @@ class Table:
     rows: Iterable[Sequence]
 
     def __post_init__(self):
+        if not all(str(head).strip() for head in self.header):
+            raise ValueError(f"header must name every column, got {tuple(self.header)}")
         rows = [tuple(row) for row in self.rows]
         for row in rows:
             if len(row) != len(self.header):
@@ -87,21 +89,3 @@ class Table:
 
         rule = "|" + "|".join(" --- " for _ in self.header) + "|"
         return "\n".join([line(self.header), rule, *map(line, self.rows)])
-
-
-def verdict(value: float, printed: float, factor: float) -> str:
-    """ "reproduced" if `value` lies within `factor` of `printed`, else "not reproduced".
-
-    Parameters
-    ----------
-    value, printed : float
-        Ours (a median) and the paper's; both positive.
-    factor : float
-        1 or more.
-    """
-    if not (value > 0 and printed > 0 and factor >= 1):
-        raise ValueError(
-            f"value and printed must be positive and factor at least 1, "
-            f"got {value}, {printed}, {factor}"
-        )
-    return "reproduced" if 1 / factor <= value / printed <= factor else "not reproduced"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import yaml
@@ -27,11 +28,9 @@ def source(page: str) -> Path | None:
 def has_widgets(page: str) -> bool:
     """Whether a page's notebook makes widgets."""
     path = source(page)
-    return (
-        path is not None
-        and path.suffix == ".ipynb"
-        and "from ddlib.widgets" in path.read_text("utf-8")
-    )
+    if path is None or path.suffix != ".ipynb":
+        return False
+    return bool(re.search(r"from ddlib\.widgets|\bwidgets\.[A-Z]", path.read_text("utf-8")))
 
 
 WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

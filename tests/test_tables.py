@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.tables import Table, number, quote, spread, verdict
+from ddlib.tables import Table, number, quote, spread
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -136,36 +136,7 @@ def test_rows_have_the_length_of_the_header(rows):
         Table(("a", "b"), rows)
 
 
-# --- verdicts ---------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "value, printed, factor, word",
-    [
-        (0.027, 0.027, 1.0, "reproduced"),
-        (0.04, 0.027, 1.5, "reproduced"),
-        (0.041, 0.027, 1.5, "not reproduced"),
-        (0.019, 0.027, 1.5, "reproduced"),
-        (0.017, 0.027, 1.5, "not reproduced"),
-        (100.0, 0.027, 2.0, "not reproduced"),
-    ],
-)
-def test_verdict(value, printed, factor, word):
-    assert verdict(value, printed, factor) == word
-
-
-@given(a=st.floats(0.01, 10), b=st.floats(0.01, 10), factor=st.floats(1, 5))
-def test_too_large_counts_like_too_small(a, b, factor):
-    ratio = max(a, b) / min(a, b)
-    if abs(ratio - factor) > 1e-9:
-        expected = "reproduced" if ratio < factor else "not reproduced"
-        assert verdict(a, b, factor) == verdict(b, a, factor) == expected
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [(0, 1, 2), (1, 0, 2), (-1, 1, 2), (1, 1, 0.5), (np.nan, 1, 2), (1, np.nan, 2), (1, 1, np.nan)],
-)
-def test_verdict_refuses_what_has_no_ratio(arguments):
-    with pytest.raises(ValueError, match="value and printed must be positive"):
-        verdict(*arguments)
+@pytest.mark.parametrize("header", [("a", ""), (" ", "b")])
+def test_every_column_has_a_name(header):
+    with pytest.raises(ValueError, match="header must name every column"):
+        Table(header, [(1, 2)])
