@@ -30,6 +30,7 @@ from __future__ import annotations
 import importlib
 import json
 import math
+import os
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -37,6 +38,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+import joblib
 import yaml
 
 from ddlib._check import one_of
@@ -47,6 +49,10 @@ FILE = Path(__file__).parent.parent / "book" / "claims.yml"
 
 LEDGER = "ledger"
 """The page of all claims, and the chapter of those that no other page deals with."""
+
+SHARED = "DDLIB_MEASURED"
+"""Environment variable with a folder in which notebooks that are built together share what they
+measured. Who sets it takes a new folder for other code or results."""
 
 VERDICTS = ("reproduced", "qualitative", "not reproduced", "not testable")
 """All verdicts, best first."""
@@ -203,6 +209,14 @@ class Claim:
 
 @cache
 def _measured(measure: str, arguments: str) -> Measured:
+    """`_measure`, once in a process, and once in all that share the folder `SHARED` names."""
+    folder = os.environ.get(SHARED)
+    if not folder:
+        return _measure(measure, arguments)
+    return joblib.Memory(folder, verbose=0).cache(_measure)(measure, arguments)
+
+
+def _measure(measure: str, arguments: str) -> Measured:
     module, _, function = measure.partition(".")
     found = getattr(importlib.import_module(f"ddlib.measures.{module}"), function)
     result = found(**json.loads(arguments))

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+GLUE_PREFIX = "application/papermill.record/"
+"""Before the MIME type of what is kept for the prose and not shown."""
+
 
 def number(value, digits: int = 3) -> str:
     """A number for a table cell: `digits` significant digits, no exponent where avoidable."""
@@ -51,9 +54,12 @@ def quote(name: str, value) -> None:
     value : scalar
         A number; numpy scalars become plain ones, so that formats work.
     """
-    from myst_nb import glue
+    from IPython.display import display
 
-    glue(name, np.asarray(value)[()].item(), display=False)
+    # what myst_nb's `glue` displays; its import would take every chapter more than a second
+    plain = np.asarray(value)[()].item()
+    told = {"scrapbook": {"name": name, "mime_prefix": GLUE_PREFIX}}
+    display({f"{GLUE_PREFIX}text/plain": repr(plain)}, raw=True, metadata=told)
 
 
 @dataclass(frozen=True)

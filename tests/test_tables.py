@@ -80,17 +80,21 @@ def test_spread_with_more_digits():
     assert spread([12.0, 14.0, 13.0], 3) == "13.0 (12.0 to 14.0)"
 
 
-def test_quote_gives_the_page_a_plain_number(monkeypatch):
-    import myst_nb
+@pytest.mark.parametrize(
+    "value, plain",
+    [(np.float64(0.25), 0.25), (np.array(1 / 3), 1 / 3), (1e-22, 1e-22), (np.int64(3), 3),
+     (1_500_000, 1_500_000), (np.float32(0.5), 0.5), (float("nan"), float("nan"))],
+)  # fmt: skip
+def test_quote_shows_what_glue_shows(monkeypatch, value, plain):
+    import IPython.display
+    import myst_nb.ext.glue as library
 
-    kept = {}
-    monkeypatch.setattr(
-        myst_nb, "glue", lambda name, value, display: kept.update({name: (value, display)})
-    )
-    for value in (np.float64(0.25), np.array(0.25), 0.25, np.int64(3)):
-        quote("chapter-value", value)
-        assert kept["chapter-value"] == (float(value), False)
-        assert type(kept["chapter-value"][0]) in (int, float)
+    ours, theirs = [], []
+    monkeypatch.setattr(IPython.display, "display", lambda *a, **k: ours.append((a, k)))
+    monkeypatch.setattr(library, "ipy_display", lambda *a, **k: theirs.append((a, k)))
+    quote("chapter-value", value)
+    library.glue("chapter-value", plain, display=False)
+    assert ours == theirs and len(ours) == 1
 
 
 # --- Markdown ---------------------------------------------------------------------------

@@ -42,7 +42,9 @@ def execute_ahead(root: Path) -> None:
     What fails here is not kept: the build meets it again and reports it.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
-    cache = get_cache(str(cache_path(root, root / "_build")))
+    folder = cache_path(root, root / "_build")
+    os.environ["DDLIB_MEASURED"] = str(folder / "measured")  # chapters and ledger share claims
+    cache = get_cache(str(folder))
     for path in sorted((root / "book").glob("*.ipynb")):
         cache.add_nb_to_project(str(path))
     done = load_executor("local-parallel", cache).run_and_cache(timeout=TIMEOUT)
