@@ -5,6 +5,7 @@ import json
 import random
 import re
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -200,13 +201,13 @@ def parts(copy, tmp_path, monkeypatch):
 
 def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     reproduce.main(["clean"])
-    reproduce.main([])
+    reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer"]
     assert "==> clean: up to date" in capsys.readouterr().out
-    reproduce.main([])
+    reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer"]
     copy("studies/table", "def longer(members=8", "def longer(members=9")
-    reproduce.main([])
+    reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer", "longer"] and results.read("longer")["value"] == 3
     reproduce.main(["--force", "clean"])
     assert parts[3:] == ["clean"]
@@ -230,9 +231,49 @@ def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
 
     monkeypatch.setitem(reproduce.PARTS, "clean", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        reproduce.main([])
+        reproduce.main(["--jobs", "1"])
     assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
     assert results.read("longer")["made by"]["code"] == results.code_hash("longer")
+
+
+def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
+    order = []
+
+    def apart(name):
+        order.append(name)
+        reproduce.make(name, results.code_hash(name))
+        return subprocess.CompletedProcess([], 0, "", "")
+
+    monkeypatch.setattr(reproduce, "make_apart", apart)
+    monkeypatch.setattr(reproduce, "_seconds", {"longer": 1.0, "clean": 9.0}.get)
+    reproduce.main(["--jobs", "2"])
+    assert order == ["clean", "longer"]
+    assert results.read("reproduce")["made by"]["jobs"] == 2
+    assert "==> clean: 9 s" in capfd.readouterr().out
+
+
+def test_a_part_that_fails_apart_is_told(parts, monkeypatch):
+    def apart(name):
+        if name == "clean":
+            return subprocess.CompletedProcess([], 1, "", "ZeroDivisionError: in clean")
+        reproduce.make(name, results.code_hash(name))
+        return subprocess.CompletedProcess([], 0, "", "")
+
+    monkeypatch.setattr(reproduce, "make_apart", apart)
+    with pytest.raises(RuntimeError, match="failed: clean; the others are written") as told:
+        reproduce.main(["--jobs", "2"])
+    assert "ZeroDivisionError" in str(told.value)
+    assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
+
+
+def test_apart_is_the_same_command_with_one_thread(monkeypatch):
+    seen = {}
+    monkeypatch.setattr(
+        reproduce.subprocess, "run", lambda command, **k: seen.update(command=command, **k)
+    )
+    reproduce.make_apart("clean")
+    assert seen["command"][1:] == ["-m", "ddlib.reproduce", "--force", "--jobs", "1", "clean"]
+    assert seen["env"]["OMP_NUM_THREADS"] == "1" and seen["env"]["PATH"]
 
 
 def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):

@@ -88,17 +88,23 @@ def test_without_measurements_the_page_says_so(tmp_path):
     assert "make bench" in only.astext()
 
 
-@pytest.mark.parametrize(("seconds", "verdict"), [(500.0, "met"), (500.1, "missed")])
-def test_times_of_the_results_are_added_up(tmp_path, seconds, verdict):
+@pytest.mark.parametrize(("seconds", "verdict"), [(600.0, "met"), (600.1, "missed")])
+def test_times_of_the_results_and_of_all_together(tmp_path, seconds, verdict):
     for name, made in {
         "a": {"code": "1", "seconds": 100.0},
-        "b": {"code": "2", "seconds": seconds},
+        "b": {"code": "2", "seconds": 750.0},
         "benchmarks": {"seconds": 900.0},  # not of make reproduce
+        "reproduce": {"seconds": seconds, "jobs": 2},
     }.items():
         (tmp_path / f"{name}.json").write_text(json.dumps({"made by": made}))
     (table,) = dd_status.made_results(tmp_path)
-    assert [row[0] for row in cells(table)] == ["result", "a", "b", "all"]
-    assert cells(table)[-1][1].endswith(verdict)
+    assert [row[0] for row in cells(table)] == [
+        "result", "a", "b", "sum", "make reproduce, 2 at a time",
+    ]  # fmt: skip
+    assert cells(table)[-2][1] == "850 s" and cells(table)[-1][1].endswith(verdict)
+    (tmp_path / "reproduce.json").unlink()
+    (table,) = dd_status.made_results(tmp_path)
+    assert cells(table)[-1][0] == "sum"
 
 
 @pytest.mark.built

@@ -120,10 +120,15 @@ def made_results(folder: Path) -> list[nodes.Node]:
         made = json.loads(path.read_text(encoding="utf-8"))["made by"]
         if "code" in made:
             times[path.stem] = made["seconds"]
-    total = sum(times.values())
     rows = [(name, f"{seconds:.1f} s") for name, seconds in times.items()]
-    verdict = "met" if total <= REPRODUCE_SECONDS else "missed"
-    rows.append(("all", f"{total:.0f} s; target ≤ {REPRODUCE_SECONDS} s: {verdict}"))
+    rows.append(("sum", f"{sum(times.values()):.0f} s"))
+    path = folder / "reproduce.json"
+    if path.is_file():
+        whole = json.loads(path.read_text(encoding="utf-8"))["made by"]
+        seconds, jobs = whole["seconds"], whole["jobs"]
+        verdict = "met" if seconds <= REPRODUCE_SECONDS else "missed"
+        words = f"{seconds:.0f} s; target ≤ {REPRODUCE_SECONDS} s: {verdict}"
+        rows.append((f"make reproduce, {jobs} at a time", words))
     return [table(("result", "time to make it"), rows)]
 
 
