@@ -38,7 +38,7 @@ def make(name: str, code: str) -> None:
     """Run one study and write its result with the hash `code` of what made it."""
     started = time.monotonic()
     content = PARTS[name]()
-    made_by = {**results.stamp(time.monotonic() - started, name), "code": code}
+    made_by = {"code": code, **results.stamp(time.monotonic() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 
 

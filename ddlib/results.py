@@ -117,10 +117,9 @@ def _is_text(node) -> bool:
     )
 
 
-def stamp(seconds: float, result: str | None = None) -> dict:
-    """What is kept beside a result: run time, versions, and for `result` its code's hash."""
+def stamp(seconds: float) -> dict:
+    """What is kept beside a result: run time, peak memory, versions."""
     return {
-        **({"code": code_hash(result)} if result else {}),
         "seconds": round(seconds, 1),
         "peak GiB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2),
         "python": platform.python_version(),

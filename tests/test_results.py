@@ -129,11 +129,10 @@ def test_modules_are_followed_through_the_imports(copy):
 
 
 def test_stamp():
-    made = results.stamp(12.345, "longer")
-    assert made["code"] == results.code_hash("longer") and made["seconds"] in (12.3, 12.4)
+    made = results.stamp(12.345)
+    assert made["seconds"] in (12.3, 12.4) and 0 < made["peak GiB"] < 100
     assert set(made["versions"]) == {"numpy", "torch", "scipy"}
     assert made["versions"]["numpy"] == np.__version__
-    assert "code" not in results.stamp(1.0)
     json.dumps(made)
 
 
@@ -237,11 +236,11 @@ def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
 
 
 def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
-    order = []
+    order, codes = [], hashes()  # here: Python 3.11 cannot parse in two threads at once
 
     def apart(name):
         order.append(name)
-        reproduce.make(name, results.code_hash(name))
+        reproduce.make(name, codes[name])
         return subprocess.CompletedProcess([], 0, "", "")
 
     monkeypatch.setattr(reproduce, "make_apart", apart)
@@ -253,10 +252,12 @@ def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
 
 
 def test_a_part_that_fails_apart_is_told(parts, monkeypatch):
+    codes = hashes()
+
     def apart(name):
         if name == "clean":
             return subprocess.CompletedProcess([], 1, "", "ZeroDivisionError: in clean")
-        reproduce.make(name, results.code_hash(name))
+        reproduce.make(name, codes[name])
         return subprocess.CompletedProcess([], 0, "", "")
 
     monkeypatch.setattr(reproduce, "make_apart", apart)
