@@ -16,16 +16,14 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from tqdm.auto import tqdm
 
 from ddlib import figures, results
-from ddlib.experiment import STATE_FEEDBACK
 from ddlib.filters import purest
-from ddlib.network import TorqueModel
 from ddlib.simulate import LOG_STEP
 from ddlib.studies import PARTS
 
 
 def picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
-    networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, 21)).weights
+    networks = results.networks(21).weights
     found = {
         f"{name} filter": purest(networks.hidden_weights, name)
         for name in ("velocity", "acceleration")

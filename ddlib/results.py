@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib.experiment import COURSE
+from ddlib.experiment import COURSE, STATE_FEEDBACK
 from ddlib.network import TorqueModel
 
 PACKAGE = Path(__file__).parent
@@ -151,6 +151,31 @@ def _plain(value):
     if value is None or isinstance(value, (str, int)):
         return value
     raise TypeError(f"{type(value).__name__} does not go into a results file")
+
+
+def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained networks of a cell of Table 4-1.
+
+    Parameters
+    ----------
+    width : int
+        Window size, one of `ddlib.experiment.WINDOWS`.
+    setup : str
+        Name of one of `ddlib.experiment.SETUPS`.
+    """
+    return TorqueModel.load(networks_path(setup, width))
+
+
+def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained network of a cell of Table 4-1 whose test error is the median.
+
+    Parameters
+    ----------
+    width, setup
+        As in `networks`.
+    """
+    errors = read("table-4-1")["setups"][setup][str(width)]["errors"]["test"]
+    return networks(width, setup)[int(np.argsort(errors)[len(errors) // 2])]
 
 
 def networks_path(setup: str, width: int) -> Path:

@@ -371,7 +371,7 @@ def test_courses_begin_at_the_seed_and_end_at_the_networks(width):
     assert epochs[0] == 0 and epochs[-1] == paper.EPOCHS and (np.diff(epochs) > 0).all()
     assert model.weights.hidden_bias.shape[:2] == (len(epochs), 2)
     seeded = Weights.random(2, width, initial=STATE_FEEDBACK.initial)
-    networks = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width)).weights
+    networks = results.networks(width).weights
     for name in ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias"):
         own, wanted = getattr(model.weights, name), getattr(seeded, name)
         np.testing.assert_array_equal(own[0], wanted.astype(np.float32), err_msg=STALE)

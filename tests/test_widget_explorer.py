@@ -11,7 +11,7 @@ from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS
+from ddlib.experiment import WINDOWS
 from ddlib.filters import CLASSES, classify, savitzky_golay
 from ddlib.network import TorqueModel, Weights
 from ddlib.simulate import LOG_STEP
@@ -25,7 +25,7 @@ REACH = max(WINDOWS) // 2
 
 @pytest.fixture(scope="module")
 def models():
-    return {w: TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, w)) for w in WINDOWS}
+    return {w: results.networks(w) for w in WINDOWS}
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def test_baked_curves_are_the_exact_ones(explorer):
 
 def explorer_models(explorer) -> dict:
     """Models of the same size as the explorer's, of random weights."""
-    scaler = TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, 11)).inputs
+    scaler = results.networks(11).inputs
     return {w: TorqueModel(Weights.random(22, w), scaler, scaler) for w in WINDOWS}
 
 

@@ -11,10 +11,10 @@ from traitlets import TraitError
 from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings, shown_values
 
 from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, errors, predict, run
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS, errors, predict, run
 from ddlib.metrics import rmss
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets import TrajectoryPicker, median_networks
+from ddlib.widgets import TrajectoryPicker
 from ddlib.widgets.baked import MAX_BYTES
 from ddlib.widgets.picker import inside_hull
 
@@ -27,7 +27,7 @@ def picker():
 
 @pytest.fixture(scope="module")
 def networks():
-    return median_networks()
+    return {f"window {w}": results.median_network(w) for w in WINDOWS}
 
 
 @pytest.fixture(scope="module")

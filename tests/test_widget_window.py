@@ -9,7 +9,6 @@ from widget_pages import NEXT_FRAME, READ, page_of, settings
 
 from ddlib import results
 from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
-from ddlib.network import TorqueModel
 from ddlib.simulate import Recording
 from ddlib.widgets.window import SlidingWindow
 from ddlib.windows import sliding_windows
@@ -24,11 +23,7 @@ def test_run():
 
 @pytest.fixture(scope="module")
 def models():
-    networks = {}
-    for width in WINDOWS:
-        path = results.networks_path(STATE_FEEDBACK.name, width)
-        networks[width] = TorqueModel.load(path)[MEMBER]
-    return networks
+    return {width: results.networks(width)[MEMBER] for width in WINDOWS}
 
 
 @pytest.fixture(scope="module")

@@ -14,6 +14,7 @@ import sys
 import time
 from pathlib import Path
 
+from ddlib.claims import SHARED
 from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
 
@@ -43,7 +44,7 @@ def execute_ahead(root: Path) -> None:
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
     folder = cache_path(root, root / "_build")
-    os.environ["DDLIB_MEASURED"] = str(folder / "measured")  # chapters and ledger share claims
+    os.environ[SHARED] = str(folder / "measured")  # chapters and ledger share claims
     cache = get_cache(str(folder))
     for path in sorted((root / "book").glob("*.ipynb")):
         cache.add_nb_to_project(str(path))

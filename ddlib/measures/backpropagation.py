@@ -9,7 +9,8 @@ import numpy as np
 from ddlib import paper, parity, results
 from ddlib.claims import Measured
 from ddlib.descent import Descent
-from ddlib.experiment import INITIAL, STATE_FEEDBACK, split
+from ddlib.experiment import INITIAL
+from ddlib.measures import committed
 from ddlib.network import Weights, WindowNetwork
 from ddlib.tables import number, spread
 from ddlib.training import History, TrainingSet, default_rate, train_ensemble
@@ -23,7 +24,7 @@ LEVEL = 0.75
 
 @cache
 def _data(width: int = 21) -> TrainingSet:
-    return TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], width)
+    return TrainingSet.from_recording(committed.training(), width)
 
 
 def unit() -> Measured:

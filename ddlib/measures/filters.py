@@ -2,34 +2,18 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from ddlib import results
 from ddlib.claims import Measured
-from ddlib.experiment import STATE_FEEDBACK, predict, run, split
+from ddlib.experiment import predict, run
 from ddlib.filters import classify, decompose, roughness, shares
+from ddlib.measures import committed
 from ddlib.metrics import rmss
-from ddlib.network import TorqueModel, Weights
+from ddlib.network import Weights
 from ddlib.tables import number, spread
 from ddlib.training import cases
 from ddlib.units import ablation, cancellation, net_inputs, saturated, transition_width
-
-
-@cache
-def _model(width: int) -> TorqueModel:
-    return TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width))
-
-
-@cache
-def _recording():
-    return STATE_FEEDBACK.record()
-
-
-def _filters(width: int, layer: str) -> np.ndarray:
-    weights = getattr(_model(width).weights, f"{layer}_weights")
-    return weights.reshape(-1, weights.shape[-1])
 
 
 def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
@@ -44,20 +28,20 @@ def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
     layer : {"hidden", "skip"}
         To the hidden units, or directly to the outputs.
     """
-    found = classify(_filters(width, layer)) == name
+    found = classify(committed.filters(width, layer)) == name
     return Measured(float(found.mean()), f"{found.sum()} of {found.size} filters")
 
 
 def rougher(wide: int = 41, narrow: int = 21) -> Measured:
     """Ratio of the median roughness of hidden filters at two window sizes."""
-    values = [float(np.median(roughness(_filters(w, "hidden")))) for w in (wide, narrow)]
+    values = [float(np.median(roughness(committed.filters(w, "hidden")))) for w in (wide, narrow)]
     text = f"roughness {number(values[0], 2)} at {wide}, {number(values[1], 2)} at {narrow}"
     return Measured(values[0] / values[1], text)
 
 
 def direct_smoothness() -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
-    medians = {w: float(np.median(roughness(_filters(w, "skip")))) for w in (11, 21, 41)}
+    medians = {w: float(np.median(roughness(committed.filters(w, "skip")))) for w in (11, 21, 41)}
     return Measured(
         max(medians.values()), "roughness " + ", ".join(number(m, 2) for m in medians.values())
     )
@@ -73,7 +57,7 @@ def changed_roughness(width: int = 41) -> Measured:
 
 def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
     """Median share of the constant term in the energy of the filters."""
-    constants = shares(_filters(width, layer))[:, 0]
+    constants = shares(committed.filters(width, layer))[:, 0]
     return Measured(
         float(np.median(constants)), f"{100 * np.median(constants):.1f} % of the energy"
     )
@@ -81,7 +65,7 @@ def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
 
 def parts_sum_up() -> Measured:
     """Largest difference between a filter and the sum of its parts as the paper prints them."""
-    f = _filters(21, "hidden")
+    f = committed.filters(21, "hidden")
     gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
     odd = decompose(f, "paper").odd
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))
@@ -94,8 +78,8 @@ def parts_sum_up() -> Measured:
 
 def zero_crossings(width: int = 41) -> Measured:
     """Share of hidden filters whose odd part changes sign between the centre and the edge."""
-    odd = decompose(_filters(width, "hidden")).odd[:, width // 2 + 1 :]
-    smooth = shares(_filters(width, "hidden"))[:, 4] < 0.2
+    odd = decompose(committed.filters(width, "hidden")).odd[:, width // 2 + 1 :]
+    smooth = shares(committed.filters(width, "hidden"))[:, 4] < 0.2
     crosses = (np.diff(np.sign(odd), axis=-1) != 0).any(-1) & smooth
     return Measured(
         float(crosses[smooth].mean()), f"{crosses.sum()} of {smooth.sum()} smooth filters"
@@ -103,8 +87,9 @@ def zero_crossings(width: int = 41) -> Measured:
 
 
 def _activities(width: int):
-    windows, torque = cases(split(_recording())[0], width)
-    return windows, torque, _model(width).weights.activity(_model(width).scaled(windows))[0]
+    windows, torque = cases(committed.training(), width)
+    model = committed.networks(width)
+    return windows, torque, model.weights.activity(model.scaled(windows))[0]
 
 
 def saturation(width: int) -> Measured:
@@ -115,13 +100,13 @@ def saturation(width: int) -> Measured:
 
 def transition(width: int) -> Measured:
     """Median width of the transition region in standard deviations of the net input."""
-    found = transition_width(net_inputs(_model(width), _activities(width)[0]))
+    found = transition_width(net_inputs(committed.networks(width), _activities(width)[0]))
     return Measured(float(np.median(found)), f"{number(np.median(found), 2)} standard deviations")
 
 
 def cancel(width: int) -> Measured:
     """Median share of the hidden units' influence that cancels at the outputs."""
-    found = cancellation(_model(width), _activities(width)[0])
+    found = cancellation(committed.networks(width), _activities(width)[0])
     return Measured(float(np.median(found)), f"{100 * np.median(found):.0f} %")
 
 
@@ -135,10 +120,10 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     worse : float
         "Almost no loss": the training error grows by less than this factor.
     """
-    windows, torque = cases(split(_recording())[0], width)
+    windows, torque = cases(committed.training(), width)
     spare = []
-    for k in range(len(_model(width).weights)):
-        one = _model(width)[k]
+    for k in range(len(committed.networks(width).weights)):
+        one = committed.networks(width)[k]
         before = rmss(one.torque(windows), torque)
         spare.append(int((ablation(one, windows, torque)[1] < worse * before).sum()))
     text = f"{np.median(spare):.0f} of 10 units can be spared ({min(spare)} to {max(spare)})"
@@ -148,7 +133,7 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
 def structured(width: int) -> Measured:
     """Share of hidden filters that are analysable, less that of untrained networks."""
     untrained = Weights.random(25, width).hidden_weights.reshape(-1, width)
-    trained = (classify(_filters(width, "hidden")) != "not analysable").mean()
+    trained = (classify(committed.filters(width, "hidden")) != "not analysable").mean()
     chance = (classify(untrained) != "not analysable").mean()
     text = f"{100 * trained:.0f} % of the filters have a name, untrained {100 * chance:.0f} %"
     return Measured(float(trained - chance), text)
@@ -156,6 +141,7 @@ def structured(width: int) -> Measured:
 
 def shoulder_profile(width: int) -> Measured:
     """Error of the shoulder's torque alone on trajectory 6 (Figure 4-1), median of networks."""
-    test = run(_recording(), 5)
-    wrong = rmss(predict(_model(width), test), test.tau[test.motion], pooled=False)[..., 0]
+    test = run(committed.recording(), 5)
+    predicted = predict(committed.networks(width), test)
+    wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
     return Measured(float(np.median(wrong)), spread(wrong))

@@ -95,16 +95,6 @@ def slope() -> Measured:
     return Measured(max(slopes.values()), f"d ln(error) / d ln(epoch) {text}")
 
 
-def more_hidden_units(column: str = "test") -> Measured:
-    """Median error with 20 or 40 hidden units over that with ten: the smaller of the two."""
-    rows = {row["units"]: np.median(row[column]) for row in results.read("hidden-units")["rows"]}
-    ratios = [float(rows[units] / rows[10]) for units in (20, 40)]
-    text = f"{column}: {number(rows[10], 2)} with 10, " + ", ".join(
-        f"{number(rows[units], 2)} with {units}" for units in (20, 40)
-    )
-    return Measured(min(ratios), text)
-
-
 def best_window() -> Measured:
     """Window with the lowest median test error, over sizes from 3 to 81."""
     rows = results.read("window-sizes")["rows"]

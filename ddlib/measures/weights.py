@@ -2,37 +2,21 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
-from ddlib import results
 from ddlib.claims import Measured
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS
 from ddlib.filters import classify, shares
+from ddlib.measures import committed
 from ddlib.metrics import rmss
-from ddlib.network import TorqueModel, Weights
-from ddlib.simulate import LOG_STEP, Recording
+from ddlib.network import Weights
+from ddlib.simulate import LOG_STEP
 from ddlib.tables import number
 from ddlib.training import TrainingSet, cases, train_ensemble
 from ddlib.units import saturated
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")
 """Classes of filters that control theory uses."""
-
-
-@cache
-def _model(width: int) -> TorqueModel:
-    return TorqueModel.load(results.networks_path(STATE_FEEDBACK.name, width))
-
-
-@cache
-def _training() -> Recording:
-    return split(STATE_FEEDBACK.record())[0]
-
-
-def _filters(width: int, layer: str) -> np.ndarray:
-    return getattr(_model(width).weights, f"{layer}_weights").reshape(-1, width)
 
 
 def explained(layer: str = "skip") -> Measured:
@@ -43,7 +27,9 @@ def explained(layer: str = "skip") -> Measured:
     layer : {"skip", "hidden"}
         Direct weights, or those of hidden units.
     """
-    medians = [float(np.median(shares(_filters(w, layer))[:, :3].sum(-1))) for w in WINDOWS]
+    medians = [
+        float(np.median(shares(committed.filters(w, layer))[:, :3].sum(-1))) for w in WINDOWS
+    ]
     text = ", ".join(f"{100 * m:.0f} % at {w}" for m, w in zip(medians, WINDOWS))
     return Measured(min(medians), f"{text} of the energy")
 
@@ -59,7 +45,7 @@ def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
         Off the centre: by this many samples or more.
     """
     off = []
-    for f in _filters(width, "skip"):
+    for f in committed.filters(width, "skip"):
         k = np.flatnonzero(np.diff(np.sign(f)))
         if k.size == 2:
             crossings = k + f[k] / (f[k] - f[k + 1]) - width // 2
@@ -80,7 +66,7 @@ def adjacency(width: int = 11, epochs: int = 100) -> Measured:
     epochs : int
         Length of training.
     """
-    data = TrainingSet.from_recording(_training(), width)
+    data = TrainingSet.from_recording(committed.training(), width)
     order = np.random.default_rng(0).permutation(width)
     start = Weights.random(1, width, initial=STATE_FEEDBACK.initial)
     trained = []
@@ -121,9 +107,9 @@ def weights_and_saturation() -> Measured:
 
     largest, share = [], []
     for width in WINDOWS:
-        weights, (windows, _) = _model(width).weights, cases(_training(), width)
-        largest.append(np.abs(weights.hidden_weights).max((-2, -1)).ravel())
-        activity = weights.activity(_model(width).scaled(windows))[0]
+        model, (windows, _) = committed.networks(width), cases(committed.training(), width)
+        largest.append(np.abs(model.weights.hidden_weights).max((-2, -1)).ravel())
+        activity = model.weights.activity(model.scaled(windows))[0]
         share.append(saturated(activity).ravel())
     found = float(spearmanr(np.concatenate(largest), np.concatenate(share)).statistic)
     return Measured(found, f"rank correlation {found:.2f} over {3 * share[0].size} units")
@@ -138,7 +124,8 @@ def interpretable(width: int = 21) -> Measured:
         Window size.
     """
     found = {
-        layer: np.isin(classify(_filters(width, layer)), NAMED) for layer in ("hidden", "skip")
+        layer: np.isin(classify(committed.filters(width, layer)), NAMED)
+        for layer in ("hidden", "skip")
     }
     text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
     text += f"{found['skip'].sum()} of {found['skip'].size} direct filters"
@@ -147,7 +134,7 @@ def interpretable(width: int = 21) -> Measured:
 
 def _held_still(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Torque of the networks, torque with all hidden units at their mean, measured torque."""
-    model, (windows, torque) = _model(width), cases(_training(), width)
+    model, (windows, torque) = committed.networks(width), cases(committed.training(), width)
     hidden, output = model.weights.activity(model.scaled(windows))
     shift = (hidden.mean(-2, keepdims=True) - hidden) @ np.swapaxes(
         model.weights.output_weights, -1, -2
@@ -184,7 +171,7 @@ def compensate_friction(width: int = 21) -> Measured:
     width : int
         Window size.
     """
-    model, run = _model(width), _training()
+    model, run = committed.networks(width), committed.training()
     windows = cases(run, width)[0]
     hidden = model.weights.activity(model.scaled(windows))[0]
     sums = np.einsum("mnh,moh->mno", hidden, model.weights.output_weights)

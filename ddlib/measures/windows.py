@@ -8,18 +8,14 @@ import numpy as np
 
 from ddlib import results
 from ddlib.claims import Measured
-from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, split
+from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.filters import savitzky_golay
+from ddlib.measures import committed
 from ddlib.metrics import rmss
 from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
 from ddlib.tables import number
 from ddlib.training import TrainingSet, cases, default_rate, train_ensemble
-
-
-@cache
-def _training():
-    return split(STATE_FEEDBACK.record())[0]
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -35,7 +31,7 @@ def estimates(orders: list, widths: list) -> Measured:
     widths : list of int
         Window sizes.
     """
-    run, names = _training(), {1: "velocity", 2: "acceleration", 3: "jerk"}
+    run, names = committed.training(), {1: "velocity", 2: "acceleration", 3: "jerk"}
     true, errors = run.qd_true, {}
     for order in range(1, max(orders) + 1):
         if order > 1:
@@ -121,7 +117,7 @@ def sigmoids(width: int = 11) -> Measured:
     return Measured(network.count() / units, text)
 
 
-def sensitivity(column: str = "test") -> Measured:
+def more_hidden_units(column: str = "test") -> Measured:
     """Median error with 20 or 40 hidden units over that with ten: the one furthest from 1.
 
     Parameters
@@ -137,7 +133,7 @@ def sensitivity(column: str = "test") -> Measured:
 
 @cache
 def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, float]:
-    data = TrainingSet.from_recording(_training(), 21)
+    data = TrainingSet.from_recording(committed.training(), 21)
     start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
     tried = [(alpha, f) for alpha in (0.0, STATE_FEEDBACK.momentum) for f in factors]
     _, history, _ = train_ensemble(

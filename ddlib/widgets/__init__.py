@@ -4,7 +4,7 @@ from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.explorer import FilterExplorer
 from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parameters import Choice, Parameter
-from ddlib.widgets.picker import TrajectoryPicker, inside_hull, median_networks
+from ddlib.widgets.picker import TrajectoryPicker, inside_hull
 from ddlib.widgets.player import TrainingPlayer
 from ddlib.widgets.switches import RealArmSwitches
 from ddlib.widgets.tuner import PIDTuner
@@ -27,6 +27,5 @@ __all__ = [
     "TrainingPlayer",
     "TrajectoryPicker",
     "inside_hull",
-    "median_networks",
     "module",
 ]

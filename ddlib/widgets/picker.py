@@ -9,9 +9,8 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib import results
 from ddlib._check import finite_array, number
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS, Setup
+from ddlib.experiment import STATE_FEEDBACK, Setup
 from ddlib.metrics import rmss
 from ddlib.network import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
@@ -54,24 +53,6 @@ def inside_hull(extents_deg) -> np.ndarray:
     return (distances <= 1e-9).all(-1)
 
 
-def median_networks(setup: Setup = STATE_FEEDBACK) -> dict[str, TorqueModel]:
-    """Of each window size of Table 4-1 the trained network whose test error is the median.
-
-    Parameters
-    ----------
-    setup : Setup
-        One of `ddlib.experiment.SETUPS`, whose networks are among the results.
-    """
-    networks = {}
-    for width in WINDOWS:
-        cell = results.read("table-4-1")["setups"][setup.name][str(width)]
-        errors = cell["errors"]["test"]
-        middle = int(np.argsort(errors)[len(errors) // 2])
-        path = results.networks_path(setup.name, width)
-        networks[f"window {width}"] = TorqueModel.load(path)[middle]
-    return networks
-
-
 class _Extents(t.TraitType):
     """Two angles of the square; its errors name the value and the range."""
 
@@ -97,7 +78,7 @@ class TrajectoryPicker(CurveWidget):
     Parameters
     ----------
     models : mapping
-        Legend name -> a single trained network, as from `median_networks`.
+        Legend name -> a single trained network, as from `ddlib.results.median_network`.
     setup : Setup
         Arm, effects and controller that record.
     on_record : callable, optional
