@@ -17,7 +17,7 @@ NOTEBOOKS = book/*.ipynb
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test lint stripped unit notebooks pages lab reproduce bench strip clean
+.PHONY: help env book test lint stripped unit notebooks foreign foreign-ci pages lab reproduce bench strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -36,7 +36,7 @@ $(READY): requirements.txt pyproject.toml
 book: $(READY)  ## execute the notebooks and build the pages
 	@$(BIN)/python book/_ext/build.py
 
-test: lint stripped unit notebooks pages  ## everything that CI checks
+test: lint stripped unit notebooks foreign-ci pages  ## everything that CI checks
 
 lint: $(READY)
 	@echo "==> Style"
@@ -55,6 +55,14 @@ notebooks: $(READY)
 	@echo "==> Every notebook in a fresh process, warnings are errors"
 	OMP_NUM_THREADS=1 PYTHONWARNINGS="error:::__main__" \
 	  $(BIN)/python -m pytest -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
+
+FOREIGN ?=
+foreign: $(READY)  ## notebooks and claims on machines that round otherwise
+	$(BIN)/python tests/foreign_machines.py --jobs $(JOBS) $(FOREIGN)
+
+foreign-ci: $(READY)
+	@echo "==> Notebooks and claims on two foreign machines"
+	$(BIN)/python tests/foreign_machines.py --jobs $(JOBS) --ci
 
 pages: book
 	@echo "==> The built pages"

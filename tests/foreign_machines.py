@@ -1,0 +1,114 @@
+"""Notebooks and measured claims as another machine would see them: ``make foreign``.
+
+Rounding differs between processors, libraries and numbers of threads, and thousands of epochs
+make another network of it. Under each of `SETTINGS` every notebook must run, with its checks,
+and no verdict of ``book/claims.yml`` may be contradicted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+JOGS = str(Path(__file__).parent / "foreign")
+"""Folder whose ``sitecustomize`` jogs random draws."""
+
+
+def _threads(count: int) -> dict[str, str]:
+    names = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+    return dict.fromkeys(names, str(count))
+
+
+SETTINGS = {
+    "jog-1": {"DDLIB_JOG": "1"},
+    "jog-7": {"DDLIB_JOG": "7"},
+    "plain-kernels": {"ATEN_CPU_CAPABILITY": "default"},
+    "other-libraries": {"MKL_CBWR": "COMPATIBLE", "OPENBLAS_CORETYPE": "Nehalem"},
+    "one-thread": _threads(1),
+    "two-threads": _threads(2),
+}
+"""Environment variables of each foreign machine."""
+
+CI = ("jog-1", "other-libraries")
+"""Those that every run of the test suite tries."""
+
+CHECKS = {
+    "claims": ["tests/test_claims.py", "-k", "verdicts_are"],
+    "notebooks": ["--nbmake", "--nbmake-timeout=900"],
+}
+"""Arguments of pytest; the notebooks are added."""
+
+
+def environment(name: str, folder: Path) -> dict[str, str]:
+    """Environment of a setting; notebooks and claims share in `folder` what they measure."""
+    path = os.pathsep.join(filter(None, [JOGS, os.environ.get("PYTHONPATH", "")]))
+    own = {"PYTHONPATH": path, "PYTHONWARNINGS": "error:::__main__", "DDLIB_MEASURED": str(folder)}
+    return {**os.environ, "OMP_NUM_THREADS": "1", **own, **SETTINGS[name]}
+
+
+def check(name: str, jobs: int, root: Path = ROOT) -> list[str]:
+    """Run all checks under one setting; the names of those that fail."""
+    failed = []
+    with tempfile.TemporaryDirectory() as folder:
+        env = environment(name, Path(folder))
+        for what, arguments in CHECKS.items():
+            pages = sorted(str(p) for p in (root / "book").glob("*.ipynb"))
+            command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *arguments]
+            command += pages if what == "notebooks" else []
+            started = time.monotonic()
+            print(f"==> {name}: {what}", flush=True)
+            if subprocess.run(command, env=env, cwd=root).returncode:
+                failed.append(f"{name}: {what}")
+            print(f"==> {name}: {what} took {time.monotonic() - started:.0f} s", flush=True)
+    return failed
+
+
+def reproduce(name: str, jobs: int) -> list[str]:
+    """Make all results anew under a setting, in a copy of the tree, and check the copy there."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, "copy")
+        listed = ["git", "ls-files", "-z"]
+        files = subprocess.run(listed, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        for file in filter(None, files.split("\0")):
+            target = copy / file
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / file, target)
+        path = os.pathsep.join([str(copy), os.environ.get("PYTHONPATH", "")])
+        os.environ["PYTHONPATH"] = path
+        env = environment(name, Path(folder, "measured"))
+        command = [sys.executable, "-m", "ddlib.reproduce", "--force", "--jobs", str(jobs)]
+        if subprocess.run(command, env=env, cwd=copy).returncode:
+            return [f"{name}: reproduce"]
+        files = ["tests/test_results.py", "tests/test_ledger.py", "tests/test_prose_numbers.py"]
+        command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
+        told = subprocess.run(command, env=env, cwd=copy).returncode
+        return [f"{name}: results"] * bool(told) + check(name, jobs, copy)
+
+
+def main(arguments=None) -> int:
+    """Run settings one after the other; 1 if anything fails."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("settings", nargs="*", help=f"among {', '.join(SETTINGS)}; default: all")
+    parser.add_argument("--ci", action="store_true", help=f"only {' and '.join(CI)}")
+    parser.add_argument("--reproduce", action="store_true", help="make the results anew, too")
+    parser.add_argument("--jobs", type=int, default=2, help="processes at a time")
+    options = parser.parse_args(arguments)
+    for name in options.settings:
+        if name not in SETTINGS:
+            parser.error(f"settings must be among {', '.join(SETTINGS)}, got {name!r}")
+    names = options.settings or (CI if options.ci else tuple(SETTINGS))
+    run = reproduce if options.reproduce else check
+    failed = [what for name in names for what in run(name, options.jobs)]
+    print(f"==> {len(names)} foreign machines: " + ("; ".join(failed) or "all hold"), flush=True)
+    return bool(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+"""The foreign machines: each really differs from this one."""
+
+import os
+import platform
+import subprocess
+import sys
+
+import foreign_machines as foreign
+import pytest
+
+DRAWS = """
+import numpy as np
+rng = np.random.default_rng(3)
+draws = [rng.uniform(-1, 1, 3), rng.normal(2.0, 1.0, 3), rng.standard_normal(3), rng.random(3)]
+print(*np.concatenate(draws).tolist(), rng.integers(0, 100), rng.permutation(9).tolist())
+"""
+
+
+def ask(code: str, env: dict) -> subprocess.CompletedProcess:
+    answer = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stderr
+    return answer
+
+
+def draws(env) -> tuple[list[float], str]:
+    words = ask(DRAWS, env).stdout.split()
+    return [float(w) for w in words[:12]], " ".join(words[12:])
+
+
+@pytest.mark.parametrize("name, factor", [("jog-1", 1 + 1e-9), ("jog-7", 1 + 7e-9)])
+def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path):
+    env = foreign.environment(name, tmp_path)
+    plain, others = draws({k: v for k, v in env.items() if k != "DDLIB_JOG"})
+    jogged, same = draws(env)
+    assert jogged == [x * factor for x in plain] and same == others
+
+
+def test_jogs_reach_the_package(tmp_path):
+    code = (
+        "from ddlib.experiment import STATE_FEEDBACK as s; from ddlib.network import Weights;"
+        "print(Weights.random(1, 11).largest[0], s.record([10, 20]).tau.std())"
+    )
+    env = foreign.environment("jog-7", tmp_path)
+    plain = ask(code, {k: v for k, v in env.items() if k != "DDLIB_JOG"}).stdout.split()
+    jogged = ask(code, env).stdout.split()
+    for a, b in zip(plain, jogged):
+        assert a != b and float(b) == pytest.approx(float(a), rel=1e-7)
+
+
+def test_a_jogged_generator_is_numpys(tmp_path):
+    code = (
+        "import pickle, numpy as np; g = np.random.default_rng(1);"
+        "assert isinstance(g, np.random.Generator);"
+        "assert isinstance(np.random.default_rng(np.random.SeedSequence(1)), np.random.Generator);"
+        "assert g.spawn(1)[0].random() < 1"
+    )
+    ask(code, foreign.environment("jog-1", tmp_path))
+
+
+def test_plain_kernels_are_plain(tmp_path):
+    code = "import torch; print(torch.backends.cpu.get_cpu_capability())"
+    assert ask(code, foreign.environment("plain-kernels", tmp_path)).stdout.strip() == "DEFAULT"
+
+
+X86 = platform.machine() in ("x86_64", "AMD64")
+
+
+@pytest.mark.skipif(not X86, reason="a core type of x86 processors")
+def test_other_libraries_take_another_core(tmp_path):
+    env = {**foreign.environment("other-libraries", tmp_path), "OPENBLAS_VERBOSE": "2"}
+    answer = ask("import numpy", env)
+    assert "Core: Nehalem" in answer.stdout + answer.stderr
+
+
+@pytest.mark.parametrize("name, count", [("one-thread", 1), ("two-threads", 2)])
+def test_threads_are_as_many(name, count, tmp_path):
+    env = foreign.environment(name, tmp_path)
+    answer = ask("import torch; print(torch.get_num_threads())", env)
+    assert int(answer.stdout) == min(count, os.cpu_count() or 1)
+
+
+def test_a_check_that_fails_is_told(monkeypatch, capfd):
+    monkeypatch.setattr(foreign, "CHECKS", {"claims": ["-k", "no_such_test"]})
+    assert foreign.main(["jog-1", "--jobs", "1"]) == 1
+    assert "1 foreign machines: jog-1: claims" in capfd.readouterr().out
+    with pytest.raises(SystemExit):
+        foreign.main(["mars"])
+    assert "settings must be among jog-1" in capfd.readouterr().err
+
+
+def test_all_that_hold_are_told(monkeypatch, capfd):
+    monkeypatch.setattr(foreign, "CHECKS", {"claims": ["tests/test_paper.py"]})
+    assert foreign.main(["--ci", "--jobs", "1"]) == 0
+    out = capfd.readouterr().out
+    assert "2 foreign machines: all hold" in out and "jog-1: claims took" in out
