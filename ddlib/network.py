@@ -21,6 +21,11 @@ from ddlib.windows import Scaler
 _FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias")
 
 
+def kernels() -> str:
+    """Instruction set of PyTorch's kernels here, like "AVX512": it decides how sums are rounded."""
+    return torch.backends.cpu.get_cpu_capability()
+
+
 def _sigmoid(x):
     return 0.5 * (1 + np.tanh(0.5 * x))
 

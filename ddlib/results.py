@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from ddlib.experiment import COURSE, STATE_FEEDBACK
-from ddlib.network import TorqueModel
+from ddlib.network import TorqueModel, kernels
 
 PACKAGE = Path(__file__).parent
 FOLDER = PACKAGE.parent / "book" / "results"
@@ -118,10 +118,11 @@ def _is_text(node) -> bool:
 
 
 def stamp(seconds: float) -> dict:
-    """What is kept beside a result: run time, peak memory, versions."""
+    """What is kept beside a result: run time, peak memory, the machine's kernels, versions."""
     return {
         "seconds": round(seconds, 1),
         "peak GiB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2),
+        "machine": f"{platform.system()} {platform.machine()}, {kernels()}",
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
     }
