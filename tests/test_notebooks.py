@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import ast
 import re
+from collections.abc import Iterator
 from functools import lru_cache
 
 import nbformat
@@ -11,6 +13,9 @@ from book_pages import BACK_MATTER, CHAPTERS, PAGES, source
 
 MAX_VISIBLE_LINES = 18  # "about 15", at the 84 columns that a page has room for
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
+MAX_BOOKKEEPING = 0.5  # share of a visible cell's statements
+MAX_VISIBLE_TEXT = 60  # characters of a literal: longer ones are alternative texts
+PROMPT, IMPORTS = "code_prompt_show", "Show the imports"
 MAX_THESIS = 200  # characters
 CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
 MIN_EXERCISES = 3
@@ -71,6 +76,134 @@ def test_visible_code_cells_are_short(page):
 
     shown = [c for c in read(page).cells if c.cell_type == "code" and not tags(c) & HIDDEN]
     assert not {cell.id: n for cell in shown if (n := lines(cell)) > MAX_VISIBLE_LINES}
+
+
+# What is out of sight
+
+
+def statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements of a cell, those within loops and conditions included."""
+    for node in body:
+        inner = getattr(node, "body", None)
+        if inner and not isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            yield from statements(inner)
+        else:
+            yield node
+
+
+def called(node: ast.stmt) -> str:
+    """The function that a statement calls for its own sake, if it is one."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        return ast.unparse(node.value.func)
+    return ""
+
+
+def names_alt(node: ast.stmt) -> bool:
+    return "alt" in map(ast.unparse, getattr(node, "targets", ()))
+
+
+def is_bookkeeping(node: ast.stmt) -> bool:
+    """Whether a statement imports, asserts, quotes a number or words an alternative text."""
+    plain = isinstance(node, (ast.Import, ast.ImportFrom, ast.Assert))
+    return plain or called(node) in {"quote", "glue"} or names_alt(node)
+
+
+def long_texts(tree: ast.Module) -> list[str]:
+    """Literals that are sentences, without docstrings."""
+    bodies = (node.body[0] for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+    docstrings = {id(first.value) for first in bodies if isinstance(first, ast.Expr)}
+    literals = [node for node in ast.walk(tree) if isinstance(node, ast.Constant)]
+    texts = [n.value for n in literals if isinstance(n.value, str) and id(n) not in docstrings]
+    return [text for text in texts if len(text) > MAX_VISIBLE_TEXT]
+
+
+def should_be_hidden(code: str) -> bool:
+    """Whether a cell keeps books rather than teaches."""
+    tree = ast.parse(code)
+    every = list(statements(tree.body))
+    share = sum(map(is_bookkeeping, every)) / len(every)
+    return share >= MAX_BOOKKEEPING or any(map(names_alt, every)) or bool(long_texts(tree))
+
+
+def shows_something(code: str) -> bool:
+    """Whether a cell has an output: it prints, or ends with a value."""
+    *_, last = every = list(statements(ast.parse(code).body))
+    silent = called(last) in {"quote", "glue"} or "assert_" in called(last)
+    return "print" in map(called, every) or (isinstance(last, ast.Expr) and not silent)
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS)
+def test_bookkeeping_is_out_of_sight(page):
+    shown = [c for c in read(page).cells if c.cell_type == "code" and not tags(c) & HIDDEN]
+    assert not [cell.id for cell in shown if should_be_hidden(cell.source)]
+
+
+@pytest.mark.parametrize(
+    ("code", "hidden"),
+    [
+        ("import numpy as np", True),
+        ("x = 1\nquote('name', x)", True),
+        ("for k in range(3):\n    quote(f'name-{k}', k)", True),
+        ("alt = 'A line.'\nx = f(2)\ny = g(x)\nfigures.curves(x, y, alt)", True),
+        (f"figures.curves(x, y, '{'word ' * 20}')", True),
+        ("y = f(x)\nz = g(y)\nquote('name', z)", False),
+        (f"def f(x):\n    '{'word ' * 20}'\n    return x", False),
+    ],
+)
+def test_bookkeeping_is_seen(code, hidden):
+    assert should_be_hidden(code) is hidden
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS)
+def test_no_fold_opens_onto_nothing(page):
+    """A fold without anything to show is a bar in the way; one for the imports is allowed."""
+    folds = [c for c in read(page).cells if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
+    imports = [c for c in folds if c.metadata.get("mystnb", {}).get(PROMPT) == IMPORTS]
+    assert len(imports) <= 1
+    assert not [c.id for c in folds if c not in imports and not shows_something(c.source)]
+
+
+def test_empty_folds_are_seen():
+    assert not any(map(shows_something, ("x = 1", "quote('a', 1)", "assert x", "import numpy")))
+    assert all(map(shows_something, ("x", "if x:\n    print(x)\nassert x", "figures.hinton(x)")))
+
+
+def exercises(page: str) -> list:
+    """The cells after the heading *On your own*, up to the next one and with it."""
+    section, found = "", []
+    for cell in read(page).cells:
+        if section == "On your own":
+            found.append(cell)
+        if cell.cell_type == "markdown":
+            section = ([section, *headings(cell.source, 2)])[-1]
+    return found
+
+
+def open_answer(text: str) -> str:
+    """What a markdown cell says before its next question or heading, outside a closed fold."""
+    before = re.split(r"^(?=\*\*\d+\. |## )", text, maxsplit=1, flags=re.M)[0]
+    return re.sub(r"^<details .*?^</details>$", "", before, flags=re.M | re.S).strip()
+
+
+@pytest.mark.parametrize("page", CHAPTERS)
+def test_no_answer_stands_in_the_open(page):
+    """On the page by a tag, in JupyterLab by its own metadata; words by an element for both."""
+    cells = exercises(page)
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    assert len(code) >= MIN_EXERCISES
+    assert all("hide-cell" in tags(cell) for cell in code)
+    folded = {"source_hidden": True, "outputs_hidden": True}
+    assert all(cell.metadata.get("jupyter") == folded for cell in code)
+    words = [cell for cell in cells if cell.cell_type == "markdown"]
+    assert not [open_answer(cell.source) for cell in words if open_answer(cell.source)]
+
+
+def test_open_answers_are_seen():
+    fold = '<details class="answer">\n<summary>What it means</summary>\n\nIt is 5.\n\n</details>'
+    assert not open_answer(f"{fold}\n\n**2. Next.** How many?")
+    assert not open_answer("## Further reading\n\n- A book")
+    assert open_answer("It is 5.\n\n**2. Next.** How many?") == "It is 5."
+    assert open_answer(f"{fold}\n\nAnd 6.") == "And 6."
 
 
 @pytest.mark.parametrize("page", [page for page in NOTEBOOKS if page not in CHAPTERS])
