@@ -31,7 +31,7 @@ ORDER = [
     ("rivals",),
     ("experiment", "units", "sensitivity", "parity"),
     ("random_arms",),
-    ("results", "style", "tables"),
+    ("results", "style", "tables", "stated"),
     ("claims",),
     ("measures",),
     ("ledger",),
