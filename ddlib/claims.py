@@ -19,10 +19,15 @@ An entry has these fields:
     (of the printed number), ``{from: 0.9}``, ``{to: 2}``, both, or ``{is: true}``. Without
     ``loose`` a claim that misses its band is "not reproduced".
 ``verdict``
-    What the band gives, written down so that a change of verdict is seen; or "not testable",
-    then without ``measure`` and bands.
+    What the band gives, written down so that a change of verdict is seen. Two are chosen by hand:
+    "by construction" if the band could hardly be missed; then it has no ``loose``, and a miss is
+    "not reproduced". And "not testable"; then without bands, and a ``measure`` only tells from
+    which value of an assumed parameter on the claim would turn.
 ``why``
     One sentence: the reason for the verdict, the assumption that decides it.
+``refuted``
+    One sentence: the outcome that would have made it "not reproduced"; why there is none, if by
+    construction; what a test would need, if not testable.
 """
 
 from __future__ import annotations
@@ -32,17 +37,18 @@ import json
 import math
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 import joblib
+import numpy as np
 import yaml
 
 from ddlib._check import one_of
-from ddlib.tables import Table, number
+from ddlib.tables import Table
+from ddlib.verdicts import VERDICTS, Measured, fresh, shares, stands
 
 FILE = Path(__file__).parent.parent / "book" / "claims.yml"
 """Where the claims are kept."""
@@ -53,9 +59,6 @@ LEDGER = "ledger"
 SHARED = "DDLIB_MEASURED"
 """Environment variable with a folder in which notebooks that are built together share what they
 measured. Who sets it takes a new folder for other code or results."""
-
-VERDICTS = ("reproduced", "qualitative", "not reproduced", "not testable")
-"""All verdicts, best first."""
 
 SECTIONS = {
     "0": "Abstract",
@@ -76,21 +79,6 @@ _PLACE = re.compile(
 )
 
 
-class Measured(NamedTuple):
-    """What a measuring function returns.
-
-    Attributes
-    ----------
-    value : float or bool
-        What the bands judge; a median, if there are many.
-    text : str
-        What the tables show, spread included.
-    """
-
-    value: float | bool
-    text: str
-
-
 class MeasureError(RuntimeError):
     """A claim's measuring function failed; the message names the claim."""
 
@@ -106,6 +94,7 @@ class Claim:
     printed: float | str
     verdict: str
     why: str
+    refuted: str = ""
     measure: str = ""
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
@@ -119,10 +108,12 @@ class Claim:
         self.place()
         one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
         testable = self.verdict != "not testable"
-        if testable != bool(self.measure) or testable != bool(self.band):
+        if testable != bool(self.band) or (testable and not self.measure):
             raise ValueError(
-                f"claim {self.id!r} must have measure and band, or be 'not testable' without them"
+                f"claim {self.id!r} must have measure and band, or be 'not testable' without band"
             )
+        if self.loose and self.verdict in ("by construction", "not testable"):
+            raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
         for bounds in (self.band, self.loose):
             self._check_band(bounds)
 
@@ -165,8 +156,8 @@ class Claim:
     def _section(found: re.Match) -> str:
         if found["abstract"] or found["appendix"]:
             return "0" if found["abstract"] else "8"
-        number = found["section"] or found["in"]
-        return number if "1" <= number <= "7" else ""
+        of = found["section"] or found["in"]
+        return of if "1" <= of <= "7" else ""
 
     def measured(self) -> Measured:
         """What we find, by the claim's measuring function.
@@ -190,13 +181,41 @@ class Claim:
             ) from error
 
     def judge(self) -> str:
-        """The verdict that the bands give for the measured value."""
-        if not self.measure:
+        """The verdict: the written one while it stands, else what the measurement gives.
+
+        Whether it stands: `ddlib.verdicts`. Without replicates it has to be `fresh`.
+        """
+        if not self.band:
             return "not testable"
-        value = self.measured().value
+        found = self.shares()
+        return self.verdict if found and stands(self.verdict, found) else self.fresh()
+
+    def fresh(self) -> str:
+        """The verdict of the bands for the measured value alone, whatever is written."""
+        if not self.band:
+            return "not testable"
+        found = self.shares()
+        return fresh(found) if found else self.of(self.measured().value)
+
+    def shares(self) -> dict[str, float]:
+        """Share of the replicates in which each verdict comes out; empty without replicates."""
+        replicates = self.measured().replicates if self.band else None
+        return {} if replicates is None else shares(self.of(value) for value in replicates)
+
+    def of(self, value: float) -> str:
+        """The verdict that the bands give for one value."""
         if self._within(self.band, value):
-            return "reproduced"
-        return "qualitative" if self.loose and self._within(self.loose, value) else VERDICTS[2]
+            return "by construction" if self.verdict == "by construction" else "reproduced"
+        return "qualitative" if self.loose and self._within(self.loose, value) else "not reproduced"
+
+    def edges(self) -> list[float]:
+        """Values at which the verdict turns."""
+        found = []
+        for bounds in (self.band, self.loose):
+            found += [bounds[name] for name in ("from", "to") if name in bounds]
+            if "factor" in bounds:
+                found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
+        return sorted(set(found))
 
     def _within(self, bounds, value) -> bool:
         if "is" in bounds:
@@ -222,7 +241,8 @@ def _measure(measure: str, arguments: str) -> Measured:
     result = found(**json.loads(arguments))
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
-    if not math.isfinite(result.value) or not str(result.text).strip():
+    unclear = result.replicates is not None and np.isnan(result.replicates).any()
+    if not math.isfinite(result.value) or unclear or not str(result.text).strip():
         raise ValueError(f"{measure} must return a finite value and a text, got {result!r}")
     return result
 
@@ -261,12 +281,40 @@ def of_chapter(chapter: str) -> list[Claim]:
     return found
 
 
-def _printed(claim: Claim) -> str:
+def printed(claim: Claim) -> str:
+    """What the paper prints, for a table.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
     return claim.printed if isinstance(claim.printed, str) else f"{claim.printed:g}"
 
 
-def _found(claim: Claim) -> str:
+def here(claim: Claim) -> str:
+    """What we find, for a table.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
     return claim.measured().text if claim.measure else "–"
+
+
+def sure(claim: Claim) -> str:
+    """The verdict, and in which share of the draws it comes out where that was found.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    verdict, found = claim.judge(), claim.shares()
+    if not found:
+        return verdict
+    if verdict == "undecided":
+        words = ", ".join(f"{100 * share:.0f} % {name}" for name, share in found.items())
+        return f"undecided: {words} of draws"
+    return f"{verdict}, {100 * found[verdict]:.0f} % of draws"
 
 
 def chapter_table(chapter: str) -> Table:
@@ -281,7 +329,7 @@ def chapter_table(chapter: str) -> Table:
     return Table(
         header,
         [
-            (f"{c.claim} ({c.where})", _printed(c), _found(c), c.judge(), c.why)
+            (f"{c.claim} ({c.where})", printed(c), here(c), sure(c), c.why)
             for c in of_chapter(chapter)
         ],
     )
@@ -299,79 +347,40 @@ def of_section(section: str) -> list[Claim]:
     return sorted((c for c in load() if c.place()[0] == section), key=Claim.place)
 
 
-def ledger_table(section: str) -> Table:
-    """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
-
-    The place in the paper is a link to the chapter that deals with the claim.
-
-    Parameters
-    ----------
-    section : str
-        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
-    """
-    header = ("claim", "printed", "here", "verdict (judged by)", "why")
-    return Table(
-        header,
-        [
-            (f"{c.claim} ({_linked(c)})", _printed(c), _found(c), _judged(c), c.why)
-            for c in of_section(section)
-        ],
-    )
-
-
-def _judged(claim: Claim) -> str:
-    return f"{claim.judge()} ({bands(claim)})" if claim.measure else claim.judge()
-
-
-def bands(claim: Claim) -> str:
-    """The value that is judged and what decides the verdict, in words.
+def distance(claim: Claim) -> float:
+    """Relative distance of the value from the nearest edge of its bands; NaN if it has none.
 
     Parameters
     ----------
     claim : Claim
     """
-    if not claim.measure:
-        return "not measured"
-    value = claim.measured().value
-    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number(float(value), 2)
-    text = f"{shown}; reproduced {_bounds(claim.band)}"
-    return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
+    value, edges = float(claim.measured().value), claim.edges()
+    return min((abs(value - e) / max(abs(e), 1e-300) for e in edges), default=math.nan)
 
 
-def _bounds(bounds: Mapping) -> str:
-    if "is" in bounds:
-        return "if yes" if bounds["is"] else "if no"
-    if "factor" in bounds:
-        return f"within a factor of {bounds['factor']:g}"
-    words = [f"{name} {bounds[name]:g}" for name in ("from", "to") if name in bounds]
-    return " ".join(words)
+def report() -> int:
+    """Print every measured claim with both verdicts; the number of contradicted ones.
 
-
-def _linked(claim: Claim) -> str:
-    """The claim's place in the paper, as a link to its chapter."""
-    names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    page = next((name for name in names if FILE.with_name(name).is_file()), None)
-    own = claim.chapter == LEDGER or page is None
-    return claim.where if own else f"[{claim.where}]({page})"
-
-
-def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
-    """How many claims of each section of the paper have which verdict.
-
-    Returns
-    -------
-    dict
-        ``{title of the section: {verdict: number}}``, sections without claims left out.
+    A line: id, value, relative distance from the nearest edge, shares of the draws, fresh
+    verdict, written verdict, and "CONTRADICTED" if the written one does not stand, "stands" if
+    it does though the fresh one differs.
     """
-    found: dict[str, dict[str, int]] = {}
-    for claim in sorted(claims, key=Claim.place):
-        row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
-        row[claim.judge()] += 1
-    return found
+    contradicted = 0
+    for claim in load():
+        if not claim.measure:
+            continue
+        found, fresh_one = claim.shares(), claim.fresh()
+        wrong = claim.judge() != claim.verdict
+        contradicted += wrong
+        note = "CONTRADICTED" if wrong else "stands" if fresh_one != claim.verdict else ""
+        drawn = ", ".join(f"{100 * share:.1f} % {name}" for name, share in found.items())
+        value = f"{float(claim.measured().value):.4g}"
+        away = f"{100 * distance(claim):.1f} %"
+        cells = (claim.id, value, away, drawn or "-", fresh_one, claim.verdict, note)
+        print(" | ".join(cells).rstrip(" |"), flush=True)
+    print(f"{contradicted} written verdicts contradicted")
+    return contradicted
 
 
-def summary(claims: Iterable[Claim]) -> Table:
-    """How many claims have which verdict."""
-    verdicts = [claim.judge() for claim in claims]
-    rows = [(verdict, str(verdicts.count(verdict))) for verdict in VERDICTS]
-    return Table(("verdict", "claims"), [*rows, ("all", str(len(verdicts)))])
+if __name__ == "__main__":
+    raise SystemExit(report() > 0)

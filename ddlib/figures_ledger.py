@@ -13,6 +13,8 @@ LOOKS = (
     {"color": COLOURS[2]},
     {"color": COLOURS[0], "alpha": 0.75},
     {"color": COLOURS[1]},
+    {"color": COLOURS[3], "alpha": 0.75},
+    {"facecolor": "none", "edgecolor": COLOURS[2], "lw": 1, "hatch": "///"},
     {"facecolor": "none", "edgecolor": FAINT, "lw": 1},
 )
 """How a bar's parts look, in the order of the verdicts."""
@@ -24,7 +26,7 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
     Parameters
     ----------
     counts : mapping
-        ``{section: {verdict: number}}``, up to four verdicts, the same for each section.
+        ``{section: {verdict: number}}``, up to six verdicts, the same for each section.
     """
     if not counts:
         raise ValueError("counts must hold one section or more, got none")
@@ -55,11 +57,11 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         axis.invert_yaxis()
         axis.grid(visible=False, axis="y")
         axis.set_xlabel("claims")
-        figure.legend(loc="outside upper center", ncols=len(names))
+        figure.legend(loc="outside upper center", ncols=3)
 
     rows = "; ".join(
         f"{section}: " + ", ".join(f"{number} {name}" for name, number in row.items() if number)
         for section, row in counts.items()
     )
-    height = 1.2 + 0.32 * len(counts)
+    height = 1.4 + 0.32 * len(counts)
     return illustrate(draw, f"Verdicts by section of the paper. {rows}.", 7.0, height)

@@ -4,12 +4,14 @@ import importlib
 import inspect
 import re
 
+import numpy as np
 import pytest
 import yaml
 from book_pages import CHAPTERS
 
-from ddlib import claims
-from ddlib.claims import LEDGER, SECTIONS, VERDICTS, Claim, Measured, MeasureError
+from ddlib import claims, ledger_tables
+from ddlib.claims import LEDGER, SECTIONS, Claim, MeasureError
+from ddlib.verdicts import VERDICTS, Measured
 
 ALL = claims.load()
 MEASURED = [claim for claim in ALL if claim.measure]
@@ -133,6 +135,89 @@ def test_bands(monkeypatch, band, loose, value, wanted):
     assert make(band=band, loose=loose).judge() == wanted
 
 
+def spread_over(monkeypatch, low, high, value=None):
+    """Let every claim measure `high` reproduced draws of ten and `low` others."""
+    draws = np.repeat([2.0, 9.0], [high, low])
+    found = Measured(2.0 if value is None else value, "text", draws)
+    monkeypatch.setattr(Claim, "measured", lambda self: found)
+
+
+@pytest.mark.parametrize(
+    "good, fresh, sure",
+    [
+        (100, "reproduced", "reproduced, 100 % of draws"),
+        (95, "reproduced", "reproduced, 95 % of draws"),
+        (90, "undecided", "reproduced, 90 % of draws"),  # what is written still stands
+        (60, "undecided", "undecided: 60 % reproduced, 40 % not reproduced of draws"),
+        (3, "not reproduced", "not reproduced, 97 % of draws"),
+    ],
+)
+def test_replicates_decide(monkeypatch, good, fresh, sure):
+    spread_over(monkeypatch, 100 - good, good)
+    claim = make()
+    assert claim.fresh() == fresh
+    assert claims.sure(claim) == sure
+    assert claim.judge() == sure.replace(":", ",").split(",")[0]
+
+
+def test_an_undecided_claim_stays_so_until_nearly_all_draws_agree(monkeypatch):
+    for good, verdict in ((98, "undecided"), (99, "reproduced"), (1, "not reproduced")):
+        spread_over(monkeypatch, 100 - good, good)
+        assert make(verdict="undecided").judge() == verdict
+
+
+@pytest.mark.parametrize("planted", ["qualitative", "not reproduced", "undecided"])
+def test_a_planted_verdict_is_contradicted(monkeypatch, capsys, planted):
+    spread_over(monkeypatch, 0, 100)
+    assert make(verdict=planted).judge() == "reproduced"
+    monkeypatch.setattr(claims, "load", lambda: [make(verdict=planted), make(id="b")])
+    assert claims.report() == 1
+    first, second, last = capsys.readouterr().out.splitlines()
+    assert first == f"a | 2 | 33.3 % | 100.0 % reproduced | reproduced | {planted} | CONTRADICTED"
+    assert second.endswith("reproduced | reproduced")
+    assert last == "1 written verdicts contradicted"
+
+
+def test_the_report_tells_what_stands_by_a_thin_margin(monkeypatch, capsys):
+    spread_over(monkeypatch, 10, 90)
+    monkeypatch.setattr(claims, "load", lambda: [make()])
+    assert claims.report() == 0
+    assert "| undecided | reproduced | stands" in capsys.readouterr().out
+
+
+def test_without_replicates_one_value_decides(monkeypatch):
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(2.0, "text"))
+    for planted in ("undecided", "qualitative", "not reproduced", "reproduced"):
+        assert make(verdict=planted).judge() == "reproduced"
+    assert make().shares() == {} and claims.sure(make()) == "reproduced"
+
+
+def test_by_construction_is_measured_all_the_same(monkeypatch):
+    claim = make(verdict="by construction")
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(2.0, "text"))
+    assert claim.judge() == "by construction"
+    assert ledger_tables.bands(claim) == "2.0; holds within a factor of 1.5"
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(9.0, "text"))
+    assert claim.judge() == claim.fresh() == "not reproduced"
+
+
+def test_not_testable_may_tell_where_it_would_turn(monkeypatch):
+    claim = make(verdict="not testable", band={})
+    spread_over(monkeypatch, 1, 1)
+    assert claim.judge() == claim.fresh() == "not testable"
+    assert claims.here(claim) == "text" and ledger_tables.bands(claim) == "not judged"
+    assert claim.shares() == {}
+
+
+def test_edges_and_the_distance_from_them(monkeypatch):
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(2.5, "text"))
+    claim = make(band={"factor": 1.25}, loose={"from": 1.0, "to": 4.0})
+    assert claim.edges() == [1.0, 1.6, 2.5, 4.0]
+    assert claims.distance(claim) == 0
+    assert claims.distance(make(band={"from": 2.0})) == 0.25
+    assert np.isnan(claims.distance(make(band={"is": True})))
+
+
 @pytest.mark.parametrize(
     "changes, words",
     [
@@ -140,6 +225,8 @@ def test_bands(monkeypatch, band, loose, value, wanted):
         (dict(why=" "), "why of claim 'a' must be text"),
         (dict(measure=""), "must have measure and band"),
         (dict(verdict="not testable"), "must have measure and band"),
+        (dict(verdict="by construction", loose={"from": 1}), "by construction: it must not have"),
+        (dict(verdict="not testable", band={}, loose={"to": 1}), "not testable: it must not have"),
         (dict(band={"about": 1}), "must be factor, is, from, to"),
         (dict(printed="by eye"), "the printed value a number"),
         (dict(band={"factor": 0.5}), "must be at least 1"),
@@ -189,12 +276,13 @@ def test_tables():
     chapter = ALL[0].chapter
     table = claims.chapter_table(chapter)._repr_markdown_()
     assert len(table.splitlines()) == 2 + len(claims.of_chapter(chapter))
+    rows = zip(claims.of_chapter(chapter), table.splitlines()[2:])
     assert all(
-        re.search(rf"\\| ({'|'.join(VERDICTS)}) \\|", line) for line in table.splitlines()[2:]
+        re.search(rf"\| {claim.judge()}(, \d+ % of draws)? \|", line) for claim, line in rows
     )
     with pytest.raises(ValueError, match=r"chapter must have claims in claims.yml, got 'nowhere'"):
         claims.of_chapter("nowhere")
-    total = claims.summary(ALL)._repr_markdown_().splitlines()[-1]
+    total = ledger_tables.summary(ALL)._repr_markdown_().splitlines()[-1]
     assert str(len(ALL)) in total
 
 
@@ -209,7 +297,7 @@ def test_the_ledger_holds_every_claim_once_in_the_order_of_the_paper():
 @pytest.mark.parametrize("section", SECTIONS)
 def test_ledger_tables(section):
     expected = claims.of_section(section)
-    lines = claims.ledger_table(section)._repr_markdown_().splitlines()[2:]
+    lines = ledger_tables.ledger_table(section)._repr_markdown_().splitlines()[2:]
     assert len(lines) == len(expected)
     for line, claim in zip(lines, expected):
         assert claim.claim.replace("|", r"\|") in line
@@ -221,15 +309,15 @@ def test_ledger_tables(section):
 
 def test_bands_in_words(monkeypatch):
     monkeypatch.setattr(Claim, "measured", lambda self: Measured(0.5, "text"))
-    assert claims.bands(make()) == "0.50; reproduced within a factor of 1.5"
+    assert ledger_tables.bands(make()) == "0.50; reproduced within a factor of 1.5"
     both = make(band={"to": 0.1}, loose={"from": 0.2, "to": 1})
-    assert claims.bands(both) == "0.50; reproduced to 0.1, qualitative from 0.2 to 1"
+    assert ledger_tables.bands(both) == "0.50; reproduced to 0.1, qualitative from 0.2 to 1"
     monkeypatch.setattr(Claim, "measured", lambda self: Measured(True, "text"))
-    assert claims.bands(make(band={"is": True})) == "yes; reproduced if yes"
+    assert ledger_tables.bands(make(band={"is": True})) == "yes; reproduced if yes"
 
 
 def test_counts_add_up():
-    table = claims.counts(ALL)
+    table = ledger_tables.counts(ALL)
     assert list(table) == [title for title in SECTIONS.values() if title in table]
     assert sum(sum(row.values()) for row in table.values()) == len(ALL)
     found = [claim.judge() for claim in ALL]

@@ -21,7 +21,7 @@ def test_every_number_is_in_the_words_and_in_the_picture():
     "counts, words",
     [
         ({}, "counts must hold one section or more"),
-        ({"1": dict.fromkeys("abcde", 1)}, "at most 4 verdicts, got 5"),
+        ({"1": dict.fromkeys("abcdefg", 1)}, "at most 6 verdicts, got 7"),
         ({"1": {"yes": 1}, "2": {"no": 1}}, r"must have the verdicts \['yes'\] in '2', got"),
         ({"1": {"yes": -1}}, "counts of '1' must"),
     ],

@@ -17,7 +17,10 @@ ORDER = [
     ("_check",),
     ("sweeps",),  # maps any function over any table
     # of plain arrays: they stand alone, anything may use them
-    ("metrics", "filters", "friction", "actuators", "counting", "formulations", "coverage"),
+    (
+        *("metrics", "filters", "friction", "actuators", "counting", "formulations", "coverage"),
+        "verdicts",
+    ),
     ("arm", "effects", "paper"),
     ("trajectories", "serial", "derivation", "noise_floor"),
     ("controllers", "linear", "plant", "delays", "costs", "identification", "simplified"),
@@ -33,7 +36,7 @@ ORDER = [
     ("random_arms",),
     ("results", "style", "tables", "stated"),
     ("claims",),
-    ("measures",),
+    ("measures", "ledger_tables"),
     ("ledger",),
     (
         "figures",

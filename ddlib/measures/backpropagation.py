@@ -7,13 +7,13 @@ from functools import cache
 import numpy as np
 
 from ddlib import paper, parity, results
-from ddlib.claims import Measured
 from ddlib.descent import Descent
 from ddlib.experiment import INITIAL
 from ddlib.measures import committed
 from ddlib.network import Weights, WindowNetwork
 from ddlib.tables import number, spread
 from ddlib.training import History, TrainingSet, default_rate, train_ensemble
+from ddlib.verdicts import Measured
 
 SEEDS = 8
 """Networks of a training run."""

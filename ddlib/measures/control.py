@@ -8,7 +8,6 @@ import numpy as np
 
 from ddlib._check import number as positive
 from ddlib.arm import CMU_DD_ARM_II
-from ddlib.claims import Measured
 from ddlib.controllers import PID, ComputedTorque, Feedforward, pd
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects
 from ddlib.experiment import KD, KP
@@ -23,6 +22,7 @@ from ddlib.serial import PUMA_560_ROTORS
 from ddlib.simulate import CONTROL_STEP, LOG_STEP, follow
 from ddlib.tables import number
 from ddlib.trajectories import APPENDIX_I, pick_and_place
+from ddlib.verdicts import Measured
 
 ARM = CMU_DD_ARM_II
 EXTENTS = APPENDIX_I[0]

@@ -8,7 +8,6 @@ import numpy as np
 
 from ddlib import costs
 from ddlib.arm import CMU_DD_ARM_II, Link
-from ddlib.claims import Measured
 from ddlib.experiment import STATE_FEEDBACK
 from ddlib.formulations import lagrange_euler, newton_euler
 from ddlib.identification import FRICTION, RIGID, least_squares, true_parameters
@@ -16,6 +15,7 @@ from ddlib.modulation import by_modulation, repeat
 from ddlib.serial import PUMA_560, PUMA_560_ROTORS
 from ddlib.simplified import linear_residual, share_of_other_joint, share_of_velocity_terms
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
+from ddlib.verdicts import Measured
 
 ARM = CMU_DD_ARM_II
 TIMES = np.arange(300) * 0.01

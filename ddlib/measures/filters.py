@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib import results
-from ddlib.claims import Measured
 from ddlib.experiment import predict, run
 from ddlib.filters import classify, decompose, roughness, shares
 from ddlib.measures import committed
@@ -14,6 +13,7 @@ from ddlib.network import Weights
 from ddlib.tables import number, spread
 from ddlib.training import cases
 from ddlib.units import ablation, cancellation, net_inputs, saturated, transition_width
+from ddlib.verdicts import Measured
 
 
 def of_class(width: int, name: str, layer: str = "hidden") -> Measured:

@@ -7,10 +7,10 @@ import itertools
 import numpy as np
 
 from ddlib import paper, results
-from ddlib.claims import Measured
 from ddlib.experiment import STATE_FEEDBACK, WINDOWS
 from ddlib.network import Weights
 from ddlib.tables import number, spread
+from ddlib.verdicts import Measured
 
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:

@@ -10,7 +10,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from ddlib import linear
 from ddlib.actuators import DeadZone, FlexibleJoint
-from ddlib.claims import Measured
 from ddlib.delays import late_poles
 from ddlib.effects import Effects
 from ddlib.experiment import STATE_FEEDBACK
@@ -21,6 +20,7 @@ from ddlib.tables import number
 from ddlib.trajectories import APPENDIX_I
 from ddlib.unmodelled import residual_torque, rms
 from ddlib.velocity import difference, end_slope, noise_gain
+from ddlib.verdicts import Measured
 
 SETUP = STATE_FEEDBACK
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib import paper, results
-from ddlib.claims import Measured
 from ddlib.metrics import rmss
 from ddlib.network import TorqueModel
 from ddlib.sensitivity import shuffled, transition_range
 from ddlib.state_space import random_states, states_along, torque
 from ddlib.tables import spread
+from ddlib.verdicts import Measured
 
 
 def table_6_1(set_name: str, deviation: str = "own deviation") -> Measured:

@@ -9,7 +9,6 @@ from scipy.spatial import Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
-from ddlib.claims import Measured
 from ddlib.coverage import cells_reached, reachable_share, used_dimensions
 from ddlib.experiment import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.paper import TRAINING_TRAJECTORIES
@@ -23,6 +22,7 @@ from ddlib.trajectories import (
     random_extents,
     time_grid,
 )
+from ddlib.verdicts import Measured
 from ddlib.windows import sliding_windows
 
 TRAINING = len(TRAINING_TRAJECTORIES)

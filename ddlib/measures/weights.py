@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib.claims import Measured
 from ddlib.experiment import STATE_FEEDBACK, WINDOWS
 from ddlib.filters import classify, shares
 from ddlib.measures import committed
@@ -14,6 +13,7 @@ from ddlib.simulate import LOG_STEP
 from ddlib.tables import number
 from ddlib.training import TrainingSet, cases, train_ensemble
 from ddlib.units import saturated
+from ddlib.verdicts import Measured
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")
 """Classes of filters that control theory uses."""

@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 
 from ddlib import results
-from ddlib.claims import Measured
 from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.filters import savitzky_golay
 from ddlib.measures import committed
@@ -16,6 +15,7 @@ from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
 from ddlib.tables import number
 from ddlib.training import TrainingSet, cases, default_rate, train_ensemble
+from ddlib.verdicts import Measured
 
 
 def estimates(orders: list, widths: list) -> Measured:

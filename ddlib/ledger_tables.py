@@ -1,0 +1,98 @@
+"""The ledger's tables of claims: by section of the paper, and counted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from ddlib.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
+from ddlib.tables import Table, number
+from ddlib.verdicts import VERDICTS
+
+
+def ledger_table(section: str) -> Table:
+    """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
+
+    The verdict comes with the share of the draws in which it comes out, the value that is judged
+    and its bands; one column says what would have refuted the claim.
+
+    The place in the paper is a link to the chapter that deals with the claim.
+
+    Parameters
+    ----------
+    section : str
+        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
+    """
+    header = (
+        "claim",
+        "printed",
+        "here",
+        "verdict (judged by)",
+        "would have been refuted by",
+        "why",
+    )
+    return Table(
+        header,
+        [
+            (f"{c.claim} ({_linked(c)})", printed(c), here(c), _judged(c), c.refuted, c.why)
+            for c in of_section(section)
+        ],
+    )
+
+
+def _judged(claim: Claim) -> str:
+    return f"{sure(claim)} ({bands(claim)})" if claim.band else claim.judge()
+
+
+def bands(claim: Claim) -> str:
+    """The value that is judged and what decides the verdict, in words.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if not claim.band:
+        return "not judged"
+    value = claim.measured().value
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number(float(value), 2)
+    best = "holds" if claim.verdict == "by construction" else "reproduced"
+    text = f"{shown}; {best} {_bounds(claim.band)}"
+    return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
+
+
+def _bounds(bounds: Mapping) -> str:
+    if "is" in bounds:
+        return "if yes" if bounds["is"] else "if no"
+    if "factor" in bounds:
+        return f"within a factor of {bounds['factor']:g}"
+    words = [f"{name} {bounds[name]:g}" for name in ("from", "to") if name in bounds]
+    return " ".join(words)
+
+
+def _linked(claim: Claim) -> str:
+    """The claim's place in the paper, as a link to its chapter."""
+    names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
+    page = next((name for name in names if FILE.with_name(name).is_file()), None)
+    own = claim.chapter == LEDGER or page is None
+    return claim.where if own else f"[{claim.where}]({page})"
+
+
+def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
+    """How many claims of each section of the paper have which verdict.
+
+    Returns
+    -------
+    dict
+        ``{title of the section: {verdict: number}}``, sections without claims left out.
+    """
+    found: dict[str, dict[str, int]] = {}
+    for claim in sorted(claims, key=Claim.place):
+        row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
+        row[claim.judge()] += 1
+    return found
+
+
+def summary(claims: Iterable[Claim]) -> Table:
+    """How many claims have which verdict."""
+    verdicts = [claim.judge() for claim in claims]
+    rows = [(verdict, str(verdicts.count(verdict))) for verdict in VERDICTS]
+    return Table(("verdict", "claims"), [*rows, ("all", str(len(verdicts)))])
