@@ -10,9 +10,12 @@ import numpy as np
 GLUE_PREFIX = "application/papermill.record/"
 """Before the MIME type of what is kept for the prose and not shown."""
 
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""A power as it stands above the line."""
+
 
 def number(value, digits: int = 3) -> str:
-    """A number for a table cell: `digits` significant digits, no exponent where avoidable."""
+    """A number for a table cell: `digits` significant digits, a power of ten if need be."""
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         return f"{value:,}"
     value = float(value)
@@ -23,7 +26,24 @@ def number(value, digits: int = 3) -> str:
     size = int(f"{value:.{digits - 1}e}".partition("e")[2])  # of the rounded value
     if -4 <= size < 6:
         return f"{value:,.{max(digits - 1 - size, 0)}f}"
-    return f"{value:.{digits - 1}e}"
+    return scientific(value, digits)
+
+
+def scientific(value, digits: int = 1) -> str:
+    """A number as a product with a power of ten, as mathematics sets it: ``4 · 10⁻¹⁴``.
+
+    Parameters
+    ----------
+    value : float
+        Zero is told as ``0``; of a power of ten, with one digit, the power alone: ``10⁻⁶``.
+    digits : int
+        Significant digits.
+    """
+    if value == 0:
+        return "0"
+    first, _, power = f"{value:.{digits - 1}e}".partition("e")
+    power = "10" + str(int(power)).translate(SUPERSCRIPT)
+    return {"1": power, "-1": f"-{power}"}.get(first, f"{first} · {power}")
 
 
 def spread(values, digits: int = 2) -> str:

@@ -1,11 +1,13 @@
 """Tables: numbers as text, Markdown, verdicts."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.tables import Table, number, quote, spread
+from ddlib.tables import Table, number, quote, scientific, spread
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -22,8 +24,8 @@ from ddlib.tables import Table, number, quote, spread
         (1234.5678, "1,235"),
         (786000.0, "786,000"),
         (0.000683, "0.000683"),
-        (0.0000683, "6.83e-05"),
-        (2.5e7, "2.50e+07"),
+        (0.0000683, "6.83 · 10⁻⁵"),
+        (2.5e7, "2.50 · 10⁷"),
         (9.999, "10.0"),  # rounding adds a digit
         (0.09999, "0.100"),
         (999.9, "1,000"),
@@ -47,12 +49,29 @@ def test_three_significant_digits(value, text):
 )
 def test_a_number_can_be_read_back_to_its_digits(value, digits):
     text = number(value, digits)
+    text = re.sub("^(-?)10(?=[⁻⁰¹²³⁴⁵⁶⁷⁸⁹])", r"\g<1>1 · 10", text)  # a power alone
+    text = text.replace(" · 10", "e").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
     read = float(text.replace(",", ""))
     assert read == pytest.approx(value, rel=0.500001 * 10.0 ** (1 - digits))
     mantissa = text.partition("e")[0].lstrip("-").replace(",", "").replace(".", "").lstrip("0")
     if abs(value) < 10.0 ** (digits - 1):
         assert len(mantissa) == digits
     assert ("e" in text) == (not 1e-4 <= abs(float(f"{value:.{digits - 1}e}")) < 1e6)
+
+
+@pytest.mark.parametrize(
+    "value, digits, text",
+    [
+        (0.0, 1, "0"),
+        (3.6e-14, 1, "4 · 10⁻¹⁴"),
+        (1e-6, 1, "10⁻⁶"),
+        (-9.7e11, 1, "-10¹²"),
+        (-0.00123, 2, "-1.2 · 10⁻³"),
+        (1e-67, 2, "1.0 · 10⁻⁶⁷"),
+    ],
+)
+def test_powers_are_set_as_mathematics(value, digits, text):
+    assert scientific(value, digits) == text
 
 
 def test_words_are_not_numbers():

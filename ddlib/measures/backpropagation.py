@@ -11,7 +11,7 @@ from ddlib.descent import Descent
 from ddlib.experiment import INITIAL
 from ddlib.measures import committed
 from ddlib.network import Weights, WindowNetwork
-from ddlib.tables import number, spread
+from ddlib.tables import number, scientific, spread
 from ddlib.training import History, TrainingSet, default_rate, train_ensemble
 from ddlib.verdicts import Measured
 
@@ -33,7 +33,7 @@ def unit() -> Measured:
     x = data.x.reshape(len(data.x), -1)
     net = x @ weights.hidden_weights.reshape(-1, x.shape[1]).T + weights.hidden_bias
     gap = np.abs(weights.activity(data.x)[0] - (1 + np.exp(-net)) ** -1).max()
-    return Measured(float(gap), f"largest difference {gap:.0e}")
+    return Measured(float(gap), f"largest difference {scientific(gap)}")
 
 
 def chain_rule() -> Measured:
@@ -50,7 +50,7 @@ def chain_rule() -> Measured:
         wanted = -parameter.grad.numpy()
         gap = max(gap, float(np.abs(step - wanted).max()))
         largest = max(largest, float(np.abs(wanted).max()))
-    return Measured(gap / largest, f"{gap / largest:.0e} of the largest derivative")
+    return Measured(gap / largest, f"{scientific(gap / largest)} of the largest derivative")
 
 
 def reach(history: History, level: float = LEVEL) -> np.ndarray:

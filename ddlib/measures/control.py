@@ -20,7 +20,7 @@ from ddlib.loops import (
 )
 from ddlib.serial import PUMA_560_ROTORS
 from ddlib.simulate import CONTROL_STEP, LOG_STEP, follow
-from ddlib.tables import number
+from ddlib.tables import number, scientific
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 from ddlib.verdicts import Measured
 
@@ -66,7 +66,7 @@ def perfect_model() -> Measured:
     held, none = np.abs(_errors([1, 0], [0, 1])).max((1, 2))
     continuous = np.abs(track(np.zeros((1, 2)), [False], ARM.inverse_dynamics, [[0, 0]])).max()
     text = f"{held:.2f}° on a smooth motion without feedback, torque held for 2 ms; "
-    text += f"{continuous:.0e}° with a continuous torque ({none:.1f}° by PD alone)"
+    text += f"{scientific(continuous)}° with a continuous torque ({none:.1f}° by PD alone)"
     return Measured(float(held / EXTENTS.max()), text)
 
 

@@ -14,6 +14,7 @@ from ddlib.identification import FRICTION, RIGID, least_squares, true_parameters
 from ddlib.modulation import by_modulation, repeat
 from ddlib.serial import PUMA_560, PUMA_560_ROTORS
 from ddlib.simplified import linear_residual, share_of_other_joint, share_of_velocity_terms
+from ddlib.tables import scientific
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
 from ddlib.verdicts import Measured
 
@@ -113,4 +114,4 @@ def shoulder_position() -> Measured:
     q, qd, qdd = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 1000, 2))
     turned = ARM.inverse_dynamics(q + np.array([1.0, 0.0]), qd, qdd)
     change = float(np.abs(turned - ARM.inverse_dynamics(q, qd, qdd)).max())
-    return Measured(change, f"absent from the equations (largest change {change:.0e} N m)")
+    return Measured(change, f"absent from the equations (largest change {scientific(change)} N m)")

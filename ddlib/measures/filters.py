@@ -10,7 +10,7 @@ from ddlib.filters import classify, decompose, roughness, shares
 from ddlib.measures import committed
 from ddlib.metrics import rmss
 from ddlib.network import Weights
-from ddlib.tables import number, spread
+from ddlib.tables import number, scientific, spread
 from ddlib.training import cases
 from ddlib.units import ablation, cancellation, net_inputs, saturated, transition_width
 from ddlib.verdicts import Measured
@@ -71,7 +71,7 @@ def parts_sum_up() -> Measured:
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))
     return Measured(
         skew,
-        f"the parts sum to f (to {gap:.0e}); as printed, odd(x) + odd(-x) reaches "
+        f"the parts sum to f (to {scientific(gap)}); as printed, odd(x) + odd(-x) reaches "
         f"{100 * skew:.0f} % of odd's peak in the median",
     )
 

@@ -14,6 +14,7 @@ from ddlib.experiment import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.simulate import LOG_STEP, Recording
 from ddlib.state_space import RADIUS
+from ddlib.tables import scientific
 from ddlib.trajectories import (
     APPENDIX_I,
     MAX_EXTENT_DEG,
@@ -66,7 +67,7 @@ def random_draws(resolution: float = 0.1) -> Measured:
     on_limit = int(np.isin(APPENDIX_I, (0.0, MAX_EXTENT_DEG)).sum())
     chance = binom.sf(on_limit - 1, APPENDIX_I.size, resolution / MAX_EXTENT_DEG)
     text = f"{on_limit} of {APPENDIX_I.size} extents lie on a limit; uniform draws do that with "
-    text += f"a chance of {chance:.0e}"
+    text += f"a chance of {scientific(chance)}"
     return Measured(float(chance), text)
 
 

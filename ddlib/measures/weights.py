@@ -10,7 +10,7 @@ from ddlib.measures import committed
 from ddlib.metrics import rmss
 from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
-from ddlib.tables import number
+from ddlib.tables import number, scientific
 from ddlib.training import TrainingSet, cases, train_ensemble
 from ddlib.units import saturated
 from ddlib.verdicts import Measured
@@ -85,7 +85,7 @@ def adjacency(width: int = 11, epochs: int = 100) -> Measured:
         for name in ("hidden_weights", "skip_weights")
     )
     relative = gap / float(plain.largest.max())
-    return Measured(relative, f"the weights differ by {relative:.0e} after {epochs} epochs")
+    return Measured(relative, f"the weights differ by {scientific(relative)} after {epochs} epochs")
 
 
 def untrained(width: int = 41) -> Measured:

@@ -13,7 +13,7 @@ from ddlib.measures import committed
 from ddlib.metrics import rmss
 from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
-from ddlib.tables import number
+from ddlib.tables import number, scientific
 from ddlib.training import TrainingSet, cases, default_rate, train_ensemble
 from ddlib.verdicts import Measured
 
@@ -175,7 +175,7 @@ def scaling() -> Measured:
     before = rmss(predicted, torque, pooled=False)
     after = rmss(0.6 * predicted / 50 + 0.5, 0.6 * torque / 50 + 0.5, pooled=False)
     change = float(np.abs(after / before - 1).max())
-    return Measured(change, f"changes by {change:.0e}")
+    return Measured(change, f"changes by {scientific(change)}")
 
 
 def training_is_monotone() -> Measured:
