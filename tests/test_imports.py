@@ -33,7 +33,7 @@ ORDER = [
     ("solver",),
     ("rivals",),
     ("experiment", "units", "sensitivity", "parity"),
-    ("random_arms",),
+    ("random_arms", "harmonics", "responses"),
     ("results", "style", "tables", "stated"),
     ("claims",),
     ("measures", "ledger_tables"),

@@ -12,9 +12,13 @@ import pytest
 import torch
 
 from ddlib import paper, reproduce, results
-from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, errors
+from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, errors, split
+from ddlib.harmonics import record_two_harmonics, true_states
 from ddlib.network import TorqueModel, Weights
+from ddlib.responses import LAYERS, summary
 from ddlib.studies import PARTS
+from ddlib.studies.harmonics import NAME
+from ddlib.training import cases
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
 
@@ -365,6 +369,27 @@ def test_committed_networks_measure_what_the_table_says(table, setup, width):
             values, cell["errors"][name], rtol=0.02, err_msg=f"{name}: {STALE}"
         )
     np.testing.assert_allclose(model.weights.largest, cell["largest weight"], rtol=1e-3)
+
+
+@pytest.mark.parametrize("width", [DRAW.choice(WINDOWS)])
+def test_committed_networks_of_two_harmonics_measure_what_is_written(width):
+    cell = results.read("harmonics")["windows"][str(width)]
+    model, recording = results.networks(width, NAME), record_two_harmonics()
+    for own, name in (("training", "training"), ("test", "test")):
+        measured = errors(model, recording)[name]
+        np.testing.assert_allclose(measured, cell[own], rtol=0.02, err_msg=STALE)
+    other = errors(model, STATE_FEEDBACK.record())["test"]
+    np.testing.assert_allclose(other, cell["one sine"]["trajectory 6"], rtol=0.02, err_msg=STALE)
+    training = split(recording)[0]
+    states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
+    found = summary(model, cases(training, width)[0], states)
+    scale = np.abs(found["gains"]).max()
+    np.testing.assert_allclose(found["gains"], cell["gains"], atol=0.01 * scale, err_msg=STALE)
+    for layer in LAYERS:
+        for kind in ("classes", "follow"):
+            for name, shares in cell[layer][kind].items():
+                mean = found[layer][kind][name].mean()
+                assert abs(mean - np.mean(shares)) < 0.03, (layer, kind, name, STALE)
 
 
 @pytest.mark.parametrize("width", WINDOWS)

@@ -7,7 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ddlib.studies import arms, inputs, nulls, state_space, state_space_sizes, table, windows
+from ddlib.studies import (
+    arms,
+    harmonics,
+    inputs,
+    nulls,
+    state_space,
+    state_space_sizes,
+    table,
+    windows,
+)
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -19,6 +28,7 @@ PARTS: dict[str, Callable[[], dict]] = {
     "memory": windows.memory,
     "state-inputs": inputs.state_inputs,
     "null-controls": nulls.null_controls,
+    "harmonics": harmonics.harmonics,
     "table-6-1": state_space.table_6_1,
     "state-space-choices": state_space.state_space_choices,
     "state-space-sizes": state_space_sizes.state_space_sizes,

@@ -1,0 +1,150 @@
+"""Responses against filters whose output is known, gradients against differences."""
+
+import numpy as np
+import pytest
+
+from ddlib.filters import savitzky_golay
+from ddlib.network import TorqueModel, Weights
+from ddlib.responses import (
+    LAYERS,
+    explained,
+    gains,
+    mean_gradient,
+    responses,
+    summary,
+)
+from ddlib.windows import Scaler
+
+RNG = np.random.default_rng(0)
+STEP, WIDTH = 0.01, 11
+X = STEP * (np.arange(WIDTH) - WIDTH // 2)
+
+
+def parabolas(cases=400):
+    """Windows of parabolas and their exact states, drawn independently."""
+    states = RNG.normal(size=(cases, 2, 3)) * (0.3, 0.5, 4.0)
+    q, v, a = np.moveaxis(states, -1, 0)[..., None]
+    return q + v * X + a * X**2 / 2, states
+
+
+WINDOWS, STATES = parabolas()
+TAPS = np.stack([savitzky_golay(WIDTH, k, STEP, degree=2) for k in range(3)])
+
+
+def test_explained_is_the_squared_correlation():
+    a, b = RNG.normal(size=(2, 500))
+    target = a + 0.5 * b
+    assert explained(target, a) == pytest.approx(np.corrcoef(target, a)[0, 1] ** 2)
+    assert explained(target, a, b) == pytest.approx(1)
+    assert explained(3 - 2 * a, a) == pytest.approx(1)
+    assert explained(target, np.ones(500)) == 0
+
+
+def test_textbook_filters_follow_what_they_measure():
+    f = np.stack([TAPS, TAPS], 1)  # (3 filters, joint, width)
+    found = responses(f, WINDOWS, STATES)
+    assert found.alone.shape == (3, 2, 3) and found.together.shape == (3, 2)
+    np.testing.assert_array_equal(found.strongest, [[0, 0], [1, 1], [2, 2]])
+    np.testing.assert_allclose(found.together, 1, atol=1e-9)
+    for k in range(3):
+        assert (found.alone[k, :, k] > 0.999).all()
+        assert (found.unique[k, :, k] > 0.95).all()
+        others = [j for j in range(3) if j != k]
+        assert (found.alone[k][:, others] < 0.05).all()
+
+
+def test_shares_of_a_known_mixture():
+    """Independent quantities of known size: shares are those of the variances."""
+    rng = np.random.default_rng(1)
+    states = rng.normal(size=(200_000, 1, 3)) * (0.3, 0.5, 4.0)
+    windows = (states @ np.array([[1, 1, 1], X[:3], X[:3] ** 2 / 2])).reshape(-1, 1, 3)
+    f = np.array([[[1.0, 2.0, 4.0]]])
+    gain = np.array([[1, 1, 1], X[:3], X[:3] ** 2 / 2]) @ f[0, 0]
+    part = (gain * (0.3, 0.5, 4.0)) ** 2
+    found = responses(f, windows, states)
+    np.testing.assert_allclose(found.alone[0, 0], part / part.sum(), atol=5e-3)
+    np.testing.assert_allclose(found.unique[0, 0], part / part.sum(), atol=5e-3)
+
+
+def test_what_two_share_belongs_to_neither():
+    """Position and acceleration in proportion: a position filter has no unique part."""
+    states = STATES.copy()
+    states[..., 2] = -2 * states[..., 0]
+    windows = states[..., :1] + states[..., 1:2] * X + states[..., 2:] * X**2 / 2
+    f = np.stack([np.stack([t, t]) for t in TAPS])
+    found = responses(f, windows, states)
+    np.testing.assert_allclose(found.alone[..., 0], found.alone[..., 2], atol=1e-9)
+    np.testing.assert_allclose(found.unique[:, :, [0, 2]], 0, atol=1e-9)
+    assert (found.alone[[0, 2], :, 0] > 0.999).all()
+
+
+def test_joints_are_kept_apart():
+    f = np.zeros((1, 2, WIDTH))
+    f[0, 0], f[0, 1] = TAPS[2], TAPS[1]
+    np.testing.assert_array_equal(responses(f, WINDOWS, STATES).strongest, [[2, 1]])
+
+
+def ensemble(members=3):
+    weights = Weights.random(members, WIDTH, hidden=4, initial=1.0, seed=5)
+    inputs = Scaler(np.array([-1.0, -0.5]), np.array([0.5, 1.5]))
+    outputs = Scaler(np.array([-20.0, -5.0]), np.array([30.0, 4.0]), (0.2, 0.8))
+    return TorqueModel(weights, inputs, outputs)
+
+
+def test_the_mean_gradient_is_that_of_the_torque():
+    model, windows = ensemble(), WINDOWS[:40]
+    found = mean_gradient(model, windows)
+    assert found.shape == (3, 2, 2, WIDTH)
+    for joint, sample in ((0, 0), (0, 7), (1, 3)):
+        step = np.zeros_like(windows)
+        step[:, joint, sample] = 1e-5
+        change = model.torque(windows + step) - model.torque(windows - step)
+        np.testing.assert_allclose(found[..., joint, sample], change.mean(1) / 2e-5, rtol=1e-6)
+    np.testing.assert_allclose(mean_gradient(model[1], windows), found[1])
+
+
+def test_gains_of_textbook_filters_are_one():
+    np.testing.assert_allclose(gains(TAPS, STEP), np.eye(3), atol=1e-9)
+    assert gains(np.zeros((4, 2, 2, 21))).shape == (4, 2, 2, 3)
+    np.testing.assert_allclose(gains([0.0, 0.0, 1.0], 0.5), [1.0, 0.5, 0.125])
+
+
+def test_a_summary_counts_network_by_network():
+    model = ensemble()
+    weights = model.weights
+    for unit, order in enumerate((2, 2, 1, 0)):
+        weights.hidden_weights[:, unit] = TAPS[order]
+    weights.hidden_weights[1, 0] = TAPS[1]  # network 1: one acceleration filter fewer
+    weights.skip_weights[:] = TAPS[2]
+    found = summary(model, WINDOWS, STATES)
+    np.testing.assert_allclose(found["hidden"]["classes"]["acceleration"][[0, 2]], 0.75)
+    np.testing.assert_allclose(found["hidden"]["follow"]["acceleration"], [0.5, 0.25, 0.5])
+    np.testing.assert_allclose(found["hidden"]["follow"]["velocity"], [0.25, 0.5, 0.25])
+    np.testing.assert_allclose(found["hidden"]["follow"]["position"], 0.25)
+    for layer in LAYERS:
+        np.testing.assert_allclose(sum(found[layer]["classes"].values()), 1)
+        assert found[layer]["unique"].shape == (3, 3)
+    assert (found["direct"]["unique"][:, 2] > 0.95).all()
+    np.testing.assert_allclose(found["gains"], gains(mean_gradient(model, WINDOWS)))
+
+
+ONE = np.ones((1, 2, WIDTH))
+
+
+@pytest.mark.parametrize(
+    "call, name",
+    [
+        (lambda: explained([1.0, 2.0], [1.0]), "by"),
+        (lambda: explained([1.0, 2.0]), "by"),
+        (lambda: explained([1.0, 1.0], [1.0, 2.0]), "target"),
+        (lambda: explained([1.0, np.nan], [1.0, 2.0]), "target"),
+        (lambda: responses(ONE[..., :5], WINDOWS, STATES), "windows"),
+        (lambda: responses(ONE, WINDOWS, STATES[:5]), "states"),
+        (lambda: gains(np.ones(4)), "f"),
+        (lambda: gains(np.ones(5), 0.0), "step"),
+        (lambda: summary(ensemble()[0], WINDOWS, STATES), "model"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(call, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        call()
