@@ -212,4 +212,3 @@ def summary(model: TorqueModel, windows, states) -> dict:
             "unique": np.median(heard.unique, (1, 2)),
         }
     return {**found, "gains": gains(mean_gradient(model, windows))}
-
