@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddlib._check import finite_array, integer, number
-from ddlib.style import COLOURS, DASHES, Illustration, illustrate
+from ddlib.style import COLOURS, DASHES, INK, Illustration, illustrate
 
 
 def families(
@@ -85,3 +85,52 @@ def families(
             figure.legend(handles, list(look), loc="outside upper left", ncols=4)
 
     return illustrate(draw, alt, 7.0, height * rows + 0.5)
+
+
+def clusters(
+    panels: Mapping[str, tuple[Mapping[str, np.ndarray], float]], unit: str, alt: str
+) -> Illustration:
+    """A quantity of many networks in several groups, beside the value that it should have.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{panel title: ({group: values (networks,)}, wanted)}``. Every network is a dot; a bar
+        marks the median of its group, a dashed line the value wanted.
+    unit : str
+        Label of the vertical axes.
+    alt : str
+        Alternative text.
+
+    Raises
+    ------
+    ValueError
+        If there is no panel, or values are not finite or not of shape (networks,).
+    """
+    if not panels:
+        raise ValueError("panels must hold one panel or more, got none")
+    for groups, wanted in panels.values():
+        number("wanted", wanted)
+        for name, values in groups.items():
+            shape = finite_array(f"values of {name!r}", values).shape
+            if len(shape) != 1:
+                raise ValueError(f"values of {name!r} must have shape (networks,), got {shape}")
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(panels), squeeze=False)[0]
+        for axis, (title, (groups, wanted)) in zip(axes, panels.items()):
+            axis.axhline(wanted, color=INK, ls="--", lw=1.0)
+            for k, values in enumerate(map(np.asarray, groups.values())):
+                colour = COLOURS[k % len(COLOURS)]
+                x = k + np.linspace(-0.25, 0.25, len(values))
+                axis.plot(x, values, "os^Dv"[k % 5], color=colour, ms=3.5, mew=0, alpha=0.7)
+                middle = np.median(values)
+                axis.plot([k - 0.36, k + 0.36], [middle, middle], color=colour, lw=2.2)
+            axis.set_xticks(range(len(groups)), [name.replace(", ", "\n") for name in groups])
+            axis.tick_params("x", labelsize=7.5)
+            axis.grid(visible=False, axis="x")
+            axis.set(title=title, xlim=(-0.6, len(groups) - 0.4))
+            axis.set_ylim(min(0.0, axis.get_ylim()[0]), None)
+        axes[0].set_ylabel(unit)
+
+    return illustrate(draw, alt, 7.0, 2.9)

@@ -98,3 +98,51 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
         f"accelerations computed from them, with standard deviations in rad/s²: {sizes}."
     )
     return illustrate(draw, alt, 7.0, 4.0)
+
+
+def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
+    """Acceleration against position: a line where one follows from the other, a cloud where not.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{panel title: {name: points (runs, samples, 2)}}``, position (rad) and acceleration
+        (rad/s^2) along the last axis. The first of each panel is drawn as lines, run by run, the
+        others as dots. A name looks the same in every panel.
+    """
+    checked = {
+        title: {name: finite_array(f"points of {name!r}", x, 2) for name, x in named.items()}
+        for title, named in panels.items()
+    }
+    shapes = [x.shape for named in checked.values() for x in named.values()]
+    if not shapes or any(len(shape) != 3 for shape in shapes):
+        raise ValueError(f"panels must hold points of shape (runs, samples, 2), got {shapes}")
+    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in checked.values() for n in p))}
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(checked), squeeze=False, sharex=True)[0]
+        for axis, (title, named) in zip(axes, checked.items()):
+            for place, (name, points) in enumerate(named.items()):
+                q, qdd = np.rad2deg(points[..., 0]), points[..., 1]
+                if place:
+                    k = look[name] - 1
+                    axis.plot(q.ravel(), qdd.ravel(), "os^"[k % 3], color=COLOURS[k], ms=1.6,
+                              mew=0, alpha=0.7, label=name)  # fmt: skip
+                else:
+                    lines = axis.plot(q.T, qdd.T, color=INK, lw=1.3, zorder=3)
+                    lines[0].set_label(name)
+            axis.set(xlabel="position, °", title=title)
+        axes[0].set_ylabel("acceleration, rad/s²")
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper left", ncols=3, markerscale=3)
+
+    def told(points):
+        q, qdd = points[..., 0].ravel(), points[..., 1].ravel()
+        return f"correlation {np.corrcoef(q, qdd)[0, 1]:.2f}"
+
+    parts = [
+        f"{title}: " + ", ".join(f"{name}, {told(points)}" for name, points in named.items())
+        for title, named in checked.items()
+    ]
+    alt = f"Acceleration against position. {'; '.join(parts)}."
+    return illustrate(draw, alt, 7.0, 3.0)

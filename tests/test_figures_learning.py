@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from ddlib.figures_learning import families
+from ddlib.figures_learning import clusters, families
 from ddlib.style import COLOURS, Illustration
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -55,3 +55,30 @@ def test_a_family_looks_the_same_in_every_panel():
 def test_refusals(panels, words):
     with pytest.raises(ValueError, match=words):
         families(panels, LABELS, "text")
+
+
+def test_clusters_draw_medians_and_the_wanted_value():
+    groups = {"few, one": np.array([1.0, 2.0, 6.0]), "many": np.array([3.0, 3.0, 5.0, 9.0])}
+    picture = clusters({"left": (groups, 4.0), "right": (groups, 0.0)}, "N m", "Dots.")
+    few, many = (strokes(picture, COLOURS[k])[2.2] for k in (0, 1))
+    assert len(few) == len(many) == 2  # panels
+    assert few[0][0, 1] > many[0][0, 1]  # a median of 2 below one of 4; SVG counts downwards
+    lines = [e.attrib["d"] for e in ET.fromstring(picture.svg).iter(f"{SVG}path")
+             if "stroke-dasharray" in e.attrib.get("style", "")]  # fmt: skip
+    left = np.array(re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", lines[0]), float)
+    assert many[0][0, 1] == pytest.approx(left[0, 1], abs=0.02)
+    assert picture.alt == "Dots."
+
+
+@pytest.mark.parametrize(
+    "panels, name",
+    [
+        ({}, "panels"),
+        ({"a": ({"b": np.zeros((2, 2))}, 1.0)}, "values of 'b'"),
+        ({"a": ({"b": np.array([np.nan])}, 1.0)}, "values of 'b'"),
+        ({"a": ({"b": np.zeros(2)}, np.inf)}, "wanted"),
+    ],
+)
+def test_clusters_refuse_bad_arguments_by_name(panels, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        clusters(panels, "N m", "Dots.")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.figures_recording import reached, rounding
+from ddlib.figures_recording import reached, rounding, tied
 
 
 def test_the_text_names_the_largest_values():
@@ -47,3 +47,31 @@ def test_the_text_tells_steps_and_spread():
 def test_rounding_refuses_bad_arguments_by_name(steps, estimates, name):
     with pytest.raises(ValueError, match=rf"^{name} must"):
         rounding([0.0, 0.1, 0.2], steps, estimates)
+
+
+PLANTED = {
+    "line": np.stack([np.linspace(0, 1, 30), -2 * np.linspace(0, 1, 30)], -1)[None],
+    "dots": np.random.default_rng(0).normal(size=(2, 30, 2)),
+}
+
+
+def test_the_text_tells_how_close_the_points_are_to_a_line():
+    points = PLANTED["dots"].reshape(-1, 2)
+    wanted = f"dots, correlation {np.corrcoef(*points.T)[0, 1]:.2f}"
+    picture = tied({"one": PLANTED})
+    assert "one: line, correlation -1.00" in picture.alt and wanted in picture.alt
+
+
+@pytest.mark.parametrize(
+    "panels, name",
+    [
+        ({}, "panels"),
+        ({"a": {}}, "panels"),
+        ({"a": {"b": np.zeros((5, 2))}}, "panels"),
+        ({"a": {"b": np.zeros((1, 5, 3))}}, "points of 'b'"),
+        ({"a": {"b": np.full((1, 5, 2), np.nan)}}, "points of 'b'"),
+    ],
+)
+def test_points_are_refused_by_name(panels, name):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        tied(panels)

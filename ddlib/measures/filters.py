@@ -5,15 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib import results
-from ddlib.experiment import predict, run
+from ddlib.experiment import STATE_FEEDBACK, predict, run
 from ddlib.filters import classify, decompose, roughness, shares
+from ddlib.harmonics import true_states
 from ddlib.measures import committed
 from ddlib.metrics import rmss
 from ddlib.network import Weights
+from ddlib.responses import LAYERS, QUANTITIES, responses
 from ddlib.tables import number, scientific, spread
 from ddlib.training import cases
 from ddlib.units import ablation, cancellation, net_inputs, saturated, transition_width
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, over_members
 
 
 def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
@@ -30,6 +32,31 @@ def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
     """
     found = classify(committed.filters(width, layer)) == name
     return Measured(float(found.mean()), f"{found.sum()} of {found.size} filters")
+
+
+def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
+    """Share of a layer's filters whose output correlates best with a quantity (judged).
+
+    Along the training motions, with the true position, velocity and acceleration of the joint
+    whose window the filter sees. The replicates draw networks.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    name : str
+        One of `ddlib.responses.QUANTITIES`.
+    layer : str
+        One of `ddlib.responses.LAYERS`.
+    """
+    training = committed.training()
+    states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
+    f = getattr(committed.networks(width).weights, LAYERS[layer])
+    strongest = responses(f, cases(training, width)[0], states).strongest
+    each = (strongest == QUANTITIES.index(name)).mean((1, 2))
+    share, draws = over_members(lambda x: x.mean(-1), each)
+    counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))
+    return Measured(share, f"best correlated with {counts} of {strongest.size}", draws)
 
 
 def rougher(wide: int = 41, narrow: int = 21) -> Measured:
