@@ -24,13 +24,13 @@ WORDS = re.compile(
     r"\b(?:"
     # a direction
     r"ris(?:es?|ing)|rose|f(?:alls?|ell|alling)|drop(?:s|ped)?|gr(?:ows?|ew|own|owing)"
-    r"|shrinks?|shrank|increas(?:es?|ed|ing)|decreas(?:es?|ed|ing)|lower(?:s|ed)?"
+    r"|shrinks?|shr[au]nk|increas(?:es?|ed|ing)|decreas(?:es?|ed|ing)|lower(?:s|ed)?"
     r"|rais(?:es?|ed)|sinks?|climbs?|bends?|settles?|settled|gains?|loses?"
     # a comparison
     r"|larger|bigger|greater|smaller|higher|better|worse|more|less|fewer|faster|slower"
     r"|closer|nearer|further|steeper|flatter|heavier|lighter|earlier|later|longer|shorter"
     r"|smoother|rougher|stronger|weaker|easier|harder|calmer|sharper|above|below|beyond"
-    r"|largest|biggest|greatest|smallest|highest|lowest|best|worst|most|least|nearest|closest"
+    r"|largest|biggest|greatest|smallest|highest|lowest|best|worst|(?<!\bat )most|(?<!\bat )least(?! squares|-squares)|nearest|closest"
     r"|steepest|strongest|weakest|fastest|slowest|smoothest|roughest|hardest|easiest"
     # a size
     r"|twice|doubles?|doubled|half|halves|thirds?|quarters?|fifths?|tenths?|several times"
@@ -39,7 +39,7 @@ WORDS = re.compile(
     r"|\w+(?<!mani)fold"
     # a count
     r"|all|none|every|both|neither|majority|never|always"
-    r"|(?:one|two|three|four|five|six|seven|eight|nine|ten) of"
+    r"|(?:two|three|four|five|six|seven|eight|nine|ten) of"
     # an order
     r"|first\b[^.]*\bthen"
     r")\b",

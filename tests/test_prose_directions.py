@@ -19,7 +19,7 @@ NOT_YET = {
     f"book/{page}"
     for page in (
         "index what-lagrange-euler-leaves-out pid-and-feedforward trajectories-and-recording "
-        "backpropagation window-networks whole-state-space hinton-diagrams convolution-filters "
+        "backpropagation window-networks hinton-diagrams convolution-filters "
         "global-view window-size ledger notation provenance status"
     ).split()
 }
@@ -66,8 +66,8 @@ class TestEntries:
                 assert directions.HEDGED.search(entry["text"]), f"says so of itself? {entry}"
 
     def test_each_is_needed(self, page):
-        """An entry that is not in the page, or that nothing complains about without, has to go."""
-        for entry in entries(page):
+        """An excuse that nothing complains about without has to go; checks may bind any words."""
+        for entry in [entry for entry in entries(page) if "why" in entry]:
             others = [other for other in entries(page) if other is not entry]
             needed = set(loose(page, others)) - set(loose(page, entries(page)))
             assert needed, f"{entry['text']!r} is not needed"
