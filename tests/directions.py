@@ -30,7 +30,8 @@ WORDS = re.compile(
     r"|larger|bigger|greater|smaller|higher|better|worse|more|less|fewer|faster|slower"
     r"|closer|nearer|further|steeper|flatter|heavier|lighter|earlier|later|longer|shorter"
     r"|smoother|rougher|stronger|weaker|easier|harder|calmer|sharper|above|below|beyond"
-    r"|largest|biggest|greatest|smallest|highest|lowest|best|worst|(?<!\bat )most|(?<!\bat )least(?! squares|-squares)|nearest|closest"
+    r"|largest|biggest|greatest|smallest|highest|lowest|best|worst|nearest|closest"
+    r"|(?<!\bat )most|(?<!\bat )least(?! squares|-squares)"
     r"|steepest|strongest|weakest|fastest|slowest|smoothest|roughest|hardest|easiest"
     # a size
     r"|twice|doubles?|doubled|half|halves|thirds?|quarters?|fifths?|tenths?|several times"
