@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from ddlib.controllers import Controller, pd, proportional
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
 from ddlib.metrics import rmss
 from ddlib.network import TorqueModel, Weights
-from ddlib.simulate import Recording, record
+from ddlib.recording import Recording
+from ddlib.simulate import record
 from ddlib.training import History, TrainingSet, cases, train_ensemble
 from ddlib.trajectories import APPENDIX_I
 from ddlib.windows import sliding_windows
@@ -73,9 +74,18 @@ class Setup:
     hidden: int = paper.HIDDEN_UNITS
     seed: int = 0
 
-    def record(self, extents_deg=APPENDIX_I) -> Recording:
-        """The recording of all runs, noise included; default: the six of Appendix I."""
-        return record(self.arm, self.controller, extents_deg, effects=self.effects, seed=self.seed)
+    def record(self, extents_deg=APPENDIX_I, **options) -> Recording:
+        """The recording of all runs, noise included; default: the six of Appendix I.
+
+        Parameters
+        ----------
+        extents_deg : array_like, shape (2,) or (runs, 2)
+            Extents in degrees.
+        **options
+            Duration, rests and periods, as in `ddlib.simulate.record`.
+        """
+        options = {"effects": self.effects, "seed": self.seed, **options}
+        return record(self.arm, self.controller, extents_deg, **options)
 
 
 POSITION_FEEDBACK = Setup("position feedback", proportional(KP))
@@ -91,10 +101,10 @@ SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK)}
 
 def run(recording: Recording, run_number: int | slice) -> Recording:
     """One run (or several) of a batch recording; numbers count from 0."""
-    pick = [x[run_number] for x in (recording.q, recording.tau, recording.q_true)]
-    pick += [recording.qd_true[run_number], recording.tau_true[run_number]]
+    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
+    pick = {name: getattr(recording, name)[run_number] for name in fields}
     reference = type(recording.reference)(*(x[run_number] for x in recording.reference))
-    return Recording(recording.t, reference, *pick)
+    return replace(recording, reference=reference, **pick)
 
 
 def split(recording: Recording) -> tuple[Recording, Recording]:

@@ -126,9 +126,9 @@ def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.nda
     ndarray, shape (..., samples, joint, 3)
         In rad, rad/s and rad/s^2.
     """
-    number("skip", skip, 0.0, MOTION_SECONDS)
-    motion = recording.motion
-    inside = slice(motion.start + round(skip / LOG_STEP), motion.stop)
+    motion, (begin, end) = recording.motion, recording.span
+    number("skip", skip, 0.0, end - begin)
+    inside = slice(motion.start + round(skip / recording.step), motion.stop)
     q, qd, tau = (
         x[..., inside, :] for x in (recording.q_true, recording.qd_true, recording.tau_true)
     )

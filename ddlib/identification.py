@@ -165,6 +165,7 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     """
+    _known(names)
     viscous = sum(np.asarray(f.coefficient) for f in effects.friction if _is_viscous(f))
     coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
     pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
@@ -199,6 +200,14 @@ def _is_viscous(friction) -> bool:
     return isinstance(friction, ViscousFriction)
 
 
+def _known(names) -> None:
+    """A ValueError for a name of no parameter."""
+    known = (*RIGID, *GRAVITY, *FRICTION)
+    for name in names:
+        if name not in known:
+            raise ValueError(f"names must be among {', '.join(known)}, got {name!r}")
+
+
 def columns(row: dict, names: Sequence[str], like) -> np.ndarray:
     """The regressor of one joint, ``(..., parameters)``.
 
@@ -211,8 +220,5 @@ def columns(row: dict, names: Sequence[str], like) -> np.ndarray:
     like : ndarray
         Shape of the zeros for a parameter that the joint does not feel.
     """
-    known = (*RIGID, *GRAVITY, *FRICTION)
-    for name in names:
-        if name not in known:
-            raise ValueError(f"names must be among {', '.join(known)}, got {name!r}")
+    _known(names)
     return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

@@ -1,8 +1,9 @@
 """Linear loops around a joint or an arm near one posture, as python-control systems.
 
-Joints obey ``M qdd + F qd = tau`` with a constant inertia ``M`` (a number, or a mass
-matrix) and viscous friction ``F``. The loops are those of `ddlib.controllers.PID`: position
-errors against a reference at rest, velocity of the reference zero.
+Joints obey ``M qdd + F qd + K q = tau`` with a constant inertia ``M`` (a number, or a mass
+matrix), viscous friction ``F`` and, where gravity pulls, its stiffness ``K``. The loops are
+those of `ddlib.controllers.PID`: position errors against a reference at rest, velocity of the
+reference zero.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ import numpy as np
 from ddlib._check import finite_array, integer, non_negative, number
 
 
-def plant(inertia, viscous) -> control.StateSpace:
-    """Joints that obey ``inertia qdd + viscous qd = tau``: torques in, angles and speeds out.
+def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
+    """Joints that obey ``inertia qdd + viscous qd + stiffness q = tau``, torques in.
 
     Parameters
     ----------
@@ -24,11 +25,14 @@ def plant(inertia, viscous) -> control.StateSpace:
         Inertia of one joint or mass matrix of several, kg m^2.
     viscous : float or array_like, shape (joint,)
         Viscous friction, N m s/rad.
+    stiffness : float or array_like, shape (joint, joint)
+        What gravity adds to a joint's torque when it leaves its posture, N m/rad; negative
+        where the arm would fall over.
 
     Returns
     -------
     control.StateSpace
-        States and outputs: the angles (rad), then the velocities (rad/s).
+        States and outputs: the angles (rad) from the posture, then the velocities (rad/s).
 
     Raises
     ------
@@ -43,7 +47,11 @@ def plant(inertia, viscous) -> control.StateSpace:
         raise ValueError(f"inertia must be positive definite, got {inertia.tolist()}")
     viscous = np.diag(_per_joint("viscous", viscous, joints))
     zero, one = np.zeros((joints, joints)), np.eye(joints)
-    A = np.block([[zero, one], [zero, -np.linalg.solve(inertia, viscous)]])
+    stiffness = finite_array("stiffness", stiffness)
+    if stiffness.shape != zero.shape and (stiffness.ndim or (joints > 1 and stiffness != 0)):
+        raise ValueError(f"stiffness must have shape {zero.shape}, got {stiffness.shape}")
+    back = (-np.linalg.solve(inertia, x) for x in (zero + stiffness, viscous))
+    A = np.block([[zero, one], [*back]])
     B = np.vstack([zero, np.linalg.inv(inertia)])
     return control.ss(A, B, np.eye(2 * joints), np.zeros((2 * joints, joints)))
 

@@ -17,7 +17,8 @@ from ddlib.arm import Arm
 from ddlib.controllers import PID
 from ddlib.effects import IDEAL, Effects, ViscousFriction
 from ddlib.linear import closed_loop, plant
-from ddlib.simulate import CONTROL_STEP, Recording, follow
+from ddlib.recording import Recording
+from ddlib.simulate import CONTROL_STEP, follow
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place
 
 
@@ -47,7 +48,7 @@ class SecondOrderModel:
 
     The mass matrix is that of the arm in one posture, with its off-diagonal entry. It is this
     book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
-    section 1.1, after Asada, Kanade & Takeyama 1982).
+    section 1.1, after Asada, Kanade & Takeyama 1982). A vertical arm's weight is no part of it.
 
     Parameters
     ----------
@@ -98,6 +99,9 @@ def predicted_response(
 ) -> Response:  # fmt: skip
     """Linear analysis of the sampled loop around a posture.
 
+    Gravity's torque in the posture is taken to be compensated; what it adds when the arm
+    leaves the posture is part of the loop.
+
     Parameters
     ----------
     arm : Arm
@@ -113,7 +117,8 @@ def predicted_response(
         Control period and length of the step response, s.
     """
     integer("joint", joint, 0, 1)
-    joints = plant(arm.mass_matrix(finite_array("posture", posture, 2)), viscous)
+    posture = finite_array("posture", posture, 2)
+    joints = plant(arm.mass_matrix(posture), viscous, _gravity_stiffness(arm, posture))
     loop = closed_loop(joints, controller.kp, controller.ki, controller.kd, period)
     t = np.arange(round(seconds / period)) * period
     inputs = np.zeros((4, t.size))
@@ -130,9 +135,10 @@ def simulated_response(
 ) -> Response:  # fmt: skip
     """The same measures from the full, non-linear simulation.
 
-    One run steps the reference, a second one carries a load. The bandwidth comes from the
-    Fourier transform of the step response's rate, so the loop must settle within `seconds`;
-    one that rings longer has a bandwidth of NaN.
+    A constant torque holds the arm against gravity in the posture. One run steps the reference,
+    a second one carries a load. The bandwidth comes from the Fourier transform of the step
+    response's rate, so the loop must settle within `seconds`; one that rings longer has a
+    bandwidth of NaN.
 
     Parameters
     ----------
@@ -150,8 +156,9 @@ def simulated_response(
     t = np.arange(round(seconds / period)) * period
     target = np.zeros((2, t.size, 2)) + finite_array("posture", posture, 2)
     target[0, 1:, joint] += size
-    load = np.zeros((2, 2))
-    load[1, joint] = size * controller.kp[joint]
+    holding, push = arm.gravity(posture), size * controller.kp[joint]
+    load = np.zeros((2, 2)) + holding
+    load[1, joint] += push
     effects = replace(
         effects,
         friction=(ViscousFriction(viscous), *effects.friction),
@@ -164,12 +171,18 @@ def simulated_response(
     moved = recording.q_true[..., joint] - np.asarray(posture)[joint]
     step = moved[0, 1:] / size
     late = np.hanning(t.size // 2)  # a window that averages what still swings
-    compliance = (moved[1, -late.size :] * late).sum() / late.sum() / load[1, joint]
+    compliance = (moved[1, -late.size :] * late).sum() / late.sum() / push
     if np.ptp(step[-t.size // 10 :]) > 0.01:
         return Response(_overshoot(step), np.nan, compliance)
     omega = np.geomspace(0.5, 0.1 * np.pi / period, 400)
     answer = np.abs(np.exp(-1j * np.outer(omega, t[1:])) @ np.diff(step, prepend=0.0))
     return Response(_overshoot(step), _half_power(omega, answer), compliance)
+
+
+def _gravity_stiffness(arm: Arm, posture) -> np.ndarray:
+    """Derivative of an arm's gravity torque by its angles, N m/rad, shape (2, 2)."""
+    g1, g2 = arm.gravity_moments * np.cos([posture[0], posture.sum()])
+    return np.array([[g1 + g2, g2], [g2, g2]])
 
 
 def _overshoot(step) -> float:
@@ -243,8 +256,10 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
     )
 
 
-def run_system(system: control.InterconnectedSystem, reference: Trajectory, t) -> Recording:
-    """Simulate a `feedforward_system` along a reference, from rest at its first position.
+def run_system(
+    system: control.InterconnectedSystem, reference: Trajectory, t, start=None
+) -> Recording:
+    """Simulate a `feedforward_system` along a reference.
 
     Parameters
     ----------
@@ -253,19 +268,31 @@ def run_system(system: control.InterconnectedSystem, reference: Trajectory, t) -
         One run, arrays ``(time, 2)``, interpolated between samples.
     t : array_like, shape (time,)
         Times of the samples, s.
+    start : array_like, shape (2, 2), optional
+        Angles (rad) and velocities (rad/s) at the first sample; default: at rest at the
+        reference's first position.
 
     Returns
     -------
     Recording
         With perfect sensors: measured and true values are the same.
     """
+    t = finite_array("t", t)
     reference = Trajectory(*(finite_array("reference", x, 2) for x in reference))
-    start = np.concatenate([reference.q[0], [0.0, 0.0]])
+    if t.ndim != 1 or any(x.shape != (t.size, 2) for x in reference):
+        raise ValueError(
+            f"reference must be one run with a sample for each of the {t.size} times, got shape "
+            f"{reference.q.shape}"
+        )
+    start = [reference.q[0], [0.0, 0.0]] if start is None else finite_array("start", start, 2)
+    if np.shape(start) != (2, 2):
+        raise ValueError(f"start must have shape (2, 2), got {np.shape(start)}")
+    start = np.ravel(start)
     answer = control.input_output_response(
         system, t, np.concatenate(reference, axis=1).T, start, solve_ivp_kwargs={"rtol": 1e-6}
     )
     q, qd, tau = np.split(answer.outputs.T, 3, axis=1)
-    return Recording(np.asarray(t), reference, q, tau, q, qd, tau)
+    return Recording(t, reference, q, tau, q, qd, tau, control_step=0.0)
 
 
 def fast_pick_and_place(extents_deg, t, speed: float) -> Trajectory:
@@ -312,7 +339,7 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
 
 
-def score(arm: Arm, recording: Recording, seconds: float = MOTION_SECONDS) -> dict:
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> dict:
     """What a controller made of a motion: errors and effort of every run, shape (...).
 
     Parameters
@@ -320,8 +347,9 @@ def score(arm: Arm, recording: Recording, seconds: float = MOTION_SECONDS) -> di
     arm : Arm
         Gives the hand's place.
     recording : Recording
-    seconds : float
-        Length of the motion, which begins at 0 s. Its first third is the transient.
+    seconds : float, optional
+        Length of the motion, which begins at 0 s; default: as the recording says. Its first
+        third is the transient.
 
     Returns
     -------
@@ -332,14 +360,17 @@ def score(arm: Arm, recording: Recording, seconds: float = MOTION_SECONDS) -> di
         ``turn, mm``: that distance half-way. ``effort, N m``: root mean square of the torque
         vector over the motion.
     """
-    number("seconds", seconds, 0.0, open_low=True)
-    t, error = recording.t, np.rad2deg(recording.tracking_error)
-    moving, settled = (t >= 0) & (t < seconds), (t >= seconds / 3) & (t < seconds)
+    if seconds is not None:
+        recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
+    t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion
+    begin, end = recording.span
+    early = 1e-6 * recording.step
+    settled = slice(int(np.searchsorted(t, begin + (end - begin) / 3 - early)), moving.stop)
     hand, wanted = (
         arm.forward_kinematics(q)[..., 1, :] for q in (recording.q_true, recording.reference.q)
     )
     gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
-    half = int(np.argmin(np.abs(t - seconds / 2)))
+    half = int(np.argmin(np.abs(t - (begin + end) / 2)))
     return {
         "largest, °": np.abs(error[..., moving, :]).max((-2, -1)),
         "whole, °": np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),

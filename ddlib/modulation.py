@@ -19,8 +19,8 @@ from ddlib.arm import Arm
 from ddlib.controllers import Controller
 from ddlib.effects import Effects, Quantisation
 from ddlib.identification import FRICTION, RIGID, SIGN_SPEED, Equations, columns, from_states
-from ddlib.simulate import CONTROL_STEP, Recording, record
-from ddlib.trajectories import MOTION_SECONDS
+from ddlib.recording import Recording
+from ddlib.simulate import record
 
 SLOW = 0.1
 """Where a joint moves slower than this (rad/s), the sign of its friction is not trusted."""
@@ -36,8 +36,7 @@ def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     """
-    step = recording.t[1] - recording.t[0]
-    q = recording.q
+    step, q = recording.step, recording.q
     velocity, acceleration = np.zeros_like(q), np.zeros_like(q)
     velocity[..., 1:-1, :] = (q[..., 2:, :] - q[..., :-2, :]) / (2 * step)
     acceleration[..., 1:-1, :] = np.diff(q, 2, axis=-2) / step**2
@@ -69,7 +68,7 @@ def by_smoothing(
         raise ValueError(f"width must be an odd number of samples, got {width}")
     if smooth_torque:
         recording = replace(recording, tau=savgol_filter(recording.tau, width, 2, axis=-2))
-    step = recording.t[1] - recording.t[0]
+    step = recording.step
     velocity, acceleration = (
         savgol_filter(recording.q, width, 2, order, step, axis=-2) for order in (1, 2)
     )
@@ -80,11 +79,11 @@ def by_modulation(
     recording: Recording,
     names: Sequence[str] = RIGID + FRICTION,
     width: float = 0.6,
-    hold: float = CONTROL_STEP,
+    hold: float | None = None,
 ) -> Equations:
     """Equations of motion averaged under smooth bumps, so that no acceleration is needed.
 
-    Both sides are multiplied by a bump ``w(t)`` (a B-spline of degree 4) and integrated.
+    Both sides are multiplied by a bump ``w(t)`` (a B-spline of degree 5) and integrated.
     Integration by parts moves the derivatives from the measured position to the bump, of
     which they are known exactly: ``int w qdd dt = int w'' q dt``. Overlapping bumps share
     torque noise; the equations are combined so that their noise is independent. The method
@@ -97,17 +96,29 @@ def by_modulation(
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     width : float
-        Width of a bump, s. Narrow bumps let quantisation through, wide ones lose detail.
-    hold : float
+        Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a
+        multiple of six samples, with which sums over samples are as good as integrals. Narrow
+        bumps let quantisation through, wide ones lose detail.
+    hold : float, optional
         Time for which the controller holds a torque, s: a sample stands for the torque half
-        of it later.
+        of it later. Default: as the recording says, its computing time included.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or nothing says how long torques were held.
     """
-    number("width", width, 0.0, MOTION_SECONDS, open_low=True)
-    number("hold", hold, 0.0)
+    begin, end = recording.span
+    shortest, tiny = 12 * recording.step, 1e-6 * recording.step
+    if end - begin < shortest - tiny:
+        raise ValueError(f"recording must have 12 samples of motion or more, got {end - begin:g} s")
+    number("width", width, shortest - tiny, end - begin + tiny)
+    width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
+    late = _lateness(recording) if hold is None else number("hold", hold, 0.0) / 2
     recording = _in_runs(recording)
-    t = recording.t
-    bumps, later = _bumps(t, width), _bumps(t + hold / 2, width)[0]
-    rows = _modulated(bumps, recording.q, t[1] - t[0])
+    t, length = recording.t - begin, end - begin
+    bumps, later = _bumps(t, width, length), _bumps(t + late, width, length)[0]
+    rows = _modulated(bumps, recording.q, recording.step)
     steady = _steady(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
     regressors, torques = [], []
     for j in range(2):
@@ -129,6 +140,7 @@ def repeat(
     effects: Effects,
     repetitions: int,
     seed: int = 0,
+    **options,
 ) -> Recording:
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
@@ -142,6 +154,8 @@ def repeat(
         How often. In each the zero of the encoders falls elsewhere within a step.
     seed : int
         Of the noise and of the encoders' zeros.
+    **options
+        Duration, rests and periods, as in `ddlib.simulate.record`.
 
     Returns
     -------
@@ -155,11 +169,12 @@ def repeat(
     zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions, 1, 2))
     shift = _Shift(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
     mounted = replace(effects, encoder=(shift, *effects.encoder))
-    many = record(arm, controller, np.tile(extents, (repetitions, 1)), effects=mounted, seed=seed)
+    options |= {"effects": mounted, "seed": seed}
+    many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
     reference = type(many.reference)(*(x[:runs] for x in many.reference))
     fields = ("q", "tau", "q_true", "qd_true", "tau_true")
-    shaped = (getattr(many, f).reshape(repetitions, runs, many.t.size, 2) for f in fields)
-    return Recording(many.t, reference, *shaped)
+    shaped = {f: getattr(many, f).reshape(repetitions, runs, many.t.size, 2) for f in fields}
+    return replace(many, reference=reference, **shaped)
 
 
 @dataclass(frozen=True)
@@ -177,14 +192,24 @@ def _in_runs(recording: Recording) -> Recording:
     if recording.reference.q.ndim > 2:
         return recording
     reference = type(recording.reference)(*(x[None] for x in recording.reference))
-    arrays = (recording.q, recording.tau, recording.q_true, recording.qd_true, recording.tau_true)
-    return Recording(recording.t, reference, *(x[..., None, :, :] for x in arrays))
+    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
+    arrays = {f: getattr(recording, f)[..., None, :, :] for f in fields}
+    return replace(recording, reference=reference, **arrays)
+
+
+def _lateness(recording: Recording) -> float:
+    """How much later than its sample a logged torque acts in the mean, s."""
+    if recording.control_step is None:
+        raise ValueError("hold must be given, as the recording has no control_step; got None")
+    middle = recording.control_step / 2
+    late = recording.computing_time  # with one, a sample holds the torque of the reading before
+    return late - middle if late else middle
 
 
 def _steady(recording: Recording, names) -> np.ndarray:
     """Where friction has a sure sign, by the speed over all repetitions: (joint, run, time)."""
     q = recording.q
-    speed = np.abs(_five_point(q, recording.t[1] - recording.t[0]))
+    speed = np.abs(_five_point(q, recording.step))
     speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
     wanted = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
     return speed >= wanted[:, None, None]
@@ -206,14 +231,15 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     )
 
 
-def _bumps(t, width) -> list[np.ndarray]:
-    """B-splines inside the motion and their first two derivatives, each ``(bumps, time)``.
+def _bumps(t, width, length) -> list[np.ndarray]:
+    """B-splines inside a motion from 0 to `length` s and their first two derivatives.
 
-    The log jumps where the reference starts and stops; no bump reaches over these samples.
+    Each ``(bumps, time)``. The log jumps where the reference starts and stops; no bump reaches
+    over these samples.
     """
     knot = width / 6
     shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)
-    first = knot * np.arange(int((MOTION_SECONDS - width) / knot + 1e-9) + 1)
+    first = knot * np.arange(int((length - width) / knot + 1e-9) + 1)
     place = t - first[:, None]
     return [np.nan_to_num(f(place)) for f in (shape, shape.derivative(), shape.derivative(2))]
 

@@ -7,6 +7,7 @@ and figures. `TorqueModel` adds the scaling, so that radians go in and N m come 
 
 from __future__ import annotations
 
+import io
 import os
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -251,20 +252,19 @@ class TorqueModel:
 
         Raises
         ------
-        FileNotFoundError
-            If there is no such file.
+        OSError
+            If the file cannot be read: there is none, or no right to read it.
         ValueError
             If it is not a model file.
         """
+        content = io.BytesIO(Path(path).read_bytes())
         try:
-            with np.load(path) as file:
+            with np.load(content) as file:
                 weights = Weights(*(file[name].astype(float) for name in _FIELDS))
                 scalers = [
                     Scaler(file[f"{n}_low"], file[f"{n}_high"], tuple(file[f"{n}_target"]))
                     for n in ("inputs", "outputs")
                 ]
-        except FileNotFoundError:
-            raise
         except Exception as error:  # damage shows in many ways: zip, zlib, numpy, shapes
             raise ValueError(f"path {str(path)!r} is not a model file: {error}") from error
         return cls(weights, *scalers)

@@ -182,7 +182,7 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
     return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)
 
 
-def summary(model: TorqueModel, windows, states) -> dict:
+def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict:
     """Names of filters and what they follow, network by network.
 
     Parameters
@@ -191,6 +191,8 @@ def summary(model: TorqueModel, windows, states) -> dict:
         An ensemble.
     windows, states
         As in `responses`.
+    step : float
+        Sampling period of the windows, s.
 
     Returns
     -------
@@ -211,4 +213,4 @@ def summary(model: TorqueModel, windows, states) -> dict:
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
             "unique": np.median(heard.unique, (1, 2)),
         }
-    return {**found, "gains": gains(mean_gradient(model, windows))}
+    return {**found, "gains": gains(mean_gradient(model, windows), step)}

@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 import platform
-import resource
+import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -117,11 +117,22 @@ def _is_text(node) -> bool:
     )
 
 
+def peak_memory() -> float | None:
+    """Largest memory that this process ever held, GiB; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    unit = 2**30 if sys.platform == "darwin" else 2**20  # bytes on macOS, KiB elsewhere
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
 def stamp(seconds: float) -> dict:
-    """What is kept beside a result: run time, peak memory, the machine's kernels, versions."""
+    """What is kept beside a result: time, peak memory if known, the machine's kernels, versions."""
+    peak = peak_memory()
     return {
         "seconds": round(seconds, 1),
-        "peak GiB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2),
+        "peak GiB": None if peak is None else round(peak, 2),
         "machine": f"{platform.system()} {platform.machine()}, {kernels()}",
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
@@ -224,8 +235,17 @@ def read(name: str) -> dict:
     ------
     FileNotFoundError
         If there is no such result; says how to make it.
+    ValueError
+        If the file is damaged.
     """
     path = FOLDER / f"{name}.json"
-    if not path.is_file():
-        raise FileNotFoundError(f"no result {name!r} in {FOLDER}: run `make reproduce` first")
-    return json.loads(path.read_text(encoding="utf-8"))
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"no result {name!r} in {FOLDER}: run `make reproduce` first"
+        ) from error
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise ValueError(f"result {name!r} in {FOLDER} is damaged: {error}") from error

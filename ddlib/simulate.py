@@ -6,8 +6,6 @@ reading; the log takes every fifth sample (10 ms), as on the real arm.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, one_of
@@ -15,6 +13,7 @@ from ddlib.arm import Arm
 from ddlib.controllers import Controller
 from ddlib.effects import IDEAL, Effects, started
 from ddlib.plant import Plant, substeps
+from ddlib.recording import Recording, equal_steps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
 CONTROL_STEP = 0.002
@@ -25,44 +24,6 @@ LOG_STEP = 0.010
 
 REST = 0.5
 """Rest recorded before and after a motion, s, so that every window is whole."""
-
-
-@dataclass(frozen=True)
-class Recording:
-    """What the log holds. Leading axes, if any, are runs.
-
-    Attributes
-    ----------
-    t : ndarray, shape (time,)
-        Times in s; the motion begins at 0.
-    reference : Trajectory
-        What the controller was asked for.
-    q : ndarray, shape (..., time, joint)
-        Measured positions, rad.
-    tau : ndarray, shape (..., time, joint)
-        Measured torques, N m.
-    q_true, qd_true, tau_true : ndarray, shape (..., time, joint)
-        What a perfect sensor would have read; `tau_true` is the applied torque.
-    """
-
-    t: np.ndarray
-    reference: Trajectory
-    q: np.ndarray
-    tau: np.ndarray
-    q_true: np.ndarray
-    qd_true: np.ndarray
-    tau_true: np.ndarray
-
-    @property
-    def motion(self) -> slice:
-        """The samples of the motion itself, without the rests."""
-        first, end = np.searchsorted(self.t, (0.0, MOTION_SECONDS))
-        return slice(int(first), int(end))
-
-    @property
-    def tracking_error(self) -> np.ndarray:
-        """True position minus reference, rad, shape ``(..., time, joint)``."""
-        return self.q_true - self.reference.q
 
 
 class _Streams:
@@ -140,8 +101,7 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
         raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
     t = np.arange(round(count) + 1) * step
     plant = Plant(arm, effects)
-    x, v = plant.rest(q)
-    v = v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
+    x, v = _moving(plant, q, qd)
     states = [(x, v)]
     zero = np.zeros_like(q)
     for _ in t[1:]:
@@ -149,6 +109,12 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     states = [np.broadcast_arrays(*series) for series in zip(*states)]
     q, qd = (np.stack(series, -2)[..., :2] for series in states)
     return t, q, qd
+
+
+def _moving(plant: Plant, q, qd):
+    """Positions and velocities of a plant whose motors turn like the joints behind them."""
+    x, v = plant.rest(q)
+    return x, v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
 
 
 def follow(
@@ -161,10 +127,12 @@ def follow(
     seed: int | np.ndarray = 0,
     log_every: int = 5,
     velocity: str = "tachometer",
+    start=None,
+    duration: float | None = None,
 ) -> Recording:
     """Drive the arm along a sampled reference and log what the sensors say.
 
-    The arm starts at rest at the reference's first position. Runs may differ in their
+    Runs may differ in their
     reference, in the gains of the controller, the strengths of the effects and the seed:
     leading axes of all of them are broadcast. No run depends on which others it is
     simulated with, except through a shared noise generator (`seed`).
@@ -186,6 +154,12 @@ def follow(
     velocity : {"tachometer", "difference"}
         What the controller gets as velocity: the true one, or the difference of two
         encoder readings.
+    start : pair of array_like, each of shape (..., 2), optional
+        Angles (rad) and velocities (rad/s) with which the arm starts. Default: at rest at
+        the reference's first position.
+    duration : float, optional
+        Length of the motion, which begins at 0 s; default: where the reference moves, as
+        `Recording` says.
 
     Raises
     ------
@@ -210,9 +184,7 @@ def follow(
             )
     if not callable(getattr(controller, "start", None)):
         raise TypeError(f"controller must have a start method, got {controller!r}")
-    step = float(t[1] - t[0])
-    if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
-        raise ValueError(f"t must increase in equal steps, got steps from {step:g} s")
+    step = equal_steps(t)
     integer("log_every", log_every, 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
     late = effects.computing_time
@@ -222,15 +194,17 @@ def follow(
             f"{late:g}; Delay adds whole periods"
         )
     reference = Trajectory(*(_time_first(x) for x in reference))
+    first = reference.q[..., 0, :]
+    start = _initial_state(first, (first, np.zeros(2)) if start is None else start)
     rng = _generator(seed)
     law = controller.start(reference, step)
     plant, parts = Plant(arm, effects), substeps(arm, effects, step)
 
-    x, v = plant.rest(reference.q[..., 0, :])
-    tau = np.zeros_like(reference.q[..., 0, :])
+    x, v = _moving(plant, *start)
+    tau = np.zeros_like(start[0])
     encoder = started(effects.encoder, x[..., -2:])
     actuator, torque_sensor = (started(e, tau) for e in (effects.actuator, effects.torque_sensor))
-    reading = encoder(x[..., -2:], rng)
+    reading = encoder(x[..., -2:] - step * v[..., -2:], rng)
     log = []
     for k in range(t.size):
         if not np.abs(v).max() < 1e6:
@@ -252,7 +226,25 @@ def follow(
         np.stack(np.broadcast_arrays(*series), -2) for series in zip(*log)
     )
     logged = Trajectory(*(x[..., ::log_every, :] for x in reference))
-    return Recording(t[::log_every], logged, read, tau, q_true, qd_true, tau_true)
+    arrays = (read, tau, q_true, qd_true, tau_true)
+    return Recording(t[::log_every], logged, *arrays, duration, step, late)
+
+
+def _initial_state(first, start):
+    """Angles and velocities at the start of each run, checked, in the shape of the runs."""
+    try:
+        q, qd = start
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"start must be a pair of angles and velocities, got {start!r}") from error
+    pair = finite_array("start[0]", q, 2), finite_array("start[1]", qd, 2)
+    try:
+        q, qd, _ = np.broadcast_arrays(*pair, first)
+    except ValueError as error:
+        raise ValueError(
+            f"start must fit to the runs {first.shape[:-1]}, got {pair[0].shape} and "
+            f"{pair[1].shape}"
+        ) from error
+    return q, qd
 
 
 def _time_first(x):
@@ -271,6 +263,8 @@ def record(
     control_step: float = CONTROL_STEP,
     log_step: float = LOG_STEP,
     velocity: str = "tachometer",
+    duration: float = MOTION_SECONDS,
+    start=None,
 ) -> Recording:
     """Record pick-and-place motions as in section 4 of the paper.
 
@@ -280,17 +274,19 @@ def record(
         Plant and control law.
     extents_deg : array_like, shape (2,) or (runs, 2)
         Extents in degrees; several rows are several runs, simulated together.
-    effects, seed, velocity
+    effects, seed, velocity, start
         As in `follow`.
     rest : float
         Rest before and after the motion, s.
     control_step, log_step : float
         Periods of control and log, s; the second a multiple of the first.
+    duration : float
+        Length of the motion, s.
 
     Returns
     -------
     Recording
-        With ``300`` samples of motion at the default log step.
+        With ``duration / log_step`` samples of motion, 300 for the paper's.
 
     Raises
     ------
@@ -302,10 +298,10 @@ def record(
     ratio = log_step / control_step
     if abs(ratio - round(ratio)) > 1e-6:
         raise ValueError(f"log_step must be a multiple of control_step, got ratio {ratio:g}")
-    t = time_grid(control_step, rest)
+    t = time_grid(control_step, rest, duration)
     if round(rest / control_step) % round(ratio):
         raise ValueError(f"rest must be a multiple of log_step={log_step:g}, got {rest:g}")
-    reference = pick_and_place(extents_deg, t)
+    reference = pick_and_place(extents_deg, t, duration)
     return follow(
         arm,
         controller,
@@ -315,4 +311,6 @@ def record(
         seed=seed,
         log_every=round(ratio),
         velocity=velocity,
+        start=start,
+        duration=duration,
     )

@@ -54,7 +54,9 @@ def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS)
     return np.random.default_rng(integer("seed", seed, 0)).uniform(-radius, radius, size)
 
 
-def states_along(extents_deg, samples: int = SAMPLES) -> np.ndarray:
+def states_along(
+    extents_deg, samples: int = SAMPLES, duration: float = MOTION_SECONDS
+) -> np.ndarray:
     """States of a member of the pick-and-place family, equally spaced in time.
 
     Parameters
@@ -63,13 +65,15 @@ def states_along(extents_deg, samples: int = SAMPLES) -> np.ndarray:
         Extents of shoulder and elbow, degrees.
     samples : int
         How many.
+    duration : float
+        Length of the motion, s.
 
     Returns
     -------
     ndarray, shape (samples, joint, 3)
     """
-    step = MOTION_SECONDS / integer("samples", samples, 2)
-    return np.stack(pick_and_place(extents_deg, np.arange(samples) * step), -1)
+    step = number("duration", duration, 0.0, open_low=True) / integer("samples", samples, 2)
+    return np.stack(pick_and_place(extents_deg, np.arange(samples) * step, duration), -1)
 
 
 def torque(states, arm: Arm = CMU_DD_ARM_II) -> np.ndarray:

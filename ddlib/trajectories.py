@@ -29,11 +29,11 @@ class Trajectory(NamedTuple):
     qdd: np.ndarray
 
 
-def pick_and_place(extents_deg, t) -> Trajectory:
+def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajectory:
     """The family ``phi = -theta sin(pi t / 3)``: out and back in three seconds.
 
-    Before 0 s and from 3 s on the reference rests at zero, so its velocity jumps at
-    both ends: by 0.82 rad/s for an extent of 45 degrees.
+    Before 0 s and from the end of the motion on the reference rests at zero, so its velocity
+    jumps at both ends: by 0.82 rad/s for an extent of 45 degrees in three seconds.
 
     Parameters
     ----------
@@ -42,6 +42,8 @@ def pick_and_place(extents_deg, t) -> Trajectory:
         accepted with an `OutsideFamilyWarning`.
     t : array_like, shape (time,)
         Times, s.
+    duration : float
+        Length of the motion, s: the 3 of the formula.
 
     Returns
     -------
@@ -57,6 +59,7 @@ def pick_and_place(extents_deg, t) -> Trajectory:
     """
     extents_deg = finite_array("extents_deg", extents_deg, 2)
     t = finite_array("t", t)
+    number("duration", duration, 0.0, open_low=True)
     if t.ndim != 1:
         raise ValueError(f"t must have shape (time,), got {t.shape}")
     if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
@@ -66,8 +69,8 @@ def pick_and_place(extents_deg, t) -> Trajectory:
             stacklevel=2,
         )
     theta = np.ascontiguousarray(np.moveaxis(np.deg2rad(extents_deg), -1, 0))
-    omega = np.pi / MOTION_SECONDS
-    moving = (t >= 0) & (t < MOTION_SECONDS)
+    omega = np.pi / duration
+    moving = (t >= 0) & (t < duration * (1 - 1e-12))  # its end, whatever that rounds to
     sine, cosine = np.sin(omega * t) * moving, np.cos(omega * t) * moving
     # laid out (time, joint, runs): a simulation takes one sample of all runs at a time
     scaled = (
@@ -94,21 +97,25 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
     return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
 
 
-def time_grid(step: float, rest: float = 0.0) -> np.ndarray:
+def time_grid(step: float, rest: float = 0.0, duration: float = MOTION_SECONDS) -> np.ndarray:
     """Times of one motion with `rest` s before and after it, every `step` s.
 
-    The grid contains 0 exactly; the motion covers the samples in [0, 3) s.
+    The grid contains 0 and `duration` exactly (the latter if there is a rest); the motion
+    covers the samples from 0 s to the last before `duration`.
 
     Raises
     ------
     ValueError
         If `step` does not divide the motion and the rest into whole samples.
     """
-    number("step", step, 0.0, MOTION_SECONDS, open_low=True)
+    number("duration", duration, 0.0, open_low=True)
+    number("step", step, 0.0, duration, open_low=True)
     number("rest", rest, 0.0)
-    before, total = rest / step, (MOTION_SECONDS + 2 * rest) / step
+    before, total = rest / step, (duration + 2 * rest) / step
     for name, count in (("rest", before), ("step", total)):
         if abs(count - round(count)) > 1e-6:
             raise ValueError(f"{name} must give a whole number of samples, got {count:g}")
-    # counted in fractions of the motion, so that 3 s is 3.0 and not one rounding below it
-    return (np.arange(round(total)) - round(before)) * MOTION_SECONDS / round(MOTION_SECONDS / step)
+    samples = np.arange(round(total)) - round(before)
+    count = round(duration / step)
+    # counted in fractions of the motion, so that its end is not one rounding below it
+    return np.where(samples == count, duration, samples * duration / count)

@@ -3,7 +3,7 @@
 import control
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from ddlib.actuators import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
@@ -43,6 +43,8 @@ def test_saturation_cannot_be_undone_beyond_its_range(y):
 
 @settings(deadline=None)
 @given(x=PAIR, width=st.floats(0, 100))
+@example(x=np.array([4e-5, 0.0]), width=2.2e-309)
+@example(x=np.array([4e-5, 0.0]), width=3e-10)
 def test_dead_zone_is_undone_exactly_outside_the_zone(x, width):
     zone = DeadZone((width, 0.0))
     left = zone.apply(x)
@@ -54,8 +56,8 @@ def test_dead_zone_is_undone_exactly_outside_the_zone(x, width):
         np.testing.assert_allclose(zone.inverse(left), x, rtol=1e-14)
     np.testing.assert_allclose(zone.apply(zone.inverse(x)), x, rtol=1e-14, atol=1e-13)
     # what a saturation of the same size lets through is just what the zone swallows
-    swallowed = Saturation((max(width, 1e-9), 1.0)).apply(x)[0] if width else 0.0
-    assert left[0] == pytest.approx(x[0] - swallowed)
+    swallowed = Saturation((width, 1.0)).apply(x)[0] if width else 0.0
+    assert left[0] == pytest.approx(x[0] - swallowed, rel=1e-14, abs=1e-13)
 
 
 def test_dead_zone_by_numbers():

@@ -260,3 +260,18 @@ def test_limit_is_continuous_where_its_series_ends():
 def test_bad_arguments_are_refused_by_name(call, name):
     with pytest.raises(ValueError, match=rf"^{name} must"):
         call()
+
+
+def test_stiffness_pulls_back_to_the_posture():
+    """Poles of one mass on a spring, and of an arm against its own second derivative."""
+    poles = plant(2.0, 0.6, [[8.0]]).poles()
+    np.testing.assert_allclose(np.sort_complex(poles), np.sort_complex(np.roots([2.0, 0.6, 8.0])))
+    np.testing.assert_allclose(plant(2.0, 0.6, 8.0).poles(), poles)
+    M, K = np.array([[3.0, 0.4], [0.4, 0.5]]), np.array([[2.0, -0.3], [-0.3, 0.7]])
+    joints = plant(M, [0.0, 0.0], K)
+    rates = np.linalg.eigvals(np.linalg.solve(M, K))
+    np.testing.assert_allclose(np.sort(joints.poles().imag ** 2)[::2], np.sort(rates))
+    np.testing.assert_allclose(joints.dcgain()[:2], np.linalg.inv(K), atol=1e-12)
+    for wrong in (1.0, [1.0, 2.0], np.ones((3, 3)), [[np.nan, 0], [0, 1]]):
+        with pytest.raises(ValueError, match=r"^stiffness must"):
+            plant(M, [0.0, 0.0], wrong)

@@ -18,11 +18,12 @@ from ddlib.loops import (
     simulated_response,
     smooth_pick_and_place,
 )
-from ddlib.simulate import Recording, follow, record
+from ddlib.simulate import Recording, follow, free_motion, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)
 PD, KI = pd(KP, KD), (150.0, 45.0)
+SYSTEM = feedforward_system(ARM, ARM, KP, KD)
 
 
 def still(t, posture=(0.0, 0.0)):
@@ -46,6 +47,25 @@ def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
     spring = 1 / KP[joint]
     assert simulated.compliance / spring == pytest.approx(predicted.compliance / spring, abs=0.05)
     assert predicted.compliance == pytest.approx(0 if law.ki[joint] else spring, abs=1e-9)
+
+
+@pytest.mark.parametrize("joint", [0, 1])
+@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.7, -1.0), (np.pi, 0.0)])
+def test_prediction_and_simulation_agree_for_an_arm_with_gravity(posture, joint):
+    """Hanging, bent, and upside down, where gravity is a negative spring."""
+    arm = REYES_KELLY_ARM
+    law, options = pd((120.0, 20.0), (12.0, 1.5)), {"viscous": (2.0, 0.3), "posture": posture}
+    predicted = predicted_response(arm, law, joint=joint, **options)
+    simulated = simulated_response(arm, law, joint=joint, step_deg=0.1, **options)
+    assert simulated.overshoot == pytest.approx(predicted.overshoot, rel=0.02, abs=2e-3)
+    assert simulated.bandwidth == pytest.approx(predicted.bandwidth, rel=0.02)
+    assert simulated.compliance == pytest.approx(predicted.compliance, rel=0.01)
+    # stiffness from differences of the weight's torque; at rest it adds to the controller's
+    h = 1e-5 * np.eye(2)
+    pull = (arm.gravity(posture + h) - arm.gravity(posture - h)) / 2e-5
+    whole = np.linalg.inv(np.diag(law.kp) + pull)
+    assert predicted.compliance == pytest.approx(whole[joint, joint], rel=1e-6)
+    assert abs(predicted.compliance * law.kp[joint] - 1) > 0.02  # gravity does matter
 
 
 def test_prediction_and_simulation_agree_for_a_ringing_loop():
@@ -178,7 +198,7 @@ def test_scores_of_a_made_up_recording():
     q[:, :, 1] = np.deg2rad(np.where((t >= 0) & (t < 1), 3.0, 1.0))
     q[:, t < 0] = 7.0  # outside the motion nothing counts
     tau = np.broadcast_to([3.0, 4.0], q.shape)
-    result = score(ARM, Recording(t, reference, q, tau, q, 0 * q, tau))
+    result = score(ARM, Recording(t, reference, q, tau, q, 0 * q, tau, duration=3.0))
     np.testing.assert_allclose(result["largest, °"], 3)
     np.testing.assert_allclose(result["settled, °"], np.sqrt(0.5))
     np.testing.assert_allclose(result["whole, °"], np.sqrt((9 + 1 + 1) / 6))
@@ -187,6 +207,29 @@ def test_scores_of_a_made_up_recording():
     np.testing.assert_allclose(result["turn, mm"], chord)
     np.testing.assert_allclose(result["effort, N m"], 5)
     assert result["turn, mm"].shape == (2,)
+
+
+def test_a_score_goes_by_the_motion_of_the_recording():
+    t = np.arange(-50, 800) * 0.002
+    quick = fast_pick_and_place(APPENDIX_I[:2], t, 2.5)
+    made = follow(ARM, PD, quick, t)
+    by_itself, told = score(ARM, made), score(ARM, made, 1.2)
+    for name, value in told.items():
+        np.testing.assert_array_equal(by_itself[name], value)
+    usual = score(ARM, record(ARM, PD, APPENDIX_I[:2]))
+    for name, value in score(ARM, record(ARM, PD, APPENDIX_I[:2]), 3.0).items():
+        np.testing.assert_array_equal(usual[name], value)
+
+
+def test_a_system_may_start_anywhere_and_moving():
+    t = np.arange(100) * 0.01
+    start = np.array([[0.3, -0.2], [0.5, 1.0]])
+    system = feedforward_system(ARM, lambda q, qd, qdd: 0 * q, (0, 0), (0, 0))
+    made = run_system(system, still(t), t, start)
+    _, q, qd = free_motion(ARM, *start, seconds=t[-1], step=0.01)
+    np.testing.assert_allclose(made.q_true, q, atol=1e-4)
+    np.testing.assert_allclose(made.qd_true, qd, atol=1e-4)
+    assert made.control_step == 0.0
 
 
 # --- refusals -------------------------------------------------------------------------
@@ -224,6 +267,8 @@ def test_the_smooth_motion_goes_out_and_back_without_a_jump(speed):
         (lambda: smooth_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
         (lambda: smooth_pick_and_place([1, 2, 3], [0.0, 0.1]), "extents_deg"),
         (lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0), "seconds"),
+        (lambda: run_system(SYSTEM, still(np.zeros(3)), [0.0, 0.1]), "reference"),
+        (lambda: run_system(SYSTEM, still(np.zeros(2)), [0.0, 0.1], [1.0, 2.0]), "start"),
     ],
 )
 def test_bad_arguments_are_refused_by_name(call, name):

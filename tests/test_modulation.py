@@ -10,6 +10,7 @@ from ddlib.controllers import pd, proportional
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
+    ComputingTime,
     CoulombFriction,
     Effects,
     Noise,
@@ -163,6 +164,38 @@ def test_no_equation_is_taken_where_a_joint_rests():
     assert shoulder.size > 0 and elbow.size == 0
     shoulder, elbow = by_modulation(run, RIGID).torque
     assert shoulder.size == elbow.size > 0, "without Coulomb friction all are good"
+
+
+def test_the_hold_is_the_recordings():
+    """Half a period of delay, more with a computing time; none if control is continuous."""
+    effects = CMU_DD_ARM_II_EFFECTS.without("encoder", "torque_sensor")
+    truth = true_parameters(CMU_DD_ARM_II, effects, NAMES)
+    for late in (0.0, 0.003):
+        slow = replace(effects, actuator=(ComputingTime(late),))
+        run = record(
+            CMU_DD_ARM_II, SMOOTH, TRAINING, effects=slow, control_step=0.005, log_step=0.005
+        )
+        found = least_squares(by_modulation(run))
+        np.testing.assert_allclose(found.values[3:5], truth[3:5], rtol=0.02)
+        held = 2 * late - 0.005 if late else 0.005
+        if held > 0:
+            same = least_squares(by_modulation(replace(run, control_step=None), hold=held))
+            np.testing.assert_allclose(same.values, found.values, rtol=1e-9)
+        wrong = least_squares(by_modulation(replace(run, control_step=0.0, computing_time=0.0)))
+        assert abs(wrong.values[3] / truth[3] - 1) > abs(found.values[3] / truth[3] - 1)
+    with pytest.raises(ValueError, match="hold must be given"):
+        by_modulation(replace(run, control_step=None))
+
+
+def test_bumps_that_the_log_cannot_show_are_refused():
+    run = record(CMU_DD_ARM_II, SMOOTH, APPENDIX_I[0], effects=IDEAL, duration=1.5)
+    for width in (0.11, 1.6):
+        with pytest.raises(ValueError, match=r"width must lie in \[0.12, 1.5\]"):
+            by_modulation(run, width=width)
+    for width in (0.12, 1.5):
+        assert by_modulation(run, RIGID, width=width).torque[0].size
+    with pytest.raises(ValueError, match="recording must have 12 samples of motion"):
+        by_modulation(replace(run, duration=0.1))
 
 
 def test_refusals():

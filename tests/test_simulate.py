@@ -1,6 +1,7 @@
 """The recorder: laws of conservation, rates, sensors, seeds and refusals."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -224,6 +225,86 @@ def test_a_loop_starts_where_its_reference_starts():
     recording = follow(ARM, PD, reference, t)
     np.testing.assert_array_equal(recording.q_true, np.broadcast_to([0.5, -0.3], (20, 2)))
     assert not recording.tau.any()
+
+
+@settings(deadline=None, max_examples=20)
+@given(samples=st.integers(15, 60), rest=st.integers(0, 3), step=st.floats(0.01, 0.09))
+def test_a_recording_knows_its_motion(samples, rest, step):
+    duration = samples * step
+    options = dict(control_step=step, log_step=step, rest=rest * step)
+    made = record(ARM, proportional((1.0, 1.0)), (20.0, 10.0), duration=duration, **options)
+    assert made.motion == slice(rest, rest + samples)
+    assert made.span == pytest.approx((0.0, duration)) and made.step == pytest.approx(step)
+    # the reference alone says as much
+    assert replace(made, duration=None).motion == made.motion
+
+
+@pytest.mark.parametrize("still", [np.zeros(2), np.array([0.5, -0.3])])
+def test_without_a_moving_reference_all_from_zero_on_is_motion(still):
+    t = time_grid(0.01, 0.1, 0.5)
+    reference = Trajectory(np.zeros((t.size, 2)) + still, *np.zeros((2, t.size, 2)))
+    made = follow(ARM, PD, reference, t, log_every=1)
+    assert made.motion == slice(10, 70)
+    assert follow(ARM, PD, reference, t, log_every=1, duration=0.2).motion == slice(10, 30)
+
+
+def test_a_motion_begins_where_the_reference_moves_first():
+    t = np.arange(200) * 0.01
+    moving = (t > 0.495) & (t < 1.205)
+    rate = np.stack([moving, 0 * t], -1)
+    reference = Trajectory(np.cumsum(rate, 0) * 0.01, rate, 0 * rate)
+    two = Trajectory(*(np.stack([x, 0 * x]) for x in reference))  # the second run rests
+    for wanted in (reference, two):
+        made = follow(ARM, PD, wanted, t, log_every=1)
+        assert made.motion == slice(50, 121)
+        assert made.span == pytest.approx((0.5, 1.21))
+
+
+def test_an_arm_may_start_anywhere_and_moving():
+    """Without torque it is the free arm."""
+    t = np.arange(400) * 0.002
+    start = np.array([[0.3, 0.5], [-1.0, 2.0]]), np.array([[1.0, -0.5], [0.8, 1.5]])
+    rest = Trajectory(*np.zeros((3, t.size, 2)))
+    for arm in (ARM, REYES_KELLY_ARM):
+        made = follow(arm, proportional((0.0, 0.0)), rest, t, start=start, log_every=1)
+        _, q, qd = free_motion(arm, *start, seconds=t[-1], step=0.002)
+        np.testing.assert_allclose(made.q_true, q, atol=1e-12)
+        np.testing.assert_allclose(made.qd_true, qd, atol=1e-12)
+        assert made.q_true.shape == (2, t.size, 2) and not made.tau.any()
+
+
+def test_the_first_difference_of_readings_is_the_velocity_at_the_start():
+    t = np.arange(5) * 0.002
+    rest = Trajectory(*np.zeros((3, 5, 2)))
+    options = dict(start=([0.2, 0.1], [1.0, -2.0]), velocity="difference", log_every=1)
+    made = follow(ARM, pd((0.0, 0.0), (3.0, 2.0)), rest, t, **options)
+    np.testing.assert_allclose(made.tau[0], [-3.0, 4.0])
+
+
+@pytest.mark.parametrize(
+    "start, words",
+    [
+        (3.0, r"^start must be a pair"),
+        (([0.0, 0.0],), r"^start must be a pair"),
+        (([0.0], [0.0, 0.0]), r"^start\[0\] must"),
+        (([0.0, 0.0], [0.0, np.nan]), r"^start\[1\] must"),
+        ((np.zeros((4, 2)), np.zeros(2)), r"^start must fit to the runs \(3,\)"),
+    ],
+)
+def test_a_start_that_does_not_fit_is_refused(start, words):
+    reference = Trajectory(*np.zeros((3, 3, 3, 2)))
+    with pytest.raises(ValueError, match=words):
+        follow(ARM, PD, reference, [0.0, 0.1, 0.2], start=start)
+
+
+@pytest.mark.parametrize(
+    "name, value", [("duration", 0.0), ("control_step", -1.0), ("computing_time", -1.0)]
+)
+def test_a_recording_refuses_bad_times(paper_run, name, value):
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        replace(paper_run, **{name: value})
+    with pytest.raises(ValueError, match=r"^t must increase in equal steps"):
+        _ = replace(paper_run, t=paper_run.t**3).step
 
 
 def test_halving_the_step_changes_little_and_in_proportion():

@@ -190,5 +190,14 @@ def test_stills_become_files_for_pages_without_script():
     assert left["a"]["state"]["words"] == "</script>" and left["b"] == state["b"]
 
 
+@pytest.mark.parametrize("address", ["http://localhost/x.svg", "file:///etc/hostname", "x.svg"])
+def test_a_build_opens_no_address_but_data(address, tmp_path):
+    with pytest.raises(ValueError, match=r"^address must begin with data:"):
+        slim.keep(tmp_path, "", address)
+    assert not list(tmp_path.iterdir())
+    assert slim.keep(tmp_path, "../", "data:image/svg+xml,%3Csvg/%3E").startswith("../")
+    assert [p.read_text() for p in tmp_path.iterdir()] == ["<svg/>"]
+
+
 def test_a_page_without_widgets_has_no_stills():
     assert slim.separate_stills("<p>text</p>", str) == "<p>text</p>"

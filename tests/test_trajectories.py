@@ -195,6 +195,35 @@ def test_time_grid_refuses_bad_values(step, rest, name):
         time_grid(step, rest)
 
 
+@pytest.mark.parametrize("duration", [0.7, 2.3, 2.5, 6.0])
+def test_a_motion_of_any_duration_is_the_papers_in_other_time(duration):
+    t = np.linspace(-0.5, 1.5, 81)
+    q, qd, qdd = pick_and_place([[45.0, 20.0], [3.0, 0.0]], duration * t, duration)
+    usual = pick_and_place([[45.0, 20.0], [3.0, 0.0]], 3 * t)
+    np.testing.assert_allclose(q, usual.q, atol=1e-14)
+    np.testing.assert_allclose(qd, usual.qd * 3 / duration, atol=1e-13)
+    np.testing.assert_allclose(qdd, usual.qdd * (3 / duration) ** 2, atol=1e-12)
+
+
+@settings(deadline=None, max_examples=200)
+@given(samples=st.integers(1, 500), rest=st.integers(1, 50), duration=st.floats(0.01, 100))
+def test_a_grid_of_any_duration_holds_the_motion_and_no_sample_more(samples, rest, duration):
+    step = duration / samples
+    t = time_grid(step, rest * step, duration)
+    assert (t == 0).sum() == (t == duration).sum() == 1
+    moving = pick_and_place((10.0, 20.0), t, duration).qdd.any(-1)
+    assert moving.sum() == samples - 1  # at 0 s the sine is zero
+    np.testing.assert_array_equal(np.flatnonzero(moving), rest + np.arange(1, samples))
+
+
+@pytest.mark.parametrize("duration", [0.0, -1.0, np.nan])
+def test_durations_are_refused_by_name(duration):
+    with pytest.raises(ValueError, match=r"^duration must"):
+        pick_and_place((1, 1), [0.0], duration)
+    with pytest.raises(ValueError, match=r"^duration must"):
+        time_grid(0.1, 0.0, duration)
+
+
 def test_time_grid_refuses_wrong_kinds():
     for step, rest in (("fast", 0.0), (0.01, [0.5, 0.5]), (0.01, "0.5")):
         with pytest.raises(TypeError, match=r"^(step|rest) must"):

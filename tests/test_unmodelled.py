@@ -1,11 +1,14 @@
 """Torque beyond the rigid body's: nothing for the rigid arm, each effect for an arm with it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.controllers import pd
 from ddlib.effects import (
+    ComputingTime,
     CoulombFriction,
     Effects,
     FlexibleJoint,
@@ -80,6 +83,30 @@ def test_a_springy_shaft_leaves_the_snap_of_the_motion():
 def test_samples_must_not_be_left_out():
     with pytest.raises(ValueError, match=r"recording must be logged every 0\.002 s"):
         residual_torque(ARM, drive(log_step=0.01))
+
+
+@pytest.mark.parametrize("period", [0.001, 0.004])
+def test_any_control_period_will_do_and_no_other_log(period):
+    options = dict(control_step=period, duration=2.0, rest=0.4)
+    made = record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=period, **options)
+    assert np.abs(residual_torque(ARM, made)).max() < 2e-6 * (period / CONTROL_STEP) ** 2 * 10
+    with pytest.raises(ValueError, match=rf"must be logged every {period:g} s.*got 0\.008 s"):
+        residual_torque(ARM, record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=0.008, **options))
+
+
+@pytest.mark.parametrize("late", [0.0005, 0.0012, 0.0019])
+def test_a_rigid_arm_with_a_late_torque_leaves_nothing(late):
+    made = drive(actuator=(ComputingTime(late),))
+    assert np.abs(np.diff(made.tau_true, axis=0)).max() > 1
+    assert np.abs(residual_torque(ARM, made)).max() < 5e-3
+    assert np.abs(residual_torque(ARM, replace(made, computing_time=0.0))).max() > 1
+
+
+@pytest.mark.parametrize("held", [None, 0.0])
+def test_a_torque_that_is_not_known_to_be_held_is_refused(held):
+    made = replace(drive(), control_step=held)
+    with pytest.raises(ValueError, match="recording must have a control_step above 0"):
+        residual_torque(ARM, made)
 
 
 def test_rms():

@@ -96,6 +96,22 @@ def test_what_the_widget_computes_is_read_only(name, widget):
 
 
 @pytest.mark.parametrize(
+    "address",
+    [
+        "https://example.org/still.svg",
+        "javascript:alert(1)",
+        "data:text/html;base64,PHN2Zy8+",
+        "data:image/svg+xml;base64,<svg/>",
+    ],
+)
+def test_a_still_is_a_picture_in_its_own_address(address, widget):
+    before = widget.still
+    with pytest.raises(TraitError, match="still must be an address that begins with 'data:image"):
+        widget.set_trait("still", address)
+    assert widget.still == before
+
+
+@pytest.mark.parametrize(
     "changes, message",
     [
         ({"name": "two words"}, "identifier.*'two words'"),

@@ -186,7 +186,12 @@ def separate_stills(text: str, store) -> str:
 
 
 def keep(folder: Path, up: str, address: str) -> str:
-    """Write what a ``data:`` address holds to a file; returns the file's relative address."""
+    """Write what a ``data:`` address holds to a file; returns the file's relative address.
+
+    Any other address is refused: a build opens nothing that a page names.
+    """
+    if not address.startswith("data:"):
+        raise ValueError(f"address must begin with data:, got {address[:60]!r}")
     with urllib.request.urlopen(address) as opened:
         content, kind = opened.read(), opened.headers.get_content_subtype()
     name = f"{hashlib.sha256(content).hexdigest()[:12]}.{kind.removesuffix('+xml')}"

@@ -14,7 +14,7 @@ from ddlib.widgets.baked import Baked
 from ddlib.widgets.panels import Pad, Panel, Scalar
 from ddlib.widgets.parameters import Choice, Parameter
 from ddlib.widgets.sampled import evaluate
-from ddlib.widgets.still import still_picture
+from ddlib.widgets.still import Still, still_picture
 
 HERE = Path(__file__).parent
 
@@ -100,7 +100,7 @@ class CurveWidget(anywidget.AnyWidget):
     exact = t.Bytes(b"", help="the function's curves as float32", read_only=True).tag(sync=True)
     answer = t.Dict(help="request and values that `exact` belongs to", read_only=True)
     answer.tag(sync=True)
-    still = t.Unicode(help="the starting state as a data URI", read_only=True).tag(sync=True)
+    still = Still(help="the starting state as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(

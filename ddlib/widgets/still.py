@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import base64
+import binascii
 from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
 import numpy as np
+import traitlets
 
 from ddlib.style import COLOURS, DASHES, illustrate
 from ddlib.widgets.panels import Pad, Panel
@@ -14,6 +16,28 @@ from ddlib.widgets.parameters import Parameter
 
 COLUMNS = 3
 """Most charts side by side."""
+
+START = "data:image/svg+xml;base64,"
+"""How the address of every still begins: it holds the picture and leads nowhere."""
+
+
+class Still(traitlets.Unicode):
+    """The trait of a still: empty, or the ``data:`` address of an SVG; nothing to be fetched."""
+
+    def validate(self, obj, value):
+        """`value`, or a TraitError if it is another address."""
+        value = super().validate(obj, value)
+        if value:
+            try:
+                if not value.startswith(START):
+                    raise ValueError("no such start")
+                base64.b64decode(value[len(START) :], validate=True)
+            except (ValueError, binascii.Error):
+                raise traitlets.TraitError(
+                    f"{self.name} must be an address that begins with {START!r} and goes on in "
+                    f"base64, got {value[:60]!r}"
+                ) from None
+        return value
 
 
 def still_picture(
@@ -54,7 +78,7 @@ def still_picture(
     svg = illustrate(draw, alt, width=2.9 * columns, height=2.6 * rows).svg
     svg = svg.replace("currentColor", "#1a1a1a")
     svg = svg.replace('style="', 'style="background:#fff;', 1)
-    return "data:image/svg+xml;base64," + base64.b64encode(svg.encode()).decode()
+    return START + base64.b64encode(svg.encode()).decode()
 
 
 def _draw_panel(ax, panel: Panel, curves):

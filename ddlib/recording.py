@@ -1,0 +1,106 @@
+"""What the log of an experiment holds, and where in it the motion lies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import number
+from ddlib.trajectories import Trajectory
+
+
+def equal_steps(t) -> float:
+    """The step of equally spaced times.
+
+    Parameters
+    ----------
+    t : ndarray, shape (time,)
+        Times, s; two or more.
+
+    Raises
+    ------
+    ValueError
+        If the steps differ or are not positive.
+    """
+    step = float(t[1] - t[0])
+    if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
+        raise ValueError(f"t must increase in equal steps, got steps from {step:g} s")
+    return step
+
+
+@dataclass(frozen=True)
+class Recording:
+    """What the log holds. Leading axes, if any, are runs.
+
+    Attributes
+    ----------
+    t : ndarray, shape (time,)
+        Times in s; the motion begins at 0.
+    reference : Trajectory
+        What the controller was asked for.
+    q : ndarray, shape (..., time, joint)
+        Measured positions, rad.
+    tau : ndarray, shape (..., time, joint)
+        Measured torques, N m.
+    q_true, qd_true, tau_true : ndarray, shape (..., time, joint)
+        What a perfect sensor would have read; `tau_true` is the applied torque.
+    duration : float, optional
+        Length of the motion, which begins at 0 s. Default: the motion is the samples from the
+        first to the last at which the reference of any run has a velocity or an acceleration;
+        if none has, all from 0 s on.
+    control_step : float, optional
+        Period for which the controller held a torque, s; 0 for continuous control. Default:
+        not known.
+    computing_time : float
+        How much later than its reading a torque was applied, s.
+    """
+
+    t: np.ndarray
+    reference: Trajectory
+    q: np.ndarray
+    tau: np.ndarray
+    q_true: np.ndarray
+    qd_true: np.ndarray
+    tau_true: np.ndarray
+    duration: float | None = None
+    control_step: float | None = None
+    computing_time: float = 0.0
+
+    def __post_init__(self):
+        if self.duration is not None:
+            number("duration", self.duration, 0.0, open_low=True)
+        if self.control_step is not None:
+            number("control_step", self.control_step, 0.0)
+        number("computing_time", self.computing_time, 0.0)
+
+    @property
+    def step(self) -> float:
+        """Sampling period of the log, s; a ValueError if the samples are not equally spaced."""
+        return equal_steps(self.t)
+
+    @property
+    def motion(self) -> slice:
+        """The samples of the motion itself, without the rests."""
+        early = 1e-6 * (self.t[1] - self.t[0])  # times may be rounded
+        first, end = np.searchsorted(self.t, -early), self.t.size
+        if self.duration is not None:
+            end = np.searchsorted(self.t, self.duration - early)
+        else:
+            moving = (self.reference.qd != 0) | (self.reference.qdd != 0)
+            moving = np.flatnonzero(moving.any(axis=(*range(moving.ndim - 2), -1)))
+            if moving.size:
+                first, end = moving[0], moving[-1] + 1
+        return slice(int(first), int(end))
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Begin and end of the motion, s: its first sample, and one period after its last."""
+        motion, step = self.motion, self.step
+        begin = float(self.t[0]) + motion.start * step
+        return begin, begin + (motion.stop - motion.start) * step
+
+    @property
+    def tracking_error(self) -> np.ndarray:
+        """True position minus reference, rad, shape ``(..., time, joint)``."""
+        return self.q_true - self.reference.q

@@ -1,0 +1,196 @@
+"""The whole path on somebody else's arm: record, identify, train, decompose.
+
+The arm and its motions are those of `book/data/characters.npz`; what is asserted of them was
+computed by others.
+"""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+
+from ddlib.arm import Arm
+from ddlib.controllers import pd
+from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
+from ddlib.experiment import predict, run
+from ddlib.filters import decompose
+from ddlib.identification import (
+    FRICTION,
+    GRAVITY,
+    RIGID,
+    Equations,
+    from_states,
+    least_squares,
+    true_parameters,
+)
+from ddlib.modulation import by_modulation, repeat
+from ddlib.network import TorqueModel, Weights
+from ddlib.recording import Recording
+from ddlib.simulate import record
+from ddlib.training import TrainingSet, cases, train_ensemble
+from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
+
+DATA = Path(__file__).parents[1] / "book" / "data"
+ARM = Arm(
+    "characters",
+    a=1.3727291666666667,
+    b=0.5,
+    d=0.5176145833333333,
+    lengths=(1.0, 1.0),
+    gravity_moments=(2.625, 1.5),
+)
+LAW = pd((100.0, 40.0), (14.0, 5.0))
+REAL = Effects(
+    friction=(ViscousFriction((0.2, 0.1)), CoulombFriction((0.2, 0.1))),
+    encoder=(Quantisation.encoder(16),),
+    torque_sensor=(Noise((0.05, 0.02)),),
+)
+NAMES = (*RIGID, *GRAVITY, *FRICTION)
+TRUTH = true_parameters(ARM, REAL, NAMES)
+TRAINING = APPENDIX_I[:5]
+
+
+@pytest.fixture(scope="module")
+def characters():
+    """The file's arrays, with the first angle counted from hanging down."""
+    with np.load(DATA / "characters.npz") as file:
+        content = dict(file)
+    content["q"] = content["q"] + [np.pi / 2, 0.0]
+    return content
+
+
+def drawn(content) -> list[Recording]:
+    """A recording for each character, as the file has it: torques at the samples."""
+    recordings = []
+    for end, samples in zip(np.cumsum(content["length"]), content["length"]):
+        q, qd, qdd, tau = (content[name][end - samples : end] for name in ("q", "qd", "qdd", "tau"))
+        t, reference = np.arange(samples) * 0.04, Trajectory(q, qd, qdd)
+        recordings.append(Recording(t, reference, q, tau, q, qd, tau, control_step=0.0))
+    return recordings
+
+
+def joined(parts: list[Equations]) -> Equations:
+    """One set of equations of many."""
+    return Equations(
+        parts[0].names,
+        tuple(np.concatenate(part) for part in zip(*(p.regressor for p in parts))),
+        tuple(np.concatenate(part) for part in zip(*(p.torque for p in parts))),
+    )
+
+
+# --- the file ---------------------------------------------------------------------------
+
+
+def test_the_file_is_what_its_page_says():
+    content, page = (DATA / "characters.npz").read_bytes(), (DATA / "README.md").read_text()
+    assert hashlib.sha256(content).hexdigest() in page
+    assert "milutter/deep_lagrangian_networks" in page and "LICENSE-characters" in page
+    licence = (DATA / "LICENSE-characters").read_text()
+    assert licence.startswith("MIT License\n\nCopyright (c) 2020 Michael Lutter\n")
+
+
+def test_every_file_of_others_is_described():
+    page = (DATA / "README.md").read_text()
+    for path in DATA.iterdir():
+        assert path.name in page or path.name == "README.md"
+
+
+# --- dynamics ---------------------------------------------------------------------------
+
+
+def test_both_dynamics_agree_with_the_file(characters):
+    q, qd, qdd, tau = (characters[name] for name in ("q", "qd", "qdd", "tau"))
+    np.testing.assert_allclose(ARM.inverse_dynamics(q, qd, qdd), tau, atol=1e-13)
+    np.testing.assert_allclose(ARM.forward_dynamics(q, qd, tau), qdd, atol=1e-12)
+
+
+def test_the_parts_of_the_torque_agree_with_the_file(characters):
+    q, qd, qdd = (characters[name] for name in ("q", "qd", "qdd"))
+    terms = ARM.torque_terms(q, qd, qdd)
+    parts = {
+        "inertial": terms["inertial"] + terms["coupling"],
+        "coriolis": terms["centrifugal"] + terms["coriolis"],
+        "gravity": terms["gravity"],
+    }
+    for name, part in parts.items():
+        np.testing.assert_allclose(part, characters[name], atol=1e-13)
+    np.testing.assert_allclose(ARM.mass_matrix(q), characters["mass_matrix"], atol=1e-14)
+
+
+# --- identification ---------------------------------------------------------------------
+
+
+def test_the_file_gives_the_parameters_of_its_arm(characters):
+    states = (characters[name] for name in ("q", "qd", "qdd", "tau"))
+    found = least_squares(from_states(*states, RIGID + GRAVITY))
+    np.testing.assert_allclose(found.values, TRUTH[:5], rtol=1e-12)
+
+
+@pytest.mark.parametrize("width", [0.48, 0.6, 1.2])
+def test_positions_and_torques_at_25_hz_give_the_parameters(characters, width):
+    """The file's derivatives are smoother than its positions, by less than 1 % of a parameter.
+
+    With a bump whose knots fall between samples (0.6 s are 15) they were wrong by 130 %.
+    """
+    parts = [by_modulation(r, RIGID + GRAVITY, width) for r in drawn(characters)]
+    found = least_squares(joined(parts))
+    np.testing.assert_allclose(found.values, TRUTH[:5], rtol=0.01)
+    # torques of exactly the motion that the positions show
+    parts = []
+    for r in drawn(characters):
+        motion = make_interp_spline(r.t, r.q, 7)
+        states = [motion(r.t), motion(r.t, 1), motion(r.t, 2)]
+        tau = ARM.inverse_dynamics(*states)
+        own = Recording(r.t, Trajectory(*states), states[0], tau, *states[:2], tau, control_step=0)
+        parts.append(by_modulation(own, RIGID + GRAVITY, width))
+    found = least_squares(joined(parts))
+    np.testing.assert_allclose(found.values, TRUTH[:5], rtol=1e-3)
+
+
+@pytest.mark.parametrize("control_step", [0.001, 0.005])
+@pytest.mark.parametrize("log_step", [0.005, 0.02])
+@pytest.mark.parametrize("duration", [2.5, 6.0])
+def test_any_duration_and_rate_gives_the_parameters(duration, log_step, control_step):
+    options = dict(duration=duration, log_step=log_step, control_step=control_step)
+    sharp = REAL.without("encoder", "torque_sensor")
+    clean = record(ARM, LAW, TRAINING, effects=sharp, **options)
+    assert clean.t[clean.motion].size == round(duration / log_step)
+    found = least_squares(by_modulation(clean, NAMES))
+    np.testing.assert_allclose(found.values[:5], TRUTH[:5], rtol=1e-3)
+    many = repeat(ARM, LAW, TRAINING, REAL, repetitions=40, seed=1, **options)
+    found = least_squares(by_modulation(many, NAMES))
+    share = found.covers(TRUTH).mean(0)  # of intervals that hold the truth with 95 %
+    assert share.mean() > 0.93 and share.min() > 0.8
+
+
+# --- networks and filters ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize("duration, log_step", [(2.5, 0.005), (6.0, 0.02)])
+def test_the_way_to_the_filters_works_for_any_arm(duration, log_step, tmp_path):
+    options = dict(duration=duration, control_step=0.001, log_step=log_step, seed=3)
+    recording = record(ARM, LAW, TRAINING[:3], effects=REAL, **options)
+    samples = round(duration / log_step)
+    first = round(0.5 / log_step)
+    assert recording.motion == slice(first, first + samples)
+    np.testing.assert_allclose(
+        recording.reference.q, pick_and_place(TRAINING[:3], recording.t, duration).q, atol=1e-15
+    )
+    windows, torque = cases(recording, 11)
+    assert windows.shape == (3 * samples, 2, 11) and torque.shape == (3 * samples, 2)
+    np.testing.assert_array_equal(windows[samples, :, 5], recording.q[1, first])
+    data = TrainingSet.from_recording(recording, 11)
+    start = Weights.random(2, 11, hidden=4, seed=0)
+    model, history, _ = train_ensemble(start, data, epochs=20, progress=False)
+    assert history.training.shape[1] == 2 and np.isfinite(history.training).all()
+    model.save(tmp_path / "model.npz")
+    kept = TorqueModel.load(tmp_path / "model.npz")
+    np.testing.assert_allclose(
+        predict(kept, run(recording, 1)), model.torque(windows[samples : 2 * samples]), atol=1e-4
+    )
+    parts = decompose(model.weights.hidden_weights)
+    np.testing.assert_allclose(parts.sum(), model.weights.hidden_weights, atol=1e-12)
+    np.testing.assert_allclose(parts.odd, -parts.odd[..., ::-1], atol=1e-12)
+    np.testing.assert_allclose(parts.even, parts.even[..., ::-1], atol=1e-12)
