@@ -15,6 +15,7 @@ from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
 MARKERS = "os^DvPX"
+CENTRED = dict(ha="center", va="center")
 
 
 def hand_paths(arm: Arm, extents_deg) -> Illustration:
@@ -34,15 +35,17 @@ def hand_paths(arm: Arm, extents_deg) -> Illustration:
 
     def draw(figure: Figure):
         axis = figure.subplots()
+        turned = np.concatenate([np.zeros((len(points), 1, 2)), points[:, -1]], 1)
+        along = np.linspace(0.0, 1.0, 40)[:, None, None, None]
+        arms = turned[:, :-1] + along * np.diff(turned, axis=1)
+        drawn = np.concatenate([points[:, :, 1].reshape(-1, 2), arms.reshape(-1, 2)])
         for k, path in enumerate(points):
             joints = np.vstack([np.zeros(2), path[-1]])
             axis.plot(*joints.T, color=FAINT, lw=2.5, alpha=0.45, solid_joinstyle="round")
             colour = COLOURS[k % len(COLOURS)]
             axis.plot(*path[:, 1].T, color=colour, ls=DASHES[k % len(DASHES)], lw=2)
             axis.plot(*path[-1, 1], "o", color=colour, ms=5)
-            axis.annotate(
-                str(k + 1), path[-1, 1], (6, -3), textcoords="offset points", color=colour
-            )
+            axis.text(*_free_place(path[-1, 1], drawn), str(k + 1), color=colour, **CENTRED)
         rest = np.vstack([np.zeros(2), points[0, 0]])
         axis.plot(*rest.T, color=INK, lw=3.5, marker="o", ms=6, mfc="white", mec=INK)
         axis.set(xlabel="x, m", ylabel="y, m", aspect="equal")
@@ -54,6 +57,14 @@ def hand_paths(arm: Arm, extents_deg) -> Illustration:
         f"from {reach.min():.2f} to {reach.max():.2f} m."
     )
     return illustrate(draw, alt, 5.2, 3.9)
+
+
+def _free_place(point, drawn, distance: float = 0.035):
+    """Where a label near a point is farthest from what is drawn, all in metres."""
+    angle = np.arange(0.0, 2 * np.pi, np.pi / 12)
+    places = point + distance * np.stack([np.cos(angle), np.sin(angle)], -1)
+    room = np.linalg.norm(places[:, None] - drawn, axis=-1).min(-1)
+    return places[room.argmax()]
 
 
 def operations(
