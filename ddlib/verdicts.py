@@ -6,10 +6,10 @@ its value, from a bootstrap over the networks, and its verdict is what most repl
 
 - The *fresh* verdict is the one that at least `DECIDED` of the replicates get, and "undecided"
   if none has so many.
-- The *written* verdict, in ``book/claims.yml``, *stands* until the replicates contradict it: a
-  decided one while at least `STANDS` of them agree, "undecided" while no verdict has
-  `CONTRADICTS`. Between those shares either may be written, so results made anew on another
-  machine change a verdict only where they say something else.
+- The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
+  (`ddlib.judging`). Results made anew on another machine are another draw; there it *stands*
+  until the replicates contradict it: a decided one while at least `STANDS` of them agree,
+  "undecided" while no verdict has `CONTRADICTS`.
 
 Measures without replicates, of exact mathematics or a deterministic simulation, have one value
 and one verdict, and a written one that differs is wrong.
@@ -40,10 +40,12 @@ DRAWS = 2000
 DECIDED = 0.95
 """Share of the draws that makes a verdict."""
 
-STANDS = 0.80
-"""Share of the draws down to which a written verdict stands."""
+STANDS = 0.05
+"""Share of the draws down to which a written verdict stands: below, they exclude it as surely as
+they had to agree before. A verdict at the edge of being decided falls in one new ensemble of
+about two thousand, where 0.8 would fell one in five."""
 
-CONTRADICTS = 0.99
+CONTRADICTS = 1.0
 """Share of the draws for one verdict that ends a written "undecided"."""
 
 

@@ -45,6 +45,7 @@ ORDER = [
     ("random_arms", "harmonics", "responses"),
     ("results", "style", "tables", "stated"),
     ("claims",),
+    ("judging",),
     ("measures", "ledger_tables"),
     ("ledger",),
     (

@@ -100,11 +100,11 @@ def test_a_verdict_needs_nearly_all_draws(share, wanted):
     [
         ("reproduced", 1.0, True),
         ("reproduced", STANDS, True),
-        ("reproduced", 0.79, False),
-        ("qualitative", 0.79, False),  # has 21 %
-        ("qualitative", 0.2, True),
+        ("reproduced", 0.049, False),
+        ("qualitative", 0.96, False),  # has 4 %
+        ("qualitative", 0.94, True),
         ("undecided", 0.5, True),
-        ("undecided", 0.989, True),
+        ("undecided", 0.999, True),
         ("undecided", CONTRADICTS, False),
         ("not reproduced", 0.5, False),  # a planted one
     ],
