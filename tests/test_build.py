@@ -1,7 +1,8 @@
-"""The build itself: what it depends on, what it runs again, and that it fails when it should."""
+"""The build: what it depends on, what it runs again, when it fails and what it says then."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -9,10 +10,14 @@ import sys
 import nbformat
 import pytest
 from book_pages import ROOT
+from bs4 import BeautifulSoup
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
+from build import messages
 from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
+from dd_failures import failing_cell, last_line
 
+STAMP = "_build/html/.built-from"
 COUNTING = "from pathlib import Path\n\nwith Path('runs').open('a') as file:\n    file.write('x')"
 
 
@@ -33,17 +38,27 @@ def tiny(tmp_path):
     return tmp_path
 
 
-def write_page(root, text, code=COUNTING):
+def write_page(root, text, *code, name="index"):
+    code_cells = [nbformat.v4.new_code_cell(source) for source in code or (COUNTING,)]
     notebook = nbformat.v4.new_notebook(
-        cells=[nbformat.v4.new_markdown_cell(text), nbformat.v4.new_code_cell(code)],
+        cells=[nbformat.v4.new_markdown_cell(text), *code_cells],
         metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}},
     )
-    nbformat.write(notebook, root / "book" / "index.ipynb")
+    nbformat.write(notebook, root / "book" / f"{name}.ipynb")
 
 
-def build(root):
-    command = [sys.executable, str(ROOT / "book" / "_ext" / "build.py"), str(root)]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+def add_page(root, text, *code, name="chapter"):
+    with (root / "_toc.yml").open("a") as toc:
+        toc.write(f"chapters:\n- file: book/{name}\n")
+    write_page(root, text, *code, name=name)
+
+
+def build(root, *options, ci=False):
+    command = [sys.executable, str(ROOT / "book" / "_ext" / "build.py"), *options, str(root)]
+    surroundings = {key: value for key, value in os.environ.items() if key != "CI"}
+    if ci:
+        surroundings["CI"] = "true"
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=surroundings)
 
 
 def runs(root) -> int:
@@ -103,18 +118,115 @@ def test_notebooks_run_again_only_when_needed(tiny):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("text", "code", "complaint"),
+    ("text", "code", "complaint", "ci"),
     [
-        ("# Title\n\n{ref}`nowhere`", "1", "nowhere"),
-        ("# Title", "1 / 0", "ZeroDivisionError"),
-        ("# Title", "import warnings\n\nwarnings.warn('look here')", "stderr was found"),
-        ("# Title\n\n{py:func}`ddlib.nothing`", "1", "ddlib.nothing"),
+        ("# Title\n\n{ref}`nowhere`", "1", "nowhere", False),
+        ("# Title", "1 / 0", "ZeroDivisionError", True),
+        ("# Title", "import warnings\n\nwarnings.warn('look here')", "stderr was found", False),
+        ("# Title\n\n{py:func}`ddlib.nothing`", "1", "ddlib.nothing", True),
     ],
 )
-def test_a_failing_build_keeps_failing(tiny, text, code, complaint):
+def test_a_strict_build_fails(tiny, text, code, complaint, ci):
     write_page(tiny, text, code)
-    for _ in range(2):
-        outcome = build(tiny)
-        assert outcome.returncode != 0
-        assert complaint in outcome.stdout + outcome.stderr
-        assert "FAILED" in outcome.stderr
+    outcome = build(tiny, *([] if ci else ["--strict"]), ci=ci)
+    assert outcome.returncode == 1
+    assert complaint in outcome.stderr and "FAILED: under --strict" in outcome.stderr
+    assert not (tiny / STAMP).exists()  # else the next call would say "nothing changed"
+
+
+@pytest.mark.slow
+def test_a_warning_does_not_stop_a_reader(tiny):
+    write_page(tiny, "# Title\n\n{ref}`nowhere`")
+    outcome = build(tiny)
+    assert outcome.returncode == 0
+    assert "nowhere" in outcome.stderr and "FAILED" not in outcome.stderr
+    assert "are about: index" in outcome.stderr
+    assert not (tiny / STAMP).exists()
+
+
+@pytest.mark.slow
+def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
+    quotes = [f"from ddlib.tables import quote\nquote({name!r}, 1.5)" for name in "ab"]
+    add_page(
+        tiny,
+        "# Chapter\n\nIt is {glue:text}`a:.2f`, or {glue:text}`b:.2f`.",
+        quotes[0],
+        "print('so far')\n1 / 0",
+        quotes[1],
+    )
+    outcome = build(tiny)
+    assert outcome.returncode == 1
+    assert "Traceback" not in outcome.stderr
+    assert "FAILED in part" in outcome.stderr
+    assert "book/chapter: code cell 2 (“print('so far')”): ZeroDivision" in outcome.stderr
+    pages = {n: (tiny / "_build/html/book" / f"{n}.html") for n in ("index", "chapter")}
+    bad = BeautifulSoup(pages["chapter"].read_text(encoding="utf-8"), "html.parser")
+    box = bad.select_one("article h1 + .admonition.failed")
+    said = box.get_text(" ", strip=True)
+    assert "code cell 2" in said and "ZeroDivisionError: division by zero" in said
+    assert "Please report" in said and "Python 3." in said
+    assert "It is 1.50, or ?." in bad.select_one("article").get_text()
+    assert "so far" in bad.select_one("article .cell_output").get_text()
+    assert "incomplete" not in pages["index"].read_text(encoding="utf-8")
+    assert "index.html" in outcome.stdout.splitlines()[-1]
+    assert not (tiny / STAMP).exists()
+
+    write_page(tiny, "# Chapter", "1 + 1", name="chapter")
+    assert build(tiny).returncode == 0
+    assert (tiny / STAMP).exists()
+    assert "incomplete" not in pages["chapter"].read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_a_kernel_that_ends_is_told_too(tiny):
+    add_page(tiny, "# Chapter", "import os\n\nos._exit(1)")
+    outcome = build(tiny)
+    assert outcome.returncode == 1
+    assert "book/chapter: its notebook: The Python process" in outcome.stderr
+    page = (tiny / "_build/html/book/chapter.html").read_text(encoding="utf-8")
+    assert "This page is incomplete" in page and "os._exit" in page
+
+
+CAUGHT = """\
+nbclient.exceptions.CellExecutionError: An error occurred while executing the following cell:
+------------------
+x = 1
+assert x > 1, "too
+  small"
+------------------
+
+
+---------------------------------------------------------------------------
+AssertionError                            Traceback (most recent call last)
+Cell In[2], line 2
+      1 x = 1
+----> 2 assert x > 1, "too
+      3   small"
+
+AssertionError: too
+  small
+"""
+
+
+def test_the_failing_cell_is_found():
+    cells = ["x = 0", 'x = 1\nassert x > 1, "too\n  small"', "y"]
+    assert failing_cell(CAUGHT, cells) == (2, cells[1])
+    assert failing_cell(CAUGHT, ["y"])[0] == failing_cell("", cells)[0] == 0
+    long = "-------------------\nx = 0\n...\nz\n-------------------\n"
+    assert failing_cell(long, cells) == (1, "x = 0")
+
+
+def test_the_last_line_names_the_exception():
+    assert last_line(CAUGHT) == "AssertionError: too"
+    late = f"nbclient.exceptions.CellTimeoutError: A cell timed out\n{'-' * 19}\nx\n{'-' * 19}\n"
+    assert last_line(late) == "CellTimeoutError: A cell timed out"
+    assert last_line("nothing known\nat all\n") == "at all"
+
+
+def test_tracebacks_of_the_machinery_are_no_messages():
+    own = "Traceback (most recent call last):\n  File a\nRuntimeError: \n\n===\nLook above\n===\n"
+    notebook = "a.ipynb: WARNING: Executing notebook failed: CellExecutionError\n" + own
+    plain = "/b.md:3: WARNING: undefined label: 'x'\n"
+    lines = f"{notebook}{plain}{own}".splitlines(keepends=True)
+    assert messages(lines) == [notebook, plain]
+    assert messages(own.splitlines(keepends=True)) == []

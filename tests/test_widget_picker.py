@@ -252,6 +252,40 @@ def test_drag_and_keys(tmp_path, visit, full):
 
 
 @browser_test
+@pytest.mark.parametrize(
+    ("width", "height"),
+    [(390, 700), (704, 800), (1264, 800)],  # phone; the pages' text at 1280 px; JupyterLab
+)
+def test_errors_stand_beside_the_pad(width, height, tmp_path, browser, full):
+    """The handle and all numbers are in view at once, and change while it is dragged."""
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", full, extra='<div style="height: 900px"></div>'))
+    page.wait_for_selector(".pad")
+    page.evaluate(NEXT_FRAME)
+    pad, numbers = page.locator(".pad .frame"), page.locator(".scalars output")
+    pad.evaluate("(el) => scrollBy(0, el.getBoundingClientRect().top - 60)")
+    assert numbers.count() == len(full.spec["scalars"]) == 5
+    before = numbers.all_inner_texts()
+    box = pad.bounding_box()
+    for output in numbers.all():
+        place = output.bounding_box()
+        assert 0 <= place["y"] and place["y"] + place["height"] <= height
+        assert 0 <= place["x"] and place["x"] + place["width"] <= width
+        if width > 600:
+            assert place["x"] > box["x"] + box["width"]  # to the right of the pad,
+            assert place["y"] < box["y"] + box["height"]  # not below it
+    page.mouse.move(box["x"] + 0.9 * box["width"], box["y"] + 0.7 * box["height"])
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.8 * box["height"], steps=3)
+    page.evaluate(NEXT_FRAME)
+    assert all(a != b for a, b in zip(before, numbers.all_inner_texts(), strict=True))
+    page.mouse.up()
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    context.close()
+
+
+@browser_test
 def test_touch_drags_the_pad(tmp_path, browser, full):
     context = browser.new_context(viewport={"width": 380, "height": 800}, has_touch=True)
     page = context.new_page()

@@ -1,13 +1,21 @@
-"""Build the book, strictly: `python book/_ext/build.py [FOLDER]`.
+"""Build the book: `python book/_ext/build.py [--strict] [FOLDER]`.
 
-Warnings are errors. Pages are always written from fresh doctrees, since Sphinx does not
-repeat the warnings of pages it has read before; executed notebooks come from a cache.
-The stamp is written last, so that only a clean build lets the next call say "nothing changed".
+A chapter that fails does not take the others with it: its page says in a box what failed, the
+end of the build lists such pages, and the status is 1. With `--strict`, or with CI=true in the
+environment, every warning is an error too.
+
+Pages are always written from fresh doctrees, since Sphinx does not repeat the warnings of pages
+it has read before; executed notebooks come from a cache. The stamp is written last, so that only
+a clean build lets the next call say "nothing changed".
 """
 
 from __future__ import annotations
 
+import argparse
+import json
+import logging
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,30 +25,59 @@ from pathlib import Path
 from ddlib.claims import SHARED
 from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
+from sphinx.util.console import strip_colors
 
 from dd_book import PAGE_INPUTS, cache_path, digest
+from dd_failures import FAILURES, UNEXECUTED, where
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"
+# How a message of Sphinx begins: where, then what.
+MESSAGE = re.compile(r"(?P<where>.*?)(?::\d+)?:? ?(?:WARNING|ERROR|CRITICAL|SEVERE): ")
+TRACEBACK = "Traceback (most recent call last):"
+NOTEBOOK_FAILED = "Executing notebook failed"
 
 TIMEOUT = 600  # seconds for one cell, as in _config.yml
 
 
-def build(root: Path) -> int:
-    """Run Jupyter Book, pass on what it says, return its exit status."""
+def build(root: Path, strict: bool) -> tuple[int, list[str]]:
+    """Run Jupyter Book; its exit status and what it complained about, a message an entry."""
     command = [Path(sys.executable).with_name("jupyter-book"), "build", root]
-    options = ["-W", "-n", "--keep-going"]
+    options = ["-W", "-n", "--keep-going"] if strict else []
+    lines = []
     with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, text=True) as process:
         for line in process.stderr:
             if NOISE not in line:
-                print(line, end="", file=sys.stderr, flush=True)
-    return process.returncode
+                lines.append(strip_colors(line))
+    log(root).write_text("".join(lines), encoding="utf-8")
+    return process.returncode, messages(lines)
+
+
+def log(root: Path) -> Path:
+    """Everything that Jupyter Book and Sphinx complained about, tracebacks included."""
+    return root / "_build" / "build.log"
+
+
+def messages(lines: list[str]) -> list[str]:
+    """Complaints of Sphinx, each with the lines that belong to it.
+
+    A traceback belongs to a message where a notebook failed. Others are the machinery's own and
+    are left out: they never are the message.
+    """
+    found = [""]
+    for line in lines:
+        own = line.startswith(TRACEBACK) and NOTEBOOK_FAILED not in found[-1]
+        if own or MESSAGE.match(line):
+            found.append("")
+        found[-1] += line
+    return [text for text in found if text.strip() and not text.startswith(TRACEBACK)]
 
 
 def execute_ahead(root: Path) -> None:
     """Execute on all cores the notebooks that the build would otherwise execute one by one.
 
-    What fails here is not kept: the build meets it again and reports it.
+    What fails here is not kept: the build meets it again, shows what came before and reports it.
+    A notebook whose kernel ended is left out there.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
     folder = cache_path(root, root / "_build")
@@ -48,14 +85,53 @@ def execute_ahead(root: Path) -> None:
     cache = get_cache(str(folder))
     for path in sorted((root / "book").glob("*.ipynb")):
         cache.add_nb_to_project(str(path))
-    done = load_executor("local-parallel", cache).run_and_cache(timeout=TIMEOUT)
+    silent = logging.getLogger("ahead")
+    silent.setLevel(logging.CRITICAL + 1)
+    done = load_executor("local-parallel", cache, logger=silent).run_and_cache(timeout=TIMEOUT)
+    ended = [Path(path).relative_to(root).with_suffix("").as_posix() for path in done.errored]
+    os.environ[UNEXECUTED] = json.dumps(ended)
     print(f"==> Executed {len(done.succeeded)} notebooks", flush=True)
 
 
-def main(root: Path) -> int:
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def failures(root: Path) -> list[dict]:
+    """The pages whose notebooks failed, as the extension has listed them."""
+    path = root / "_build" / FAILURES
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else []
+
+
+def report(root: Path, found: list[str], strict: bool) -> None:
+    """Pass on the messages and say which pages are concerned.
+
+    To a reader, messages about incomplete pages say nothing that is not in the box on the page.
+    """
+    incomplete = failures(root)
+    concerned = set()
+    for text in found:
+        place = (MESSAGE.match(text) or {"where": ""})["where"] or ""
+        known = any(f"{failure['page']}.ipynb" in place for failure in incomplete)
+        if strict or not known:
+            say(text.rstrip())
+        if not known and place:
+            concerned.add(Path(place).stem)
+    if concerned:
+        say(f"==> The warnings above are about: {', '.join(sorted(concerned))}")
+    if incomplete:
+        say("==> FAILED in part. These pages are incomplete; a box on each says how to report it:")
+    for failure in incomplete:
+        say(f"    {failure['page']}: {where(failure)}: {failure['error']}")
+    if strict and found:
+        say("==> FAILED: under --strict or CI=true a warning is an error")
+
+
+def main(root: Path, strict: bool) -> int:
     html = root / "_build" / "html"
     stamp = html / ".built-from"
     sources = digest(root, PAGE_INPUTS)
+    failed = False
     if stamp.is_file() and stamp.read_text() == sources:
         print("==> Nothing changed since the last build")
     else:
@@ -64,20 +140,27 @@ def main(root: Path) -> int:
         execute_ahead(root)
         for stale in (html, root / "_build" / ".doctrees"):
             shutil.rmtree(stale, ignore_errors=True)
-        status = build(root)
-        if status:
-            print(
-                "==> The build FAILED: its warnings and errors are above; tracebacks of "
-                f"notebooks are also in {html / 'reports'}",
-                file=sys.stderr,
-            )
-            return status
-        stamp.write_text(sources)
-        print(f"==> Built in {time.monotonic() - started:.0f} s")
+        (root / "_build" / FAILURES).unlink(missing_ok=True)
+        status, found = build(root, strict)
+        report(root, found, strict)
+        failed = bool(status or failures(root) or (strict and found))
+        if status and not strict:
+            say("==> FAILED: not all pages could be written; please report it with the log")
+        if failed or found:
+            say(f"==> All messages are in {log(root)}, tracebacks of notebooks in {html}/reports")
+        else:
+            stamp.write_text(sources)
+        print(f"==> {time.monotonic() - started:.0f} s")
     page = html / "index.html"
-    print(f"==> Open {page.relative_to(root)}, that is {page.as_uri()}")
-    return 0
+    if page.is_file():
+        print(f"==> Open {page.relative_to(root)}, that is {page.as_uri()}")
+    return int(failed)
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()))
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--strict", action="store_true", help="warnings are errors")
+    parser.add_argument("folder", nargs="?", default=".", type=Path)
+    arguments = parser.parse_args()
+    in_ci = os.environ.get("CI", "").lower() in {"1", "true"}
+    sys.exit(main(arguments.folder.resolve(), arguments.strict or in_ci))

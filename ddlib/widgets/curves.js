@@ -8,7 +8,7 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
 // The view has: model, spec, el, id, values (in the order of spec.parameters), curves (by name),
 // get(name), set({name: value}), after (called with the curves after each redraw), charts,
-// controls, top, words (returns texts to be spoken), schedule() (redraws in the next frame).
+// controls, top, numbers (a list below the charts), words (returns texts to be spoken), schedule() (redraws in the next frame).
 const extras = [];
 
 function build({ model, el }) {
@@ -36,13 +36,13 @@ function build({ model, el }) {
   if (spec.pad) view.top.prepend(controls.at(-1).el);
   const charts = make("div", { class: "charts" }, ...view.charts.map((c) => c.el));
   const scalars = spec.scalars.map((s) => ({ ...s, output: make("output") }));
-  const numbers = make("dl", { class: "scalars" });
-  for (const s of scalars) numbers.append(make("div", {}, make("dt", {}, s.label), make("dd", {}, s.output)));
+  view.numbers = make("dl", { class: "scalars" });
+  for (const s of scalars) view.numbers.append(make("div", {}, make("dt", {}, s.label), make("dd", {}, s.output)));
   const note = make("p", { class: "note", role: "status", hidden: "" });
   const problem = make("p", { class: "problem", role: "alert", hidden: "" });
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
   const footer = make("p", { class: "footer" }, footerText(model, spec));
-  el.replaceChildren(view.top, charts, ...(scalars.length ? [numbers] : []), note, problem, footer, spoken);
+  el.replaceChildren(view.top, charts, ...(scalars.length ? [view.numbers] : []), note, problem, footer, spoken);
 
   // The curves for the values as they stand: exact ones if the kernel has sent them.
   function current() {

@@ -1,5 +1,6 @@
 // What TrajectoryPicker (picker.py) adds to a CurveWidget: the arm, its player, the verdict
-// about the hull of the training trajectories, and the button that records.
+// about the hull of the training trajectories, and the button that records. The numbers stand
+// beside the pad.
 
 // Elbow and hand of two links of given lengths at given joint angles (rad), in pixels.
 function pose([l1, l2], q1, q2, scale) {
@@ -133,6 +134,7 @@ extras.push((view) => {
   }
   model.on("change:record_status", done);
 
+  view.top.firstChild.after(view.numbers); // beside the pad: seen while it is dragged
   view.controls.append(verdict, make("div", { class: "record" }, record, said));
   view.top.append(make("div", { class: "arm-box" }, arm.svg, player));
   const follow = (curves) => {
