@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
+from ddlib import style
 from ddlib._check import finite_array
 from ddlib.arm import Arm
 from ddlib.filters import decompose
@@ -50,7 +51,7 @@ def curves(
     """  # fmt: skip
     rows = -(-len(panels) // columns)
     names = [tuple(named) for named in panels.values()]
-    shared = len(panels) > 1 and len(names[0]) > 1 and len(set(names)) == 1
+    above = len(names[0]) > 1 and len(set(names)) == 1  # where no curve can run through it
     look = {name: k for k, name in enumerate(dict.fromkeys(sum(names, ())))}
 
     def draw(figure: Figure):
@@ -68,10 +69,10 @@ def curves(
             if y_log:
                 axis.set_yscale("log")
                 plain_ticks(axis.yaxis)
-            if len(named) > 1 and not shared:
+            if len(named) > 1 and not above:
                 axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
-        if shared:
-            figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
+        if above:
+            style.legend_above(figure, *axes[0].get_legend_handles_labels())
         for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
             axis.set_xlabel(x_label)
         for axis in axes[len(panels) :]:
@@ -369,6 +370,8 @@ def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustrat
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
         for axis in axes[len(functions) - columns : len(functions)]:
             axis.set_xlabel("time from the window's centre, ms")
+        for axis in axes[::columns]:
+            axis.set_ylabel("weight")
         for axis in axes[len(functions) :]:
             axis.remove()
 

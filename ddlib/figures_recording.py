@@ -28,12 +28,12 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
     if not checked or any(x.ndim != 3 for x in checked.values()):
         shapes = {name: x.shape for name, x in checked.items()}
         raise ValueError(f"states must hold arrays (runs, time, 6), got {shapes}")
-    titles = ("position, rad", "velocity, rad/s", "acceleration, rad/s²")
+    units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
     edge = 1.15 * radius
 
     def draw(figure: Figure):
         axes = figure.subplots(1, 3)
-        for k, (axis, title) in enumerate(zip(axes, titles)):
+        for k, (axis, (title, unit)) in enumerate(zip(axes, units.items())):
             box = Rectangle((-radius, -radius), 2 * radius, 2 * radius, fill=False)
             box.set(edgecolor=INK, lw=1.0)
             axis.add_patch(box)
@@ -44,8 +44,7 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
             axis.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal", title=title)
             axis.axhline(0, color=FAINT, lw=0.5)
             axis.axvline(0, color=FAINT, lw=0.5)
-            axis.set_xlabel("shoulder")
-        axes[0].set_ylabel("elbow")
+            axis.set(xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)
 
     largest = ", ".join(
@@ -83,13 +82,13 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
         top, bottom = figure.subplots(2, 1, sharex=True)
         top.step(t, steps, where="mid", color=FAINT, lw=0.9)
         top.plot(t, steps, ".", color=COLOURS[0], ms=5)
-        top.set_ylabel("encoder steps")
+        top.set_ylabel("angle, encoder steps")
         for k, (name, x) in enumerate(drawn.items()):
             look = dict(ls="", marker=".", ms=5) if k == 0 else dict(lw=2)
             bottom.plot(t, x, color=COLOURS[k + 1], label=name, **look)
             if k == 0:
                 bottom.vlines(t, 0, x, color=COLOURS[1], lw=0.7, alpha=0.6)
-        bottom.set(xlabel="time, s", ylabel="rad/s²")
+        bottom.set(xlabel="time, s", ylabel="acceleration, rad/s²")
         figure.legend(*bottom.get_legend_handles_labels(), loc="outside upper left", ncols=3)
 
     sizes = ", ".join(f"{name} {np.std(x):.3f}" for name, x in drawn.items())

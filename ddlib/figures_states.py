@@ -146,7 +146,7 @@ def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
                               label=label)  # fmt: skip
             axis.plot(t, middle[:, j], color=COLOURS[1], lw=2.4, label="median network")
             axis.plot(t, exact[:, j], color=INK, lw=0.9, label="analytic model")
-            axis.set_ylabel(f"{JOINTS[j]}, N m")
+            axis.set_ylabel(f"{JOINTS[j]} torque, N m")
         figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)
         axes[-1].set_xlabel("time, s")
 

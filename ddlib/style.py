@@ -110,6 +110,14 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
     return Illustration(_inline(stream.getvalue(), alt), alt)
 
 
+def legend_above(figure: Figure, handles, names) -> None:
+    """A legend above all axes, in as many columns as the figure's width has room for."""
+    letters = 12.5 * figure.get_figwidth()  # at the legend's size, a letter for a handle's unit
+    widest = 5 + max(map(len, names))
+    columns = max(1, min(len(names), int(letters // widest)))
+    figure.legend(handles, names, loc="outside upper left", ncols=columns)
+
+
 def plain_ticks(axis: Axis) -> None:
     """Plain numbers on a logarithmic axis that spans few decades, at 1, 2, 5 where there is room.
 

@@ -2,7 +2,7 @@
 
 ``{status} benchmarks`` and ``{status} results`` show what lies in `book/results`;
 ``{status} chapters`` shows how long each notebook of this build took, and the end of the
-build prints the same.
+build prints the same. The role ``{runtime}`` is a chapter's own time in words.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from sphinx.util.docutils import SphinxDirective
 
 RESULTS = Path("book", "results")
 REPRODUCE_SECONDS = 600
+MEASURED = "on one core when this page was built"
 
 Cell = str | nodes.Node
 
@@ -158,6 +159,36 @@ def pages(env) -> list[str]:
     return found
 
 
+class RunTime(nodes.Inline, nodes.TextElement):
+    """Stands for the time of its page, with the words to show where none was measured."""
+
+
+def spoken_time(seconds: float) -> str:
+    """A time as prose has it, rounded."""
+    if seconds < 1.5:
+        return "about a second"
+    if seconds < 90:
+        return f"about {round(seconds, -1) if seconds > 20 else round(seconds):.0f} seconds"
+    return f"about {seconds / 60:.0f} minutes"
+
+
+def runtime(name, rawtext, text, lineno, inliner, options=None, content=None):
+    """``{runtime}`words without a measurement```: see `RunTime`."""
+    return [RunTime(rawtext, text)], []
+
+
+class InsertRunTimes(SphinxPostTransform):
+    """Replace each `RunTime` by what this build measured for the page."""
+
+    default_priority = 8
+
+    def run(self, **kwargs):
+        seconds = dict(chapter_times(self.env)).get(self.env.docname)
+        for node in list(self.document.findall(RunTime)):
+            words = node.astext() if seconds is None else f"{spoken_time(seconds)} {MEASURED}"
+            node.replace_self(nodes.inline(text=words))
+
+
 class InsertChapterTimes(SphinxPostTransform):
     """Replace the placeholder by the table; links in it are resolved afterwards."""
 
@@ -208,6 +239,9 @@ class Status(SphinxDirective):
 def setup(app):
     app.add_directive("status", Status)
     app.add_node(ChapterTimes)
+    app.add_node(RunTime)
+    app.add_role("runtime", runtime)
     app.add_post_transform(InsertChapterTimes)
+    app.add_post_transform(InsertRunTimes)
     app.connect("build-finished", print_times)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
