@@ -9,12 +9,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
 
-from ddlib import style
 from ddlib._check import finite_array
 from ddlib.arm import Arm
 from ddlib.filters import decompose
 from ddlib.network import Weights
-from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate, plain_ticks
+from ddlib.style import (
+    COLOURS,
+    DASHES,
+    FAINT,
+    INK,
+    Illustration,
+    illustrate,
+    legend_above,
+    plain_ticks,
+)
 
 JOINTS = ("shoulder", "elbow")
 """Names of joint 0 and joint 1."""
@@ -60,8 +68,8 @@ def curves(
             for name, y in named.items():
                 x_k, y_k = y if isinstance(y, tuple) else (x, y)
                 k = look[name]  # the same curve looks the same in every panel
-                style = DASHES[k % len(DASHES)]
-                axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=style, label=name)
+                dash = DASHES[k % len(DASHES)]
+                axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=dash, label=name)
             axis.set_ylabel(label)
             if x_log:
                 axis.set_xscale("log")
@@ -72,7 +80,7 @@ def curves(
             if len(named) > 1 and not above:
                 axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
         if above:
-            style.legend_above(figure, *axes[0].get_legend_handles_labels())
+            legend_above(figure, *axes[0].get_legend_handles_labels())
         for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
             axis.set_xlabel(x_label)
         for axis in axes[len(panels) :]:

@@ -111,7 +111,10 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
 
 
 def legend_above(figure: Figure, handles, names) -> None:
-    """A legend above all axes, in as many columns as the figure's width has room for."""
+    """A legend of handles and their names above all axes of a figure.
+
+    It takes as many columns as the figure's width has room for.
+    """
     letters = 12.5 * figure.get_figwidth()  # at the legend's size, a letter for a handle's unit
     widest = 5 + max(map(len, names))
     columns = max(1, min(len(names), int(letters // widest)))

@@ -231,6 +231,7 @@ class TestChapterGrid:
         opening = self.prose(page).split("\n## ")[0]
         found = re.findall(r"\*\*(You will|You need|Time to run)\b", opening)
         assert found == ["You will", "You need", "Time to run"]
+        assert re.search(r"\*\*Time to run\*\* \{runtime\}`", opening), "not as measured"
 
     def test_closing(self, page):
         assert headings(self.prose(page), 2)[-len(CLOSING) :] == CLOSING

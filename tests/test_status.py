@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
+from pathlib import Path
 
 import pytest
-from book_pages import PAGES, ROOT, source
+from book_pages import CHAPTERS, PAGES, ROOT, source
 from bs4 import BeautifulSoup
 from docutils import nodes
 
@@ -67,7 +69,7 @@ def test_pairs_have_both_times_and_what_is_not_measured_stays():
         ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "≥ 8.0: met"],
         ["MuJoCo", "–", "–", "–", "–", "not measured: pip install .[bench]"],
     ]
-    assert [node.astext() for node in beside] == ["window 21: largest error, rad: 2.00e-07."]
+    assert [node.astext() for node in beside] == ["window 21: largest error, rad: 2.00 · 10⁻⁷."]
 
 
 def test_every_group_has_its_table(tmp_path):
@@ -105,6 +107,32 @@ def test_times_of_the_results_and_of_all_together(tmp_path, seconds, verdict):
     (tmp_path / "reproduce.json").unlink()
     (table,) = dd_status.made_results(tmp_path)
     assert cells(table)[-1][0] == "sum"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "shown"),
+    [
+        (0.4, "about a second"),
+        (3.6, "about 4 seconds"),
+        (24.1, "about 25 seconds"),
+        (88, "about 90 seconds"),
+        (130, "about 2 minutes"),
+    ],
+)
+def test_times_in_words(seconds, shown):
+    assert dd_status.spoken_time(seconds) == shown
+
+
+@pytest.mark.built
+@pytest.mark.parametrize("name", CHAPTERS)
+def test_a_chapter_tells_the_time_that_was_measured(name, built):
+    status = BeautifulSoup((built / "book" / "status.html").read_text("utf-8"), "html.parser")
+    rows = status.select("#chapters tr:has(td)")
+    times = {row.a["href"]: row.find_all("td")[1].get_text() for row in rows if row.a}
+    measured = float(times[f"{Path(name).name}.html"].split()[0])
+    page = BeautifulSoup((built / f"{name}.html").read_text("utf-8"), "html.parser").article
+    told = re.search(rf"Time to run\s+(.*?) {dd_status.MEASURED}", page.get_text())
+    assert told[1] == dd_status.spoken_time(measured)
 
 
 @pytest.mark.built

@@ -166,3 +166,21 @@ def test_a_saved_file_has_its_own_colours(tmp_path):
     assert "max-width:100%" in root.attrib["style"]
     assert "currentColor" not in text and "#112233" in text
     assert root.attrib["aria-label"] == "A curve."
+
+
+@pytest.mark.parametrize("names", [["a", "b"], ["training", "test, after 20,000 epochs"] * 3])
+def test_a_legend_above_lies_on_no_curve(names):
+    """Within the figure, outside the axes."""
+    boxes = {}
+
+    def draw(figure):
+        axis = figure.subplots()
+        lines = [axis.plot([0, 1], [k, 1])[0] for k in range(len(names))]
+        style.legend_above(figure, lines, names)
+        figure.draw_without_rendering()
+        boxes["axis"], boxes["figure"] = axis.get_window_extent(), figure.bbox
+        boxes["legend"] = figure.legends[0].get_window_extent()
+
+    style.illustrate(draw, "Lines")
+    assert boxes["legend"].y0 >= boxes["axis"].y1
+    assert boxes["legend"].x1 <= boxes["figure"].x1

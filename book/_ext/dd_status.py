@@ -168,7 +168,7 @@ def spoken_time(seconds: float) -> str:
     if seconds < 1.5:
         return "about a second"
     if seconds < 90:
-        return f"about {round(seconds, -1) if seconds > 20 else round(seconds):.0f} seconds"
+        return f"about {5 * round(seconds / 5) if seconds > 20 else round(seconds)} seconds"
     return f"about {seconds / 60:.0f} minutes"
 
 
