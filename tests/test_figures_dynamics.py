@@ -13,7 +13,7 @@ from ddlib.arm import CMU_DD_ARM_II
 from ddlib.counting import Operations
 from ddlib.identification import Equations, least_squares
 from ddlib.style import COLOURS, INK, Illustration
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
+from ddlib.trajectories import APPENDIX_I
 
 SVG = "{http://www.w3.org/2000/svg}"
 NAMES = ("x", "y")
@@ -129,21 +129,3 @@ def test_shares_stand_beside_repeated_estimates_only(made):
 def test_refusals(make, words):
     with pytest.raises(ValueError, match=words):
         make()
-
-
-def test_labels_of_the_hand_paths_lie_on_nothing():
-    """On the six trajectories of the chapter: free of links, paths and one another."""
-    t = np.linspace(0.0, MOTION_SECONDS / 2, 60)
-    points = CMU_DD_ARM_II.forward_kinematics(pick_and_place(APPENDIX_I, t).q)
-    tips, drawn = points[:, -1, 1], figures_dynamics._drawn(points)
-    places = figures_dynamics._free_places(tips, drawn, 0.045)
-    np.testing.assert_allclose(np.linalg.norm(places - tips, axis=-1), 0.045)
-    for k, place in enumerate(places):
-        others = np.vstack([drawn, np.delete(places, k, 0)])
-        assert np.linalg.norm(others - place, axis=-1).min() > 0.025
-
-
-def test_a_free_place_is_away_from_what_is_drawn():
-    wall = np.stack([np.zeros(50), np.linspace(-1, 1, 50)], -1)
-    (place,) = figures_dynamics._free_places([[0.01, 0.0]], wall, 0.1)
-    np.testing.assert_allclose(place, [0.11, 0.0], atol=1e-3)
