@@ -11,7 +11,8 @@ import numpy as np
 
 from ddlib._check import finite_array, integer, number
 from ddlib.experiment import STATE_FEEDBACK, Setup
-from ddlib.simulate import CONTROL_STEP, LOG_STEP, REST, Recording, follow
+from ddlib.recording import Recording
+from ddlib.simulate import CONTROL_STEP, LOG_STEP, REST, follow
 from ddlib.trajectories import (
     APPENDIX_I,
     MAX_EXTENT_DEG,
@@ -107,6 +108,7 @@ def record_two_harmonics(
         effects=setup.effects,
         seed=setup.seed,
         log_every=round(LOG_STEP / CONTROL_STEP),
+        duration=MOTION_SECONDS,
     )
 
 
@@ -119,7 +121,7 @@ def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.nda
     setup : Setup
         Its arm and its friction give the acceleration from the torque.
     skip : float
-        Seconds left out at the start of the motion, where the transient is.
+        Seconds left out at the start of the motion, where the transient is; less than its length.
 
     Returns
     -------

@@ -15,7 +15,7 @@ from ddlib.harmonics import (
     two_harmonics,
 )
 from ddlib.responses import explained
-from ddlib.simulate import LOG_STEP
+from ddlib.simulate import LOG_STEP, record
 from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 
 T = time_grid(0.01, 0.2)
@@ -102,6 +102,22 @@ def test_true_states_are_position_and_its_derivatives(recordings):
     assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
     late = true_states(run(recording, 2), setup, skip=0.5)
     np.testing.assert_array_equal(late, states[2, 50:])
+    with pytest.raises(ValueError, match="^skip must"):
+        true_states(recording, setup, skip=3.0)
+
+
+def test_true_states_of_another_rate_and_duration():
+    own = record(
+        STATE_FEEDBACK.arm,
+        STATE_FEEDBACK.controller,
+        [20.0, 10.0],
+        effects=STATE_FEEDBACK.effects,
+        log_step=0.02,
+        duration=2.0,
+    )
+    states = true_states(own, STATE_FEEDBACK, skip=0.5)
+    assert states.shape == (75, 2, 3)
+    np.testing.assert_array_equal(states[0, :, 0], own.q_true[np.searchsorted(own.t, 0.499)])
 
 
 def test_what_position_explains_of_acceleration(recordings):
