@@ -249,8 +249,9 @@ class Arm:
         g1, g2 = self.gravity_moments
         return -g1 * np.cos(q[..., 0]) - g2 * np.cos(q[..., 0] + q[..., 1])
 
-    def regressor(self, q, qd, qdd) -> np.ndarray:
-        """Matrix Y with ``tau = Y @ [a, b, d, g1, g2]``, shape ``(..., 2, 5)``.
+    @staticmethod
+    def regressor(q, qd, qdd) -> np.ndarray:
+        """Matrix Y with ``tau = Y @ [a, b, d, g1, g2]``, shape ``(..., 2, 5)``, for every arm.
 
         The torque is linear in the base parameters; this is what identification
         by least squares rests on (An 1988; Khosla 1986).

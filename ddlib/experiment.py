@@ -188,6 +188,14 @@ def errors(model: TorqueModel, recording: Recording) -> dict[str, np.ndarray]:
 
 
 def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
-    """Torque that a model gives along the motion of a recording, ``(..., time, joint)``, N m."""
+    """Torque that a model gives along the motion of a recording, ``(..., time, joint)``, N m.
+
+    A model that knows its sampling period refuses a recording with another one.
+    """
     finite_array("recording.q", recording.q, 2)
+    if model.step is not None and abs(recording.step / model.step - 1) > 1e-6:
+        raise ValueError(
+            f"recording must have the model's sampling period of {model.step:g} s, "
+            f"got {recording.step:g} s"
+        )
     return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from ddlib._check import finite_array, integer, number
-from ddlib.arm import CMU_DD_ARM_II, Arm
+from ddlib.arm import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
 
@@ -145,7 +145,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     q, qd, qdd, torque = np.broadcast_arrays(
         *(finite_array(n, x, 2) for n, x in zip(("q", "qd", "qdd", "torque"), (q, qd, qdd, torque)))
     )
-    rigid = CMU_DD_ARM_II.regressor(q, qd, qdd)  # the same for every arm
+    rigid = Arm.regressor(q, qd, qdd)
     sign = np.clip(qd / SIGN_SPEED, -1.0, 1.0)
     regressors = []
     for j in range(2):

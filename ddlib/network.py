@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 import os
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -203,11 +203,14 @@ class TorqueModel:
         One network or an ensemble.
     inputs, outputs : Scaler
         Scaling of positions to 0..1 and of torques to the output units' range.
+    step : float, optional
+        Sampling period of the windows it was trained on, s. Default: not known.
     """
 
     weights: Weights
     inputs: Scaler
     outputs: Scaler
+    step: float | None = None
 
     def scaled(self, windows) -> np.ndarray:
         """Windows in rad, ``(cases, joint, width)``, scaled for the input units."""
@@ -230,7 +233,7 @@ class TorqueModel:
 
     def __getitem__(self, index) -> TorqueModel:
         """The model(s) at `index` of the ensemble."""
-        return TorqueModel(self.weights[index], self.inputs, self.outputs)
+        return replace(self, weights=self.weights[index])
 
     def save(self, path) -> None:
         """Write the model to an ``.npz`` file (float32), replacing it in one step."""
@@ -241,6 +244,8 @@ class TorqueModel:
             scaler = getattr(self, name)
             arrays |= {f"{name}_low": scaler.low, f"{name}_high": scaler.high}
             arrays[f"{name}_target"] = np.array(scaler.target)
+        if self.step is not None:
+            arrays["step"] = np.array(self.step)
         temporary = path.with_name(path.name + ".part")
         with open(temporary, "wb") as file:
             np.savez_compressed(file, **arrays)
@@ -265,6 +270,7 @@ class TorqueModel:
                     Scaler(file[f"{n}_low"], file[f"{n}_high"], tuple(file[f"{n}_target"]))
                     for n in ("inputs", "outputs")
                 ]
+                step = float(file["step"]) if "step" in file else None
         except Exception as error:  # damage shows in many ways: zip, zlib, numpy, shapes
             raise ValueError(f"path {str(path)!r} is not a model file: {error}") from error
-        return cls(weights, *scalers)
+        return cls(weights, *scalers, step)

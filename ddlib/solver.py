@@ -162,7 +162,7 @@ def solve(
         torch.set_num_threads(threads)
         bar.close()
     solution = Solution(
-        TorqueModel(found[0] if single else _stack(found), data.inputs, data.outputs),
+        TorqueModel(found[0] if single else _stack(found), data.inputs, data.outputs, data.step),
         _history([end.path for end in ends], test is not None),
         np.array([end.objective for end in ends]),
         np.array([end.gradient for end in ends]),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import torch
@@ -23,7 +23,6 @@ from ddlib.windows import Scaler, sliding_windows
 
 TARGET_RANGE = (0.2, 0.8)
 """Range of the output units that the torques are scaled to (Lang 1988)."""
-
 
 WORKERS = min(2, torch.get_num_threads())
 """Threads that `train_ensemble` uses: as many as torch may (OMP_NUM_THREADS), two at most."""
@@ -44,12 +43,15 @@ class TrainingSet:
         Torques scaled to the output units' range.
     inputs, outputs : Scaler
         Radians to `x` and N m to `y`.
+    step : float, optional
+        Sampling period of the windows, s, if known.
     """
 
     x: np.ndarray
     y: np.ndarray
     inputs: Scaler
     outputs: Scaler
+    step: float | None = None
 
     @classmethod
     def from_arrays(cls, windows, torque, target=TARGET_RANGE) -> TrainingSet:
@@ -66,7 +68,7 @@ class TrainingSet:
     @classmethod
     def from_recording(cls, recording: Recording, width: int, target=TARGET_RANGE) -> TrainingSet:
         """All windows of the motions of a recording, runs joined into one list of cases."""
-        return cls.from_arrays(*cases(recording, width), target)
+        return replace(cls.from_arrays(*cases(recording, width), target), step=recording.step)
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
@@ -107,12 +109,11 @@ class History:
 
     def append(self, epoch: int, training, test=None) -> None:
         """Add one point."""
-        training = np.atleast_1d(training)
         self.epochs = np.append(self.epochs, epoch)
-        self.training = np.vstack([self.training.reshape(-1, len(training)), training])
-        if test is not None:
-            test = np.atleast_1d(test)
-            self.test = np.vstack([self.test.reshape(-1, len(test)), test])
+        for name, errors in (("training", training), ("test", test)):
+            if errors is not None:
+                before = getattr(self, name).reshape(-1, np.size(errors))
+                setattr(self, name, np.vstack([before, np.atleast_1d(errors)]))
 
     @property
     def best_test(self) -> np.ndarray:
@@ -361,7 +362,7 @@ def train_ensemble(
             f"no member's error is finite after {epochs} epochs: lower the rate ({rate.min():g})",
             history,
         )
-    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs)
+    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
     return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in sorted(kept[0])}
 
 

@@ -190,6 +190,10 @@ def test_the_way_to_the_filters_works_for_any_arm(duration, log_step, tmp_path):
     np.testing.assert_allclose(
         predict(kept, run(recording, 1)), model.torque(windows[samples : 2 * samples]), atol=1e-4
     )
+    assert kept.step == pytest.approx(log_step)
+    other = record(ARM, LAW, TRAINING[0], duration=6.0, rest=0.6, log_step=2 * log_step)
+    with pytest.raises(ValueError, match=rf"sampling period of {log_step:g} s, got"):
+        predict(kept, other)
     parts = decompose(model.weights.hidden_weights)
     np.testing.assert_allclose(parts.sum(), model.weights.hidden_weights, atol=1e-12)
     np.testing.assert_allclose(parts.odd, -parts.odd[..., ::-1], atol=1e-12)
