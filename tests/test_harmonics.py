@@ -102,7 +102,7 @@ def test_true_states_are_position_and_its_derivatives(recordings):
     assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
     late = true_states(run(recording, 2), setup, skip=0.5)
     np.testing.assert_array_equal(late, states[2, 50:])
-    with pytest.raises(ValueError, match="^skip must"):
+    with pytest.raises(ValueError, match=r"^skip must"):
         true_states(recording, setup, skip=3.0)
 
 
