@@ -103,7 +103,7 @@ def test_true_states_are_position_and_its_derivatives(recordings):
     late = true_states(run(recording, 2), setup, skip=0.5)
     np.testing.assert_array_equal(late, states[2, 50:])
     with pytest.raises(ValueError, match=r"^skip must"):
-        true_states(recording, setup, skip=3.0)
+        true_states(recording, setup, skip=3.1)
 
 
 def test_true_states_of_another_rate_and_duration():
