@@ -129,7 +129,7 @@ def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.nda
         In rad, rad/s and rad/s^2.
     """
     motion, (begin, end) = recording.motion, recording.span
-    number("skip", skip, 0.0, end - begin)
+    number("skip", skip, 0.0, end - begin - recording.step)
     inside = slice(motion.start + round(skip / recording.step), motion.stop)
     q, qd, tau = (
         x[..., inside, :] for x in (recording.q_true, recording.qd_true, recording.tau_true)
