@@ -64,7 +64,8 @@ foreign-ci: $(READY)
 	@echo "==> Notebooks and claims on two foreign machines"
 	$(BIN)/python tests/foreign_machines.py --jobs $(JOBS) --ci
 
-pages: book
+pages: $(READY)
+	@$(BIN)/python book/_ext/build.py --strict
 	@echo "==> The built pages"
 	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser" || { \
 	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \

@@ -19,6 +19,7 @@ from ddlib.style import (
     FAINT,
     INK,
     Illustration,
+    check_label,
     illustrate,
     legend_above,
     plain_ticks,
@@ -70,7 +71,7 @@ def curves(
                 k = look[name]  # the same curve looks the same in every panel
                 dash = DASHES[k % len(DASHES)]
                 axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=dash, label=name)
-            axis.set_ylabel(label)
+            axis.set_ylabel(check_label(label))
             if x_log:
                 axis.set_xscale("log")
                 plain_ticks(axis.xaxis)
@@ -82,7 +83,7 @@ def curves(
         if above:
             legend_above(figure, *axes[0].get_legend_handles_labels())
         for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
-            axis.set_xlabel(x_label)
+            axis.set_xlabel(check_label(x_label))
         for axis in axes[len(panels) :]:
             axis.remove()
 

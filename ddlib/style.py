@@ -26,6 +26,9 @@ COLOURS = ("#2f7fd1", "#d4680b", "#219a6c", "#c2559d", "#8c7ae6", "#a08100")
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 """Line styles that go with the colours, so that colour is never the only difference."""
 
+UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
+"""What may follow the comma in an axis label, and never stands alone."""
+
 RC = {
     "axes.edgecolor": INK,
     "axes.grid": True,
@@ -108,6 +111,20 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
         stream = io.StringIO()
         figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
     return Illustration(_inline(stream.getvalue(), alt), alt)
+
+
+def check_label(label: str) -> str:
+    """An axis label as it is, if it names a quantity, with or without a unit after a comma.
+
+    Raises
+    ------
+    ValueError
+        If it names none: a unit alone, a joint alone or with a unit, nothing.
+    """
+    quantity = label.partition(",")[0].strip()
+    if quantity in ("", "shoulder", "elbow", *UNITS):
+        raise ValueError(f"an axis label must be like 'torque, N m', got {label!r}")
+    return label
 
 
 def legend_above(figure: Figure, handles, names) -> None:

@@ -56,11 +56,25 @@ CHECKS = r"""
   const code = all(".highlight-ipython3 pre").map((el) => el.textContent).join("");
   const shades = new Set(all(".highlight-ipython3 span").map((el) => getComputedStyle(el).color));
   if (/\bimport\b.*"/s.test(code) && shades.size < 3) found.push("code without colours");
+  for (const el of width < 1280 ? [] : all("mjx-container[display=true], div.math")) {
+    const cut = el.scrollWidth - el.clientWidth;
+    if (cut > 1) found.push(`an equation is cut by ${cut} px: ${el.closest("[id]")?.id}`);
+  }
+  for (const fold of all("article details")) {
+    const inside = fold.cloneNode(true);
+    inside.querySelector("summary")?.remove();
+    const shows = inside.textContent.trim() || inside.querySelector("img, svg, table, script");
+    if (!shows) found.push(`a fold opens onto nothing: ${fold.textContent.trim()}`);
+    if (fold.open) found.push(`a fold stands open: ${fold.textContent.trim().slice(0, 60)}`);
+  }
   for (const el of all("mjx-merror")) found.push(`bad TeX: ${el.textContent}`);
   const prose = document.querySelector("article").cloneNode(true);
-  prose.querySelectorAll("pre, code, script, style, mjx-container").forEach((el) => el.remove());
+  const set = "pre, code, script, style, mjx-container";
+  prose.querySelectorAll(set).forEach((el) => el.replaceWith("•"));
   const raw = prose.textContent.match(/\\[([]|\$\$|\\begin\{|\\(frac|tau|ddot|dot|text)\b/);
   if (raw) found.push(`raw TeX: ${prose.textContent.substr(raw.index, 60)}`);
+  const twice = prose.textContent.match(/\b(the|an?|of|to|in|and|is|are)\s+\1\b(?!\W*[_^=])/i);
+  if (twice) found.push(`twice: ${prose.textContent.substr(twice.index - 20, 60)}`);
   return found;
 }
 """

@@ -184,3 +184,14 @@ def test_a_legend_above_lies_on_no_curve(names):
     style.illustrate(draw, "Lines")
     assert boxes["legend"].y0 >= boxes["axis"].y1
     assert boxes["legend"].x1 <= boxes["figure"].x1
+
+
+@pytest.mark.parametrize("label", ["rad/s", "N m", "shoulder, N m", "elbow", "", " , N m"])
+def test_axis_labels_name_the_quantity(label):
+    with pytest.raises(ValueError, match=re.escape(repr(label))):
+        style.check_label(label)
+
+
+@pytest.mark.parametrize("label", ["shoulder torque, N m", "RMSS", "speed, times the paper's"])
+def test_good_labels_stay(label):
+    assert style.check_label(label) == label
