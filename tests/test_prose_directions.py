@@ -18,7 +18,7 @@ BOUND = yaml.safe_load(directions.BOUND.read_text(encoding="utf-8")) or {}
 NOT_YET = {
     f"book/{page}"
     for page in (
-        "index what-lagrange-euler-leaves-out pid-and-feedforward trajectories-and-recording "
+        "index pid-and-feedforward trajectories-and-recording "
         "backpropagation window-networks hinton-diagrams convolution-filters "
         "global-view window-size ledger notation provenance status"
     ).split()
