@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-SURE = 0.95
-"""Share of the draws in which a statement about an ensemble has to hold."""
+from ddlib.verdicts import DRAWS, STANDS, bootstrap
 
-DRAWS = 2000
+SURE = STANDS
+"""Share of the draws in which a statement about an ensemble has to hold. When it is written it
+should hold in nearly all; it stands until results made anew say something else."""
 
 
 def stated(name: str, holds, share: float = SURE) -> None:
@@ -76,5 +77,4 @@ def resampled(values, statistic: Callable = np.median, seed: int = 0) -> np.ndar
         raise ValueError(f"values must be at least two numbers in a row, got shape {values.shape}")
     if not np.isfinite(values).all():
         raise ValueError("values must be finite")
-    chosen = np.random.default_rng(seed).integers(0, values.size, (DRAWS, values.size))
-    return statistic(values[chosen], axis=-1)
+    return bootstrap(lambda drawn: statistic(drawn, axis=-1), values, draws=DRAWS, seed=seed)

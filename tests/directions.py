@@ -25,7 +25,7 @@ WORDS = re.compile(
     # a direction
     r"ris(?:es?|ing)|rose|f(?:alls?|ell|alling)|drop(?:s|ped)?|gr(?:ows?|ew|own|owing)"
     r"|shrinks?|shr[au]nk|increas(?:es?|ed|ing)|decreas(?:es?|ed|ing)|lower(?:s|ed)?"
-    r"|rais(?:es?|ed)|sinks?|climbs?|bends?|settles?|settled|gains?|loses?"
+    r"|rais(?:es?|ed)|sinks?|climbs?|bends?|settles?|settled|loses?"
     # a comparison
     r"|larger|bigger|greater|smaller|higher|better|worse|more|less|fewer|faster|slower"
     r"|closer|nearer|further|steeper|flatter|heavier|lighter|earlier|later|longer|shorter"
@@ -34,7 +34,8 @@ WORDS = re.compile(
     r"|(?<!\bat )most|(?<!\bat )least(?! squares|-squares)"
     r"|steepest|strongest|weakest|fastest|slowest|smoothest|roughest|hardest|easiest"
     # a size
-    r"|twice|doubles?|doubled|half|halves|thirds?|quarters?|fifths?|tenths?|several times"
+    r"|twice|doubles?|doubled|half(?! a minute)|halves|thirds?|quarters?|fifths?|tenths?"
+    r"|several times"
     r"|nearly|almost|alike|hardly|barely|similar|equally|the same|close to|far from"
     r"|as (?:bad|good|well|large|small) as"
     r"|\w+(?<!mani)fold"

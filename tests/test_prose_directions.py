@@ -16,12 +16,18 @@ READ = [page for page in PAGES if page not in ELSEWHERE]
 BOUND = yaml.safe_load(directions.BOUND.read_text(encoding="utf-8")) or {}
 
 NOT_YET = {
-    f"book/{page}"
-    for page in (
-        "index pid-and-feedforward trajectories-and-recording "
-        "backpropagation window-networks hinton-diagrams convolution-filters "
-        "global-view window-size ledger notation provenance status"
-    ).split()
+    "book/index",
+    "book/pid-and-feedforward",
+    "book/trajectories-and-recording",
+    "book/backpropagation",
+    "book/hinton-diagrams",
+    "book/convolution-filters",
+    "book/global-view",
+    "book/window-size",
+    "book/ledger",
+    "book/notation",
+    "book/provenance",
+    "book/status",
 }
 """Pages whose sentences are still to be bound; a page that is done has to leave this set."""
 
