@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ddlib.verdicts import DRAWS, STANDS, bootstrap
+from ddlib.verdicts import DRAWS, bootstrap
 
-SURE = STANDS
+SURE = 0.8
 """Share of the draws in which a statement about an ensemble has to hold. When it is written it
 should hold in nearly all; it stands until results made anew say something else."""
 
