@@ -12,7 +12,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from book_pages import ROOT, WITH_WIDGETS, source
+from book_pages import CHAPTERS, ROOT, WITH_WIDGETS, source
 from reactions import Handle, handles
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -20,6 +20,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
+ANSWERED = [page for page in CHAPTERS if "</details>" in source(page).read_text(encoding="utf-8")]
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +96,30 @@ def request(url: str, method: str = "GET"):
     return json.loads(text) if text else None
 
 
+SHOW = """
+async (path) => {
+  const app = window.jupyterapp;
+  await app.restored;
+  const panel = await app.commands.execute("docmanager:open", { path, factory: "Notebook" });
+  await panel.context.ready;
+  window.panel = panel;
+}
+"""
+# What a reader sees of the answers before opening anything.
+ANSWERS = """
+() => {
+  const cells = [...window.panel.content.widgets];
+  const tagged = cells.filter(({ model }) => (model.getMetadata("tags") ?? []).includes("hide-cell")
+    && model.getMetadata("jupyter"));
+  const words = [...window.panel.node.querySelectorAll("details")];
+  return {
+    code: tagged.length,
+    open: tagged.filter((cell) => !cell.inputHidden || !cell.outputHidden).length,
+    words: words.length,
+    said: words.filter((el) => el.open || el.querySelector("p").checkVisibility()).length,
+  };
+}
+"""
 OPEN = """
 async (path) => {
   const app = window.jupyterapp;
@@ -190,8 +215,9 @@ def reacts_alone(page, handle: Handle):
     wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
 
 
-@pytest.mark.parametrize("name", WITH_WIDGETS)
-def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, browser):
+@pytest.fixture
+def opened(lab, browser):
+    """A page of JupyterLab, and the errors of its scripts."""
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     context.set_default_timeout(1000 * STARTING)
     page = context.new_page()
@@ -199,6 +225,31 @@ def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, browser):
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.goto(f"{lab}lab?token={TOKEN}&reset")
     page.wait_for_selector("#jp-main-dock-panel")
+    yield page, errors
+    context.close()
+
+
+@pytest.mark.parametrize("name", ANSWERED)
+def test_answers_are_folded(name, opened):
+    page, errors = opened
+    page.evaluate(SHOW, f"book/{source(name).name}")
+    text = source(name).read_text(encoding="utf-8")
+    words = text.count("</details>")
+    wait(page, "the text", lambda: page.locator(".jp-Notebook details").count() == words, ANSWER)
+    seen = page.evaluate(ANSWERS)
+    assert seen == {
+        "code": text.count('"source_hidden": true'),
+        "open": 0,
+        "words": words,
+        "said": 0,
+    }
+    assert seen["code"] >= 3 and seen["words"] >= 1
+    assert not errors
+
+
+@pytest.mark.parametrize("name", WITH_WIDGETS)
+def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, opened):
+    page, errors = opened
     page.evaluate(OPEN, f"book/{source(name).name}")
     run_all(page)
 
@@ -213,4 +264,3 @@ def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, browser):
     for handle in firsts:
         reacts_alone(page, handle)
     assert not errors
-    context.close()
