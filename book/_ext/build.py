@@ -20,6 +20,8 @@ import shutil
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ddlib.claims import SHARED
@@ -49,7 +51,8 @@ def build(root: Path, strict: bool) -> tuple[int, list[str]]:
         for line in process.stderr:
             if NOISE not in line:
                 lines.append(strip_colors(line))
-    log(root).write_text("".join(lines), encoding="utf-8")
+    with log(root).open("a", encoding="utf-8") as file:
+        file.writelines(lines)
     return process.returncode, messages(lines)
 
 
@@ -87,10 +90,24 @@ def execute_ahead(root: Path) -> None:
         cache.add_nb_to_project(str(path))
     silent = logging.getLogger("ahead")
     silent.setLevel(logging.CRITICAL + 1)
-    done = load_executor("local-parallel", cache, logger=silent).run_and_cache(timeout=TIMEOUT)
+    with errors_into(log(root)):
+        done = load_executor("local-parallel", cache, logger=silent).run_and_cache(timeout=TIMEOUT)
     ended = [Path(path).relative_to(root).with_suffix("").as_posix() for path in done.errored]
     os.environ[UNEXECUTED] = json.dumps(ended)
     print(f"==> Executed {len(done.succeeded)} notebooks", flush=True)
+
+
+@contextmanager
+def errors_into(path: Path) -> Iterator[None]:
+    """What this process and its kernels write to standard error goes to a file."""
+    kept = os.dup(2)
+    with path.open("w", encoding="utf-8") as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
 
 
 def say(text: str) -> None:
