@@ -193,6 +193,28 @@ def purest(f, name: str, score=None) -> np.ndarray:
     return f[np.where(fitting, value, -np.inf).argmax()]
 
 
+def upright(f) -> np.ndarray:
+    """Weight functions with the sign that lets their strongest derivative count positive.
+
+    A hidden unit and its negative are the same unit, so the sign is free: a velocity filter
+    is turned so that its weights rise with time, an acceleration filter so that they are
+    high at both ends.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions, 5 samples or more.
+
+    Returns
+    -------
+    ndarray, shape (..., width)
+    """
+    f = _odd_width(f)
+    parts = content(f)[..., 1:]
+    strongest = np.take_along_axis(parts, np.abs(parts).argmax(-1)[..., None], -1)
+    return np.where(strongest < 0, -f, f)
+
+
 def roughness(f) -> np.ndarray:
     """Energy of the second differences against white noise's, shape (...).
 

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from tqdm.auto import tqdm
 
 from ddlib import figures, results
-from ddlib.filters import purest
+from ddlib.filters import purest, upright
 from ddlib.simulate import LOG_STEP
 from ddlib.studies import PARTS
 
@@ -25,7 +25,7 @@ def picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
     networks = results.networks(21).weights
     found = {
-        f"{name} filter": purest(networks.hidden_weights, name)
+        f"{name} filter": upright(purest(networks.hidden_weights, name))
         for name in ("velocity", "acceleration")
     }
     target = results.FOLDER.parent / "_static" / "readme.svg"

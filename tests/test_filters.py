@@ -20,6 +20,7 @@ from ddlib.filters import (
     roughness,
     savitzky_golay,
     shares,
+    upright,
 )
 
 WIDTHS = (11, 21, 41)
@@ -389,3 +390,14 @@ def test_even_functions_have_real_gain_and_odd_ones_imaginary():
 def test_frequency_response_refuses_bad_values(arguments, words):
     with pytest.raises(ValueError, match=words):
         frequency_response(*arguments)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_filter_is_turned_so_that_its_strongest_derivative_counts_positive(sign):
+    x = grid(21).astype(float)
+    turned = upright(sign * np.array([x, x**2 - np.mean(x**2), 20 * x - x**2, x**3]))
+    np.testing.assert_array_equal(turned[0], x)
+    assert turned[1][10] < 0 < turned[1][0]
+    np.testing.assert_array_equal(turned[2], 20 * x - x**2)
+    np.testing.assert_array_equal(turned[3], x**3)
+    np.testing.assert_array_equal(upright(sign * x), x)
