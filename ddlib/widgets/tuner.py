@@ -83,7 +83,7 @@ class PIDTuner(CurveWidget):
             ],
             note=(
                 "The sliders set the shoulder's gains; the elbow's follow in fixed ratio. "
-                "Every setting is stable."
+                "The ranges end before a loop becomes unstable."
             ),
             many=lambda **settings: _many(arm, settings),
             **options,
