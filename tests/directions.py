@@ -34,7 +34,7 @@ WORDS = re.compile(
     r"|(?<!\bat )most|(?<!\bat )least(?! squares|-squares)"
     r"|steepest|strongest|weakest|fastest|slowest|smoothest|roughest|hardest|easiest"
     # a size
-    r"|twice|doubles?|doubled|half(?! a minute)|halves|thirds?|quarters?|fifths?|tenths?"
+    r"|twice|doubles?|doubled|half(?! a minute)|halves|thirds|a third of|quarters?|fifths?|tenths?"
     r"|several times"
     r"|nearly|almost|alike|hardly|barely|similar|equally|the same|close to|far from"
     r"|as (?:bad|good|well|large|small) as"

@@ -21,7 +21,6 @@ NOT_YET = {
     "book/hinton-diagrams",
     "book/convolution-filters",
     "book/global-view",
-    "book/window-size",
     "book/ledger",
     "book/notation",
     "book/provenance",
