@@ -138,7 +138,8 @@ def unreachable(width: int = 21) -> Measured:
     windows = sliding_windows(recording.q[:TRAINING], width, recording.motion)
     step = STATE_FEEDBACK.effects.encoder[0].step
     used = used_dimensions(windows.reshape(-1, 2 * width), step)
-    text = f"a share below 10^{np.ceil(power):.0f} (window {width}, speeds up to {RADIUS:.2f} "
+    share = scientific(10.0 ** np.ceil(power))
+    text = f"a share below {share} (window {width}, speeds up to {RADIUS:.2f} "
     text += f"rad/s); the recordings use {used} of {2 * width} dimensions"
     return Measured(float(power), text)
 
