@@ -94,14 +94,14 @@ class Claim:
     printed: float | str
     verdict: str
     why: str
-    refuted: str = ""
+    refuted: str
     measure: str = ""
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
 
     def __post_init__(self):
-        for name in ("id", "where", "chapter", "claim", "why"):
+        for name in ("id", "where", "chapter", "claim", "why", "refuted"):
             value = getattr(self, name)
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")

@@ -12,7 +12,7 @@ from ddlib._check import one_of
 from ddlib.arm import Link
 from ddlib.counting import Operations, Tape
 from ddlib.derivation import derive
-from ddlib.formulations import lagrange_euler, newton_euler
+from ddlib.formulations import lagrange_euler, newton_euler, recursive_lagrange
 from ddlib.serial import PUMA_560, SerialArm
 
 KNOWLEDGE = ("nothing", "zeros", "arm")
@@ -54,7 +54,7 @@ def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> 
     Parameters
     ----------
     formulation : callable
-        `ddlib.formulations.newton_euler` or `ddlib.formulations.lagrange_euler`.
+        `newton_euler`, `lagrange_euler` or `recursive_lagrange` of `ddlib.formulations`.
     arm : SerialArm
         The arm.
     knowledge : {"nothing", "zeros", "arm"}
@@ -119,6 +119,7 @@ def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]
 
     ways = {
         "Lagrange-Euler, general": lambda n: count(lagrange_euler, PUMA_560.first(n)),
+        "recursive Lagrange, general": lambda n: count(recursive_lagrange, PUMA_560.first(n)),
         "Newton-Euler, general": lambda n: count(newton_euler, PUMA_560.first(n)),
         "Newton-Euler, zeros skipped": lambda n: count(newton_euler, PUMA_560.first(n), "zeros"),
         "Newton-Euler, customised": lambda n: count(newton_euler, PUMA_560.first(n), "arm"),

@@ -1,10 +1,11 @@
-"""Two formulations of inverse dynamics, written in plain arithmetic.
+"""Three formulations of inverse dynamics, written in plain arithmetic.
 
 The same code runs on numbers, on arrays and on the counting numbers of `ddlib.counting`:
 how much a formulation costs is found by running it. `newton_euler` is the recursion of Luh,
 Walker & Paul (1980): motion outwards, forces inwards, equal work for every joint.
 `lagrange_euler` is the older closed form with 4 x 4 matrices (Uicker 1965, Kahn 1969), whose
-work grows with the fourth power of the number of joints.
+work grows with the fourth power of the number of joints. `recursive_lagrange` is what Hollerbach
+(1980) made of it: the same equations as a recursion, with 3 x 3 matrices.
 """
 
 from __future__ import annotations
@@ -134,6 +135,62 @@ def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     return tau
 
 
+def recursive_lagrange(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
+    """Hollerbach's recursive Lagrangian form with 3 x 3 matrices: torques, one per joint.
+
+    Outwards go the orientations ``W_i`` with their first and second derivatives in time and the
+    accelerations of the frames' origins; inwards come ``D_i``, the integral of ``r a'`` over all
+    mass beyond joint i (``r`` from the joint, in frame i; ``a`` its acceleration), and the first
+    moments ``c_i``. Then ``tau_i = tr(dW_i/dq_i D_i) - g' dW_i/dq_i c_i``.
+
+    Parameters
+    ----------
+    constants : Constants
+        From `ddlib.serial.SerialArm.constants`.
+    q, qd, qdd : sequence
+        Angle (rad), velocity (rad/s) and acceleration (rad/s^2) of each joint.
+    zero, one
+        The numbers that stand for 0 and 1.
+    """
+    links, base = constants
+    turns = [_rotation(link, angle, zero) for link, angle in zip(links, q)]
+    frame = [[one if i == j else zero for j in range(3)] for i in range(3)]
+    rate = twice = [[zero] * 3 for _ in range(3)]
+    origin = [zero] * 3
+    swept, outwards = [], []  # dW/dq, and second derivative of W and acceleration of the origin
+    for link, turn, v, a in zip(links, turns, qd, qdd):
+        along = _quarter_turn(turn, zero)[:3]
+        own, across = _product(frame, along), _product(rate, along)
+        bent = _product(frame, _quarter_turn(along, zero)[:3])
+        moved = [_scaled(v, row) for row in across]
+        both = _added(moved, moved)
+        pulled = _added([_scaled(v * v, row) for row in bent], [_scaled(a, row) for row in own])
+        twice = _added(_product(twice, turn), _added(both, pulled))
+        rate = _added(_product(rate, turn), [_scaled(v, row) for row in own])
+        frame = _product(frame, turn)
+        origin = _sum(origin, _turned(twice, link.tip))
+        swept.append(own)
+        outwards.append((twice, origin))
+    tau, inwards, force, moment, beyond = [], None, None, None, None
+    for i in reversed(range(len(links))):
+        link, (twice, origin) = links[i], outwards[i]
+        weighted = _scaled(link.mass, link.com)
+        own_force = _sum(_scaled(link.mass, origin), _turned(twice, weighted))
+        second = [row[:3] for row in link.second_moments[:3]]
+        own = _added(_outer(weighted, origin), _product(second, _transposed(twice)))
+        if inwards is None:  # nothing beyond the last link
+            force, mass, carried = own_force, link.mass, weighted
+        else:
+            own = _added(own, _product(turns[i + 1], inwards))
+            force, mass = _sum(force, own_force), beyond + link.mass
+            carried = _sum(weighted, _turned(turns[i + 1], moment))
+        inwards, beyond = _added(_outer(link.tip, force), own), mass
+        moment = _sum(carried, _scaled(mass, link.tip))
+        trace = functools.reduce(operator.add, map(_dot, swept[i], _transposed(inwards)))
+        tau.append(trace + _dot(base, _turned(swept[i], moment)))
+    return tau[::-1]
+
+
 def _sweeps(frames, zero):
     """First and second derivatives of every link's frame: ``[p, j]`` and ``[p, j, k]``, j <= k."""
     n = len(frames)
@@ -174,7 +231,7 @@ def _frame(link, angle, zero, one):
 
 def _quarter_turn(frame, zero):
     """Derivative of a turn about z: rows 1 and 2 change places, the others vanish."""
-    nothing = [zero] * 4
+    nothing = [zero] * len(frame[0])
     return [[-x for x in frame[1]], frame[0], nothing, nothing]
 
 
@@ -207,6 +264,14 @@ def _turned(matrix, vector):
 
 def _transposed(matrix):
     return [list(column) for column in zip(*matrix)]
+
+
+def _added(a, b):
+    return [_sum(x, y) for x, y in zip(a, b)]
+
+
+def _outer(a, b):
+    return [_scaled(x, b) for x in a]
 
 
 def _product(a, b):

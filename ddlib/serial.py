@@ -1,7 +1,7 @@
 """Serial arms in space, of any number of revolute joints.
 
 Frames follow Denavit & Hartenberg: joint ``i`` turns about the z axis of frame ``i - 1``,
-and frame ``i`` is fixed to the far end of link ``i``. Torques come from the two
+and frame ``i`` is fixed to the far end of link ``i``. Torques come from the three
 formulations of `ddlib.formulations`.
 """
 
@@ -14,7 +14,13 @@ import numpy as np
 
 from ddlib._check import finite_array, integer, number
 from ddlib.arm import STANDARD_GRAVITY, Link
-from ddlib.formulations import Constants, LinkConstants, lagrange_euler, newton_euler
+from ddlib.formulations import (
+    Constants,
+    LinkConstants,
+    lagrange_euler,
+    newton_euler,
+    recursive_lagrange,
+)
 
 
 @dataclass(frozen=True)
@@ -157,6 +163,23 @@ class SerialArm:
         Source: Uicker 1965 and Kahn 1969, as Hollerbach 1980 counts them.
         """
         return self._run(lagrange_euler, q, qd, qdd)
+
+    def recursive_lagrange(self, q, qd, qdd) -> np.ndarray:
+        """Joint torques by the recursive Lagrangian form with 3 x 3 matrices.
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., joints)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+
+        Returns
+        -------
+        ndarray, shape (..., joints)
+            Torques, N m.
+
+        Source: Hollerbach 1980.
+        """
+        return self._run(recursive_lagrange, q, qd, qdd)
 
     def _run(self, formulation, q, qd, qdd):
         """The torques of a formulation on arrays of states."""

@@ -42,8 +42,8 @@ DECIDED = 0.95
 
 STANDS = 0.05
 """Share of the draws down to which a written verdict stands: below, they exclude it as surely as
-they had to agree before. A verdict at the edge of being decided falls in one new ensemble of
-about two thousand, where 0.8 would fell one in five."""
+they had to agree before. Between two ensembles a value moves by 1.4 standard errors, so a verdict
+at the edge of being decided falls in 1 new ensemble of 100, where 0.8 would fell 29."""
 
 CONTRADICTS = 1.0
 """Share of the draws for one verdict that ends a written "undecided"."""
@@ -115,6 +115,28 @@ def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) ->
     return found
 
 
+def median(cell) -> np.ndarray:
+    """Median over all members and all that is theirs, one for each draw.
+
+    Parameters
+    ----------
+    cell : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets it.
+    """
+    return np.median(cell.reshape(len(cell), -1), axis=-1)
+
+
+def mean(cell) -> np.ndarray:
+    """Mean over all members and all that is theirs, one for each draw.
+
+    Parameters
+    ----------
+    cell : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets it.
+    """
+    return cell.reshape(len(cell), -1).mean(-1)
+
+
 def over_members(statistic: Callable, *cells) -> tuple[float, np.ndarray]:
     """A statistic of all members, and its replicates from `bootstrap`.
 
@@ -176,3 +198,27 @@ def stands(written: str, found: Mapping[str, float]) -> bool:
     if written == "undecided":
         return max(found.values()) < CONTRADICTS
     return found.get(written, 0.0) >= STANDS
+
+
+def turns_at(values, shares, level: float) -> float:
+    """Value of an assumed parameter at which a claim would turn, from a few that were tried.
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+        Values tried, positive.
+    shares : array_like, shape (n,)
+        What the claim would be judged by at each, positive.
+    level : float
+        Where the verdict turns. Between the values both go linearly on logarithmic scales.
+
+    Raises
+    ------
+    ValueError
+        If the shares do not reach from below the level to above it.
+    """
+    order = np.argsort(shares)
+    tried, found = (np.log(np.asarray(x, dtype=float)[order]) for x in (values, shares))
+    if not found[0] <= np.log(level) <= found[-1]:
+        raise ValueError(f"shares must reach across {level:g}, got {np.exp(found)}")
+    return float(np.exp(np.interp(np.log(level), found, tried)))

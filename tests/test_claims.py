@@ -20,7 +20,7 @@ MEASURED = [claim for claim in ALL if claim.measure]
 def make(**changes) -> Claim:
     fields = dict(
         id="a", where="section 1", chapter="dynamics", claim="x", printed=2.0, why="because",
-        verdict="reproduced", measure="networks.slope", band={"factor": 1.5},
+        refuted="1", verdict="reproduced", measure="networks.slope", band={"factor": 1.5},
     )  # fmt: skip
     return Claim(**{**fields, **changes})
 
@@ -214,6 +214,7 @@ def test_edges(monkeypatch):
     [
         (dict(verdict="maybe"), "verdict of claim 'a' must be one of"),
         (dict(why=" "), "why of claim 'a' must be text"),
+        (dict(refuted=""), "refuted of claim 'a' must be text"),
         (dict(measure=""), "must have measure and band"),
         (dict(verdict="not testable"), "must have measure and band"),
         (dict(verdict="by construction", loose={"from": 1}), "by construction: it must not have"),
@@ -231,7 +232,7 @@ def test_claims_refuse_bad_entries(changes, words):
 def test_the_file_is_checked(tmp_path):
     entry = dict(
         id="a", where="section 1", chapter="c", claim="x", printed="p",
-        verdict="not testable", why="y",
+        verdict="not testable", why="y", refuted="z",
     )  # fmt: skip
     path = tmp_path / "claims.yml"
     path.write_text(yaml.safe_dump([entry]))
@@ -242,9 +243,10 @@ def test_the_file_is_checked(tmp_path):
     path.write_text(yaml.safe_dump([{**entry, "colour": "red"}]))
     with pytest.raises(ValueError, match="claim 'a' must have the known fields"):
         claims.load(path)
-    path.write_text(yaml.safe_dump([{k: v for k, v in entry.items() if k != "why"}]))
-    with pytest.raises(ValueError, match="claim 'a' must have the known fields"):
-        claims.load(path)
+    for missing in ("why", "refuted"):
+        path.write_text(yaml.safe_dump([{k: v for k, v in entry.items() if k != missing}]))
+        with pytest.raises(ValueError, match="claim 'a' must have the known fields"):
+            claims.load(path)
 
 
 def test_notebooks_of_one_build_share_what_they_measured(monkeypatch, tmp_path):

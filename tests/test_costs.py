@@ -8,7 +8,7 @@ import pytest
 from ddlib import costs
 from ddlib.arm import Link
 from ddlib.counting import Operations
-from ddlib.formulations import lagrange_euler, newton_euler
+from ddlib.formulations import lagrange_euler, newton_euler, recursive_lagrange
 from ddlib.serial import PUMA_560, SerialArm, SpatialLink
 
 CMU = [Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60)]
@@ -81,6 +81,15 @@ def test_lagrange_euler_has_the_leading_terms_of_the_published_count(lagrange):
     assert lagrange[5].additions == pytest.approx(51548, rel=0.015)
 
 
+def test_hollerbachs_recursion_lies_between_the_closed_form_and_newton_euler(newton, lagrange):
+    found = [costs.count(recursive_lagrange, general(n)) for n in JOINTS]
+    joint = polynomial([o.multiplications for o in found], 1)[0]
+    assert polynomial([o.additions for o in found], 1)[0] < joint
+    # 3 x 3 products of a joint: W A, W' A, W'' A, and W, W' and W with derivatives of A; A D, J W''
+    assert joint >= 8 * 27 and joint > 2 * polynomial([o.multiplications for o in newton], 1)[0]
+    assert newton[5].multiplications < found[5].multiplications < lagrange[5].multiplications / 20
+
+
 def test_published_polynomials_and_totals_agree_but_for_one():
     for name, p in costs.PUBLISHED.items():
         assert np.polyval(p.additions, 6) == pytest.approx(p.six_joints.additions)
@@ -106,7 +115,7 @@ def test_two_links_by_hand():
     assert slow == Operations(7, 5, 0, 1), "a cosine, no sine and no speeds"
 
 
-@pytest.mark.parametrize("formulation", [newton_euler, lagrange_euler])
+@pytest.mark.parametrize("formulation", [newton_euler, lagrange_euler, recursive_lagrange])
 @pytest.mark.parametrize("joints", [2, 4])
 def test_the_more_is_known_the_less_is_computed(formulation, joints):
     arm = PUMA_560.first(joints)
@@ -125,6 +134,8 @@ def test_table_holds_what_the_counts_say():
     made = costs.table([2, 3], CMU[1])
     assert all(list(by_joints) == [2, 3] for by_joints in made.values())
     assert made["closed form, planar, shared"][2].multiplications == 15
+    recursive = costs.count(recursive_lagrange, PUMA_560.first(3))
+    assert made["recursive Lagrange, general"][3] == recursive
     assert made["Newton-Euler, general"][3] == costs.count(newton_euler, PUMA_560.first(3))
     equal = SerialArm.planar([CMU[1]] * 3)
     assert made["Newton-Euler, planar, customised"][3] == costs.count(newton_euler, equal, "arm")

@@ -1,4 +1,4 @@
-"""Arms in space: two formulations against each other, the planar arm, and another library."""
+"""Arms in space: three formulations against each other, the planar arm, and another library."""
 
 import numpy as np
 import pytest
@@ -33,9 +33,10 @@ def random_arm(joints, seed) -> SerialArm:
 @pytest.mark.parametrize("joints", range(1, 7))
 def test_newton_and_lagrange_agree_on_general_arms(joints):
     arm, motion = random_arm(joints, seed=joints), states(joints, n=20)
-    newton, lagrange = arm.newton_euler(*motion), arm.lagrange_euler(*motion)
+    newton = arm.newton_euler(*motion)
     assert newton.shape == (20, joints)
-    np.testing.assert_allclose(newton, lagrange, atol=1e-10 * np.abs(newton).max())
+    for lagrange in (arm.lagrange_euler, arm.recursive_lagrange):
+        np.testing.assert_allclose(lagrange(*motion), newton, atol=1e-10 * np.abs(newton).max())
 
 
 @pytest.mark.parametrize(

@@ -12,14 +12,13 @@ from ddlib.verdicts import (
     Measured,
     bootstrap,
     fresh,
+    mean,
+    median,
     over_members,
     shares,
     stands,
+    turns_at,
 )
-
-
-def mean(x):
-    return x.mean(-1)
 
 
 def test_the_spread_of_a_mean_is_its_standard_error():
@@ -106,11 +105,18 @@ def test_a_verdict_needs_nearly_all_draws(share, wanted):
         ("undecided", 0.5, True),
         ("undecided", 0.999, True),
         ("undecided", CONTRADICTS, False),
-        ("not reproduced", 0.5, False),  # a planted one
+        ("not reproduced", 0.3, False),  # a planted one
     ],
 )
 def test_what_a_written_verdict_bears(written, share, holds):
     assert stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+
+
+def test_how_often_a_new_ensemble_ends_a_verdict():
+    """Two draws of a normal statistic, the first one just decided; numbers in the source."""
+    for limit, wanted in ((STANDS, 1), (0.8, 29)):
+        apart = stats.norm.ppf(limit) - stats.norm.ppf(DECIDED)
+        assert round(float(100 * stats.norm.cdf(apart / np.sqrt(2)))) == wanted
 
 
 def test_every_fresh_verdict_stands():
@@ -126,3 +132,17 @@ def test_unknown_verdicts_are_refused():
 
 def test_replicates_are_optional():
     assert Measured(1.0, "text").replicates is None
+
+
+def test_where_a_share_reaches_a_level():
+    values = np.array([1.0, 2.0, 4.0])
+    assert turns_at(values, 0.05 * values, 0.15) == pytest.approx(3.0)
+    assert turns_at(values, 0.4 / values**2, 0.2) == pytest.approx(np.sqrt(2))  # falling
+    with pytest.raises(ValueError, match=r"shares must reach across 0\.5"):
+        turns_at(values, 0.05 * values, 0.5)
+
+
+def test_median_and_mean_take_all_that_is_a_members():
+    x = np.arange(12.0).reshape(1, 3, 4) ** 2
+    assert median(x) == [np.median(x)] and mean(x) == [np.mean(x)]
+    assert median(np.stack([x[0], x[0] + 1])).tolist() == [np.median(x), np.median(x) + 1]

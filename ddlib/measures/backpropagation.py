@@ -13,7 +13,7 @@ from ddlib.measures import committed
 from ddlib.network import Weights, WindowNetwork
 from ddlib.tables import number, scientific, spread
 from ddlib.training import History, TrainingSet, default_rate, train_ensemble
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, median, over_members
 
 SEEDS = 8
 """Networks of a training run."""
@@ -85,7 +85,8 @@ def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
 
     The speed-up is the median number of epochs without over that with acceleration, at the same
     step size and from the same initial weights: to a training RMSS of `LEVEL` on the windows of
-    21, and to the first time that all inputs are right on parity.
+    21, and to the first time that all inputs are right on parity. A run that does not get there
+    counts with its length.
 
     Parameters
     ----------
@@ -98,12 +99,19 @@ def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
     windows, other = {}, {}
     for alpha, epochs in ((0.0, 2200), (momentum, 500)):
         options = dict(rate=default_rate(21), momentum=alpha, epochs=epochs, progress=False)
-        windows[alpha] = np.median(reach(train_ensemble(start, _data(), **options)[1]))
+        reached = reach(train_ensemble(start, _data(), **options)[1])
+        windows[alpha] = np.minimum(reached, epochs)
         learned = parity.learn(bits, bits, members=16, momentum=alpha, epochs=2 * epochs, every=10)
-        other[alpha] = np.median(learned[1])
-    here, there = (float(runs[0.0] / runs[momentum]) for runs in (windows, other))
-    text = f"{number(here, 2)} times faster here, {number(there, 2)} times on parity of {bits} bits"
-    return Measured(here / there, text)
+        other[alpha] = np.minimum(learned[1], 2 * epochs)
+    cells = [(runs[0.0], runs[momentum]) for runs in (windows, other)]
+
+    def faster(pair):
+        return median(pair[0]) / median(pair[1])
+
+    value, replicates = over_members(lambda here, there: faster(here) / faster(there), *cells)
+    here, there = (number(np.median(a) / np.median(b), 2) for a, b in cells)
+    text = f"{here} times faster here, {there} times on parity of {bits} bits"
+    return Measured(value, text, replicates)
 
 
 def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
@@ -135,7 +143,8 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
     corner = np.round(fresh[:, 0]).clip(0, 1)
     best = np.mean(parity.parity(corner) == parity.parity(np.repeat(x[:, 0], 250, axis=0)))
     text = f"{spread(100 * share, 3)} % right, at best {number(100 * best, 3)} %"
-    return Measured(float(np.median(share) / best), text)
+    value, replicates = over_members(median, share / best)
+    return Measured(value, text, replicates)
 
 
 def polynomial(coding: str = "bits", most: int = 10) -> Measured:
@@ -191,8 +200,9 @@ def stable(width: int = 21) -> Measured:
     weights = np.concatenate([p.reshape(*p.shape[:2], -1) for p in parts], -1)
     change = np.linalg.norm(weights[last] - weights[half], axis=-1)
     share = change / np.linalg.norm(weights[last], axis=-1)
-    text = f"{number(100 * np.median(share), 2)} % from epoch {epochs[half]:,} to {epochs[last]:,}"
-    return Measured(float(np.median(share)), text)
+    value, replicates = over_members(median, share)
+    text = f"{number(100 * value, 2)} % from epoch {epochs[half]:,} to {epochs[last]:,}"
+    return Measured(value, text, replicates)
 
 
 def settling(steepest: float = 0.1) -> Measured:
@@ -205,17 +215,25 @@ def settling(steepest: float = 0.1) -> Measured:
     steepest : float
         Flat: ``d ln(error) / d ln(epoch)`` no steeper than this, as in `History.settled`.
     """
-    needed, words = [], []
+    cells, epochs = [], []
     for record in results.read("longer")["windows"].values():
-        epochs = np.array(record["history"]["epochs"])
+        at = np.array(record["history"]["epochs"])
         errors = np.array(record["history"]["training"]).T
-        flat = [
-            np.median(np.abs(History(epochs[:k], errors[:k]).slope())) <= steepest
-            for k in range(2, len(epochs) + 1)
-        ]
-        steep = np.flatnonzero(~np.array(flat))
-        last = -1 if not steep.size else steep[-1]
-        flat_at_all = last < len(flat) - 1
-        needed.append(int(epochs[last + 2] if flat_at_all else epochs[-1]))
-        words.append(f"{needed[-1]:,}" if flat_at_all else f"over {needed[-1]:,}")
-    return Measured(float(max(needed)), "epochs: " + ", ".join(words))
+        slopes = [History(at[:k], errors[:k]).slope() for k in range(2, len(at) + 1)]
+        cells.append(np.abs(slopes).T)
+        epochs.append(at)
+
+    def settled(at, slopes):
+        """Epoch after the last record at which the median is steep; the end if that is the last."""
+        steep = np.median(slopes, axis=1) > steepest
+        last = np.where(steep.any(-1), steep.shape[-1] - 1 - steep[..., ::-1].argmax(-1), -1)
+        return at[np.minimum(last + 2, len(at) - 1)], last < steep.shape[-1] - 1
+
+    value, replicates = over_members(
+        lambda *drawn: np.max([settled(at, c)[0] for at, c in zip(epochs, drawn)], axis=0), *cells
+    )
+    words = []
+    for at, slopes in zip(epochs, cells):
+        (needed,), (flat,) = settled(at, slopes[None])
+        words.append(f"{needed:,}" if flat else f"over {needed:,}")
+    return Measured(value, "epochs: " + ", ".join(words), replicates)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
 from ddlib import results
 from ddlib.experiment import STATE_FEEDBACK, split
-from ddlib.network import TorqueModel
+from ddlib.network import TorqueModel, Weights
 from ddlib.simulate import Recording
 
 
@@ -30,8 +31,20 @@ def networks(width: int) -> TorqueModel:
     return results.networks(width)
 
 
-def filters(width: int, layer: str) -> np.ndarray:
-    """Weights along the window of all their units, shape ``(filters, width)``.
+@cache
+def untrained(width: int) -> TorqueModel:
+    """The same networks before training: their initial weights, their scaling.
+
+    The null of what training is said to make. It is not a fair null of smooth filters, which
+    any smooth target gives.
+    """
+    trained = networks(width)
+    start = Weights.random(len(trained.weights), width, initial=STATE_FEEDBACK.initial)
+    return TorqueModel(start, trained.inputs, trained.outputs)
+
+
+def filters(width: int, layer: str, model: Callable = networks) -> np.ndarray:
+    """Weights along the window of all units, shape ``(networks, filters, width)``.
 
     Parameters
     ----------
@@ -39,5 +52,8 @@ def filters(width: int, layer: str) -> np.ndarray:
         Window size.
     layer : {"hidden", "skip"}
         To the hidden units, or directly to the outputs.
+    model : callable
+        `networks` or `untrained`.
     """
-    return getattr(networks(width).weights, f"{layer}_weights").reshape(-1, width)
+    weights = getattr(model(width).weights, f"{layer}_weights")
+    return weights.reshape(len(weights), -1, width)

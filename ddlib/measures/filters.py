@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, predict, run
+from ddlib.experiment import STATE_FEEDBACK, WINDOWS, predict, run
 from ddlib.filters import classify, decompose, roughness, shares
 from ddlib.harmonics import true_states
 from ddlib.measures import committed
 from ddlib.metrics import rmss
-from ddlib.network import Weights
 from ddlib.responses import LAYERS, QUANTITIES, responses
 from ddlib.tables import number, scientific, spread
 from ddlib.training import cases
 from ddlib.units import ablation, cancellation, net_inputs, saturated, transition_width
-from ddlib.verdicts import Measured, over_members
+from ddlib.verdicts import Measured, mean, median, over_members
+
+
+def _more(trained, untrained):
+    """Mean over trained networks less the mean over the same before training."""
+    return mean(trained) - mean(untrained)
+
+
+def _pair(width: int, layer: str) -> list[np.ndarray]:
+    """Filters of the trained networks, and of the same before training."""
+    models = committed.networks, committed.untrained
+    return [committed.filters(width, layer, model) for model in models]
 
 
 def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
-    """Share of the filters of a layer that `ddlib.filters.classify` gives a name.
+    """Share of a layer's filters that `ddlib.filters.classify` gives a name, less untrained.
 
     Parameters
     ----------
@@ -30,8 +41,10 @@ def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
     layer : {"hidden", "skip"}
         To the hidden units, or directly to the outputs.
     """
-    found = classify(committed.filters(width, layer)) == name
-    return Measured(float(found.mean()), f"{found.sum()} of {found.size} filters")
+    trained, before = (classify(f) == name for f in _pair(width, layer))
+    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
+    text = f"{trained.sum()} of {trained.size} filters, {before.sum()} before training"
+    return Measured(value, text, replicates)
 
 
 def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
@@ -61,38 +74,46 @@ def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -
 
 def rougher(wide: int = 41, narrow: int = 21) -> Measured:
     """Ratio of the median roughness of hidden filters at two window sizes."""
-    values = [float(np.median(roughness(committed.filters(w, "hidden")))) for w in (wide, narrow)]
-    text = f"roughness {number(values[0], 2)} at {wide}, {number(values[1], 2)} at {narrow}"
-    return Measured(values[0] / values[1], text)
+    cells = [roughness(committed.filters(w, "hidden")) for w in (wide, narrow)]
+    before = [roughness(_pair(w, "hidden")[1]) for w in (wide, narrow)]
+    wide_, narrow_, *null = (number(np.median(x), 2) for x in (*cells, *before))
+    text = f"roughness {wide_} at {wide}, {narrow_} at {narrow}; before training {null[0]} and "
+    value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
+    return Measured(value, text + null[1], replicates)
 
 
 def direct_smoothness() -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
-    medians = {w: float(np.median(roughness(committed.filters(w, "skip")))) for w in (11, 21, 41)}
-    return Measured(
-        max(medians.values()), "roughness " + ", ".join(number(m, 2) for m in medians.values())
-    )
+    cells, before = zip(*(map(roughness, _pair(w, "skip")) for w in WINDOWS))
+
+    def largest(*cells):
+        return np.max([median(cell) for cell in cells], axis=0)
+
+    value, replicates = over_members(largest, *cells)
+    now, then = (", ".join(number(np.median(x), 2) for x in xs) for xs in (cells, before))
+    return Measured(value, f"roughness {now}; before training {then}", replicates)
 
 
 def changed_roughness(width: int = 41) -> Measured:
     """Roughness of what training adds to the initial weights of the hidden units."""
-    _, model = results.course(width)
-    weights = model.weights.hidden_weights
-    change = roughness(weights[-1] - weights[0])
-    return Measured(float(np.median(change)), spread(change))
+    trained, before = _pair(width, "hidden")
+    change = roughness(trained - before)
+    value, replicates = over_members(median, change)
+    return Measured(value, f"{spread(change)}; the filters have {spread(roughness(trained))}",
+                    replicates)  # fmt: skip
 
 
 def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
     """Median share of the constant term in the energy of the filters."""
-    constants = shares(committed.filters(width, layer))[:, 0]
-    return Measured(
-        float(np.median(constants)), f"{100 * np.median(constants):.1f} % of the energy"
-    )
+    trained, before = (shares(f)[..., 0] for f in _pair(width, layer))
+    value, replicates = over_members(median, trained)
+    text = f"{100 * value:.1f} % of the energy, {100 * np.median(before):.1f} % before training"
+    return Measured(value, text, replicates)
 
 
 def parts_sum_up() -> Measured:
     """Largest difference between a filter and the sum of its parts as the paper prints them."""
-    f = committed.filters(21, "hidden")
+    f = committed.filters(21, "hidden").reshape(-1, 21)
     gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
     odd = decompose(f, "paper").odd
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))
@@ -104,37 +125,71 @@ def parts_sum_up() -> Measured:
 
 
 def zero_crossings(width: int = 41) -> Measured:
-    """Share of hidden filters whose odd part changes sign between the centre and the edge."""
-    odd = decompose(committed.filters(width, "hidden")).odd[:, width // 2 + 1 :]
-    smooth = shares(committed.filters(width, "hidden"))[:, 4] < 0.2
-    crosses = (np.diff(np.sign(odd), axis=-1) != 0).any(-1) & smooth
-    return Measured(
-        float(crosses[smooth].mean()), f"{crosses.sum()} of {smooth.sum()} smooth filters"
-    )
+    """Share of hidden filters that are smooth with an odd part that crosses zero, less untrained.
+
+    It crosses between the centre and the edge; smooth means that a cubic leaves less than a fifth
+    of the energy. Rough odd parts change sign all the time.
+    """
+    both = []
+    for f in _pair(width, "hidden"):
+        odd = decompose(f).odd[..., width // 2 + 1 :]
+        both.append((np.diff(np.sign(odd), axis=-1) != 0).any(-1) & (shares(f)[..., 4] < 0.2))
+    value, replicates = over_members(lambda pair: _more(*pair), tuple(both))
+    text = f"{both[0].sum()} of {both[0].size} filters are smooth and cross, "
+    return Measured(value, f"{text}{both[1].sum()} before training", replicates)
 
 
-def _activities(width: int):
+def _activities(width: int, model: Callable = committed.networks):
     windows, torque = cases(committed.training(), width)
-    model = committed.networks(width)
-    return windows, torque, model.weights.activity(model.scaled(windows))[0]
+    found = model(width)
+    return windows, torque, found.weights.activity(found.scaled(windows))[0]
 
 
 def saturation(width: int) -> Measured:
     """Median share of cases in which a hidden unit is below 0.1 or above 0.9."""
-    share = saturated(_activities(width)[2])
-    return Measured(float(np.median(share)), f"{100 * np.median(share):.0f} % of the time")
+    share, before = (
+        saturated(_activities(width, model)[2])
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(median, share)
+    text = f"{100 * value:.0f} % of the time, {100 * np.median(before):.0f} % before training"
+    return Measured(value, text, replicates)
 
 
 def transition(width: int) -> Measured:
     """Median width of the transition region in standard deviations of the net input."""
-    found = transition_width(net_inputs(committed.networks(width), _activities(width)[0]))
-    return Measured(float(np.median(found)), f"{number(np.median(found), 2)} standard deviations")
+    found, before = (
+        transition_width(net_inputs(model(width), _activities(width)[0]))
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(median, found)
+    text = f"{number(value, 2)} standard deviations, {number(np.median(before), 2)} before training"
+    return Measured(value, text, replicates)
 
 
 def cancel(width: int) -> Measured:
-    """Median share of the hidden units' influence that cancels at the outputs."""
-    found = cancellation(committed.networks(width), _activities(width)[0])
-    return Measured(float(np.median(found)), f"{100 * np.median(found):.0f} %")
+    """Median share of the hidden units' influence that cancels at the outputs, less untrained.
+
+    Of independent influences much cancels too: ten equal ones leave less than a third.
+    """
+    trained, before = (
+        cancellation(model(width), _activities(width)[0])
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(lambda pair: median(pair[0]) - median(pair[1]),
+                                     (trained, before))  # fmt: skip
+    now, then = (f"{100 * np.median(x):.0f} %" for x in (trained, before))
+    return Measured(value, f"{now}, {then} before training", replicates)
+
+
+def _spare(width: int, worse: float, model: Callable) -> np.ndarray:
+    windows, torque = cases(committed.training(), width)
+    found = model(width)
+    spare = []
+    for k in range(len(found.weights)):
+        before = rmss(found[k].torque(windows), torque)
+        spare.append(int((ablation(found[k], windows, torque)[1] < worse * before).sum()))
+    return np.array(spare)
 
 
 def spare_units(width: int, worse: float = 1.1) -> Measured:
@@ -147,23 +202,19 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     worse : float
         "Almost no loss": the training error grows by less than this factor.
     """
-    windows, torque = cases(committed.training(), width)
-    spare = []
-    for k in range(len(committed.networks(width).weights)):
-        one = committed.networks(width)[k]
-        before = rmss(one.torque(windows), torque)
-        spare.append(int((ablation(one, windows, torque)[1] < worse * before).sum()))
-    text = f"{np.median(spare):.0f} of 10 units can be spared ({min(spare)} to {max(spare)})"
-    return Measured(float(np.median(spare)), text)
+    spare = _spare(width, worse, committed.networks)
+    before = _spare(width, worse, committed.untrained)
+    value, replicates = over_members(median, spare)
+    text = f"{value:.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "
+    return Measured(value, f"{text}{np.median(before):.0f} before training", replicates)
 
 
 def structured(width: int) -> Measured:
     """Share of hidden filters that are analysable, less that of untrained networks."""
-    untrained = Weights.random(25, width).hidden_weights.reshape(-1, width)
-    trained = (classify(committed.filters(width, "hidden")) != "not analysable").mean()
-    chance = (classify(untrained) != "not analysable").mean()
-    text = f"{100 * trained:.0f} % of the filters have a name, untrained {100 * chance:.0f} %"
-    return Measured(float(trained - chance), text)
+    trained, before = (classify(f) != "not analysable" for f in _pair(width, "hidden"))
+    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
+    text = f"{100 * trained.mean():.0f} % of the filters have a name, "
+    return Measured(value, f"{text}{100 * before.mean():.0f} % before training", replicates)
 
 
 def shoulder_profile(width: int) -> Measured:
@@ -171,4 +222,5 @@ def shoulder_profile(width: int) -> Measured:
     test = run(committed.recording(), 5)
     predicted = predict(committed.networks(width), test)
     wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
-    return Measured(float(np.median(wrong)), spread(wrong))
+    value, replicates = over_members(median, wrong)
+    return Measured(value, spread(wrong), replicates)

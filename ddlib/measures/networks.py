@@ -10,7 +10,7 @@ from ddlib import paper, results
 from ddlib.experiment import STATE_FEEDBACK, WINDOWS
 from ddlib.network import Weights
 from ddlib.tables import number, spread
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, median, over_members
 
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
@@ -29,11 +29,12 @@ def _medians(errors: dict) -> str:
 def table_4_1(width: int, column: str, setup: str = STATE_FEEDBACK.name) -> Measured:
     """A cell of Table 4-1, median over all networks: `width`, `column` of the errors, `setup`."""
     cell = _errors(column, setup)[width]
-    return Measured(float(np.median(cell)), spread(cell))
+    value, replicates = over_members(median, cell)
+    return Measured(value, spread(cell), replicates)
 
 
-def share_in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Share of bootstrap draws of the networks in which the medians rise in this order.
+def in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Measured:
+    """Whether the median errors of the windows rise in this order.
 
     Parameters
     ----------
@@ -45,25 +46,29 @@ def share_in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -
         Which reading of the controller.
     """
     errors = _errors(column, setup)
-    rng = np.random.default_rng(0)
-    drawn = {
-        width: np.median(e[rng.integers(0, e.size, (2000, e.size))], -1)
-        for width, e in errors.items()
-    }
-    ranks = [[drawn[w] for w in np.atleast_1d(level)] for level in order]
-    holds = np.ones(2000, bool)
-    for low, high in itertools.pairwise(ranks):
-        holds &= np.max(low, 0) < np.min(high, 0)
-    return Measured(
-        float(holds.mean()), f"medians {_medians(errors)}; in {100 * holds.mean():.0f} % of draws"
-    )
+
+    def holds(*cells):
+        medians = dict(zip(errors, map(median, cells)))
+        ranks = [[medians[w] for w in np.atleast_1d(level)] for level in order]
+        pairs = itertools.pairwise(ranks)
+        return np.all([np.max(low, 0) < np.min(high, 0) for low, high in pairs], axis=0)
+
+    value, replicates = over_members(holds, *errors.values())
+    text = f"medians {_medians(errors)}; in {100 * replicates.mean():.0f} % of draws"
+    return Measured(bool(value), text, replicates)
 
 
 def worse_on_test(setup: str = STATE_FEEDBACK.name) -> Measured:
     """Smallest ratio of median test to median training error over the windows."""
     training, test = _errors("training", setup), _errors("test", setup)
-    ratios = [float(np.median(test[w]) / np.median(training[w])) for w in WINDOWS]
-    return Measured(min(ratios), "test / training " + ", ".join(number(r, 2) for r in ratios))
+    cells = [(training[w], test[w]) for w in WINDOWS]
+
+    def least(*cells):
+        return np.min([median(test) / median(training) for training, test in cells], axis=0)
+
+    ratios = [number(np.median(test) / np.median(training), 2) for training, test in cells]
+    value, replicates = over_members(least, *cells)
+    return Measured(value, "test / training " + ", ".join(ratios), replicates)
 
 
 def multiplications(width: int = 21) -> Measured:
@@ -85,36 +90,57 @@ def weights_against_nwh(width: int = 21) -> Measured:
 def largest_weight(width: int) -> Measured:
     """Magnitude of the largest weight, the median over all networks."""
     largest = _cells()[width]["largest weight"]
-    return Measured(float(np.median(largest)), spread(largest, 3))
+    value, replicates = over_members(median, largest)
+    return Measured(value, spread(largest, 3), replicates)
 
 
 def slope() -> Measured:
     """Largest median steepness of the error at the end of training, over the windows."""
-    slopes = {w: float(np.median(np.abs(cell["slope"]))) for w, cell in _cells().items()}
-    text = ", ".join(number(s, 2) for s in slopes.values())
-    return Measured(max(slopes.values()), f"d ln(error) / d ln(epoch) {text}")
+    slopes = [np.abs(cell["slope"]) for cell in _cells().values()]
+    text = ", ".join(number(np.median(s), 2) for s in slopes)
+    value, replicates = over_members(_largest_median, *slopes)
+    return Measured(value, f"d ln(error) / d ln(epoch) {text}", replicates)
+
+
+def _largest_median(*cells) -> np.ndarray:
+    return np.max([median(cell) for cell in cells], axis=0)
+
+
+def _sizes(column: str) -> dict[int, np.ndarray]:
+    """Errors of the networks of ten window sizes, narrow ones first."""
+    rows = results.read("window-sizes")["rows"]
+    return {row["width"]: np.array(row[column]) for row in sorted(rows, key=lambda r: r["width"])}
 
 
 def best_window() -> Measured:
     """Window with the lowest median test error, over sizes from 3 to 81."""
-    rows = results.read("window-sizes")["rows"]
-    medians = {row["width"]: float(np.median(row["test"])) for row in rows}
-    best = min(medians, key=medians.get)
-    return Measured(float(best), f"{best} samples ({number(medians[best], 2)})")
+    sizes = _sizes("test")
+    widths = np.array(list(sizes))
+
+    def best(*cells):
+        return widths[np.argmin([median(cell) for cell in cells], axis=0)]
+
+    value, replicates = over_members(best, *sizes.values())
+    least = number(np.median(sizes[int(value)]), 2)
+    return Measured(value, f"{value:.0f} samples ({least})", replicates)
 
 
 def training_error_falls() -> Measured:
     """Share of steps to the next larger window at which the median training error falls."""
-    rows = results.read("window-sizes")["rows"]
-    medians = [np.median(row["training"]) for row in rows]
-    falls = np.diff(medians) < 0
-    return Measured(
-        float(falls.mean()), f"{falls.sum()} of {falls.size} steps from 3 to 81 samples"
-    )
+    sizes = _sizes("training")
+    steps = len(sizes) - 1
+
+    def falls(*cells):
+        return (np.diff([median(cell) for cell in cells], axis=0) < 0).mean(0)
+
+    value, replicates = over_members(falls, *sizes.values())
+    text = f"{value * steps:.0f} of {steps} steps from {min(sizes)} to {max(sizes)} samples"
+    return Measured(value, text, replicates)
 
 
 def memory(width: int) -> Measured:
     """Training error on shuffled torques: what falls below 1 was memorised."""
     rows = {row["width"]: row for row in results.read("memory")["rows"]}
     errors = rows[width]["training"]
-    return Measured(float(np.median(errors)), spread(errors, 3))
+    value, replicates = over_members(median, errors)
+    return Measured(value, spread(errors, 3), replicates)

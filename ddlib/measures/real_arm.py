@@ -12,11 +12,12 @@ from functools import cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from scipy.optimize import brentq
 
 from ddlib import linear
 from ddlib.actuators import DeadZone, FlexibleJoint
 from ddlib.delays import late_poles
-from ddlib.effects import Effects
+from ddlib.effects import Effects, Quantisation
 from ddlib.experiment import STATE_FEEDBACK
 from ddlib.filters import savitzky_golay
 from ddlib.paper import TEST_TRAJECTORY
@@ -25,15 +26,20 @@ from ddlib.tables import number
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.unmodelled import residual_torque, rms
 from ddlib.velocity import difference, end_slope, noise_gain
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, turns_at
 
 SETUP = STATE_FEEDBACK
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))
 """A springy shaft with modes at 36 and 38 Hz: an example, no value of the real arm."""
 
 
-def _drive(**effects) -> Recording:
+SIGNIFICANT = 0.2
+"""Share of the rigid body's torque from which on an effect counts as significant."""
+
+
+def _drive(runs: int | None = None, **effects) -> Recording:
     extents = APPENDIX_I[TEST_TRAJECTORY - 1]
+    extents = extents if runs is None else np.repeat([extents], runs, axis=0)
     options = dict(effects=Effects(**effects), log_step=CONTROL_STEP, rest=0.1)
     return record(SETUP.arm, SETUP.controller, extents, **options)
 
@@ -56,11 +62,28 @@ def _shares(left) -> tuple[np.ndarray, str]:
     return driven, text
 
 
-def friction() -> Measured:
-    """Friction of the surrogate over the rigid-body torque, both as RMS: the smaller share."""
-    run = _drive(friction=SETUP.effects.friction)
-    share, text = _shares(residual_torque(SETUP.arm, run)[run.motion])
-    return Measured(float(share.min()), text)
+def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
+    """How many times the assumed friction is significant: share of the rigid body's torque.
+
+    The joint with the smaller share counts, both as RMS.
+
+    Parameters
+    ----------
+    factors : sequence of float
+        Multiples tried, the first of them 1.
+    """
+    factor = np.outer(factors, (1.0, 1.0))
+    viscous, coulomb = SETUP.effects.friction
+    scaled = (
+        replace(viscous, coefficient=factor * viscous.coefficient),
+        replace(coulomb, level=factor * coulomb.level),
+    )
+    run = _drive(len(factors), friction=scaled)
+    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
+    turn = turns_at(factors, share.min(-1), SIGNIFICANT)
+    text = f"{_shares(left[0])[1]}; {100 * SIGNIFICANT:g} % from {number(turn, 2)} times the "
+    return Measured(turn, f"{text}assumed friction on")
 
 
 def differencing(width: int = 19) -> Measured:
@@ -94,7 +117,9 @@ def looking_ahead(width: int = 21) -> Measured:
 
 
 def snap() -> Measured:
-    """Torque that a springy shaft leaves without a start, over the torque sensor's noise.
+    """Frequency of a springy shaft, Hz, below which its torque exceeds the torque sensor's noise.
+
+    Measured at the assumed shaft; the torque is in proportion to the inverse of the stiffness.
 
     The reference has been running for a period when the measured motion begins. On the motion
     from rest the swing of the start is never over: this torque weighs frequencies by their
@@ -110,91 +135,123 @@ def snap() -> Measured:
     left = rms(residual_torque(SETUP.arm, run)[t[:-1] >= 0])[0]
     noise = SETUP.effects.torque_sensor[0].std[0]
     modes = SHAFT.mode_frequencies(SETUP.arm, [0.0, 0.0]) / (2 * np.pi)
+    turn = float(modes[0] * np.sqrt(left / noise))
     text = (
         f"{1e3 * left:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
-        f"{number(noise / left, 2)} times below the torque noise"
+        f"{number(noise / left, 2)} times below the torque noise; as large with a mode at "
+        f"{number(turn, 2)} Hz"
     )
-    return Measured(float(left / noise), text)
+    return Measured(turn, text)
 
 
 @cache
-def _shaken(gap: float) -> np.ndarray:
-    """Torque left at both joints by the springy shaft with some play, the whole motion."""
-    run = _drive(transmission=(replace(SHAFT, gap=(gap, gap)),))
-    return residual_torque(SETUP.arm, run)[run.motion]
+def _rattle(gaps: tuple) -> np.ndarray:
+    """Torque that play of the springy shaft adds at both joints, the whole motion."""
+    run = _drive(len(gaps) + 1, transmission=(replace(SHAFT, gap=np.outer((0, *gaps), (1, 1))),))
+    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    return left[1:] - left[0]
 
 
-def _share(left, what: str) -> Measured:
-    """RMS torque over the rigid body's: the larger share is judged, both are told."""
-    share, text = _shares(left)
-    return Measured(float(share.max()), f"{what}: {text}")
-
-
-def backlash(gap: float = 1e-3) -> Measured:
-    """Torque that play adds behind a springy shaft, over the rigid body's.
+def backlash(gaps=(1e-3, 2e-3, 4e-3)) -> Measured:
+    """Play behind a springy shaft that is significant, rad: share of the rigid body's torque.
 
     Parameters
     ----------
-    gap : float
-        Play, rad.
+    gaps : sequence of float
+        Play tried, rad.
     """
-    return _share(_shaken(gap) - _shaken(0.0), f"play of {np.rad2deg(gap):.2f}°, if it had gears")
+    left = _rattle(tuple(gaps))
+    share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
+    turn = turns_at(gaps, share.max(-1), SIGNIFICANT)
+    text = f"if it had gears, play of {np.rad2deg(gaps[0]):.2f}°: {_shares(left[0])[1]}; "
+    return Measured(turn, f"{text}{100 * SIGNIFICANT:g} % from {np.rad2deg(turn):.2f}° on")
 
 
-def high_frequency() -> Measured:
-    """Torque that a springy shaft leaves, the ringing at the start included."""
-    return _share(_shaken(0.0), "springy shaft")
+def high_frequency(softer=(0.3, 0.1)) -> Measured:
+    """Torque that a springy shaft leaves over the rigid body's, the ringing at the start included.
+
+    Parameters
+    ----------
+    softer : sequence of float
+        Parts of the assumed stiffness at which the share is told too.
+    """
+    factors = (1, *softer)
+    stiffness = np.outer(factors, SHAFT.stiffness)
+    run = _drive(len(factors), transmission=(replace(SHAFT, stiffness=stiffness),))
+    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    share = (rms(left) / rms(_ideal().tau_true[_ideal().motion])).max(-1)
+    others = ", ".join(f"{100 * x:.0f} % at {f:g}" for x, f in zip(share[1:], softer))
+    text = f"springy shaft: {_shares(left[0])[1]}; the larger share is {others} of the stiffness"
+    return Measured(float(share[0]), text)
 
 
 def dead_zone(width: float = 0.1) -> Measured:
-    """Torque that a dead zone swallows, over the rigid body's.
+    """Half width of a dead zone that is significant, N m: share of the rigid body's torque.
 
     Parameters
     ----------
     width : float
-        Half the zone, N m, at both joints.
+        Half of an assumed zone, N m, at both joints, whose share is told too. What a zone
+        swallows of a torque is in proportion to its width.
     """
     tau = _ideal().tau_true[_ideal().motion]
     lost = DeadZone((width, width)).inverse(tau) - tau
-    return _share(lost, f"dead zone of {width:g} N m")
+    share, text = _shares(lost)
+    turn = float(width * SIGNIFICANT / share.max())
+    text = f"dead zone of {width:g} N m: {text}; {100 * SIGNIFICANT:g} % from {number(turn, 2)} N m"
+    return Measured(turn, f"{text} on")
 
 
 def saturation() -> Measured:
-    """Largest torque of the motion over the torque limit, the joint that comes closer."""
+    """Torque limit below which the motion saturates over the assumed one, the nearer joint."""
     limit = np.array(SETUP.effects.actuator[0].limit)
-    share = (np.abs(_ideal().tau_true).max(0) / limit).max()
-    text = f"the motion takes {100 * share:.0f} % of the limit at most"
+    largest = np.abs(_ideal().tau_true).max(0)
+    share = (largest / limit).max()
+    text = f"the motion takes {100 * share:.0f} % of the assumed limit at most; limits below "
+    text += f"{largest[0]:.0f} or {largest[1]:.0f} N m would cut it"
     return Measured(float(share), text)
 
 
 def sampling(late: float = 1.2e-3) -> Measured:
-    """Growth rate of position feedback whose torque is held and late, 1/s; negative is stable.
+    """Multiple of the assumed viscous friction from which on late position feedback is stable.
+
+    The torque is held over a control period, and late.
 
     Parameters
     ----------
     late : float
         Delay between reading and torque, s.
     """
-    viscous = SETUP.effects.friction[0].coefficient
-    joints = linear.plant(SETUP.arm.mass_matrix([0.0, 0.0]), viscous)
+    viscous = np.array(SETUP.effects.friction[0].coefficient)
     gain = np.hstack([np.diag(SETUP.controller.kp), np.zeros((2, 2))])
-    held, delayed = (
-        np.log(np.abs(late_poles(joints, gain, CONTROL_STEP, d)).max()) / CONTROL_STEP
-        for d in (0.0, late)
-    )
-    text = (
-        f"position feedback: swings grow at {delayed:.2f} 1/s if the torque is {1e3 * late:g} ms "
-    )
-    text += f"late, {held:.2f} 1/s if it is only held"
-    return Measured(float(delayed), text)
+
+    def growth(factor, delay):
+        joints = linear.plant(SETUP.arm.mass_matrix([0.0, 0.0]), factor * viscous)
+        return np.log(np.abs(late_poles(joints, gain, CONTROL_STEP, delay)).max()) / CONTROL_STEP
+
+    turn = brentq(growth, 0.1, 10.0, args=(late,))
+    held, delayed = (growth(1.0, delay) for delay in (0.0, late))
+    text = f"position feedback: swings grow at {number(delayed, 2)} 1/s if the torque is "
+    text += f"{1e3 * late:g} ms late, {number(held, 2)} 1/s if it is only held; stable from "
+    return Measured(float(turn), f"{text}{number(turn, 2)} times the assumed viscous friction on")
 
 
-def sensor_noise() -> Measured:
-    """Noise in torque from second differences of rounded positions, over the rigid body's."""
+def sensor_noise(bits=(14, 15, 16, 17, 18, 19, 20)) -> Measured:
+    """Bits of an encoder from which on its noise in torque by second differences is slight.
+
+    Parameters
+    ----------
+    bits : sequence of int
+        Encoders tried.
+    """
     run = _ideal()
     log = run.q_true[:: round(LOG_STEP / CONTROL_STEP)]
-    torque = []
-    for q in (log, SETUP.effects.encoder[0].apply(log)):
+
+    def torque(q):
         qd, qdd = (q[2:] - q[:-2]) / (2 * LOG_STEP), np.diff(q, 2, axis=0) / LOG_STEP**2
-        torque.append(SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd))
-    return _share(torque[1] - torque[0], "16 bits, second differences at 100 a second")
+        return SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd)
+
+    noise = {b: torque(Quantisation.encoder(b).apply(log)) - torque(log) for b in bits}
+    turn = min(b for b, left in noise.items() if _shares(left)[0].max() < SIGNIFICANT)
+    text = f"16 bits, second differences at 100 a second: {_shares(noise[16])[1]}; below "
+    return Measured(turn, f"{text}{100 * SIGNIFICANT:g} % from {turn} bits on")

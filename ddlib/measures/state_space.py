@@ -10,39 +10,44 @@ from ddlib.network import TorqueModel
 from ddlib.sensitivity import shuffled, transition_range
 from ddlib.state_space import random_states, states_along, torque
 from ddlib.tables import spread
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, mean, median, over_members
+
+
+def _median(values, text: str) -> Measured:
+    value, replicates = over_members(median, values)
+    return Measured(value, text, replicates)
 
 
 def table_6_1(set_name: str, deviation: str = "own deviation") -> Measured:
     """A row of Table 6-1: the median over all networks."""
     errors = results.read("table-6-1")["errors"][set_name][deviation]
-    return Measured(float(np.median(errors)), spread(errors))
+    return _median(errors, spread(errors))
 
 
 def largest_weight() -> Measured:
     """Magnitude of the largest weight (Figure 6-1), the median over all networks."""
     largest = results.read("table-6-1")["largest weight"]
-    return Measured(float(np.median(largest)), spread(largest, 3))
+    return _median(largest, spread(largest, 3))
 
 
 def slope() -> Measured:
     """Median steepness of the error at the end of training."""
     slopes = np.abs(results.read("table-6-1")["slope"])
-    return Measured(float(np.median(slopes)), f"d ln(error) / d ln(epoch) {spread(slopes)}")
+    return _median(slopes, f"d ln(error) / d ln(epoch) {spread(slopes)}")
 
 
 def generalisation() -> Measured:
     """Error on random set B over that on random set A, network by network: the median."""
     errors = results.read("table-6-1")["errors"]
     a, b = (np.array(errors[f"random set {name}"]["own deviation"]) for name in "AB")
-    return Measured(float(np.median(b / a)), f"B / A {spread(b / a)}")
+    return _median(b / a, f"B / A {spread(b / a)}")
 
 
 def trajectory_shoulder() -> Measured:
     """Error of the shoulder's torque on trajectory 6, by its own deviation: the median."""
     states = states_along(paper.APPENDIX_I_EXTENTS_DEG[paper.TEST_TRAJECTORY - 1])
     errors = rmss(_networks().torque(states), torque(states), pooled=False)[:, 0]
-    return Measured(float(np.median(errors)), f"RMSS {spread(errors)}")
+    return _median(errors, f"RMSS {spread(errors)}")
 
 
 def shoulder_position() -> Measured:
@@ -52,25 +57,31 @@ def shoulder_position() -> Measured:
     changes = shuffled(_networks().torque, states, scale).reshape(6, -1)
     ratio = changes[0] / changes[1:].mean(0)
     text = f"RMSS of the change {spread(changes[0])}, other inputs {spread(changes[1:].mean(0))}"
-    return Measured(float(np.median(ratio)), text)
+    return _median(ratio, text)
 
 
 def velocity_ranges() -> Measured:
     """Share of hidden units with a transition region within the range of shoulder velocity."""
     along = transition_range(_networks().weights)
-    share = {name: (along[..., j, k] < 1).mean() for name, j, k in (("v1", 0, 1), ("q2", 1, 0))}
-    text = f"{100 * share['v1']:.0f} % of the units; of elbow position {100 * share['q2']:.0f} %"
-    return Measured(float(share["v1"]), text)
+    within = {name: along[..., j, k] < 1 for name, j, k in (("v1", 0, 1), ("q2", 1, 0))}
+    value, replicates = over_members(mean, within["v1"])
+    text = f"{100 * value:.0f} % of the units; of elbow position {100 * within['q2'].mean():.0f} %"
+    return Measured(value, text, replicates)
 
 
 def best_of_sizes() -> Measured:
     """Least median error on 5,000 random states over all numbers of hidden units."""
     found = results.read("state-space-sizes")
     rows = {row["units"]: row["solver"]["test"] for row in found["units"] if row["solver"]}
+
+    def least(*cells):
+        return np.min([median(cell) for cell in cells], axis=0)
+
+    value, replicates = over_members(least, *rows.values())
     best = min(rows, key=lambda units: np.median(rows[units]))
     samples = found["solver's samples in units"]
     text = f"RMSS {spread(rows[best])} with {best} units, {samples:,} samples"
-    return Measured(float(np.median(rows[best])), text)
+    return Measured(value, text, replicates)
 
 
 def _networks() -> TorqueModel:

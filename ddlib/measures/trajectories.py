@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,12 +10,13 @@ from scipy.spatial import Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
+from ddlib.controllers import proportional
 from ddlib.coverage import cells_reached, reachable_share, used_dimensions
-from ddlib.experiment import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS
+from ddlib.experiment import KP, POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.simulate import LOG_STEP, Recording
 from ddlib.state_space import RADIUS
-from ddlib.tables import scientific
+from ddlib.tables import number, scientific
 from ddlib.trajectories import (
     APPENDIX_I,
     MAX_EXTENT_DEG,
@@ -23,7 +25,7 @@ from ddlib.trajectories import (
     random_extents,
     time_grid,
 )
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, turns_at
 from ddlib.windows import sliding_windows
 
 TRAINING = len(TRAINING_TRAJECTORIES)
@@ -109,16 +111,34 @@ def start() -> Measured:
     return Measured(float(speed[0] / speed.max()), text)
 
 
-def driven() -> Measured:
-    """RMS tracking error over RMS angle on the six motions, by position feedback alone (judged)."""
-    shares = []
-    for setup in (POSITION_FEEDBACK, STATE_FEEDBACK):
-        recording = _recorded(setup.name)
-        error, wanted = recording.tracking_error, recording.reference.q
-        shares.append(_size(error[:, recording.motion]) / _size(wanted[:, recording.motion]))
-    text = f"RMS error {100 * shares[0]:.0f} % of the angle by position feedback, "
-    text += f"{100 * shares[1]:.0f} % by state feedback"
-    return Measured(float(shares[0]), text)
+def _missed(recording: Recording) -> float:
+    """RMS tracking error over RMS angle on the six motions."""
+    error, wanted = recording.tracking_error, recording.reference.q
+    return _size(error[:, recording.motion]) / _size(wanted[:, recording.motion])
+
+
+def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
+    """Multiple of the assumed gains from which on position feedback alone follows closely.
+
+    Parameters
+    ----------
+    factors : sequence of float
+        Multiples tried, the first of them 1.
+    close : float
+        Closely: the RMS tracking error is this part of the RMS angle.
+    """
+
+    def missed(factor):
+        gains = tuple(factor * np.array(KP))
+        return _missed(replace(POSITION_FEEDBACK, controller=proportional(gains)).record())
+
+    position, state = (_missed(_recorded(s.name)) for s in (POSITION_FEEDBACK, STATE_FEEDBACK))
+    turn = turns_at(factors, [position, *map(missed, factors[1:])], close)
+    text = f"RMS error {100 * position:.0f} % of the angle by position feedback, "
+    text += (
+        f"{100 * state:.0f} % by state feedback; {100 * close:g} % from {number(turn, 2)} times "
+    )
+    return Measured(float(turn), f"{text}the assumed gains on")
 
 
 def _size(x) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import rankdata
 
 from ddlib.experiment import STATE_FEEDBACK, WINDOWS
 from ddlib.filters import classify, shares
@@ -13,7 +14,7 @@ from ddlib.simulate import LOG_STEP
 from ddlib.tables import number, scientific
 from ddlib.training import TrainingSet, cases, train_ensemble
 from ddlib.units import saturated
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, mean, median, over_members
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")
 """Classes of filters that control theory uses."""
@@ -27,11 +28,31 @@ def explained(layer: str = "skip") -> Measured:
     layer : {"skip", "hidden"}
         Direct weights, or those of hidden units.
     """
-    medians = [
-        float(np.median(shares(committed.filters(w, layer))[:, :3].sum(-1))) for w in WINDOWS
+    cells = [shares(committed.filters(w, layer))[..., :3].sum(-1) for w in WINDOWS]
+    text = ", ".join(f"{100 * np.median(c):.0f} % at {w}" for c, w in zip(cells, WINDOWS))
+    before = [
+        np.median(shares(committed.filters(w, layer, committed.untrained))[..., :3].sum(-1))
+        for w in WINDOWS
     ]
-    text = ", ".join(f"{100 * m:.0f} % at {w}" for m, w in zip(medians, WINDOWS))
-    return Measured(min(medians), f"{text} of the energy")
+    text += f" of the energy; before training at most {100 * max(before):.0f} %"
+
+    def least(*cells):
+        return np.min([median(cell) for cell in cells], axis=0)
+
+    value, replicates = over_members(least, *cells)
+    return Measured(value, text, replicates)
+
+
+def _crossings(filters, shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """Which filters have two zero crossings, and whose middle then is off the centre."""
+    two, off = (np.zeros(filters.shape[:-1], bool) for _ in range(2))
+    for at in np.ndindex(two.shape):
+        f = filters[at]
+        k = np.flatnonzero(np.diff(np.sign(f)))
+        if k.size == 2:
+            crossings = k + f[k] / (f[k] - f[k + 1]) - f.size // 2
+            two[at], off[at] = True, abs(crossings.mean()) >= shift
+    return two, off
 
 
 def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
@@ -44,13 +65,15 @@ def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
     shift : float
         Off the centre: by this many samples or more.
     """
-    off = []
-    for f in committed.filters(width, "skip"):
-        k = np.flatnonzero(np.diff(np.sign(f)))
-        if k.size == 2:
-            crossings = k + f[k] / (f[k] - f[k + 1]) - width // 2
-            off.append(abs(crossings.mean()) >= shift)
-    return Measured(float(np.mean(off)), f"{sum(off)} of {len(off)} filters with two crossings")
+    two, off = _crossings(committed.filters(width, "skip"), shift)
+    before = _crossings(committed.filters(width, "skip", committed.untrained), shift)[0]
+
+    def share(pair):
+        return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)
+
+    value, replicates = over_members(share, (off, two))
+    text = f"{off.sum()} of {two.sum()} filters with two crossings; before training {before.sum()} "
+    return Measured(value, f"{text}have two", replicates)
 
 
 def adjacency(width: int = 11, epochs: int = 100) -> Measured:
@@ -103,33 +126,45 @@ def untrained(width: int = 41) -> Measured:
 
 def weights_and_saturation() -> Measured:
     """Rank correlation of a unit's largest weight and the time it is saturated, all windows."""
-    from scipy.stats import spearmanr
-
-    largest, share = [], []
+    cells = []
     for width in WINDOWS:
         model, (windows, _) = committed.networks(width), cases(committed.training(), width)
-        largest.append(np.abs(model.weights.hidden_weights).max((-2, -1)).ravel())
         activity = model.weights.activity(model.scaled(windows))[0]
-        share.append(saturated(activity).ravel())
-    found = float(spearmanr(np.concatenate(largest), np.concatenate(share)).statistic)
-    return Measured(found, f"rank correlation {found:.2f} over {3 * share[0].size} units")
+        largest = np.abs(model.weights.hidden_weights).max((-2, -1))
+        cells.append((largest, saturated(activity)))
+
+    def correlation(*drawn):
+        x, y = (np.concatenate([c[k].reshape(len(c[k]), -1) for c in drawn], -1) for k in (0, 1))
+        ranks = [rankdata(values, axis=-1) for values in (x, y)]
+        x, y = (r - r.mean(-1, keepdims=True) for r in ranks)
+        return (x * y).sum(-1) / np.sqrt((x**2).sum(-1) * (y**2).sum(-1))
+
+    value, replicates = over_members(correlation, *cells)
+    units = sum(largest.size for largest, _ in cells)
+    return Measured(value, f"rank correlation {value:.2f} over {units} units", replicates)
 
 
 def interpretable(width: int = 21) -> Measured:
-    """Share of all filters that are velocity or acceleration filters, or a sum of both.
+    """Share of filters that are velocity, acceleration or a sum of both, less the untrained's.
 
     Parameters
     ----------
     width : int
         Window size.
     """
-    found = {
-        layer: np.isin(classify(committed.filters(width, layer)), NAMED)
-        for layer in ("hidden", "skip")
-    }
+    found, before = (
+        {
+            layer: np.isin(classify(committed.filters(width, layer, model)), NAMED)
+            for layer in ("hidden", "skip")
+        }
+        for model in (committed.networks, committed.untrained)
+    )
     text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
-    text += f"{found['skip'].sum()} of {found['skip'].size} direct filters"
-    return Measured(float(np.concatenate(list(found.values())).mean()), text)
+    text += f"{found['skip'].sum()} of {found['skip'].size} direct filters; before training "
+    text += f"{before['hidden'].sum()} and {before['skip'].sum()}"
+    both = tuple(np.concatenate(list(named.values()), -1) for named in (found, before))
+    value, replicates = over_members(lambda pair: mean(pair[0]) - mean(pair[1]), both)
+    return Measured(value, text, replicates)
 
 
 def _held_still(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -154,8 +189,8 @@ def without_hidden_units(width: int = 21) -> Measured:
     """
     whole, still, torque = _held_still(width)
     ratio = rmss(still, torque) / rmss(whole, torque)
-    text = f"error {number(np.median(ratio), 2)} times as large without them"
-    return Measured(float(np.median(ratio)), text)
+    value, replicates = over_members(median, ratio)
+    return Measured(value, f"error {number(value, 2)} times as large without them", replicates)
 
 
 def compensate_friction(width: int = 21) -> Measured:
@@ -193,6 +228,14 @@ def compensate_friction(width: int = 21) -> Measured:
     for name, torque in torques.items():
         left = curved(torque.reshape(-1, 2))
         each = [[np.corrcoef(p[:, j], left[:, j])[0, 1] ** 2 for j in (0, 1)] for p in parts]
-        fits[name] = np.median(each, axis=0)
-    text = "; ".join(f"{name}: R² {a:.2f} and {b:.2f}" for name, (a, b) in fits.items())
-    return Measured(float(fits["friction"].max()), f"{text}, shoulder and elbow")
+        fits[name] = np.array(each)
+    text = "; ".join(
+        f"{name}: R² {a:.2f} and {b:.2f}"
+        for name, (a, b) in ((name, np.median(each, axis=0)) for name, each in fits.items())
+    )
+
+    def better(each):
+        return np.median(each, axis=1).max(-1)
+
+    value, replicates = over_members(better, fits["friction"])
+    return Measured(value, f"{text}, shoulder and elbow", replicates)

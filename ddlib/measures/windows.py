@@ -15,7 +15,7 @@ from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
 from ddlib.tables import number, scientific
 from ddlib.training import TrainingSet, cases, default_rate, train_ensemble
-from ddlib.verdicts import Measured
+from ddlib.verdicts import Measured, mean, median, over_members
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -58,10 +58,14 @@ def without_noise() -> Measured:
     for width in WINDOWS:
         perfect = np.array(clean["windows"][str(width)]["largest weight"])
         noisy = np.array(table[str(width)]["largest weight"])[: perfect.size]
-        ratios[width] = float(np.median(perfect / noisy))
-    text = ", ".join(f"{number(r, 2)} at {w}" for w, r in ratios.items())
-    change = max(abs(r - 1) for r in ratios.values())
-    return Measured(change, f"largest weight without noise over with: {text}")
+        ratios[width] = perfect / noisy
+    text = ", ".join(f"{number(np.median(r), 2)} at {w}" for w, r in ratios.items())
+
+    def change(*cells):
+        return np.max([np.abs(median(cell) - 1) for cell in cells], axis=0)
+
+    value, replicates = over_members(change, *ratios.values())
+    return Measured(value, f"largest weight without noise over with: {text}", replicates)
 
 
 def paths(width: int = 11) -> Measured:
@@ -117,6 +121,12 @@ def sigmoids(width: int = 11) -> Measured:
     return Measured(network.count() / units, text)
 
 
+def _furthest(ratios) -> np.ndarray:
+    """Of some ratios the one furthest from 1, for each draw; shape ``(ratios, draws)``."""
+    ratios = np.asarray(ratios)
+    return np.take_along_axis(ratios, np.abs(np.log(ratios)).argmax(0)[None], 0)[0]
+
+
 def more_hidden_units(column: str = "test") -> Measured:
     """Median error with 20 or 40 hidden units over that with ten: the one furthest from 1.
 
@@ -125,17 +135,24 @@ def more_hidden_units(column: str = "test") -> Measured:
     column : str
         Which error: "training", "test" or "best test".
     """
-    rows = {row["units"]: np.median(row[column]) for row in results.read("hidden-units")["rows"]}
-    ratios = [float(rows[units] / rows[10]) for units in (20, 40)]
-    text = f"{column}: " + ", ".join(f"{number(rows[u], 2)} with {u}" for u in (10, 20, 40))
-    return Measured(max(ratios, key=lambda r: abs(np.log(r))), text)
+    rows = {row["units"]: row[column] for row in results.read("hidden-units")["rows"]}
+    cells = [rows[units] for units in (10, 20, 40)]
+
+    def furthest(ten, *more):
+        return _furthest([median(cell) / median(ten) for cell in more])
+
+    value, replicates = over_members(furthest, *cells)
+    text = ", ".join(f"{number(np.median(rows[u]), 2)} with {u}" for u in (10, 20, 40))
+    return Measured(value, f"{column}: {text}", replicates)
 
 
 @cache
-def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, float]:
+def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, np.ndarray]:
+    """Last training errors, ``(members, factors)``, without and with momentum."""
     data = TrainingSet.from_recording(committed.training(), 21)
     start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
-    tried = [(alpha, f) for alpha in (0.0, STATE_FEEDBACK.momentum) for f in factors]
+    alphas = (0.0, STATE_FEEDBACK.momentum)
+    tried = [(alpha, f) for alpha in alphas for f in factors]
     _, history, _ = train_ensemble(
         Weights.concatenate([start] * len(tried)),
         data,
@@ -144,14 +161,11 @@ def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, f
         epochs=epochs,
         progress=False,
     )
-    last = np.median(history.training[-1].reshape(len(tried), members), axis=-1)
-    best: dict[float, float] = {}
-    for (alpha, _), error in zip(tried, last):
-        best[alpha] = min(float(error), best.get(alpha, np.inf))
-    return best
+    last = history.training[-1].reshape(len(alphas), len(factors), members)
+    return {alpha: errors.T for alpha, errors in zip(alphas, last)}
 
 
-def acceleration(epochs: int = 2000, members: int = 2, factors=(0.5, 1, 1.5)) -> Measured:
+def acceleration(epochs: int = 2000, members: int = 8, factors=(0.5, 1, 1.5)) -> Measured:
     """Training error without momentum over that with it, each at its best step size.
 
     Parameters
@@ -161,10 +175,15 @@ def acceleration(epochs: int = 2000, members: int = 2, factors=(0.5, 1, 1.5)) ->
     factors : sequence of float
         Step sizes tried, as multiples of the usual one.
     """
-    best = _momentum_errors(epochs, members, tuple(factors))
-    without, with_it = best[0.0], best[STATE_FEEDBACK.momentum]
-    text = f"{number(without, 2)} without, {number(with_it, 2)} with it after {epochs:,} epochs"
-    return Measured(without / with_it, text)
+    errors = tuple(_momentum_errors(epochs, members, tuple(factors)).values())
+
+    def best(drawn):
+        return np.median(drawn, axis=1).min(-1)
+
+    value, replicates = over_members(lambda pair: best(pair[0]) / best(pair[1]), errors)
+    without, with_it = (number(np.median(e, axis=0).min(), 2) for e in errors)
+    text = f"{without} without, {with_it} with it after {epochs:,} epochs"
+    return Measured(value, text, replicates)
 
 
 def scaling() -> Measured:
@@ -178,13 +197,17 @@ def scaling() -> Measured:
     return Measured(change, f"changes by {scientific(change)}")
 
 
+def _mean_of_cells(*cells) -> np.ndarray:
+    return np.mean([mean(cell) for cell in cells], axis=0)
+
+
 def training_is_monotone() -> Measured:
     """Share of the steps between records, over 60,000 epochs, at which the error falls."""
     histories = [w["history"]["training"] for w in results.read("longer")["windows"].values()]
     falls = [np.diff(np.array(h), axis=-1) < 0 for h in histories]
-    share = float(np.mean([f.mean() for f in falls]))
+    value, replicates = over_members(_mean_of_cells, *falls)
     text = ", ".join(f"{100 * f.mean():.0f} %" for f in falls)
-    return Measured(share, f"falls at {text} of the records")
+    return Measured(value, f"falls at {text} of the records", replicates)
 
 
 def rises_again(factor: float = 1.05) -> Measured:
@@ -200,21 +223,36 @@ def rises_again(factor: float = 1.05) -> Measured:
         w: np.array(table[str(w)]["errors"]["test"]) > factor * np.array(table[str(w)]["best test"])
         for w in WINDOWS
     }
+    value, replicates = over_members(_mean_of_cells, *worse.values())
     text = ", ".join(f"{x.sum()} of {x.size} at {w}" for w, x in worse.items())
-    return Measured(float(np.mean(list(worse.values()))), text)
+    return Measured(value, text, replicates)
 
 
-def accurate() -> Measured:
-    """Least median test error over window sizes and readings of the controller."""
+def accurate(level: float = 0.1) -> Measured:
+    """Largest median test error over window sizes and readings of the controller.
+
+    Parameters
+    ----------
+    level : float
+        Cells with a larger error are named in the text.
+    """
     table = results.read("table-4-1")["setups"]
-    medians = {
-        (name, w): float(np.median(table[name][str(w)]["errors"]["test"]))
+    cells = {
+        (name, w): np.array(table[name][str(w)]["errors"]["test"])
         for name in SETUPS
         for w in WINDOWS
     }
-    name, width = min(medians, key=medians.get)
-    least = medians[name, width]
-    return Measured(least, f"RMSS {number(least, 2)} ({name}, window {width})")
+
+    def largest(*drawn):
+        return np.max([median(cell) for cell in drawn], axis=0)
+
+    value, replicates = over_members(largest, *cells.values())
+    medians = {key: float(np.median(cell)) for key, cell in cells.items()}
+    fail = [f"{name} {w}: {number(m, 2)}" for (name, w), m in medians.items() if m > level]
+    text = f"RMSS {number(min(medians.values()), 2)} to {number(value, 2)}; above {level:g} are "
+    return Measured(
+        value, f"{text}{len(fail)} of {len(cells)} cells: {', '.join(fail)}", replicates
+    )
 
 
 def short_window(short: int = 11, long: int = 21) -> Measured:
@@ -242,8 +280,9 @@ def magnitudes(narrow: int = 21, wide: int = 41) -> Measured:
         Window sizes.
     """
     table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
-    ours = [np.median(table[str(w)]["largest weight"]) for w in (narrow, wide)]
-    taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (narrow, wide)]
-    falls = ours[1] / ours[0], taps[1] / taps[0]
-    text = f"{number(falls[0], 2)} of the weight at {narrow}, the filter {number(falls[1], 2)}"
-    return Measured(float(falls[0] / falls[1]), text)
+    cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
+    taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
+    fall = taps[0] / taps[1]
+    value, replicates = over_members(lambda a, b: median(a) / median(b) / fall, *cells)
+    text = f"{number(value * fall, 2)} of the weight at {narrow}, the filter {number(fall, 2)}"
+    return Measured(value, text, replicates)
