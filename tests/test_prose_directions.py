@@ -19,7 +19,6 @@ NOT_YET = {
     "book/backpropagation",
     "book/hinton-diagrams",
     "book/convolution-filters",
-    "book/global-view",
     "book/ledger",
     "book/notation",
     "book/provenance",
