@@ -206,6 +206,41 @@ def test_open_answers_are_seen():
     assert open_answer(f"{fold}\n\nAnd 6.") == "And 6."
 
 
+def raw_prints(code: str) -> list[str]:
+    """Calls of `print` that show values without a sentence around them."""
+
+    def speaks(node: ast.expr) -> bool:
+        if isinstance(node, ast.Constant):
+            return isinstance(node.value, str)
+        if isinstance(node, ast.JoinedStr):
+            return any(
+                isinstance(n, ast.Constant) and re.search("[a-z]", n.value) for n in node.values
+            )
+        if isinstance(node, ast.BinOp):
+            return speaks(node.left) or speaks(node.right)
+        # texts made elsewhere: a listing, a message, several sentences
+        return (
+            re.fullmatch(r"error|.*\.(source|text|join\(.*\))", ast.unparse(node), re.S) is not None
+        )
+
+    calls = (node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Call))
+    prints = (node for node in calls if ast.unparse(node.func) == "print")
+    return [ast.unparse(node) for node in prints if not all(map(speaks, node.args))]
+
+
+@pytest.mark.parametrize("page", NOTEBOOKS)
+def test_what_is_printed_is_a_sentence(page):
+    code = [cell for cell in read(page).cells if cell.cell_type == "code"]
+    assert not {cell.id: raw_prints(cell.source) for cell in code if raw_prints(cell.source)}
+
+
+def test_raw_prints_are_seen():
+    raw = ("print(x)", "print({1: 2})", "print('shape', x.shape)", "print(f'{x:.2f}')")
+    assert all(map(raw_prints, raw))
+    fine = ("print('It is so.')", "print(f'{x:.2f} rad')", "print('; '.join(y))", "print(a.source)")
+    assert not any(map(raw_prints, fine))
+
+
 @pytest.mark.parametrize("page", [page for page in NOTEBOOKS if page not in CHAPTERS])
 def test_other_notebooks_have_a_title(page):
     first = read(page).cells[0]
