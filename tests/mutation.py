@@ -24,6 +24,7 @@ import subprocess
 import sys
 import time
 from collections import Counter, defaultdict
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import cache
 from itertools import islice
 from pathlib import Path
@@ -125,7 +126,9 @@ class Chosen:
     def pytest_collection_modifyitems(self, items):
         if self.order is not None:
             place = {name: i for i, name in enumerate(self.order)}
-            items[:] = sorted((i for i in items if i.nodeid in place), key=lambda i: place[i.nodeid])
+            items[:] = sorted(
+                (i for i in items if i.nodeid in place), key=lambda i: place[i.nodeid]
+            )
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item):
@@ -292,20 +295,23 @@ def in_copies(jobs: int, function, work: list):
     """``(item, function(item, folder))`` of all work, in processes with a copy each."""
     for name in HEAVY.split():
         importlib.import_module(name)  # once, before the processes part
-    queue = multiprocessing.get_context("fork").Queue()
+    context = multiprocessing.get_context("fork")
+    folders = context.Queue()
     for i in range(jobs):
-        queue.put(make_copy(CACHE / f"copy-{i}"))
-    with multiprocessing.get_context("fork").Pool(jobs, _start, (queue, function)) as pool:
-        yield from pool.imap_unordered(_call, work)
+        folders.put(make_copy(CACHE / f"copy-{i}"))
+    with ProcessPoolExecutor(jobs, context, _start, (folders,)) as pool:
+        waiting = {pool.submit(_call, function, item): item for item in work}
+        for done in as_completed(waiting):
+            yield waiting[done], done.result()
 
 
-def _start(queue, function):
-    global _folder, _function
-    _folder, _function = queue.get(), function
+def _start(folders):
+    global _folder
+    _folder = folders.get()
 
 
-def _call(item):
-    return item, _function(item, _folder)
+def _call(function, item):
+    return function(item, _folder)
 
 
 def diff(mutant: Mutant) -> str:

@@ -92,9 +92,7 @@ def mutants_of(module: str, source: str) -> list[Mutant]:
             first, last = statement.lineno, statement.end_lineno
         number = hashlib.sha256(f"{key} {seen[key]}".encode()).hexdigest()[:8]
         lines = tuple(range(first, last + 1))
-        found.append(
-            Mutant(number, module, operator, start, stop, text, lines, scope, at_import)
-        )
+        found.append(Mutant(number, module, operator, start, stop, text, lines, scope, at_import))
     return found
 
 
