@@ -18,6 +18,7 @@ import importlib
 import json
 import multiprocessing
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -42,8 +43,16 @@ ASIDE = ("widgets", "studies", "figures", "diagrams", "control_figures", "style"
 studies take minutes; their outcome is committed and guarded by a hash."""
 
 PAGES = (
-    *("accessibility", "benchmarks", "build", "compact_svg", "control_figures", "docstrings"),
-    *("figures", "imports", "lab", "mutation", "notebooks", "pages", "prose_numbers", "reactions"),
+    *(
+        "accessibility",
+        "benchmarks",
+        "build",
+        "compact_svg",
+        "control_figures",
+        "docstrings",
+        "foreign",
+    ),
+    *("figures", "imports", "lab", "mutation", "notebooks", "pages", "prose", "reactions"),
     *("slim", "status", "style", "widget"),
 )
 """Beginnings of the names of test modules that look at words, pictures and pages."""
@@ -52,7 +61,7 @@ STALENESS = "test_committed_results_are_of_this_code"
 HASHES = ("test_results.py",)  # reads the text of modules: counts for these modules only
 HASHING = ("results", "reproduce")
 
-TESTS_SECONDS = 60.0
+TESTS_SECONDS = 30.0
 """Time of the tests that a mutant has to survive, as recorded without it."""
 
 HEAVY = (
@@ -167,10 +176,13 @@ def apart(folder: Path, work, limit: float) -> dict | None:
 
 
 def run_tests(files, plugin: Chosen, *options: str) -> int:
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     marks = "not built and not browser and not slow"
-    arguments = ["-q", "-m", marks, "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore"]
+    plugins = ["-p", "no:cacheprovider", "-p", "_hypothesis_pytestplugin"]
     paths = [f"tests/{name}" for name in files]
-    return int(pytest.main([*arguments, *options, *paths], plugins=[plugin]))
+    return int(
+        pytest.main(["-q", "-m", marks, "-W", "ignore", *plugins, *options, *paths], [plugin])
+    )
 
 
 # --- which test executes which line ----------------------------------------------------------
@@ -181,9 +193,10 @@ def digest(*texts: str) -> str:
 
 
 def state(name: str, executed: list[str]) -> str:
-    """Digest of a test file, its helpers and the modules that it executes."""
-    helpers = [p for p in sorted((ROOT / "tests").glob("*.py")) if not p.name.startswith("test_")]
-    files = [ROOT / "tests" / name, *(p for p in helpers if p.stem not in ("mutation", "mutators"))]
+    """Digest of a test file, the modules beside it that it names, and those that it executes."""
+    beside = {p.stem: p for p in sorted((ROOT / "tests").glob("*.py"))}
+    named = set(re.findall(r"\w+", (ROOT / "tests" / name).read_text(encoding="utf-8")))
+    files = [ROOT / "tests" / name, *(p for stem, p in beside.items() if stem in named)]
     files += [ROOT / "ddlib" / f"{module}.py" for module in executed]
     if name == "test_claims.py":
         files.append(ROOT / "book" / "claims.yml")
@@ -217,12 +230,15 @@ def trace(name: str, folder: Path) -> dict:
     return found | {"state": state(name, sorted(found["lines"]))}
 
 
+def files_with_tests() -> list[Path]:
+    paths = sorted((ROOT / "tests").glob("test_*.py"))
+    return [path for path in paths if not path.stem.removeprefix("test_").startswith(PAGES)]
+
+
 def traces(jobs: int) -> dict[str, dict]:
     """What `trace` finds for every test file; only those that changed run again."""
     known, stale = {}, []
-    for path in sorted((ROOT / "tests").glob("test_*.py")):
-        if path.stem.removeprefix("test_").startswith(PAGES):
-            continue
+    for path in files_with_tests():
         kept = CACHE / f"{path.stem}.json"
         known[path.name] = json.loads(kept.read_text()) if kept.exists() else {"state": ""}
         executed = sorted(known[path.name].get("lines", ()))
@@ -240,7 +256,7 @@ def traces(jobs: int) -> dict[str, dict]:
 
 def tests_for(mutant: Mutant, known: dict) -> list[str]:
     """Tests to run against a mutant, in order, until their time is used up."""
-    chosen = []
+    chosen, own = [], f"test_{mutant.module.replace('/', '_')}.py"
     for name, found in known.items():
         lines = found["lines"].get(mutant.module)
         if lines is None or (name in HASHES and mutant.module not in HASHING):
@@ -249,10 +265,9 @@ def tests_for(mutant: Mutant, known: dict) -> list[str]:
         direct = {test for line in body for test in lines.get(str(line), ())}
         if mutant.at_import and not direct:  # a constant: whoever uses its module
             direct = {test for tests in lines.values() for test in tests}
-        own = name == f"test_{mutant.module.replace('/', '_')}.py"
         for test, seconds in found["seconds"].items():
             if direct and test not in found["failed"] and STALENESS not in test:
-                chosen.append((test not in direct, not own, seconds, test))
+                chosen.append((test not in direct, name != own, seconds, test))
     picked, total = [], 0.0
     for *_, seconds, test in sorted(chosen):
         if total + seconds <= TESTS_SECONDS:
@@ -264,31 +279,42 @@ def tests_for(mutant: Mutant, known: dict) -> list[str]:
 # --- mutants -----------------------------------------------------------------------------------
 
 
+def file_of(test: str) -> str:
+    return test.split("::")[0].removeprefix("tests/")
+
+
 def judge(job: tuple[Mutant, list[str], float], folder: Path) -> dict:
     """Run a mutant's tests in a copy of the repository: killed, by whom, or not."""
     mutant, tests, seconds = job
     path = folder / "ddlib" / f"{mutant.module}.py"
-    plugin = Chosen(tests)
-    files = list(dict.fromkeys(test.split("/")[-1].split("::")[0] for test in tests))
-
-    def work():
-        sys.dont_write_bytecode = True
-        return {"code": run_tests(files, plugin, "-x"), "failed": plugin.failed[:1]}
-
     start = time.monotonic()
     path.write_text(mutant.apply(text_of(mutant.module)), encoding="utf-8")
     os.utime(path, (start + 1e9, start + 1e9))  # never the time of the compiled original
-    try:
-        found = apart(folder, work, 5 * seconds + 90) if tests else {"code": 0, "failed": []}
+    row = {"outcome": "survived", "by": f"{len(tests)} tests"}
+    try:  # the first file by itself: most mutants need no other
+        for stage in (True, False):
+            order = [test for test in tests if (file_of(test) == file_of(tests[0])) is stage]
+            if order and (killer := _killer(order, folder, 5 * seconds + 90)):
+                row = {"outcome": "killed", "by": killer}
+                break
     finally:
         shutil.copyfile(ROOT / "ddlib" / f"{mutant.module}.py", path)
+    return row | {"seconds": round(time.monotonic() - start, 1)}
+
+
+def _killer(order: list[str], folder: Path, limit: float) -> str:
+    """The first of these tests that fails; empty if none does."""
+    plugin = Chosen(order)
+
+    def work():
+        sys.dont_write_bytecode = True
+        code = run_tests(dict.fromkeys(map(file_of, order)), plugin, "-x")
+        return {"code": code, "failed": plugin.failed[:1]}
+
+    found = apart(folder, work, limit)
     if found is None:
-        outcome, by = "killed", "time"
-    elif found["code"] in (0, 5):
-        outcome, by = "survived", "no test" if not tests else f"{len(tests)} tests"
-    else:
-        outcome, by = "killed", (found["failed"] or ["import"])[0]
-    return {"outcome": outcome, "by": by, "seconds": round(time.monotonic() - start, 1)}
+        return "time"
+    return "" if found["code"] in (0, 5) else (found["failed"] or ["import"])[0]
 
 
 def in_copies(jobs: int, function, work: list):
@@ -308,6 +334,8 @@ def in_copies(jobs: int, function, work: list):
 def _start(folders):
     global _folder
     _folder = folders.get()
+    files = [path.name for path in files_with_tests()]
+    apart(_folder, lambda: run_tests(files, Chosen(), "--collect-only"), 600)  # compiles them
 
 
 def _call(function, item):

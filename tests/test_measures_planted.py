@@ -1,5 +1,6 @@
 """Measures of committed results and networks, on planted ones with answers known by hand."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -29,10 +30,17 @@ def plant(monkeypatch):
 
 @pytest.fixture
 def plant_filters(monkeypatch):
-    """``plant_filters(hidden={width: array}, skip={...})`` in place of trained weights."""
+    """``plant_filters(trained, before)`` in place of weights, ``{layer: {width: filters}}``.
 
-    def put(**layers):
-        monkeypatch.setattr(committed, "filters", lambda width, layer: layers[layer][width])
+    Every filter is a network's only one.
+    """
+
+    def put(trained, before=None):
+        def read(width, layer, model=committed.networks):
+            from_ = before if model is committed.untrained else trained
+            return np.asarray((from_ or trained)[layer][width])[:, None]
+
+        monkeypatch.setattr(committed, "filters", read)
 
     return put
 
@@ -85,19 +93,23 @@ def test_the_steepest_end_of_training(plant):
 
 
 @pytest.mark.parametrize(
-    "order, share", [([21, 11, 41], 1.0), ([11, 21, 41], 0.0), ([[21, 11], 41], 1.0)]
+    "order, holds", [([21, 11, 41], True), ([11, 21, 41], False), ([[21, 11], 41], True)]
 )
-def test_orders_that_no_draw_can_change(plant, order, share):
+def test_orders_that_no_draw_can_change(plant, order, holds):
     cells = {w: cell([1], list(np.array([1, 1.1, 1.2]) * f)) for w, f in zip(WINDOWS, (2, 1, 4))}
     plant("table-4-1", table(cells))
-    assert networks.share_in_order("test", order).value == share
+    found = networks.in_order("test", order)
+    assert found.value is holds and (found.replicates == holds).all()
+    assert found.text == f"medians 2.2, 1.1, 4.4; in {100 * holds} % of draws"
 
 
 def test_orders_that_half_of_the_draws_change(plant):
     """Two cells alike: each order comes out in a half of the draws, less the ties."""
     same = list(np.linspace(1, 2, 31))
     plant("table-4-1", table({11: cell([1], same), 21: cell([1], same), 41: cell([1], [9.0] * 31)}))
-    up, down = (networks.share_in_order("test", [*o, 41]).value for o in ((11, 21), (21, 11)))
+    orders = [networks.in_order("test", [*o, 41]) for o in ((11, 21), (21, 11))]
+    assert [found.value for found in orders] == [False, False]  # equal is not in order
+    up, down = (found.replicates.mean() for found in orders)
     assert up == pytest.approx(0.47, abs=0.05) and down == pytest.approx(0.47, abs=0.05)
     assert 0.8 < up + down < 1
 
@@ -228,11 +240,26 @@ def test_scaling_leaves_the_error():
 
 
 def test_the_best_of_momentum_and_step_size(monkeypatch):
-    best = {0.0: 0.8, STATE_FEEDBACK.momentum: 0.2}
-    monkeypatch.setattr(of_windows, "_momentum_errors", lambda *_: best)
+    """Three networks at two step sizes: medians .8 and .9 without, .5 and .2 with momentum."""
+    without = np.array([[0.8, 0.9], [0.7, 0.9], [2.0, 0.1]])
+    with_it = np.array([[0.5, 0.2], [0.1, 0.2], [2.0, 0.2]])
+    errors = {0.0: without, STATE_FEEDBACK.momentum: with_it}
+    monkeypatch.setattr(of_windows, "_momentum_errors", lambda *_: errors)
     found = of_windows.acceleration()
     assert found.value == pytest.approx(4.0)
     assert found.text == "0.80 without, 0.20 with it after 2,000 epochs"
+
+
+def test_cells_that_are_not_accurate(plant):
+    cells = {w: cell([1], [e, e, 9.0]) for w, e in zip(WINDOWS, (0.02, 0.005, 0.2))}
+    plant("table-4-1", table(cells))
+    found = of_windows.accurate()
+    assert found.value == pytest.approx(2.0)
+    assert found.text == (
+        "RMSS 0.0050 to 2.0; above 0.1 are 3 of 6 cells: "
+        "position feedback 11: 0.20, position feedback 41: 2.0, state feedback 41: 0.20"
+    )
+    assert "above 0.01 are 5 of 6 cells" in of_windows.accurate(0.01).text
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -269,45 +296,55 @@ def mix(width, *parts):
 
 
 def test_explained_energy_is_the_least_of_the_medians(plant_filters):
-    plant_filters(
-        skip={
-            11: np.array([mix(11, 0.2, 0.3, 0.4, 0.1), mix(11, 0, 0, 0, 1), mix(11, 1)]),
-            21: np.array([mix(21, 0.5, 0.2, 0.1, 0.2)] * 2),
-            41: np.array([mix(41, 0, 0, 1)] * 3),
-        }
-    )
+    trained = {
+        11: [mix(11, 0.2, 0.3, 0.4, 0.1), mix(11, 0, 0, 0, 1), mix(11, 1)],
+        21: [mix(21, 0.5, 0.2, 0.1, 0.2)] * 2,
+        41: [mix(41, 0, 0, 1)] * 3,
+    }
+    before = {w: [mix(w, 0.1, 0.1, s, 0.8 - s)] for w, s in ((11, 0.1), (21, 0.3), (41, 0.2))}
+    plant_filters({"skip": trained}, {"skip": before})
     found = weights.explained("skip")
     assert found.value == pytest.approx(0.8)
-    assert found.text == "90 % at 11, 80 % at 21, 100 % at 41 of the energy"
+    assert found.text == (
+        "90 % at 11, 80 % at 21, 100 % at 41 of the energy; before training at most 50 %"
+    )
 
 
 def test_middle_between_two_crossings(plant_filters):
     x = np.arange(-10.0, 11)
     parabolas = [(x - s) ** 2 - 9.3 for s in (0.0, 0.4, 0.6, -0.7)]  # crossings at s ± 3.05
-    plant_filters(skip={21: np.array([*parabolas, x - 0.5, x**3 - 20 * x + 3])})
+    trained = [*parabolas, x - 0.5, x**3 - 20 * x + 3]
+    plant_filters({"skip": {21: trained}}, {"skip": {21: [x - 0.3, *parabolas[:2]]}})
     found = weights.asymmetric(21)
     assert found.value == pytest.approx(0.5)
-    assert found.text == "2 of 4 filters with two crossings"
+    assert found.text == "2 of 4 filters with two crossings; before training 2 have two"
     assert weights.asymmetric(21, 0.3).value == pytest.approx(0.75)
-    # straight between its samples, a parabola has its middle where it has
-    plant_filters(skip={21: np.array([(x - 0.5) ** 2 - 9.3])})
+    # the crossings are between samples: a parabola has its middle where it has
+    plant_filters({"skip": {21: [(x - 0.5) ** 2 - 9.3]}})
     assert weights.asymmetric(21, 0.499).value == 1 and weights.asymmetric(21, 0.501).value == 0
 
 
+def pure(width, *derivatives):
+    return [mix(width, *np.eye(4)[k]) for k in derivatives]
+
+
 def test_filters_that_control_theory_uses(plant_filters):
-    pure = {k: np.eye(4)[k] for k in range(4)}
-    hidden = [mix(21, *pure[k]) for k in (1, 2, 3)] + [mix(21, 0, 0.5, 0.5)]
-    plant_filters(hidden={21: np.array(hidden)}, skip={21: np.array([mix(21, *pure[3])])})
+    hidden = [*pure(21, 1, 2, 3), mix(21, 0, 0.5, 0.5)]
+    trained = {"hidden": {21: hidden}, "skip": {21: pure(21, 3, 3, 2, 3)}}
+    before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "skip": {21: pure(21, 3, 3, 3, 3)}}
+    plant_filters(trained, before)
     found = weights.interpretable(21)
-    assert found.value == pytest.approx(3 / 5)
-    assert found.text == "3 of 4 hidden, 0 of 1 direct filters"
+    assert found.value == pytest.approx(4 / 8 - 1 / 8)
+    assert found.text == "3 of 4 hidden, 1 of 4 direct filters; before training 1 and 0"
 
 
 def test_classes_of_a_layer(plant_filters):
-    found = np.array([mix(41, 0, 1), mix(41, 0, 0, 1), mix(41, 0, 0, 1), mix(41, 0, 0, 0, 1)])
-    plant_filters(hidden={41: found}, skip={41: found[:1]})
-    assert filters.of_class(41, "acceleration").value == 0.5
-    assert filters.of_class(41, "acceleration").text == "2 of 4 filters"
+    trained = {"hidden": {41: pure(41, 1, 2, 2, 3)}, "skip": {41: pure(41, 1)}}
+    before = {"hidden": {41: pure(41, 1, 3, 3, 2)}, "skip": {41: pure(41, 3)}}
+    plant_filters(trained, before)
+    found = filters.of_class(41, "acceleration")
+    assert found.value == pytest.approx(0.25)
+    assert found.text == "2 of 4 filters, 1 before training"
     assert filters.of_class(41, "velocity", "skip").value == 1.0
 
 
@@ -316,9 +353,8 @@ def alternating(width, share):
     line = np.linspace(-1, 1, width)
     sign = (-1.0) ** np.arange(width)
     sign -= sign.mean() + line * (sign @ line) / (line @ line)
-    return np.sqrt(1 - share) * line / np.linalg.norm(line) + np.sqrt(
-        share
-    ) * sign / np.linalg.norm(sign)
+    line, sign = (part / np.linalg.norm(part) for part in (line, sign))
+    return np.sqrt(1 - share) * line + np.sqrt(share) * sign
 
 
 def by_hand(f):
@@ -327,44 +363,56 @@ def by_hand(f):
     return (second**2).mean() / (6 * f.var())
 
 
+ROUGH = {
+    w: [alternating(w, share) for share in of]
+    for w, of in ((11, (0.02, 0.02)), (21, (0.1, 0.1, 0.5)), (41, (0.3, 0.01, 0.3)))
+}
+
+
 def test_roughness_of_wide_over_narrow(plant_filters):
-    rough = {w: np.array([alternating(w, s) for s in p]) for w, p in
-             ((11, (0.2, 0.2)), (21, (0.1, 0.1, 0.5)), (41, (0.3, 0.01, 0.3)))}  # fmt: skip
-    plant_filters(hidden=rough, skip=rough)
+    plant_filters({"hidden": ROUGH}, {"hidden": {w: f[:1] * 3 for w, f in ROUGH.items()}})
     found = filters.rougher()
-    assert found.value == pytest.approx(by_hand(rough[41][0]) / by_hand(rough[21][0]))
-    middle = {w: np.median([by_hand(f) for f in rough[w]]) for w in rough}
-    assert filters.direct_smoothness().value == pytest.approx(max(middle.values()))
-    assert max(middle.values()) == middle[41]
+    assert found.value == pytest.approx(by_hand(ROUGH[41][0]) / by_hand(ROUGH[21][0]))
+    wide, narrow = (f"{by_hand(ROUGH[w][0]):.2f}" for w in (41, 21))
+    words = f"roughness {wide} at 41, {narrow} at 21; before training {wide} and {narrow}"
+    assert found.text == words
 
 
-def test_what_training_adds(monkeypatch):
-    """The course keeps all weights; what counts is the last less the first."""
-    first = np.random.default_rng(0).normal(size=(2, 3, 2, 21))
-    added = np.broadcast_to(alternating(21, 0.4), first.shape)
-    hidden = np.stack([first, first * 7, first + added])
-    model = SimpleNamespace(weights=SimpleNamespace(hidden_weights=hidden))
-    monkeypatch.setattr(results, "course", lambda width: (np.arange(3), model))
-    assert filters.changed_roughness(21).value == pytest.approx(by_hand(alternating(21, 0.4)))
+def test_the_roughest_of_three_windows(plant_filters):
+    plant_filters({"skip": ROUGH})
+    middle = {w: np.median([by_hand(f) for f in ROUGH[w]]) for w in ROUGH}
+    found = filters.direct_smoothness()
+    assert found.value == pytest.approx(middle[41]) and middle[41] == max(middle.values())
+
+
+def test_what_training_adds(plant_filters):
+    first = np.random.default_rng(0).normal(size=(3, 41))
+    added = alternating(41, 0.4)
+    plant_filters({"hidden": {41: first + added}}, {"hidden": {41: first}})
+    assert filters.changed_roughness().value == pytest.approx(by_hand(added))
 
 
 def test_shares_of_the_constant(plant_filters):
-    found = np.array([mix(21, s, 1 - s) for s in (0.1, 0.3, 0.9)])
-    plant_filters(hidden={21: found}, skip={21: found[:1]})
-    assert filters.constant_share().value == pytest.approx(0.3)
-    assert filters.constant_share().text == "30.0 % of the energy"
+    trained = [mix(21, s, 1 - s) for s in (0.1, 0.3, 0.9)]
+    before = [mix(21, s, 1 - s) for s in (0.2, 0.25, 0.9)]
+    plant_filters(
+        {"hidden": {21: trained}, "skip": {21: trained[:1]}},
+        {"hidden": {21: before}, "skip": {21: before}},
+    )
+    found = filters.constant_share()
+    assert found.value == pytest.approx(0.3)
+    assert found.text == "30.0 % of the energy, 25.0 % before training"
     assert filters.constant_share("skip").value == pytest.approx(0.1)
 
 
 def test_printed_parts_are_not_odd(plant_filters):
     """The constant c is taken from the odd part o: then o(x) + o(-x) is -2 c."""
     line = np.linspace(-1, 1, 21)
-    functions = np.array([3 * line + c for c in (0.5, 1.0, -2.0)])
-    plant_filters(hidden={21: functions})
+    plant_filters({"hidden": {21: [3 * line + c for c in (0.5, 1.0, -2.0)]}})
     found = filters.parts_sum_up()
     assert found.value == pytest.approx(2 * 1 / (3 + 1))  # of 1/3.5, 2/4, 4/5
     assert "reaches 50 % of odd's peak" in found.text
-    assert float(found.text.split("(to ")[1].split(")")[0]) < 1e-14
+    assert re.match(r"the parts sum to f \(to (0|\d · 10⁻¹[⁴⁵⁶⁷⁸⁹])\)", found.text)
 
 
 def test_crossings_of_odd_parts(plant_filters):
@@ -372,18 +420,20 @@ def test_crossings_of_odd_parts(plant_filters):
     cubic, line = x**3 - 100 * x, x
     late = x**3 - 19.5**2 * x  # crosses at the edge
     rough = np.where(np.abs(x) % 2 == 0, 1.0, -1.0) * np.sign(x)
-    plant_filters(hidden={41: np.array([cubic, line, line + x**2, late, rough])})
+    trained = [cubic, line, line + x**2, late, rough]
+    plant_filters({"hidden": {41: trained}}, {"hidden": {41: [line, line, late, rough, line]}})
     found = filters.zero_crossings()
-    assert found.value == pytest.approx(0.5)
-    assert found.text == "2 of 4 smooth filters"
+    assert found.value == pytest.approx(2 / 5 - 1 / 5)
+    assert found.text == "2 of 5 filters are smooth and cross, 1 before training"
 
 
 def test_structure_beyond_chance(plant_filters):
-    found = np.array([mix(21, 0, 1)] * 3 + [alternating(21, 0.99)])
-    plant_filters(hidden={21: found})
-    chance = weights.untrained(21).value
-    assert filters.structured(21).value == pytest.approx(0.75 - (1 - chance))
-    assert 0.5 < chance <= 1
+    trained = [mix(21, 0, 1)] * 3 + [alternating(21, 0.99)]
+    before = [mix(21, 0, 1)] + [alternating(21, 0.99)] * 3
+    plant_filters({"hidden": {21: trained}}, {"hidden": {21: before}})
+    found = filters.structured(21)
+    assert found.value == pytest.approx(0.75 - 0.25)
+    assert found.text == "75 % of the filters have a name, 25 % before training"
 
 
 def test_random_filters_are_not_analysable():

@@ -1,5 +1,6 @@
 """Measures that simulate: what they ask of the simulator, and what they make of its answers."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -121,7 +122,7 @@ def test_perfect_models(monkeypatch):
     found = control.perfect_model()
     assert found.value == pytest.approx(0.9 / max(control.EXTENTS))
     assert found.text.startswith("0.90° on a smooth motion without feedback")
-    assert found.text.endswith("2e-06° with a continuous torque (5.0° by PD alone)")
+    assert found.text.endswith("2 · 10⁻⁶° with a continuous torque (5.0° by PD alone)")
 
 
 def answers(monkeypatch, errors_deg):
@@ -326,10 +327,12 @@ def test_the_whole_arm_may_turn():
 
 
 def test_coverage_is_the_worst_parameter(monkeypatch):
-    monkeypatch.setattr(dynamics, "_coverage", lambda: np.array([0.95, 0.9, 0.97]))
+    covers = np.ones((20, 3), bool)
+    covers[:2, 0] = covers[3:7, 1] = False
+    monkeypatch.setattr(dynamics, "_coverage", lambda: covers)
     found = dynamics.identification()
-    assert found.value == pytest.approx(0.9)
-    assert found.text == "95 % intervals hold the truth in 90 to 97 % of 200"
+    assert found.value == pytest.approx(0.8)
+    assert found.text == "95 % intervals hold the truth in 80 to 100 % of 200"
 
 
 def test_gears_make_the_shoulder_matter_less(monkeypatch):
@@ -346,19 +349,26 @@ def test_gears_make_the_shoulder_matter_less(monkeypatch):
 
 
 def test_counts_are_compared(monkeypatch):
-    def count(function, robot, *rest):
-        size = {"newton_euler": 700, "lagrange_euler": 63_000}[function.__name__]
-        return SimpleNamespace(multiplications=size - 600 * (robot.dof == 2 if rest else 0))
+    sizes = {"newton_euler": 700, "recursive_lagrange": 3_500, "lagrange_euler": 63_000}
+
+    def count(function, robot):
+        assert robot is dynamics.PUMA_560
+        return SimpleNamespace(multiplications=sizes[function.__name__])
 
     def closed(links, shared, velocity_terms=True):
-        assert shared is True
+        assert shared is True and len(links) == 2
         return SimpleNamespace(multiplications=20 if velocity_terms else 15)
 
     monkeypatch.setattr(dynamics.costs, "count", count)
     monkeypatch.setattr(dynamics.costs, "count_closed_form", closed)
+    assert dynamics.multiplications().value == 3_500
+    assert dynamics.multiplications().text == (
+        "Lagrangian form of six joints: closed 63,000, recursive 3,500; "
+        "Newton-Euler 700; two joints, closed 20"
+    )
     found = dynamics.recursion()
-    assert found.value == pytest.approx(90.0)
-    assert found.text == "six joints: 90 times fewer multiplications"
+    assert found.value == pytest.approx(18.0)
+    assert found.text == "six joints: 18 times fewer multiplications, 90 times by Newton-Euler"
     assert dynamics.ignoring_terms().value == pytest.approx(0.75)
     assert dynamics.ignoring_terms().text.startswith("15 for 20 multiplications")
 
@@ -387,24 +397,13 @@ def test_rounding_in_differences():
     assert found.value == pytest.approx(np.sqrt(2) / gain, rel=0.25)
 
 
-def test_shares_are_told_of_both_joints(monkeypatch):
-    def shares(left):
-        return np.array([0.2, 0.5]) * left, "words"
-
-    monkeypatch.setattr(real_arm, "_shares", shares)
-    assert real_arm._share(2.0, "what") == (1.0, "what: words", None)
-    monkeypatch.setattr(real_arm, "_shaken", lambda gap: 3.0 + 1000 * gap)
-    assert real_arm.high_frequency().value == pytest.approx(1.5)
-    assert real_arm.backlash(2e-3).value == pytest.approx(1.0)
-    assert real_arm.backlash(np.deg2rad(0.25)).text.startswith("play of 0.25°")
-
-
 def test_a_dead_zone_swallows_its_width():
+    """RMS of a constant loss over that of the torque: from which width is it a fifth?"""
     run = real_arm._ideal()
-    tau = run.tau_true[run.motion]
-    assert (np.abs(tau) > 1e-6).all()
-    wanted = 0.2 / np.sqrt((tau**2).mean(0))
-    assert real_arm.dead_zone(0.2).value == pytest.approx(wanted.max(), rel=0.02)
+    rms = np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
+    found = real_arm.dead_zone(0.2)
+    assert found.value == pytest.approx(real_arm.SIGNIFICANT * rms.min(), rel=0.02)
+    assert found.text.startswith("dead zone of 0.2 N m: ")
 
 
 def test_the_share_of_the_limit(monkeypatch):
@@ -413,16 +412,40 @@ def test_the_share_of_the_limit(monkeypatch):
     monkeypatch.setattr(real_arm, "_ideal", lambda: SimpleNamespace(tau_true=tau * [0.3, 0.8]))
     found = real_arm.saturation()
     assert found.value == pytest.approx(0.4)
-    assert found.text == "the motion takes 40 % of the limit at most"
+    low, high = np.round(limit * [0.3, 0.4])
+    assert found.text == (
+        "the motion takes 40 % of the assumed limit at most; "
+        f"limits below {low:.0f} or {high:.0f} N m would cut it"
+    )
 
 
 def test_second_differences_of_rounded_positions():
     """Rounding errors e, uniform: (e1 - 2 e0 + e-1) / T^2 has sqrt(6/12) steps over T^2."""
-    step = real_arm.SETUP.effects.encoder[0].step
-    noise = step * np.sqrt(6 / 12) / 0.01**2
     run = real_arm._ideal()
-    bent = ARM.mass_matrix(run.q_true)
-    torque = noise * np.sqrt((bent**2).sum(-1).mean(0))
-    scale = np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
+    gain = np.sqrt((ARM.mass_matrix(run.q_true) ** 2).sum(-1).mean(0)) * np.sqrt(6 / 12) / 0.01**2
+    share = gain / np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
+    steps = {bits: 2 * np.pi / 2**bits for bits in range(14, 21)}
+    slight = [bits for bits, step in steps.items() if (step * share).max() < real_arm.SIGNIFICANT]
     found = real_arm.sensor_noise()
-    assert found.value == pytest.approx((torque / scale).max(), rel=0.15)
+    assert found.value == min(slight)
+    told = [int(word) for word in found.text.split() if word.isdigit()]
+    np.testing.assert_allclose(told[2:4], 100 * steps[16] * share, rtol=0.1)
+
+
+def test_where_late_position_feedback_turns():
+    """With that much viscous friction the slowest pole lies on the unit circle."""
+    found = real_arm.sampling()
+    viscous = found.value * np.array(real_arm.SETUP.effects.friction[0].coefficient)
+    joints = real_arm.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
+    gain = np.hstack([np.diag(KP), np.zeros((2, 2))])
+    poles = np.abs(real_arm.late_poles(joints, gain, 0.002, 0.0012))
+    assert poles.max() == pytest.approx(1.0, abs=1e-6)
+    assert "1.2 ms late" in found.text
+    # the text's growth: from the logarithm of the default's largest pole
+    joints = real_arm.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous / found.value)
+    late, held = (
+        np.log(np.abs(real_arm.late_poles(joints, gain, 0.002, delay)).max()) / 0.002
+        for delay in (0.0012, 0.0)
+    )
+    told = [float(x) for x in re.findall(r"(-?[\d.]+) 1/s", found.text.replace("−", "-"))]
+    np.testing.assert_allclose(told, [late, held], rtol=0.05)
