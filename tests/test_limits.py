@@ -204,6 +204,7 @@ ROWS = [
     ("rate", lambda x: train(rate=x), [1e-6, training.MAX_RATE], [0.0, training.MAX_RATE * OVER]),
     ("momentum", lambda x: train(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),
     ("epochs", lambda x: train(epochs=x), [1, 2], [0, 1.0]),
+    ("width", training.default_rate, [1, 2], [0, 1.0]),
     ("warm_up", lambda x: train(warm_up=x), [0, 1], [-1, 1.0]),
     ("n", lambda x: trajectories.random_extents(x, 0), [1, 2], [0, 1.0]),
     ("seed", lambda x: trajectories.random_extents(2, x), [0, 1], [-1, 1.0]),
