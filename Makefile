@@ -17,7 +17,7 @@ NOTEBOOKS = book/*.ipynb
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test lint stripped unit notebooks foreign foreign-ci pages lab reproduce bench strip clean
+.PHONY: help env book test lint stripped unit notebooks foreign foreign-ci pages lab reproduce bench mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -76,6 +76,9 @@ lab: $(READY)  ## JupyterLab on the book
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	$(BIN)/python -m ddlib.reproduce
+
+mutants: $(READY)  ## which mistakes would the tests notice? a sample, about 25 minutes
+	$(BIN)/python tests/mutation.py --jobs $(JOBS)
 
 bench: $(READY)  ## speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py

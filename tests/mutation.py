@@ -19,7 +19,6 @@ import json
 import multiprocessing
 import os
 import re
-import resource
 import shutil
 import subprocess
 import sys
@@ -61,7 +60,7 @@ STALENESS = "test_committed_results_are_of_this_code"
 HASHES = ("test_results.py",)  # reads the text of modules: counts for these modules only
 HASHING = ("results", "reproduce")
 
-TESTS_SECONDS = 30.0
+TESTS_SECONDS = 20.0
 """Time of the tests that a mutant has to survive, as recorded without it."""
 
 HEAVY = (
@@ -157,6 +156,8 @@ class Chosen:
 
 def apart(folder: Path, work, limit: float) -> dict | None:
     """What ``work()`` returns in a child process in a folder; None if it took too long or died."""
+    import resource  # not on Windows, where nothing forks either
+
     answer = folder / ".answer.json"
     answer.unlink(missing_ok=True)
     if not (child := os.fork()):
@@ -298,7 +299,7 @@ def judge(job: tuple[Mutant, list[str], float], folder: Path) -> dict:
                 row = {"outcome": "killed", "by": killer}
                 break
     finally:
-        shutil.copyfile(ROOT / "ddlib" / f"{mutant.module}.py", path)
+        path.write_text(text_of(mutant.module), encoding="utf-8")
     return row | {"seconds": round(time.monotonic() - start, 1)}
 
 
@@ -319,6 +320,8 @@ def _killer(order: list[str], folder: Path, limit: float) -> str:
 
 def in_copies(jobs: int, function, work: list):
     """``(item, function(item, folder))`` of all work, in processes with a copy each."""
+    if not work:
+        return
     for name in HEAVY.split():
         importlib.import_module(name)  # once, before the processes part
     context = multiprocessing.get_context("fork")
@@ -383,22 +386,30 @@ def main(arguments=None) -> None:
     os.environ["OMP_NUM_THREADS"] = "1"
     print("==> Which tests execute which lines", flush=True)
     known = traces(options.jobs)
-    sample = draw(options.seed, options.library, "library")
-    sample += draw(options.seed, options.measures, "measures")
+    sample = draw(options.seed, options.measures, "measures")
+    sample += draw(options.seed, options.library, "library")
     if options.only:
         sample = [m for m in every_mutant() if {m.id, m.module} & set(options.only)]
-    print(f"==> {len(sample)} mutants of {len(every_mutant())}", flush=True)
-    jobs = []
+    seconds = {t: s for found in known.values() for t, s in found["seconds"].items()}
+    kept = CACHE / "outcomes.json"
+    outcomes = json.loads(kept.read_text()) if kept.exists() else {}
+    judged = {entry["id"]: entry["why"] for entry in yaml.safe_load(JUDGED.read_text())}
+    rows, jobs, keys = [], [], {}
     for mutant in sample:
         tests = tests_for(mutant, known)
-        seconds = {t: s for found in known.values() for t, s in found["seconds"].items()}
-        jobs.append((mutant, tests, sum(seconds[test] for test in tests)))
-    rows = []
+        states = [known[name]["state"] for name in sorted(set(map(file_of, tests)))]
+        keys[mutant] = digest(mutant.apply(text_of(mutant.module)), *tests, *states)
+        if keys[mutant] in outcomes:
+            rows.append((mutant, outcomes[keys[mutant]]))
+        else:
+            jobs.append((mutant, tests, sum(seconds[test] for test in tests)))
+    print(f"==> {len(jobs)} of {len(sample)} mutants to try, of {len(every_mutant())}", flush=True)
     for (mutant, *_), row in in_copies(options.jobs, judge, jobs):
         rows.append((mutant, row))
+        outcomes[keys[mutant]] = row
+        kept.write_text(json.dumps(outcomes))  # an interrupted run goes on from here
         print(f"  {len(rows):4} {mutant.id} {mutant.module}: {row['outcome']} "
               f"({row['by']}, {row['seconds']} s)", flush=True)  # fmt: skip
-    judged = {entry["id"]: entry["why"] for entry in yaml.safe_load(JUDGED.read_text()) or ()}
     text = report(rows, judged)
     (CACHE / "report.txt").write_text(text + "\n")
     print(text)

@@ -268,6 +268,7 @@ def test_roughness_of_lines_noise_and_zigzag():
     x = grid(21)
     np.testing.assert_allclose(roughness([3 + 2 * x, -0.1 * x]), 0, atol=1e-20)
     assert roughness(np.full(21, 0.3)) == 0
+    assert (roughness(np.full((5000, 21), 0.3)) == 0).all()
     noise = roughness(random((3000, 41)))
     assert noise.mean() == pytest.approx(1, abs=0.05)
     # second differences of +1, -1 are 4 in size: 16 / (6 x variance)

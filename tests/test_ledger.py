@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from book_pages import BACK_MATTER, ROOT
 
-from ddlib import claims, ledger, results
+from ddlib import claims, ledger, paper, results
 from ddlib.tables import number
 
 BOOK = ROOT / "book"
@@ -38,6 +38,12 @@ def test_units_of_the_figures_belong_to_one_window(unit):
 @pytest.mark.parametrize("unit, fits", [(42, False), (43, True), (54, True), (55, False)])
 def test_inputs_and_what_comes_after_them(unit, fits):
     assert ledger.unit_fits(unit, 21) is fits  # 42 inputs, 10 hidden units, 2 outputs
+
+
+def test_figures_are_two_windows_of_the_paper_apart():
+    """The caption of 5-6 to 5-8 counts the samples of a window twice as wide as the text."""
+    for _, text, caption in ledger.FIGURE_UNITS.values():
+        assert text in paper.TABLE_4_1 and caption == 2 * text - 1
 
 
 def test_errata_are_computed(errata):
