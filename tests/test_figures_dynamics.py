@@ -13,7 +13,7 @@ from ddlib.arm import CMU_DD_ARM_II
 from ddlib.counting import Operations
 from ddlib.identification import Equations, least_squares
 from ddlib.style import COLOURS, INK, Illustration
-from ddlib.trajectories import APPENDIX_I
+from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 SVG = "{http://www.w3.org/2000/svg}"
 NAMES = ("x", "y")
@@ -129,3 +129,16 @@ def test_shares_stand_beside_repeated_estimates_only(made):
 def test_refusals(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_labels_keep_away_from_what_is_drawn():
+    """The number of a trajectory lies on no arm and no path, and near its own end point."""
+    points = CMU_DD_ARM_II.forward_kinematics(pick_and_place(APPENDIX_I, np.linspace(0, 1.5, 60)).q)
+    turned = np.concatenate([np.zeros((6, 1, 2)), points[:, -1]], 1)
+    along = np.linspace(0, 1, 40)[:, None, None, None]
+    arms = turned[:, :-1] + along * np.diff(turned, axis=1)
+    drawn = np.concatenate([points[:, :, 1].reshape(-1, 2), arms.reshape(-1, 2)])
+    for end in points[:, -1, 1]:
+        place = figures_dynamics._free_place(end, drawn)
+        assert np.isclose(np.linalg.norm(place - end), 0.035)
+        assert np.linalg.norm(drawn - place, axis=-1).min() > 0.015
