@@ -16,7 +16,6 @@ READ = [page for page in PAGES if page not in ELSEWHERE]
 BOUND = yaml.safe_load(directions.BOUND.read_text(encoding="utf-8")) or {}
 
 NOT_YET = {
-    "book/hinton-diagrams",
     "book/convolution-filters",
     "book/ledger",
     "book/status",
