@@ -13,7 +13,7 @@ from book_pages import ROOT
 from bs4 import BeautifulSoup
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-from build import messages
+from build import messages, report
 from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
 from dd_failures import failing_cell, last_line
 
@@ -230,3 +230,23 @@ def test_tracebacks_of_the_machinery_are_no_messages():
     lines = f"{notebook}{plain}{own}".splitlines(keepends=True)
     assert messages(lines) == [notebook, plain]
     assert messages(own.splitlines(keepends=True)) == []
+
+
+CRASH = """
+Exception occurred:
+  File "/book/_ext/dd_status.py", line 121, in made_results
+    made = json.loads(path.read_text(encoding="utf-8"))["made by"]
+KeyError: 'made by'
+The full traceback has been saved in /tmp/sphinx-err-4os053ah.log, if you want to report it.
+Traceback (most recent call last):
+RuntimeError:
+"""
+
+
+def test_a_crash_of_the_machinery_is_told_in_a_line(tmp_path, capsys):
+    (tmp_path / "_build").mkdir()
+    (tmp_path / "_build" / "failures.json").write_text("[]")
+    report(tmp_path, messages(CRASH.splitlines(keepends=True)), strict=False)
+    assert capsys.readouterr().err.strip() == (
+        "==> FAILED: not all pages could be written: KeyError: 'made by'"
+    )

@@ -99,6 +99,7 @@ def test_times_of_the_results_and_of_all_together(tmp_path, seconds, verdict):
         "reproduce": {"seconds": seconds, "jobs": 2},
     }.items():
         (tmp_path / f"{name}.json").write_text(json.dumps({"made by": made}))
+    (tmp_path / "verdicts.json").write_text("{}")  # of other results
     (table,) = dd_status.made_results(tmp_path)
     assert [row[0] for row in cells(table)] == [
         "result", "a", "b", "sum", "make reproduce, 2 at a time",

@@ -30,7 +30,7 @@ from jupyter_cache.executors import load_executor
 from sphinx.util.console import strip_colors
 
 from dd_book import PAGE_INPUTS, cache_path, digest
-from dd_failures import FAILURES, UNEXECUTED, where
+from dd_failures import FAILURES, UNEXECUTED, last_line, where
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"
@@ -38,6 +38,7 @@ NOISE = "Kernel is running over TCP without encryption"
 MESSAGE = re.compile(r"(?P<where>.*?)(?::\d+)?:? ?(?:WARNING|ERROR|CRITICAL|SEVERE): ")
 TRACEBACK = "Traceback (most recent call last):"
 NOTEBOOK_FAILED = "Executing notebook failed"
+CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme error:")
 
 TIMEOUT = 600  # seconds for one cell, as in _config.yml
 
@@ -70,7 +71,7 @@ def messages(lines: list[str]) -> list[str]:
     found = [""]
     for line in lines:
         own = line.startswith(TRACEBACK) and NOTEBOOK_FAILED not in found[-1]
-        if own or MESSAGE.match(line):
+        if own or MESSAGE.match(line) or line.startswith(CRASHES):
             found.append("")
         found[-1] += line
     return [text for text in found if text.strip() and not text.startswith(TRACEBACK)]
@@ -127,7 +128,10 @@ def report(root: Path, found: list[str], strict: bool) -> None:
     """
     incomplete = failures(root)
     concerned = set()
+    crashes = [text for text in found if text.startswith(CRASHES)]
     for text in found:
+        if text in crashes:
+            continue
         place = (MESSAGE.match(text) or {"where": ""})["where"] or ""
         known = any(f"{failure['page']}.ipynb" in place for failure in incomplete)
         if strict or not known:
@@ -140,6 +144,8 @@ def report(root: Path, found: list[str], strict: bool) -> None:
         say("==> FAILED in part. These pages are incomplete; a box on each says how to report it:")
     for failure in incomplete:
         say(f"    {failure['page']}: {where(failure)}: {failure['error']}")
+    for text in crashes:
+        say(f"==> FAILED: not all pages could be written: {last_line(text)}")
     if strict and found:
         say("==> FAILED: under --strict or CI=true a warning is an error")
 
@@ -161,10 +167,11 @@ def main(root: Path, strict: bool) -> int:
         status, found = build(root, strict)
         report(root, found, strict)
         failed = bool(status or failures(root) or (strict and found))
-        if status and not strict:
-            say("==> FAILED: not all pages could be written; please report it with the log")
+        if status and not found:
+            say("==> FAILED: not all pages could be written")
         if failed or found:
             say(f"==> All messages are in {log(root)}, tracebacks of notebooks in {html}/reports")
+            say("    Please report what is not yours, with that file, where this book came from.")
         else:
             stamp.write_text(sources)
         print(f"==> {time.monotonic() - started:.0f} s")

@@ -118,7 +118,7 @@ def made_results(folder: Path) -> list[nodes.Node]:
     """How long each committed result took, and all together."""
     times = {}
     for path in sorted(folder.glob("*.json")):
-        made = json.loads(path.read_text(encoding="utf-8"))["made by"]
+        made = json.loads(path.read_text(encoding="utf-8")).get("made by", {})
         if "code" in made:
             times[path.stem] = made["seconds"]
     rows = [(name, f"{seconds:.1f} s") for name, seconds in times.items()]
