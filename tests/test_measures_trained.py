@@ -1,0 +1,288 @@
+"""Measures that train, record or count: their calls planted, their arithmetic by hand."""
+
+from math import erf, log2
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ddlib.experiment import INITIAL, POSITION_FEEDBACK, STATE_FEEDBACK
+from ddlib.measures import backpropagation, real_arm, state_space, trajectories
+from ddlib.measures import windows as of_windows
+from ddlib.training import History, default_rate
+
+SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
+
+
+# --- training ----------------------------------------------------------------------------------
+
+
+def falling(epochs, reached):
+    """Errors that fall on a straight line to 0.75 at these epochs."""
+    at = np.array([0.0, 2 * epochs])
+    return History(at, 1.0 - 0.25 * at[:, None] / np.array(reached, float), None)
+
+
+def test_speed_ups_here_and_elsewhere(monkeypatch):
+    asked = []
+
+    def train_ensemble(weights, data, rate, momentum, epochs, progress):
+        assert len(weights) == backpropagation.SEEDS and data == "windows of 21"
+        assert rate == default_rate(21) and progress is False
+        assert np.abs(weights.hidden_weights).max() == pytest.approx(INITIAL, rel=0.01)
+        asked.append((momentum, epochs))
+        reached = [600.0, 800.0, 10_000.0] if momentum == 0 else [100.0, 200.0, 150.0]
+        return None, falling(epochs, reached), None
+
+    def learn(bits, hidden, members, momentum, epochs, every):
+        assert (bits, hidden) == (3, 3) and members == 16 and every == 10
+        asked.append((momentum, epochs))
+        late = np.inf if momentum == 0 else 70.0
+        return None, np.array([late, 60.0, 50.0]) * (10 if momentum == 0 else 1)
+
+    monkeypatch.setattr(backpropagation, "_data", lambda: "windows of 21")
+    monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
+    monkeypatch.setattr(backpropagation.parity, "learn", learn)
+    found = backpropagation.acceleration()
+    assert asked == [(0.0, 2200), (0.0, 4400), (0.9, 500), (0.9, 1000)]
+    # medians: 800 over 150 epochs here, 600 over 60 there
+    assert found.value == pytest.approx(800 / 150 / 10, rel=1e-6)
+    assert found.text == "5.3 times faster here, 10 times on parity of 3 bits"
+
+
+def test_runs_that_never_arrive_count_with_their_length(monkeypatch):
+    def train_ensemble(weights, data, momentum, epochs, **options):
+        return None, falling(epochs, [9e9] * 3 if momentum == 0 else [100.0] * 3), None
+
+    def learn(*sizes, momentum, epochs, **options):
+        return None, np.full(3, np.inf if momentum == 0 else 44.0)
+
+    monkeypatch.setattr(backpropagation, "_data", lambda: None)
+    monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
+    monkeypatch.setattr(backpropagation.parity, "learn", learn)
+    assert backpropagation.acceleration().value == pytest.approx(22 / 100, rel=1e-6)
+
+
+def test_best_possible_answers_to_noisy_parity():
+    """A bit is read rightly with the chance p of staying below half a step; parity then has
+    (1 + (2p - 1)^3) / 2.
+    """
+    found = backpropagation.fine_distinctions()
+    p = 0.5 * (1 + erf(0.5 / 0.25 / np.sqrt(2)))
+    best = float(found.text.split("at best ")[1].split(" %")[0])
+    assert best == pytest.approx(50 * (1 + (2 * p - 1) ** 3), abs=1.5)
+    assert 0.5 < found.value <= 1.001  # chance, and as good as can be
+
+
+def test_parity_takes_every_product_of_bits_and_one_of_signs():
+    """As +1 or -1 it is the product of all 1 - 2 x: of bits all 2^n products, of signs one."""
+    found = backpropagation.polynomial("bits", 8)
+    assert found.value == pytest.approx(1.0)
+    assert found.text == "4 at 2 bits, 256 at 8"
+    assert backpropagation.polynomial("signs", 8).value == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["binary counter"])
+def test_growth_of_networks_for_parity(name):
+    found = backpropagation.network(name, most=6, large=64)
+    few, many = (int(word.replace(",", "")) for word in found.text.split() if word[0].isdigit()
+                 and word.rstrip(",") not in ("6", "64"))  # fmt: skip
+    assert found.value == pytest.approx(many / (64 * 6) / (few / (6 * log2(6))))
+
+
+def test_networks_that_are_wrong_are_refused(monkeypatch):
+    def odd(bits):
+        return SimpleNamespace(output=lambda x: x[:, 0], coefficients=1)
+
+    monkeypatch.setitem(backpropagation.parity.NETWORKS, "wrong", odd)
+    with pytest.raises(AssertionError, match="wrong is wrong at 2 bits"):
+        backpropagation.network("wrong")
+
+
+def test_units_and_steps_are_exact():
+    assert backpropagation.unit().value < 1e-12
+    assert 0 < backpropagation.chain_rule().value < 1e-4
+
+
+def test_settings_of_momentum_and_step_size(monkeypatch):
+    """Every network at every setting: its error says which setting it was."""
+    alpha = STATE_FEEDBACK.momentum
+
+    def train_ensemble(weights, data, rate, momentum, epochs, progress):
+        np.testing.assert_allclose(rate / default_rate(21), [0.5, 0.5, 2, 2, 0.5, 0.5, 2, 2])
+        np.testing.assert_array_equal(momentum, [0] * 4 + [alpha] * 4)
+        assert epochs == 7 and progress is False and data == "data"
+        hidden = weights.hidden_weights.reshape(4, 2, -1)
+        assert (hidden == hidden[:1]).all() and (hidden[:, 0] != hidden[:, 1]).any()
+        errors = 100 * momentum + rate / default_rate(21) + np.tile([0.0, 0.1], 4)
+        return None, SimpleNamespace(training=np.array([0 * errors, errors])), None
+
+    monkeypatch.setattr(of_windows.committed, "training", lambda: "runs")
+    monkeypatch.setattr(of_windows.TrainingSet, "from_recording", lambda run, width: "data")
+    monkeypatch.setattr(of_windows, "train_ensemble", train_ensemble)
+    found = of_windows._momentum_errors.__wrapped__(7, 2, (0.5, 2))
+    assert list(found) == [0.0, alpha]
+    for momentum, errors in found.items():
+        wanted = 100 * momentum + np.array([[0.5, 2.0], [0.6, 2.1]])
+        np.testing.assert_allclose(errors, wanted)
+
+
+# --- the family and its recordings -------------------------------------------------------------
+
+
+def test_the_sine_in_closed_form():
+    assert trajectories.period().value == pytest.approx(6.0)
+    assert trajectories.period().text == "6.0 s; the motion lasts half of it"
+    found = trajectories.start()
+    assert found.value == 1.0
+    assert found.text.startswith(f"starts at {SPEED:.2f} rad/s for an extent of 45°")
+    assert trajectories.ends_and_middle().value is True
+
+
+def test_samples_and_windows_of_the_recordings():
+    assert trajectories.samples() == (300, "300 at 100 a second", None)
+    found = trajectories.cases()
+    assert found.value == 5 * 300
+    assert found.text == "1,500 with the rests; windows within the motions give 1,450, 1,400, 1,300"
+
+
+def test_misses_over_angles():
+    motion = slice(1, 3)
+    error = np.array([[[9, 9], [1, 0], [0, 1], [9, 9]]])
+    angle = np.array([[[9, 9], [2, 2], [2, 2], [9, 9]]])
+    run = SimpleNamespace(tracking_error=error, reference=SimpleNamespace(q=angle), motion=motion)
+    assert trajectories._missed(run) == pytest.approx(np.sqrt(0.5) / 2)
+
+
+def test_gains_from_which_the_arm_follows(monkeypatch):
+    """Misses that fall with the square of the gain: 40 % at once, a tenth at twice the gain."""
+    missed = {"position feedback": 0.4, "state feedback": 0.02}
+    monkeypatch.setattr(trajectories, "_recorded", lambda name: missed[name])
+    monkeypatch.setattr(
+        trajectories, "_missed", lambda x: x if isinstance(x, float) else 0.4 / x[0] ** 2
+    )
+    kp = np.array(POSITION_FEEDBACK.controller.kp)
+    monkeypatch.setattr(
+        type(POSITION_FEEDBACK), "record", lambda self: np.array(self.controller.kp) / kp
+    )
+    found = trajectories.driven(factors=(1, 3))
+    assert found.value == pytest.approx(2.0)
+    assert found.text == (
+        "RMS error 40 % of the angle by position feedback, 2 % by state feedback; "
+        "10 % from 2.0 times the assumed gains on"
+    )
+
+
+# --- the network of states ---------------------------------------------------------------------
+
+
+def test_inputs_that_are_shuffled(monkeypatch):
+    def shuffled(predict, states, scale):
+        assert predict == "torque" and states.shape == (2000, 2, 3) and scale.shape == (2,)
+        changes = np.ones((2, 3, 3))
+        changes[0, 0] = [0.1, 0.2, 0.6]
+        changes[1, 2] = 6.0
+        return changes
+
+    monkeypatch.setattr(state_space, "_networks", lambda: SimpleNamespace(torque="torque"))
+    monkeypatch.setattr(state_space, "shuffled", shuffled)
+    assert state_space.shoulder_position().value == pytest.approx(0.2 / 2)
+
+
+def test_transitions_within_the_range_of_velocity(monkeypatch):
+    along = np.full((2, 5, 2, 3), 7.0)
+    along[0, :3, 0, 1] = 0.9
+    along[1, 0, 1, 0] = 0.9
+    monkeypatch.setattr(state_space, "_networks", lambda: SimpleNamespace(weights="weights"))
+    monkeypatch.setattr(state_space, "transition_range", lambda weights: along)
+    found = state_space.velocity_ranges()
+    assert found.value == pytest.approx(0.3)
+    assert found.text == "30 % of the units; of elbow position 10 %"
+
+
+def test_the_shoulder_on_trajectory_6(monkeypatch):
+    wanted = np.random.default_rng(0).normal(size=(300, 2))
+    scatter = wanted.std(0)
+    wrong = [wanted + np.array([f, 9.0]) * scatter for f in (0.1, 0.4, 0.2)]
+    networks = SimpleNamespace(torque=lambda states: np.array(wrong))
+    monkeypatch.setattr(state_space, "_networks", lambda: networks)
+    monkeypatch.setattr(state_space, "states_along", lambda extents: tuple(extents))
+    monkeypatch.setattr(state_space, "torque", lambda states: wanted)
+    assert state_space.trajectory_shoulder().value == pytest.approx(0.2)
+
+
+# --- the real arm ------------------------------------------------------------------------------
+
+
+def test_shares_of_two_torques(monkeypatch):
+    t = np.arange(3000) * 1e-3
+    driven = np.ones((3000, 2)) * [4.0, -2.0]
+    run = SimpleNamespace(t=t, motion=slice(None), tau_true=driven)
+    monkeypatch.setattr(real_arm, "_ideal", lambda: run)
+    left = np.ones((3000, 2)) * [1.0, -1.0]
+    share, text = real_arm._shares(left)
+    np.testing.assert_allclose(share, [0.25, 0.5])
+    motion = real_arm.pick_and_place(real_arm.APPENDIX_I[5], t)
+    asked = 100 / np.sqrt((real_arm.SETUP.arm.inverse_dynamics(*motion) ** 2).mean(0))
+    assert text == (
+        "25 % of the torque at the shoulder, 50 % at the elbow; "
+        f"of what the reference asks for {asked[0]:.0f} and {asked[1]:.0f} %"
+    )
+
+
+def planted_runs(monkeypatch, left):
+    """`_drive` is asked, notes the effects; each run leaves a constant torque at both joints."""
+    asked = {}
+
+    def drive(runs, **effects):
+        asked.update(runs=runs, **effects)
+        return SimpleNamespace(motion=slice(None))
+
+    ideal = SimpleNamespace(motion=slice(None), tau_true=np.full((9, 2), 10.0))
+    monkeypatch.setattr(real_arm, "_drive", drive)
+    monkeypatch.setattr(real_arm, "_ideal", lambda: ideal)
+    monkeypatch.setattr(
+        real_arm, "residual_torque", lambda arm, run: np.ones((len(left), 9, 1)) * left[:, None]
+    )
+    monkeypatch.setattr(real_arm, "_shares", lambda torque: (None, "words"))
+    return asked
+
+
+def test_friction_that_is_significant(monkeypatch):
+    """Shares in proportion to the multiple, the smaller one 10 %: a fifth at twice as much."""
+    asked = planted_runs(monkeypatch, np.outer([1, 4], [1.0, 3.0]))
+    found = real_arm.friction((1, 4))
+    assert found.value == pytest.approx(2.0)
+    assert found.text == "words; 20 % from 2.0 times the assumed friction on"
+    viscous, coulomb = real_arm.SETUP.effects.friction
+    own = asked["friction"]
+    assert asked["runs"] == 2
+    np.testing.assert_allclose(own[0].coefficient, np.outer([1, 4], viscous.coefficient))
+    np.testing.assert_allclose(own[1].level, np.outer([1, 4], coulomb.level))
+
+
+def test_play_that_is_significant(monkeypatch):
+    """The run without play leaves torque too, which does not count."""
+    asked = planted_runs(monkeypatch, 5.0 + np.outer([0, 1, 4], [0.5, 1.0]))
+    real_arm._rattle.cache_clear()
+    found = real_arm.backlash((1e-3, 4e-3))
+    real_arm._rattle.cache_clear()
+    assert found.value == pytest.approx(2e-3)
+    assert found.text == (
+        f"if it had gears, play of {np.rad2deg(1e-3):.2f}°: words; "
+        f"20 % from {np.rad2deg(2e-3):.2f}° on"
+    )
+    (shaft,) = asked["transmission"]
+    np.testing.assert_allclose(shaft.gap, [[0, 0], [1e-3, 1e-3], [4e-3, 4e-3]])
+    assert asked["runs"] == 3
+
+
+def test_softer_shafts(monkeypatch):
+    asked = planted_runs(monkeypatch, np.array([[0.5, 1.0], [2.0, 1.0], [3.0, 9.0]]))
+    found = real_arm.high_frequency()
+    assert found.value == pytest.approx(0.1)
+    assert found.text == (
+        "springy shaft: words; the larger share is 20 % at 0.3, 90 % at 0.1 of the stiffness"
+    )
+    (shaft,) = asked["transmission"]
+    np.testing.assert_allclose(shaft.stiffness, np.outer([1, 0.3, 0.1], real_arm.SHAFT.stiffness))
