@@ -84,6 +84,12 @@ def test_faster_motions(monkeypatch):
     )
 
 
+def test_faster_means_twice_as_fast(monkeypatch):
+    errors = {1.0: np.array([4.0, 2.0]), 2.0: np.array([8.0, 2.0])}
+    monkeypatch.setattr(control, "_real", lambda speed: errors[speed])
+    assert control.faster().value == pytest.approx(4.0)
+
+
 def test_a_load_on_the_shoulder(monkeypatch):
     asked = []
 
