@@ -13,7 +13,7 @@ def ledger_table(section: str) -> Table:
     """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
 
     The verdict comes with the share of the draws in which it comes out, the value that is judged
-    and its bands; one column says what would have refuted the claim.
+    and its bands; the reason is followed by what would have refuted the claim.
 
     The place in the paper is a link to the chapter that deals with the claim.
 
@@ -22,21 +22,18 @@ def ledger_table(section: str) -> Table:
     section : str
         Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
     """
-    header = (
-        "claim",
-        "printed",
-        "here",
-        "verdict (judged by)",
-        "would have been refuted by",
-        "why",
-    )
+    header = ("claim", "printed", "here", "verdict (judged by)", "why")
     return Table(
         header,
         [
-            (f"{c.claim} ({_linked(c)})", printed(c), here(c), _judged(c), c.refuted, c.why)
+            (f"{c.claim} ({_linked(c)})", printed(c), here(c), _judged(c), _reasons(c))
             for c in of_section(section)
         ],
     )
+
+
+def _reasons(claim: Claim) -> str:
+    return f"{claim.why} *What would have refuted it:* {claim.refuted}"
 
 
 def _judged(claim: Claim) -> str:
@@ -64,8 +61,9 @@ def _bounds(bounds: Mapping) -> str:
         return "if yes" if bounds["is"] else "if no"
     if "factor" in bounds:
         return f"within a factor of {bounds['factor']:g}"
-    words = [f"{name} {bounds[name]:g}" for name in ("from", "to") if name in bounds]
-    return " ".join(words)
+    if "from" not in bounds:
+        return f"up to {bounds['to']:g}"
+    return f"from {bounds['from']:g}" + (f" to {bounds['to']:g}" if "to" in bounds else "")
 
 
 def _linked(claim: Claim) -> str:

@@ -304,7 +304,7 @@ def test_bands_in_words(monkeypatch):
     monkeypatch.setattr(Claim, "measured", lambda self: Measured(0.5, "text"))
     assert ledger_tables.bands(make()) == "0.50; reproduced within a factor of 1.5"
     both = make(band={"to": 0.1}, loose={"from": 0.2, "to": 1})
-    assert ledger_tables.bands(both) == "0.50; reproduced to 0.1, qualitative from 0.2 to 1"
+    assert ledger_tables.bands(both) == "0.50; reproduced up to 0.1, qualitative from 0.2 to 1"
     monkeypatch.setattr(Claim, "measured", lambda self: Measured(True, "text"))
     assert ledger_tables.bands(make(band={"is": True})) == "yes; reproduced if yes"
 
