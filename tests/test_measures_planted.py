@@ -144,7 +144,9 @@ def test_multiplications_and_weights_by_hand():
     assert networks.weights_against_nwh([21]).value == pytest.approx(count / (2 * 21 * 10))
     found = networks.weights_against_nwh()
     assert found.value == pytest.approx(1.2 + 1 / 11)  # n w h and direct weights, 20 more
-    assert found.text == "weights for n w h: 284 for 220 at 11, 524 for 420 at 21, 1004 for 820 at 41"
+    assert (
+        found.text == "weights for n w h: 284 for 220 at 11, 524 for 420 at 21, 1004 for 820 at 41"
+    )
 
 
 # --- windows: costs, courses, comparisons ------------------------------------------------------
@@ -201,7 +203,7 @@ def test_courses_that_fall(plant):
     plant("longer", {"windows": histories})
     found = of_windows.training_is_monotone()
     assert found.value == pytest.approx(0.75)
-    assert found.text == "falls at 75 %, 75 % of the records: 0.75 of all, 1.0 at 1 record in 2"
+    assert found.text == "falls at 75 %, 75 % of the records: 0.750 of all, 1.00 at 1 record in 2"
 
 
 def test_tests_that_rise_again(plant):
@@ -431,6 +433,39 @@ def test_crossings_of_odd_parts(plant_filters):
     found = filters.zero_crossings()
     assert found.value == pytest.approx(2 / 5 - 1 / 5)
     assert found.text == "2 of 5 filters are smooth and cross, 1 before training"
+
+
+def test_what_is_left_at_the_wide_window(plant_filters):
+    """Noise is not analysable, an acceleration filter is; before training all is noise."""
+    noise = np.random.default_rng(0).normal(size=(4, 41))
+
+    def some(width, rough):
+        clean = savitzky_golay(width, 2, LOG_STEP, degree=2)
+        return [*noise[:rough, :width], *[clean] * (4 - rough)]
+
+    before = {"hidden": {w: noise[:, :w] for w in (21, 41)}}
+    for wide, ratio in ((3, 3.0), (1, 1.0), (0, 0.0)):
+        plant_filters({"hidden": {21: some(21, 1), 41: some(41, wide)}}, before)
+        found = filters.not_analysable()
+        assert found.value == pytest.approx(ratio)
+        assert found.text == f"{wide} of 4 at 41, 1 of 4 at 21; before training 100 %"
+
+
+def test_readings_are_told_apart(plant):
+    cells = {w: cell([1], [2], **{"largest weight": [w]}) for w in WINDOWS}
+    plant("table-4-1", table(cells))
+    assert networks.largest_weight(21, POSITION).value == pytest.approx(210.0)
+
+
+@pytest.mark.parametrize("setup", [STATE, POSITION])
+def test_filters_are_of_the_reading_asked_for(monkeypatch, setup):
+    asked = []
+    model = SimpleNamespace(weights=SimpleNamespace(hidden_weights=np.ones((2, 10, 2, 21))))
+    monkeypatch.setattr(results, "networks", lambda *a: asked.append(a) or model)
+    committed.networks.cache_clear()
+    assert committed.filters(21, "hidden", setup=setup).shape == (2, 20, 21)
+    committed.networks.cache_clear()
+    assert asked == [(21, setup)]
 
 
 def test_structure_beyond_chance(plant_filters):

@@ -164,9 +164,7 @@ def zero_crossings(width: int = 41) -> Measured:
     return Measured(value, f"{text}{both[1].sum()} before training", replicates)
 
 
-def _activities(
-    width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name
-):
+def _activities(width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name):
     windows, torque = cases(committed.training(setup), width)
     found = model(width, setup)
     return windows, torque, found.weights.activity(found.scaled(windows))[0]
