@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Mapping
 
 from ddlib.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
+from ddlib.experiment import SETUPS, STATE_FEEDBACK
 from ddlib.tables import Table, number
 from ddlib.verdicts import VERDICTS
+
+_SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
 
 
 def ledger_table(section: str) -> Table:
@@ -94,3 +98,37 @@ def summary(claims: Iterable[Claim]) -> Table:
     verdicts = [claim.judge() for claim in claims]
     rows = [(verdict, str(verdicts.count(verdict))) for verdict in VERDICTS]
     return Table(("verdict", "claims"), [*rows, ("all", str(len(verdicts)))])
+
+
+def readings(claims: Iterable[Claim]) -> dict[str, tuple[int, dict[str, int]]]:
+    """Claims judged under every reading of the controller, and how many each one reproduces.
+
+    They have the same measure and arguments but for the argument ``setup``; without it the
+    reading is state feedback.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+
+    Returns
+    -------
+    dict
+        For "table" (Table 4-1) and "figures" (those of section 5): the number of claims, and
+        of the reproduced ones for each name of a reading.
+    """
+    verdicts = {"table": {}, "figures": {}}
+    for claim in claims:
+        kinds = [k for k, place in _SHOWN.items() if claim.where.startswith(place)]
+        for kind in kinds:
+            rest = {k: v for k, v in claim.arguments.items() if k != "setup"}
+            key = (claim.measure, json.dumps(rest, sort_keys=True))
+            setup = claim.arguments.get("setup", STATE_FEEDBACK.name)
+            verdicts[kind].setdefault(key, {})[setup] = claim.verdict
+    found = {}
+    for kind, cells in verdicts.items():
+        both = [cell for cell in cells.values() if set(cell) == set(SETUPS)]
+        found[kind] = (
+            len(both),
+            {name: sum(cell[name] == "reproduced" for cell in both) for name in SETUPS},
+        )
+    return found

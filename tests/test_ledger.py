@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from book_pages import BACK_MATTER, ROOT
 
-from ddlib import claims, ledger, paper, results
+from ddlib import claims, ledger, ledger_tables, paper, results
 from ddlib.tables import number
 
 BOOK = ROOT / "book"
@@ -131,3 +131,28 @@ def test_readme_and_first_page_lead_to_it():
     assert "book/ledger.ipynb" in (ROOT / "README.md").read_text(encoding="utf-8")
     cells = json.loads((BOOK / "index.ipynb").read_text(encoding="utf-8"))["cells"]
     assert any("{doc}`ledger`" in "".join(cell["source"]) for cell in cells)
+
+
+def test_claims_under_both_readings_are_counted():
+    def claim(where, verdict, width, **setup):
+        return claims.Claim(
+            id="a", where=where, chapter="x", claim="c", printed=1.0, verdict=verdict, why="w",
+            refuted="r", measure="m.f", arguments={"width": width, **setup}, band={"from": 1},
+        )  # fmt: skip
+
+    position = {"setup": "position feedback"}
+    found = ledger_tables.readings(
+        [
+            claim("Table 4-1", "reproduced", 11),
+            claim("Table 4-1", "undecided", 11, **position),
+            claim("Table 4-1", "reproduced", 21),  # under one reading only
+            claim("Figure 5-1", "qualitative", 11),
+            claim("Figure 5-1", "reproduced", 11, **position),
+            claim("section 5.1", "reproduced", 21),
+            claim("section 5.1", "reproduced", 21, **position),
+        ]
+    )
+    assert found == {
+        "table": (1, {"position feedback": 0, "state feedback": 1}),
+        "figures": (1, {"position feedback": 1, "state feedback": 0}),
+    }

@@ -18,7 +18,9 @@ def planted(monkeypatch):
     weights.hidden_weights[:] = taps[0]
     weights.skip_weights[0], weights.skip_weights[1] = taps[2], taps[1]
     scaler = Scaler(np.zeros(2), np.ones(2))
-    monkeypatch.setattr(committed, "networks", lambda width: TorqueModel(weights, scaler, scaler))
+    monkeypatch.setattr(
+        committed, "networks", lambda width, *_: TorqueModel(weights, scaler, scaler)
+    )
 
 
 def test_outputs_follow_what_the_filters_measure(planted):

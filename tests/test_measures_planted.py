@@ -36,7 +36,7 @@ def plant_filters(monkeypatch):
     """
 
     def put(trained, before=None):
-        def read(width, layer, model=committed.networks):
+        def read(width, layer, model=committed.networks, setup=STATE):
             from_ = before if model is committed.untrained else trained
             return np.asarray((from_ or trained)[layer][width])[:, None]
 
@@ -141,7 +141,12 @@ def test_multiplications_and_weights_by_hand():
     """21 samples of two joints to 10 hidden and 2 output units, 20 between; no biases."""
     count = 42 * 10 + 42 * 2 + 10 * 2
     assert networks.multiplications(21).value == count * 5 * 300
-    assert networks.weights_against_nwh(21).value == pytest.approx(count / (2 * 21 * 10))
+    assert networks.weights_against_nwh([21]).value == pytest.approx(count / (2 * 21 * 10))
+    found = networks.weights_against_nwh()
+    assert found.value == pytest.approx(1.2 + 1 / 11)  # n w h and direct weights, 20 more
+    assert (
+        found.text == "weights for n w h: 284 for 220 at 11, 524 for 420 at 21, 1004 for 820 at 41"
+    )
 
 
 # --- windows: costs, courses, comparisons ------------------------------------------------------
@@ -198,7 +203,7 @@ def test_courses_that_fall(plant):
     plant("longer", {"windows": histories})
     found = of_windows.training_is_monotone()
     assert found.value == pytest.approx(0.75)
-    assert found.text == "falls at 75 %, 75 % of the records"
+    assert found.text == "falls at 75 %, 75 % of the records: 0.750 of all, 1.00 at 1 record in 2"
 
 
 def test_tests_that_rise_again(plant):
@@ -231,8 +236,11 @@ def test_weights_fall_as_filters_do(plant):
     plant(
         "table-4-1", table({w: cell([1], [1], **{"largest weight": s}) for w, s in sizes.items()})
     )
-    assert of_windows.magnitudes().value == pytest.approx(0.5, rel=1e-6)
-    assert of_windows.magnitudes(11, 21).value == pytest.approx(1.0, rel=1e-6)
+    fall = largest(41) / largest(21)
+    found = of_windows.magnitudes()
+    assert found.value == pytest.approx(fall / 2, rel=1e-6)
+    assert found.text == f"{fall / 2:.2g} of the weight at 21, the filter {fall:.2g}"
+    assert of_windows.magnitudes(11, 21).value == pytest.approx(largest(21) / largest(11), rel=1e-6)
 
 
 def test_scaling_leaves_the_error():
@@ -427,6 +435,39 @@ def test_crossings_of_odd_parts(plant_filters):
     assert found.text == "2 of 5 filters are smooth and cross, 1 before training"
 
 
+def test_what_is_left_at_the_wide_window(plant_filters):
+    """Noise is not analysable, an acceleration filter is; before training all is noise."""
+    noise = np.random.default_rng(0).normal(size=(4, 41))
+
+    def some(width, rough):
+        clean = savitzky_golay(width, 2, LOG_STEP, degree=2)
+        return [*noise[:rough, :width], *[clean] * (4 - rough)]
+
+    before = {"hidden": {w: noise[:, :w] for w in (21, 41)}}
+    for wide, ratio in ((3, 3.0), (1, 1.0), (0, 0.0)):
+        plant_filters({"hidden": {21: some(21, 1), 41: some(41, wide)}}, before)
+        found = filters.not_analysable()
+        assert found.value == pytest.approx(ratio)
+        assert found.text == f"{wide} of 4 at 41, 1 of 4 at 21; before training 100 %"
+
+
+def test_readings_are_told_apart(plant):
+    cells = {w: cell([1], [2], **{"largest weight": [w]}) for w in WINDOWS}
+    plant("table-4-1", table(cells))
+    assert networks.largest_weight(21, POSITION).value == pytest.approx(210.0)
+
+
+@pytest.mark.parametrize("setup", [STATE, POSITION])
+def test_filters_are_of_the_reading_asked_for(monkeypatch, setup):
+    asked = []
+    model = SimpleNamespace(weights=SimpleNamespace(hidden_weights=np.ones((2, 10, 2, 21))))
+    monkeypatch.setattr(results, "networks", lambda *a: asked.append(a) or model)
+    committed.networks.cache_clear()
+    assert committed.filters(21, "hidden", setup=setup).shape == (2, 20, 21)
+    committed.networks.cache_clear()
+    assert asked == [(21, setup)]
+
+
 def test_structure_beyond_chance(plant_filters):
     trained = [mix(21, 0, 1)] * 3 + [alternating(21, 0.99)]
     before = [mix(21, 0, 1)] + [alternating(21, 0.99)] * 3
@@ -468,7 +509,7 @@ def test_the_best_number_of_units(plant):
     units = [{"units": n, "solver": {"test": e}} for n, e in rows] + [{"units": 80, "solver": None}]
     plant("state-space-sizes", {"units": units, "solver's samples in units": 12_000})
     found = state_space.best_of_sizes()
-    assert found.value == pytest.approx(0.15)
+    assert found.value == pytest.approx(0.15) and found.replicates is None
     assert found.text.endswith("with 20 units, 12,000 samples")
 
 
@@ -487,10 +528,13 @@ def test_the_change_of_the_second_half(monkeypatch):
         "skip_weights": (2, 2, 2, 5), "output_bias": (2, 2),
     }  # fmt: skip
     model = SimpleNamespace(weights=SimpleNamespace(**{k: part(*s) for k, s in shapes.items()}))
-    monkeypatch.setattr(results, "course", lambda width: (epochs, model))
-    found = backpropagation.stable(21)
-    assert found.value == pytest.approx(0.25)
-    assert found.text == "25 % from epoch 10,100 to 20,000"
+    still = {k: np.repeat(v[-2:-1], 5, axis=0) for k, v in vars(model.weights).items()}
+    still = SimpleNamespace(weights=SimpleNamespace(**still))
+    models = {11: still, 21: model, 41: still}
+    monkeypatch.setattr(results, "course", lambda width: (epochs, models[width]))
+    found = backpropagation.stable()
+    assert found.value == pytest.approx(0.25) and found.replicates is None
+    assert found.text == "0 % at 11, 25 % at 21, 0 % at 41, from epoch 10,100 to 20,000"
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ RNG = np.random.default_rng(0)
 @pytest.fixture
 def models(monkeypatch):
     """Names in place of networks: "trained" and "untrained", at all widths."""
-    monkeypatch.setattr(committed, "networks", lambda width: "trained")
-    monkeypatch.setattr(committed, "untrained", lambda width: "untrained")
+    monkeypatch.setattr(committed, "networks", lambda width, *_: "trained")
+    monkeypatch.setattr(committed, "untrained", lambda width, *_: "untrained")
     monkeypatch.setattr(filters, "_activities", lambda width: ("windows", "torque", None))
 
 
@@ -26,7 +26,7 @@ def test_saturation_is_the_median_unit(monkeypatch):
     """Four cases of units that are off or on in 0 to 4 of them."""
     often = {"trained": [[0, 1, 2], [3, 4, 4]], "untrained": [[1, 1, 0], [1, 0, 0]]}
 
-    def activities(width, model):
+    def activities(width, model, setup):
         name = "untrained" if model is committed.untrained else "trained"
         inside = np.arange(4)[:, None] >= np.array(often[name])[:, None, :]
         return None, None, np.where(inside, 0.5, [0.01, 0.99, 0.02])
@@ -43,13 +43,15 @@ def test_activities_are_of_the_training_cases(monkeypatch):
         weights=SimpleNamespace(activity=lambda x: (f"hidden of {x}", "output")),
         scaled=lambda windows: f"scaled {windows}",
     )
-    monkeypatch.setattr(committed, "training", lambda: "runs")
+    monkeypatch.setattr(committed, "training", lambda *setup: setup[0])
     monkeypatch.setattr(
         filters, "cases", lambda run, width: asked.append((run, width)) or ("windows", "torque")
     )
-    found = filters._activities(11, lambda width: model)
+    found = filters._activities(11, lambda width, *_: model)
     assert found == ("windows", "torque", "hidden of scaled windows")
-    assert asked == [("runs", 11)]
+    assert asked == [("state feedback", 11)]
+    filters._activities(21, lambda width, setup: model, "position feedback")
+    assert asked[1:] == [("position feedback", 21)]
 
 
 def test_transition_regions_in_deviations(monkeypatch, models):
@@ -94,8 +96,8 @@ def test_units_that_can_be_spared(monkeypatch):
     monkeypatch.setattr(
         filters, "ablation", lambda one, windows, torque: ([], np.array(held[one.number]))
     )
-    assert list(filters._spare(21, 1.1, lambda width: Networks())) == [1, 2, 3]
-    assert list(filters._spare(21, 1.25, lambda width: Networks())) == [2, 2, 3]
+    assert list(filters._spare(21, 1.1, lambda width, *_: Networks())) == [1, 2, 3]
+    assert list(filters._spare(21, 1.25, lambda width, *_: Networks())) == [2, 2, 3]
     spare = {committed.networks: np.array([1, 2, 7]), committed.untrained: np.array([4, 5, 6])}
     monkeypatch.setattr(filters, "_spare", lambda width, worse, model: spare[model])
     found = filters.spare_units(21)
@@ -115,7 +117,7 @@ def test_errors_of_the_shoulder_alone(monkeypatch):
     moved = torque[2:]
     wrong = np.stack([moved + np.array([f, 9.0]) * moved.std(0) for f in (0.1, 0.3, 0.2)])
     monkeypatch.setattr(committed, "recording", lambda: recording)
-    monkeypatch.setattr(committed, "networks", lambda width: "networks")
+    monkeypatch.setattr(committed, "networks", lambda width, *_: "networks")
     monkeypatch.setattr(filters, "run", run)
     monkeypatch.setattr(filters, "predict", lambda model, asked: wrong)
     assert filters.shoulder_profile(21).value == pytest.approx(0.2)
@@ -158,7 +160,7 @@ def test_units_held_at_their_mean(monkeypatch):
         planted, Scaler(np.zeros(2), np.ones(2)), Scaler(-np.ones(2), np.full(2, 3.0))
     )
     windows, torque = RNG.uniform(size=(7, 2, 5)), RNG.normal(size=(7, 2))
-    monkeypatch.setattr(committed, "networks", lambda width: model)
+    monkeypatch.setattr(committed, "networks", lambda width, *_: model)
     monkeypatch.setattr(weights, "cases", lambda run, width: (windows, torque))
 
     def sigmoid(x):
@@ -187,7 +189,7 @@ def test_errors_without_hidden_units(monkeypatch):
     steps = torque.std(0)
     whole = np.stack([torque + f * steps for f in (0.1, 0.1, 0.2)])
     still = np.stack([torque + f * steps for f in (0.2, 0.5, 0.6)])
-    monkeypatch.setattr(weights, "_held_still", lambda width: (whole, still, torque))
+    monkeypatch.setattr(weights, "_held_still", lambda width, *_: (whole, still, torque))
     found = weights.without_hidden_units()
     assert found.value == pytest.approx(3.0)  # of 2, 5 and 3
     assert found.text == "error 3.0 times as large without them"
@@ -212,7 +214,7 @@ def test_friction_in_the_hidden_units(monkeypatch, noise, explained):
     hidden = np.array(parts) / [2.0, -1.0]
     own = SimpleNamespace(activity=lambda x: (hidden, None), output_weights=output)
     model = SimpleNamespace(weights=own, scaled=lambda x: x)
-    monkeypatch.setattr(committed, "networks", lambda width: model)
+    monkeypatch.setattr(committed, "networks", lambda width, *_: model)
     monkeypatch.setattr(committed, "training", lambda: run)
     monkeypatch.setattr(weights, "cases", lambda run, width: (windows, None))
     found = weights.compensate_friction(5)

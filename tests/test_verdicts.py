@@ -8,6 +8,7 @@ from ddlib.verdicts import (
     CONTRADICTS,
     DECIDED,
     DRAWS,
+    FEWEST,
     STANDS,
     Measured,
     bootstrap,
@@ -57,7 +58,7 @@ def test_the_same_seed_draws_the_same():
 
 
 def test_value_and_replicates_come_from_one_function():
-    x, y = np.array([1.0, 2.0, 6.0]), np.array([2.0, 2.0, 2.0])
+    x, y = np.array([1.0, 2.0, 6.0] * 2), np.full(6, 2.0)
     value, replicates = over_members(lambda a, b: mean(a) / mean(b), x, y)
     assert value == 1.5
     assert replicates.shape == (DRAWS,) and 0.5 <= replicates.min() < replicates.max() <= 3
@@ -70,7 +71,8 @@ def test_value_and_replicates_come_from_one_function():
     [
         ((mean, (np.ones(3), np.ones(4))), r"same members in a tuple, got \[3, 4\]"),
         ((mean, np.ones(0)), r"same members in a tuple, got \[0\]"),
-        ((np.mean, np.ones(3)), r"one number for each of 2000 draws, got shape \(\)"),
+        ((mean, np.ones(FEWEST - 1)), "members must be 5 or more, got 4"),
+        ((np.mean, np.ones(FEWEST)), r"one number for each of 2000 draws, got shape \(\)"),
     ],
 )
 def test_bad_arguments(arguments, words):

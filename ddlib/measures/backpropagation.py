@@ -8,7 +8,7 @@ import numpy as np
 
 from ddlib import paper, parity, results
 from ddlib.descent import Descent
-from ddlib.experiment import INITIAL
+from ddlib.experiment import INITIAL, WINDOWS
 from ddlib.measures import committed
 from ddlib.network import Weights, WindowNetwork
 from ddlib.tables import number, scientific, spread
@@ -190,8 +190,26 @@ def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> 
     return Measured(float(ratio), f"{few} coefficients at {most} bits, {many:,} at {large:,}")
 
 
-def stable(width: int = 21) -> Measured:
-    """Change of all weights over the second half of training, relative to their size."""
+def stable(widths=WINDOWS) -> Measured:
+    """Change of all weights over the second half of training, relative to their size.
+
+    The largest over windows, each the median of its networks. Two networks of each are kept:
+    too few to draw from, so there are no replicates.
+
+    Parameters
+    ----------
+    widths : sequence of int
+        Window sizes.
+    """
+    found = {width: _late_change(width) for width in widths}
+    half, last, _ = found[widths[0]]
+    value = max(change for *_, change in found.values())
+    text = ", ".join(f"{number(100 * c, 2)} % at {w}" for w, (*_, c) in found.items())
+    return Measured(value, f"{text}, from epoch {half:,} to {last:,}")
+
+
+def _late_change(width: int) -> tuple[int, int, float]:
+    """Two epochs, half-way and last, and the median change of the weights between them."""
     epochs, model = results.course(width)
     half = int(np.argmin(np.abs(epochs - paper.EPOCHS / 2)))
     last = int(np.flatnonzero(epochs == paper.EPOCHS)[0])
@@ -200,9 +218,7 @@ def stable(width: int = 21) -> Measured:
     weights = np.concatenate([p.reshape(*p.shape[:2], -1) for p in parts], -1)
     change = np.linalg.norm(weights[last] - weights[half], axis=-1)
     share = change / np.linalg.norm(weights[last], axis=-1)
-    value, replicates = over_members(median, share)
-    text = f"{number(100 * value, 2)} % from epoch {epochs[half]:,} to {epochs[last]:,}"
-    return Measured(value, text, replicates)
+    return int(epochs[half]), int(epochs[last]), float(np.median(share))
 
 
 def settling(steepest: float = 0.1) -> Measured:

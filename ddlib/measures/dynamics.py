@@ -47,12 +47,20 @@ def terms() -> Measured:
 
 
 def multiplications() -> Measured:
-    """Multiplications of one cycle for six joints by the recursive Lagrangian form (judged)."""
-    recursive = costs.count(recursive_lagrange, PUMA_560).multiplications
+    """Multiplications of one cycle by the recursive Lagrangian form (judged), and by others.
+
+    Six general joints of which nothing is known; beside it the same form with the zeros of the
+    method known, and customised to the arm.
+    """
+    recursive, zeros, custom = (
+        costs.count(recursive_lagrange, PUMA_560, known).multiplications
+        for known in costs.KNOWLEDGE
+    )
     closed = costs.count(lagrange_euler, PUMA_560).multiplications
     newton = costs.count(newton_euler, PUMA_560).multiplications
     two = costs.count_closed_form(LINKS, shared=True).multiplications
-    text = f"Lagrangian form of six joints: closed {closed:,}, recursive {recursive:,}; "
+    text = f"Lagrangian form of six joints: closed {closed:,}, recursive {recursive:,}, "
+    text += f"{zeros:,} with its zeros known, {custom:,} customised to the Puma; "
     return Measured(recursive, f"{text}Newton-Euler {newton:,}; two joints, closed {two}")
 
 

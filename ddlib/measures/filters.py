@@ -23,13 +23,15 @@ def _more(trained, untrained):
     return mean(trained) - mean(untrained)
 
 
-def _pair(width: int, layer: str) -> list[np.ndarray]:
+def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
     """Filters of the trained networks, and of the same before training."""
     models = committed.networks, committed.untrained
-    return [committed.filters(width, layer, model) for model in models]
+    return [committed.filters(width, layer, model, setup) for model in models]
 
 
-def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
+def of_class(
+    width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
+) -> Measured:
     """Share of a layer's filters that `ddlib.filters.classify` gives a name, less untrained.
 
     Parameters
@@ -40,11 +42,34 @@ def of_class(width: int, name: str, layer: str = "hidden") -> Measured:
         One of `ddlib.filters.CLASSES`.
     layer : {"hidden", "skip"}
         To the hidden units, or directly to the outputs.
+    setup : str
+        Which reading of the controller.
     """
-    trained, before = (classify(f) == name for f in _pair(width, layer))
+    trained, before = (classify(f) == name for f in _pair(width, layer, setup))
     value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
     text = f"{trained.sum()} of {trained.size} filters, {before.sum()} before training"
     return Measured(value, text, replicates)
+
+
+def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
+    """Share of hidden filters that are not analysable after training, over a narrower window's.
+
+    Before training all are, at every window: what is judged is where more are left.
+
+    Parameters
+    ----------
+    wide, narrow : int
+        Window sizes.
+    """
+    cells = [classify(committed.filters(w, "hidden")) == "not analysable" for w in (wide, narrow)]
+
+    def ratio(a, b):
+        return mean(a) / np.maximum(mean(b), 1 / cells[1].size)
+
+    value, replicates = over_members(ratio, *cells)
+    text = ", ".join(f"{c.sum()} of {c.size} at {w}" for c, w in zip(cells, (wide, narrow)))
+    before = [(classify(_pair(w, "hidden")[1]) == "not analysable").mean() for w in (wide, narrow)]
+    return Measured(value, f"{text}; before training {100 * min(before):.0f} %", replicates)
 
 
 def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
@@ -139,16 +164,16 @@ def zero_crossings(width: int = 41) -> Measured:
     return Measured(value, f"{text}{both[1].sum()} before training", replicates)
 
 
-def _activities(width: int, model: Callable = committed.networks):
-    windows, torque = cases(committed.training(), width)
-    found = model(width)
+def _activities(width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name):
+    windows, torque = cases(committed.training(setup), width)
+    found = model(width, setup)
     return windows, torque, found.weights.activity(found.scaled(windows))[0]
 
 
-def saturation(width: int) -> Measured:
+def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Median share of cases in which a hidden unit is below 0.1 or above 0.9."""
     share, before = (
-        saturated(_activities(width, model)[2])
+        saturated(_activities(width, model, setup)[2])
         for model in (committed.networks, committed.untrained)
     )
     value, replicates = over_members(median, share)
@@ -209,9 +234,9 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     return Measured(value, f"{text}{np.median(before):.0f} before training", replicates)
 
 
-def structured(width: int) -> Measured:
+def structured(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Share of hidden filters that are analysable, less that of untrained networks."""
-    trained, before = (classify(f) != "not analysable" for f in _pair(width, "hidden"))
+    trained, before = (classify(f) != "not analysable" for f in _pair(width, "hidden", setup))
     value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
     text = f"{100 * trained.mean():.0f} % of the filters have a name, "
     return Measured(value, f"{text}{100 * before.mean():.0f} % before training", replicates)

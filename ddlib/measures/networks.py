@@ -78,18 +78,23 @@ def multiplications(width: int = 21) -> Measured:
     return Measured(float(count), f"{count:,} at window {width}")
 
 
-def weights_against_nwh(width: int = 21) -> Measured:
-    """Weights of the network over ``n w h`` for two joints and ten hidden units."""
-    network = Weights.random(1, width)[0]
-    product = 2 * width * paper.HIDDEN_UNITS
-    return Measured(
-        network.count() / product, f"{network.count()} weights, n w h = {product} at window {width}"
-    )
+def weights_against_nwh(widths=WINDOWS) -> Measured:
+    """Weights of a network over ``n w h``, two joints and ten hidden units; furthest from 1.
+
+    Parameters
+    ----------
+    widths : sequence of int
+        Window sizes.
+    """
+    counts = {w: (Weights.random(1, w)[0].count(), 2 * w * paper.HIDDEN_UNITS) for w in widths}
+    ratios = [count / product for count, product in counts.values()]
+    text = ", ".join(f"{count} for {product} at {w}" for w, (count, product) in counts.items())
+    return Measured(max(ratios, key=lambda r: abs(np.log(r))), f"weights for n w h: {text}")
 
 
-def largest_weight(width: int) -> Measured:
+def largest_weight(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Magnitude of the largest weight, the median over all networks."""
-    largest = _cells()[width]["largest weight"]
+    largest = _cells(setup)[width]["largest weight"]
     value, replicates = over_members(median, largest)
     return Measured(value, spread(largest, 3), replicates)
 

@@ -144,17 +144,19 @@ def weights_and_saturation() -> Measured:
     return Measured(value, f"rank correlation {value:.2f} over {units} units", replicates)
 
 
-def interpretable(width: int = 21) -> Measured:
+def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Share of filters that are velocity, acceleration or a sum of both, less the untrained's.
 
     Parameters
     ----------
     width : int
         Window size.
+    setup : str
+        Which reading of the controller.
     """
     found, before = (
         {
-            layer: np.isin(classify(committed.filters(width, layer, model)), NAMED)
+            layer: np.isin(classify(committed.filters(width, layer, model, setup)), NAMED)
             for layer in ("hidden", "skip")
         }
         for model in (committed.networks, committed.untrained)
