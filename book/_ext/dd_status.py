@@ -141,12 +141,15 @@ class ChapterTimes(nodes.General, nodes.Element):
 
 
 def chapter_times(env) -> Iterator[tuple[str, float]]:
-    """Pages with code, in the book's order, and the seconds their execution took."""
+    """Pages with code, in the book's order, and the seconds their execution took, to a tenth.
+
+    Rounded here, once: the table and the words of a page start from the same number.
+    """
     data = NbMetadataCollector.get_doc_data(env)
     for page in pages(env):
         runtime = (data.get(page, {}).get("exec_data") or {}).get("runtime")
         if runtime is not None:
-            yield page, runtime
+            yield page, round(runtime, 1)
 
 
 def pages(env) -> list[str]:
