@@ -1,4 +1,4 @@
-"""Figures of the chapter on unmodelled effects: laws side by side, torques in order."""
+"""Figures of the chapter on unmodelled effects: laws side by side, cases, torques in order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from ddlib._check import finite_array
-from ddlib.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
+from ddlib.style import (
+    COLOURS,
+    DASHES,
+    FAINT,
+    INK,
+    Illustration,
+    check_label,
+    illustrate,
+)
 from ddlib.tables import number
 
 
@@ -57,6 +65,40 @@ def side_by_side(
                 axis.legend(loc="best")
 
     return illustrate(draw, alt, 7.0, height)
+
+
+def by_case(
+    x, cases: Mapping[str, np.ndarray], x_label: str, y_label: str, alt: str, height: float = 1.3
+) -> Illustration:
+    """One quantity in several cases: a panel each, the case as its title, one below the other.
+
+    Parameters
+    ----------
+    x : array_like, shape (points,)
+        The common axis.
+    cases : mapping
+        ``{case: values (points,)}``.
+    x_label, y_label, alt : str
+        Labels of the axes, each a quantity with its unit; alternative text.
+    height : float
+        Height of a panel, inches.
+
+    Raises
+    ------
+    ValueError
+        If a label names no quantity, or there is no case.
+    """
+    if not cases:
+        raise ValueError("cases must hold one case or more, got none")
+
+    def draw(figure: Figure):
+        axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, (case, values) in zip(axes, cases.items()):
+            axis.plot(x, values, color=COLOURS[0])
+            axis.set(title=case, ylabel=check_label(y_label))
+        axes[-1].set_xlabel(check_label(x_label))
+
+    return illustrate(draw, alt, 7.0, height * len(cases) + 0.4)
 
 
 def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Illustration:

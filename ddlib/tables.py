@@ -91,7 +91,7 @@ class Table:
     header : sequence of str
         Column heads.
     rows : iterable of sequence
-        Cells: text is taken as it is, numbers are formatted by `number`.
+        Cells: text is taken as it is, numbers are formatted by `number`, with a minus sign.
     """
 
     header: Sequence[str]
@@ -110,7 +110,7 @@ class Table:
 
     def _repr_markdown_(self) -> str:
         def line(cells):
-            texts = (c if isinstance(c, str) else number(c) for c in cells)
+            texts = (c if isinstance(c, str) else number(c).replace("-", "−") for c in cells)
             return "| " + " | ".join(text.replace("|", r"\|") for text in texts) + " |"
 
         rule = "|" + "|".join(" --- " for _ in self.header) + "|"

@@ -17,7 +17,9 @@ PANELS = {
     ("e", "f"): {"alone": (X, X)},
 }
 SIZES = {"small": [0.02, 0.01], "large": [8.0, 2.0], "middle": [0.5, 0.9]}
+CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
 EXAMPLES = {
+    "cases": lambda: figures_effects.by_case(X, CASES, "time, s", "error, °", "three swings"),
     "panels": lambda: figures_effects.side_by_side(PANELS, "three panels"),
     "logarithmic": lambda: figures_effects.side_by_side(PANELS, "the same", log=True),
     "ranking": lambda: figures_effects.ranking(SIZES),
@@ -62,6 +64,24 @@ def test_curves_are_drawn_to_scale(made):
     one, two = (strokes(made["logarithmic"], c)[0] for c in COLOURS[:2])
     slopes = [np.diff(p[:, 1]) / np.diff(p[:, 0]) for p in (one, two)]
     np.testing.assert_allclose(slopes[1], 2 * slopes[0], rtol=0.01)
+
+
+def test_each_case_has_a_title_and_the_quantity_on_its_axis(made):
+    """Texts stand in the SVG as comments beside their outlines."""
+    texts = re.findall("<!-- (.*?) -->", made["cases"].svg)
+    assert [text for text in texts if text in CASES] == list(CASES)
+    assert texts.count("error, °") == 3 and texts.count("time, s") == 1
+    curves = strokes(made["cases"], COLOURS[0])
+    assert len(curves) == 3 and np.ptp(curves[2][:, 1]) == 0
+    assert [np.ptp(curve[:, 1]) > 10 for curve in curves] == [True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("cases", "label", "word"), [({}, "error, °", "cases"), (CASES, "elbow, °", "axis label")]
+)
+def test_cases_without_a_quantity_are_refused(cases, label, word):
+    with pytest.raises(ValueError, match=word):
+        figures_effects.by_case(X, cases, "time, s", label, "no figure")
 
 
 def test_bars_stand_in_order_and_are_as_long_as_their_logarithms(made):

@@ -147,6 +147,11 @@ def test_any_text_stays_in_its_cell(rows):
         assert cells(line) == [row[0], row[1], number(row[2])]
 
 
+def test_a_negative_number_has_a_minus_sign_and_a_text_stays():
+    *_, line = Table(("a", "b", "c"), [(-0.5, -2e-7, "x-y")])._repr_markdown_().split("\n")
+    assert cells(line) == ["−0.500", "−2.00 · 10⁻⁷", "x-y"]
+
+
 def test_rows_may_come_once():
     table = Table(("a",), ((k,) for k in range(3)))
     assert table._repr_markdown_() == table._repr_markdown_()
