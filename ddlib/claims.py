@@ -26,8 +26,9 @@ An entry has these fields:
 ``why``
     One sentence: the reason for the verdict, the assumption that decides it.
 ``refuted``
-    One sentence: the outcome that would have made it "not reproduced"; why there is none, if by
-    construction; what a test would need, if not testable.
+    One sentence, by the verdict: the outcome that would have made it "not reproduced"; for a claim
+    that is, the outcome that would have made it better; why there is none, if by construction;
+    what a test would need, if not testable. An outcome is a noun with what belongs to it.
 """
 
 from __future__ import annotations

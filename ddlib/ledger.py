@@ -9,7 +9,7 @@ from ddlib.experiment import KD, KP, WINDOWS
 from ddlib.measures.filters import parts_sum_up
 from ddlib.network import Weights
 from ddlib.simulate import LOG_STEP
-from ddlib.tables import Table, number, spread
+from ddlib.tables import Table, number, spread, typeset
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 
 FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
@@ -187,7 +187,8 @@ def errata() -> Table:
             "Taken to mean window 21.",
         ),
     ]
-    return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
+    header = ("where", "printed", "wrong or unclear", "in this book")
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
 def open_questions() -> Table:
@@ -199,9 +200,8 @@ def open_questions() -> Table:
         Question, decision, errors as decided, errors otherwise. Both sides of a row have
         the same number of networks.
     """
-    return Table(
-        ("question", "decision", "as decided", "otherwise"), [*_table_4_1(), *_table_6_1()]
-    )
+    rows = [tuple(map(typeset, row)) for row in (*_table_4_1(), *_table_6_1())]
+    return Table(("question", "decision", "as decided", "otherwise"), rows)
 
 
 def _medians(cells, column, first=None) -> list[float]:

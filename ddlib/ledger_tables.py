@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import json
+import re
 from collections.abc import Iterable, Mapping
 
 from ddlib.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
 from ddlib.experiment import SETUPS, STATE_FEEDBACK
-from ddlib.tables import Table, number
+from ddlib.tables import Table, number, number_beside, typeset
 from ddlib.verdicts import VERDICTS
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
+
+HEADER = ("claim", "printed", "here", "verdict (judged by)", "why")
+"""Heads of a table of claims; ``book.css`` repeats them where a row becomes a card."""
+
+_OTHERWISE = {
+    "not reproduced": "What would have supported it",
+    "by construction": "Why nothing could have refuted it",
+    "not testable": "What a test would need",
+}
+"""What a claim's `refuted` tells, if not what would have refuted it."""
 
 
 def ledger_table(section: str) -> Table:
     """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
 
     The verdict comes with the share of the draws in which it comes out, the value that is judged
-    and its bands; the reason is followed by what would have refuted the claim.
+    and its bands; the reason is followed by the outcome that would have changed the verdict. A
+    value that is measured at one window size names it.
 
     The place in the paper is a link to the chapter that deals with the claim.
 
@@ -26,18 +40,56 @@ def ledger_table(section: str) -> Table:
     section : str
         Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
     """
-    header = ("claim", "printed", "here", "verdict (judged by)", "why")
-    return Table(
-        header,
-        [
-            (f"{c.claim} ({_linked(c)})", printed(c), here(c), _judged(c), _reasons(c))
-            for c in of_section(section)
-        ],
-    )
+    rows = [
+        (f"{c.claim} ({_linked(c)})", printed(c), _here(c), _judged(c), _reasons(c))
+        for c in of_section(section)
+    ]
+    return Table(HEADER, [tuple(map(typeset, row)) for row in rows])
+
+
+def _here(claim: Claim) -> str:
+    """What we find, and at which window size if the words beside it do not tell."""
+    text, width = here(claim), window(claim)
+    named = rf"(window|at) {width}\b|\b{width} samples"
+    known = width is None or re.search(named, f"{claim.claim} {text}")
+    return text if known else f"{text} (window {width})"
+
+
+def window(claim: Claim) -> int | None:
+    """The one window size that a claim is measured at; None if there is none or there are several.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if not claim.measure:
+        return None
+    module, _, name = claim.measure.partition(".")
+    function = getattr(importlib.import_module(f"ddlib.measures.{module}"), name)
+    given = inspect.signature(function).bind(**claim.arguments)
+    given.apply_defaults()
+    return given.arguments.get("width")
 
 
 def _reasons(claim: Claim) -> str:
-    return f"{claim.why} *What would have refuted it:* {claim.refuted}"
+    head = _OTHERWISE.get(claim.verdict, "What would have refuted it")
+    return f"{claim.why} *{head}:* {claim.refuted}"
+
+
+def left_out(claims: Iterable[Claim]) -> Table:
+    """Claims that are not testable: why, what a test would need, where the verdict would turn.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+    """
+    rows = [
+        (c.where, c.claim, c.why, c.refuted, here(c))
+        for c in sorted(claims, key=Claim.place)
+        if c.verdict == "not testable"
+    ]
+    header = ("where", "claim", "why", "a test would need", "here, and where it would turn")
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
 def _judged(claim: Claim) -> str:
@@ -54,7 +106,8 @@ def bands(claim: Claim) -> str:
     if not claim.band:
         return "not judged"
     value = claim.measured().value
-    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number(float(value), 2)
+    told = number_beside(float(value), claim.edges())
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else told
     best = "holds" if claim.verdict == "by construction" else "reproduced"
     text = f"{shown}; {best} {_bounds(claim.band)}"
     return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
@@ -65,9 +118,13 @@ def _bounds(bounds: Mapping) -> str:
         return "if yes" if bounds["is"] else "if no"
     if "factor" in bounds:
         return f"within a factor of {bounds['factor']:g}"
-    if "from" not in bounds:
-        return f"up to {bounds['to']:g}"
-    return f"from {bounds['from']:g}" + (f" to {bounds['to']:g}" if "to" in bounds else "")
+    edges = {
+        name: number(edge) if isinstance(edge, int) else f"{edge:g}"
+        for name, edge in bounds.items()
+    }
+    if "from" not in edges:
+        return f"up to {edges['to']}"
+    return f"from {edges['from']}" + (f" to {edges['to']}" if "to" in edges else "")
 
 
 def _linked(claim: Claim) -> str:

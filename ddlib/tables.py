@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -44,6 +45,46 @@ def scientific(value, digits: int = 1) -> str:
     first, _, power = f"{value:.{digits - 1}e}".partition("e")
     power = "10" + str(int(power)).translate(SUPERSCRIPT)
     return {"1": power, "-1": f"-{power}"}.get(first, f"{first} · {power}")
+
+
+_POWER = re.compile(r"(?<![\w.])(-?)(\d(?:\.\d+)?)e([-+]\d+)\b")
+_MINUS = re.compile(r"(?<![\w.)\-])-(?=\.?\d)|(?<=[(^])-(?=\w)")
+
+
+def typeset(text: str) -> str:
+    """Text with its numbers as mathematics sets them: ``1e-05`` is ``10⁻⁵``, ``-3`` is ``−3``.
+
+    Hyphens between words or parts of a name, as in "Table 4-1", stay.
+
+    Parameters
+    ----------
+    text : str
+    """
+
+    def power(found):
+        digits = sum(map(str.isdigit, found[2]))
+        return found[1] + scientific(float(f"{found[2]}e{found[3]}"), digits)
+
+    return _MINUS.sub("−", _POWER.sub(power, text))
+
+
+def number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
+    """A number with as many digits as it takes to see on which side of some others it lies.
+
+    Parameters
+    ----------
+    value : float
+    edges : iterable of float
+        The numbers beside which it stands.
+    digits, most : int
+        Significant digits at least and at most.
+    """
+    edges = np.array(list(edges), dtype=float)
+    for count in range(digits, most + 1):
+        shown = float(f"{value:.{count - 1}e}")
+        if (np.sign(shown - edges) == np.sign(value - edges)).all():
+            return number(value, count)
+    return number(value, most)
 
 
 def spread(values, digits: int = 2) -> str:

@@ -309,6 +309,75 @@ def test_bands_in_words(monkeypatch):
     assert ledger_tables.bands(make(band={"is": True})) == "yes; reproduced if yes"
 
 
+def test_a_value_near_an_edge_shows_its_side(monkeypatch):
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(0.985, "text"))
+    assert ledger_tables.bands(make(band={"to": 0.9}, loose={"to": 0.98})).startswith("0.985; ")
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(3.004, "text"))
+    assert ledger_tables.bands(make()).startswith("3.004; ")  # an edge by its factor
+
+
+def test_counts_in_bands_are_grouped(monkeypatch):
+    monkeypatch.setattr(Claim, "measured", lambda self: Measured(2e5, "text"))
+    told = ledger_tables.bands(make(band={"from": 200, "to": 100000}))
+    assert told == "200,000; reproduced from 200 to 100,000"
+
+
+@pytest.mark.parametrize(
+    "arguments, measure, width",
+    [
+        ({"width": 41, "name": "velocity"}, "filters.of_class", 41),
+        ({}, "filters.constant_share", 21),  # what it takes if it is not told
+        ({}, "networks.slope", None),
+        ({}, "", None),
+    ],
+)
+def test_the_window_of_a_claim(arguments, measure, width):
+    changes = {} if measure else {"verdict": "not testable", "band": {}}
+    assert ledger_tables.window(make(measure=measure, arguments=arguments, **changes)) == width
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_measured_at_one_window_and_said_so(section):
+    for row, claim in zip(ledger_tables.ledger_table(section).rows, claims.of_section(section)):
+        if width := ledger_tables.window(claim):
+            assert re.search(rf"\b{width}\b", f"{row[0]} {row[2]}"), claim.id
+
+
+@pytest.mark.parametrize("claim", ALL, ids=lambda claim: claim.id)
+def test_refutations_have_one_form(claim):
+    """An outcome, with no word on whether it came out; a reason; or what is needed."""
+    assert re.match(r"[A-Z0-9]", claim.refuted) and claim.refuted.endswith(".")
+    assert not re.match(r"None|Nothing|It would", claim.refuted) and ":" not in claim.refuted
+    if claim.verdict in ("reproduced", "qualitative", "not reproduced", "undecided"):
+        assert re.match(r"An? ", claim.refuted)
+
+
+@pytest.mark.parametrize(
+    "verdict, head",
+    [
+        ("reproduced", "What would have refuted it"),
+        ("undecided", "What would have refuted it"),
+        ("not reproduced", "What would have supported it"),
+        ("by construction", "Why nothing could have refuted it"),
+    ],
+)
+def test_what_would_have_changed_the_verdict(verdict, head):
+    assert ledger_tables._reasons(make(verdict=verdict)) == f"because *{head}:* 1"
+
+
+def test_the_claims_that_are_left_out():
+    rows = ledger_tables.left_out(ALL).rows
+    expected = [c for c in ALL if c.verdict == "not testable"]
+    assert sorted(row[1] for row in rows) == sorted(c.claim for c in expected)
+    assert ledger_tables.left_out([make()]).rows == []
+
+
+def test_cards_on_a_phone_are_headed_like_the_table():
+    css = (claims.FILE.parent / "_static" / "book.css").read_text(encoding="utf-8")
+    heads = re.findall(r"\.tag_cards td:nth-child\((\d)\)::before \{\s*content: \"(.*?)\"", css)
+    assert heads == [(str(k), f"{head}: ") for k, head in enumerate(ledger_tables.HEADER[1:], 2)]
+
+
 def test_counts_add_up():
     table = ledger_tables.counts(ALL)
     assert list(table) == [title for title in SECTIONS.values() if title in table]

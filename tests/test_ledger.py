@@ -9,6 +9,7 @@ import pytest
 from book_pages import BACK_MATTER, ROOT
 
 from ddlib import claims, ledger, ledger_tables, paper, results
+from ddlib.stated import SURE, resampled
 from ddlib.tables import number
 
 BOOK = ROOT / "book"
@@ -51,7 +52,7 @@ def test_errata_are_computed(errata):
     assert "period of 6 s" in found(errata, "section 2", "period")
     assert f"{np.pi / 3 * np.pi / 4:.2f} rad/s" in found(errata, "section 2", "pick-and-place")
     assert found(errata, "Appendix I", "random").startswith("5 of 12 ")
-    assert "-45°" in found(errata, "Appendix I", "minus")
+    assert "−45°" in found(errata, "Appendix I", "minus")
     weights = 2 * 21 * 10 + 2 * 42 + 2 * 10
     assert f"{1500 * weights:,} at 21" in found(errata, "Appendix I", "700,000")
     text = found(errata, "Figures 5-4 to 5-8", "captions")
@@ -116,6 +117,14 @@ def test_arms_that_were_not_trained_are_left_out(monkeypatch):
 
     changed(monkeypatch, "arms", missing)
     assert not [row for row in ledger.open_questions().rows if "gains" in row[0]]
+
+
+def test_direct_filters_follow_position_after_two_sines_too():
+    """The reason of the claim acceleration-by-output says so; chapter 9 has the control."""
+    (claim,) = [one for one in claims.load() if one.id == "acceleration-by-output"]
+    assert "two sines most direct filters of window 21 follow the position" in claim.why
+    direct = results.read("harmonics")["windows"]["21"]["direct"]["follow"]
+    assert (resampled(direct["position"], np.mean) > 0.5).mean() >= SURE
 
 
 def test_the_page_shows_every_section_and_comes_first():

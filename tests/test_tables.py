@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.tables import Table, number, quote, scientific, spread
+from ddlib.tables import Table, number, number_beside, quote, scientific, spread, typeset
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -72,6 +72,45 @@ def test_a_number_can_be_read_back_to_its_digits(value, digits):
 )
 def test_powers_are_set_as_mathematics(value, digits, text):
     assert scientific(value, digits) == text
+
+
+@pytest.mark.parametrize(
+    "text, wanted",
+    [
+        ("holds up to 1e-06", "holds up to 10⁻⁶"),
+        ("-2.5e+07 N m", "−2.5 · 10⁷ N m"),
+        ("grow by -0.013, (-68; from -.3)", "grow by −0.013, (−68; from −.3)"),
+        ("odd(-x) and e^-input", "odd(−x) and e^−input"),
+        ("Table 4-1, 16-bit, set-2, 1.5-fold, 3--4", "Table 4-1, 16-bit, set-2, 1.5-fold, 3--4"),
+        ("4 · 10⁻¹⁴", "4 · 10⁻¹⁴"),
+        ("[section](page-2.ipynb)", "[section](page-2.ipynb)"),
+    ],
+)
+def test_numbers_in_text_are_set_as_mathematics(text, wanted):
+    assert typeset(text) == wanted == typeset(wanted)
+
+
+@pytest.mark.parametrize(
+    "value, edges, text",
+    [
+        (0.985, [0.9, 0.98], "0.985"),
+        (0.98, [0.9, 0.98], "0.98"),  # on the edge: it may look so
+        (0.9, [0.98], "0.90"),
+        (1.54, [1.52], "1.54"),  # 1.5 would be on the other side
+        (0.01999, [0.02], "0.01999"),
+        (-0.29999, [-0.3], "-0.29999"),
+        (1.0000001, [1.0], "1.00000"),
+        (34.4, [], "34"),
+    ],
+)
+def test_a_value_is_told_from_an_edge(value, edges, text):
+    assert number_beside(value, edges) == text
+
+
+@given(st.floats(0.01, 100), st.floats(0.01, 100))
+def test_a_shown_value_is_on_its_own_side(value, edge):
+    shown = float(number_beside(value, [edge], most=17).replace(",", ""))
+    assert (shown > edge) == (value > edge) and (shown < edge) == (value < edge)
 
 
 def test_words_are_not_numbers():
