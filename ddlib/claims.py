@@ -289,7 +289,7 @@ def printed(claim: Claim) -> str:
     ----------
     claim : Claim
     """
-    return claim.printed if isinstance(claim.printed, str) else f"{claim.printed:g}"
+    return claim.printed if isinstance(claim.printed, str) else f"{claim.printed:,g}"
 
 
 def here(claim: Claim) -> str:

@@ -146,7 +146,7 @@ def test_a_warning_does_not_stop_a_reader(tiny):
 
 @pytest.mark.slow
 def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
-    quotes = [f"from ddlib.tables import quote\nquote({name!r}, 1.5)" for name in "ab"]
+    quotes = [f"from ddlib.tables import quote\nquote({name!r}, -1.5)" for name in "ab"]
     add_page(
         tiny,
         "# Chapter\n\nIt is {glue:text}`a:.2f`, or {glue:text}`b:.2f`.",
@@ -165,7 +165,7 @@ def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
     said = box.get_text(" ", strip=True)
     assert "code cell 2" in said and "ZeroDivisionError: division by zero" in said
     assert "Please report" in said and "Python 3." in said
-    assert "It is 1.50, or ?." in bad.select_one("article").get_text()
+    assert "It is −1.50, or ?." in bad.select_one("article").get_text()
     assert "so far" in bad.select_one("article .cell_output").get_text()
     assert "incomplete" not in pages["index"].read_text(encoding="utf-8")
     assert "index.html" in outcome.stdout.splitlines()[-1]

@@ -172,6 +172,10 @@ def test_markdown():
     )
 
 
+def test_a_negative_number_has_a_minus_sign():
+    assert Table(("a", "b"), [(-0.25, "a-1")])._repr_markdown_().endswith("| −0.250 | a-1 |")
+
+
 texts = st.text(st.characters(codec="ascii", categories=["L", "N", "P", "S"]), max_size=12).filter(
     lambda s: "\\" not in s
 )

@@ -25,6 +25,7 @@ PACKAGES = ("numpy", "scipy", "torch", "matplotlib", "myst-nb")
 
 KERNEL_ENDED = "The Python process that executes the notebook ended, or did not start."
 RULE = re.compile(r"^-{10,}\n(.*?)^-{10,}$", re.MULTILINE | re.DOTALL)  # around a cell's source
+HYPHEN = re.compile(r"(?<![\w.])-(?=\d)")  # that stands for a minus sign
 EXCEPTION = re.compile(r"^(?:\w+\.)*(\w*(?:Error|Exception|Warning|Interrupt|Exit)\b.*)$", re.M)
 
 
@@ -126,10 +127,12 @@ def insert_box(app, document):
 
 
 class NumberOrGap(PasteTextRole):
-    """``{glue:text}`` that shows a question mark where a number was not computed."""
+    """``{glue:text}`` with a true minus sign, or a question mark where nothing was computed."""
 
     def run(self):
         found, messages = super().run()
+        for text in [text for node in found for text in node.findall(nodes.Text)]:
+            text.parent.replace(text, nodes.Text(HYPHEN.sub("−", text)))
         return found or [nodes.inline(text="?", classes=["not-computed"])], messages
 
 
