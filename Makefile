@@ -75,7 +75,7 @@ lab: $(READY)  ## JupyterLab on the book
 	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
-	$(BIN)/python -m ddlib.reproduce
+	$(BIN)/python -m ddlib.experiments.reproduce
 
 mutants: $(READY)  ## which mistakes would the tests notice? a sample, about 25 minutes
 	$(BIN)/python tests/mutation.py --jobs $(JOBS)

@@ -7,9 +7,8 @@ from contextlib import contextmanager
 import torch
 from measure import THREADS, interleaved, memory_row, ratio
 
-from ddlib import training
-from ddlib.experiment import STATE_FEEDBACK, split
-from ddlib.network import Weights, WindowNetwork
+from ddlib.experiments import STATE_FEEDBACK, split
+from ddlib.learning import Weights, WindowNetwork, training
 
 MEMBERS = 32
 MOMENTUM = 0.95

@@ -9,10 +9,10 @@ import numpy as np
 from measure import THREADS, interleaved, memory_row, not_measured, ratio
 from scipy.integrate import solve_ivp
 
-from ddlib.arm import Arm
+from ddlib.dynamics import Arm
 from ddlib.effects import Effects
-from ddlib.experiment import STATE_FEEDBACK
-from ddlib.simulate import CONTROL_STEP, record
+from ddlib.experiments import STATE_FEEDBACK
+from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import pick_and_place, random_extents, time_grid
 
 RUNS = 1000

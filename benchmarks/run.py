@@ -23,8 +23,7 @@ from pathlib import Path
 
 from measure import limit, memory_row, met, not_measured
 
-from ddlib import results
-from ddlib.experiment import WINDOWS
+from ddlib.experiments import WINDOWS, results
 from ddlib.tables import number
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -10,11 +10,9 @@ import torch
 from ensembles import eager_loop, threads, training_set
 from measure import memory_row, ratio
 
-from ddlib.experiment import STATE_FEEDBACK
+from ddlib.experiments import STATE_FEEDBACK
+from ddlib.learning import NotConverged, Weights, WindowNetwork, default_rate, solve
 from ddlib.metrics import rmss
-from ddlib.network import Weights, WindowNetwork
-from ddlib.solver import NotConverged, solve
-from ddlib.training import default_rate
 
 TARGET = 50.0
 

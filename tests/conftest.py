@@ -8,7 +8,7 @@ import chromium
 import pytest
 from hypothesis import settings
 
-from ddlib import verdicts
+from ddlib.evidence import verdicts
 
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
 

@@ -83,7 +83,14 @@ def reproduce(name: str, jobs: int) -> list[str]:
         path = os.pathsep.join([str(copy), os.environ.get("PYTHONPATH", "")])
         os.environ["PYTHONPATH"] = path
         env = environment(name, Path(folder, "measured"))
-        command = [sys.executable, "-m", "ddlib.reproduce", "--force", "--jobs", str(jobs)]
+        command = [
+            sys.executable,
+            "-m",
+            "ddlib.experiments.reproduce",
+            "--force",
+            "--jobs",
+            str(jobs),
+        ]
         if subprocess.run(command, env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
         files = ["tests/test_results.py", "tests/test_ledger.py", "tests/test_prose_numbers.py"]

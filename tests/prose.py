@@ -10,9 +10,10 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ddlib import claims, paper, results
-from ddlib.experiment import WINDOWS
-from ddlib.studies.windows import SIZES
+from ddlib import paper
+from ddlib.evidence import claims
+from ddlib.experiments import WINDOWS, results
+from ddlib.experiments.studies.windows import SIZES
 
 RESULT_WORDS = re.compile(
     r"\b(?:errors?|RMSS|torques?|times|per ?cent|factors?|medians?|correlations?|roughness|"

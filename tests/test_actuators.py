@@ -6,8 +6,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from ddlib.actuators import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
+from ddlib.effects import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
 
 ARMS = pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)
 PAIR = st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)).map(np.array)

@@ -12,10 +12,9 @@ import torch
 from book_pages import ROOT
 from torch.utils.flop_counter import FlopCounterMode
 
-from ddlib import training
-from ddlib.arm import Link
-from ddlib.experiment import STATE_FEEDBACK
-from ddlib.network import WindowNetwork
+from ddlib.dynamics import Link
+from ddlib.experiments import STATE_FEEDBACK
+from ddlib.learning import WindowNetwork, training
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import ensembles

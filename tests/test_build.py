@@ -68,7 +68,7 @@ def runs(root) -> int:
 @pytest.mark.parametrize(
     ("inputs", "path", "changes"),
     [
-        (CELL_INPUTS, "ddlib/arm.py", True),
+        (CELL_INPUTS, "ddlib/dynamics/arm.py", True),
         (CELL_INPUTS, "ddlib/new.py", True),
         (CELL_INPUTS, "ddlib/__pycache__/arm.pyc", False),
         (CELL_INPUTS, "book/results/numbers.json", True),

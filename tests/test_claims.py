@@ -9,9 +9,8 @@ import pytest
 import yaml
 from book_pages import CHAPTERS
 
-from ddlib import claims, ledger_tables
-from ddlib.claims import LEDGER, SECTIONS, Claim, MeasureError
-from ddlib.verdicts import VERDICTS, Measured
+from ddlib.evidence import VERDICTS, Measured, claims, ledger_tables
+from ddlib.evidence.claims import LEDGER, SECTIONS, Claim, MeasureError
 
 ALL = claims.load()
 MEASURED = [claim for claim in ALL if claim.measure]
@@ -35,7 +34,7 @@ def test_verdicts_are_what_is_measured(claim):
 @pytest.mark.parametrize("claim", MEASURED, ids=lambda claim: claim.id)
 def test_measuring_functions_exist_and_take_the_arguments(claim):
     module, _, name = claim.measure.partition(".")
-    function = getattr(importlib.import_module(f"ddlib.measures.{module}"), name)
+    function = getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), name)
     inspect.signature(function).bind(**claim.arguments)
 
 
@@ -101,7 +100,7 @@ def test_a_failing_measure_names_its_claim(measure, arguments, words):
 
 @pytest.mark.parametrize("result", [Measured(float("nan"), "text"), Measured(1.0, " "), 1.0])
 def test_measures_that_cannot_be_judged(monkeypatch, result):
-    from ddlib.measures import networks
+    from ddlib.evidence.measures import networks
 
     monkeypatch.setattr(networks, "slope", lambda wrong: result)
     with pytest.raises(MeasureError, match=r"claim 'a' could not be measured.* must return"):
@@ -255,7 +254,7 @@ def test_notebooks_of_one_build_share_what_they_measured(monkeypatch, tmp_path):
     claims._measured.cache_clear()
     first = claim.measured()
     claims._measured.cache_clear()
-    from ddlib.measures import networks
+    from ddlib.evidence.measures import networks
 
     monkeypatch.setattr(networks, "multiplications", lambda **_: Measured(-1.0, "again"))
     assert claim.measured() == first and isinstance(claim.measured(), Measured)

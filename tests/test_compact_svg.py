@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from ddlib import figures
-from ddlib.style import COLOURS, illustrate
+from ddlib.figures import COLOURS, illustrate
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 from compact_svg import compact, relative

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ddlib.control_figures import root_loci
-from ddlib.linear import loop_gain
+from ddlib.control import loop_gain
+from ddlib.figures import root_loci
 
 GAINS = np.geomspace(1e-4, 5, 50)
 LOOPS = {"P": loop_gain(4.0, 0.0, 100.0), "PD": loop_gain(4.0, 0.0, 100.0, 0.0, 24.0)}

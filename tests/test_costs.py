@@ -5,11 +5,17 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from ddlib import costs
-from ddlib.arm import Link
-from ddlib.counting import Operations
-from ddlib.formulations import lagrange_euler, newton_euler, recursive_lagrange
-from ddlib.serial import PUMA_560, SerialArm, SpatialLink
+from ddlib.dynamics import (
+    PUMA_560,
+    Link,
+    Operations,
+    SerialArm,
+    SpatialLink,
+    costs,
+    lagrange_euler,
+    newton_euler,
+    recursive_lagrange,
+)
 
 CMU = [Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60)]
 JOINTS = range(1, 7)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.counting import Counted, Operations, Tape
+from ddlib.dynamics import Counted, Operations, Tape
 
 
 def made(**values):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.coverage import cells_reached, principal_deviations, reachable_share, used_dimensions
+from ddlib.analysis import cells_reached, principal_deviations, reachable_share, used_dimensions
 
 
 def test_cells_are_counted_once_and_only_inside():

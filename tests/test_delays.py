@@ -4,13 +4,12 @@ import control
 import numpy as np
 import pytest
 
-from ddlib import linear
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.controllers import pd, proportional
-from ddlib.delays import late_poles
-from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
-from ddlib.experiment import KD, KP
-from ddlib.simulate import CONTROL_STEP, follow
+from ddlib.control import late_poles, linear, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import Delay, Effects
+from ddlib.effects.real_arm import ComputingTime, ViscousFriction
+from ddlib.experiments import KD, KP
+from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import Trajectory
 
 VISCOUS = (0.5, 0.15)

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ddlib.arm import CMU_DD_ARM_II, Link
-from ddlib.derivation import MAX_LINKS, derive
-from ddlib.serial import SerialArm
+from ddlib.dynamics import CMU_DD_ARM_II, MAX_LINKS, Link, SerialArm, derive
 
 
 def links(n, seed=0):

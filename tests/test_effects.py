@@ -11,17 +11,19 @@ from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
     Backlash,
-    ComputingTime,
-    CoulombFriction,
     Delay,
     Effects,
-    FlexibleJoint,
     Noise,
     Quantisation,
+    started,
+)
+from ddlib.effects.real_arm import (
+    ComputingTime,
+    CoulombFriction,
+    FlexibleJoint,
     Ripple,
     Saturation,
     ViscousFriction,
-    started,
 )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddlib import paper
-from ddlib.experiment import (
+from ddlib.experiments import (
     POSITION_FEEDBACK,
     SETUPS,
     STATE_FEEDBACK,
@@ -16,11 +16,9 @@ from ddlib.experiment import (
     split,
     train_windows,
 )
+from ddlib.learning import Scaler, TorqueModel, Weights, check_points
 from ddlib.metrics import rmss
-from ddlib.network import TorqueModel, Weights
-from ddlib.training import check_points
 from ddlib.trajectories import pick_and_place
-from ddlib.windows import Scaler
 
 QUICK = replace(STATE_FEEDBACK, epochs=60, momentum=0.5)
 
@@ -106,7 +104,7 @@ def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypa
     def trainer(weights, data, **options):
         seen.update(options, weights=weights, data=data)
 
-    monkeypatch.setattr("ddlib.experiment.train_ensemble", trainer)
+    monkeypatch.setattr("ddlib.experiments.setups.train_ensemble", trainer)
     train_windows(QUICK, recording, 21, 2, seed=9, progress=False)
     data, (x6, y6) = seen["data"], seen["test"]
     assert data.x.shape == (1500, 2, 21) and data.y.shape == (1500, 2)

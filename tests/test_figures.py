@@ -9,11 +9,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from ddlib import diagrams, figures, paper
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.filters import CLASSES, classify, shares
-from ddlib.network import Weights
-from ddlib.style import COLOURS, INK, Illustration
+from ddlib import figures, paper
+from ddlib.analysis import CLASSES, classify, shares
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.figures import COLOURS, INK, Illustration, diagrams
+from ddlib.learning import Weights
 from ddlib.trajectories import APPENDIX_I, random_extents
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -8,11 +8,10 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from ddlib import figures_dynamics
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.counting import Operations
+from ddlib.dynamics import CMU_DD_ARM_II, Operations
+from ddlib.figures import COLOURS, INK, Illustration
+from ddlib.figures import dynamics as figures_dynamics
 from ddlib.identification import Equations, least_squares
-from ddlib.style import COLOURS, INK, Illustration
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 SVG = "{http://www.w3.org/2000/svg}"

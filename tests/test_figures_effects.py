@@ -6,8 +6,8 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from ddlib import figures_effects
-from ddlib.style import COLOURS, INK, Illustration
+from ddlib.figures import COLOURS, INK, Illustration
+from ddlib.figures import effects as figures_effects
 
 SVG = "{http://www.w3.org/2000/svg}"
 X = np.linspace(1.0, 10.0, 5)

@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from ddlib.figures_learning import clusters, families
-from ddlib.style import COLOURS, Illustration
+from ddlib.figures import COLOURS, Illustration, clusters, families
 
 SVG = "{http://www.w3.org/2000/svg}"
 X = np.linspace(1.0, 10.0, 6)

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from ddlib.figures_ledger import verdicts
+from ddlib.evidence.chart import verdicts
 
 COUNTS = {"1. One": {"yes": 3, "no": 0}, "2. Two": {"yes": 1, "no": 2}}
 

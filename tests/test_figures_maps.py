@@ -6,7 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ddlib.figures_maps import plane, scatter
+from ddlib.figures import plane, scatter
 
 X, Y = np.linspace(0, 45, 4), np.linspace(0, 45, 3)
 VALUES = np.outer([1.0, 2.0, 4.0], [0.1, 0.2, 0.5, 1.0])

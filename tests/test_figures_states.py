@@ -7,9 +7,9 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from ddlib import figures_states
-from ddlib.network import Weights
-from ddlib.style import COLOURS, INK, Illustration
+from ddlib.figures import COLOURS, INK, Illustration
+from ddlib.figures import states as figures_states
+from ddlib.learning import Weights
 
 SVG = "{http://www.w3.org/2000/svg}"
 RNG = np.random.default_rng(0)

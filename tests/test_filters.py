@@ -8,7 +8,7 @@ from hypothesis.extra import numpy as hnp
 from numpy.polynomial import Polynomial
 from scipy.signal import freqz
 
-from ddlib.filters import (
+from ddlib.analysis import (
     CLASSES,
     DERIVATIVES,
     basis,

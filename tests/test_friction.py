@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ddlib.effects import Effects
-from ddlib.friction import (
+from ddlib.effects import (
     CoulombFriction,
+    Effects,
     StickSlipFriction,
     StribeckFriction,
     ViscousFriction,

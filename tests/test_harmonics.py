@@ -5,17 +5,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from ddlib.experiment import POSITION_FEEDBACK, STATE_FEEDBACK, run
-from ddlib.harmonics import (
+from ddlib.analysis import explained
+from ddlib.experiments import (
     ORDER,
+    POSITION_FEEDBACK,
     SHARE,
+    STATE_FEEDBACK,
     record_two_harmonics,
+    run,
     second_amplitudes,
     true_states,
-    two_harmonics,
 )
-from ddlib.responses import explained
-from ddlib.simulate import LOG_STEP, record
+from ddlib.experiments.two_harmonics import two_harmonics
+from ddlib.simulation import LOG_STEP, record
 from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 
 T = time_grid(0.01, 0.2)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
-from ddlib.controllers import pd
-from ddlib.effects import IDEAL, CoulombFriction, Effects, ViscousFriction
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
+from ddlib.effects import IDEAL, Effects
+from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
@@ -16,7 +17,7 @@ from ddlib.identification import (
     least_squares,
     true_parameters,
 )
-from ddlib.simulate import record
+from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
 FRICTIONS = Effects((ViscousFriction((0.5, 0.15)), CoulombFriction((0.4, 0.1))))

@@ -105,9 +105,9 @@ def package_of(path) -> str:
 def test_the_reader_of_imports_reads():
     source = "import torch.nn as nn\nfrom ddlib.arm import Arm\ndef f():\n    from . import effects"
     names = imported(source)
-    assert {"torch.nn", "ddlib.arm", "ddlib.effects"} <= names
+    assert {"torch.nn", "ddlib.dynamics.arm", "ddlib.effects.real_arm"} <= names
     assert own_modules(names) == {"arm", "effects"}
-    assert "ddlib.simulate" in imported("from ..simulate import record", "ddlib.widgets")
+    assert "ddlib.simulation.simulate" in imported("from ..simulate import record", "ddlib.widgets")
 
 
 @each_file

@@ -5,11 +5,11 @@ import os
 
 import pytest
 
-from ddlib import claims, judging, results
-from ddlib.claims import Claim
-from ddlib.verdicts import Measured
+from ddlib.evidence import Measured, claims, judging
+from ddlib.evidence.claims import Claim
+from ddlib.experiments import results
 
-AGAIN = "run `python -m ddlib.judging --write` and look at what it lists"
+AGAIN = "run `python -m ddlib.evidence.judging --write` and look at what it lists"
 BANDED = [claim for claim in claims.load() if claim.band]
 
 

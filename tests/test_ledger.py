@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from book_pages import BACK_MATTER, ROOT
 
-from ddlib import claims, ledger, ledger_tables, paper, results
-from ddlib.stated import SURE, resampled
+from ddlib import paper
+from ddlib.evidence import SURE, claims, ledger, ledger_tables, resampled
+from ddlib.experiments import results
 from ddlib.tables import number
 
 BOOK = ROOT / "book"

@@ -9,41 +9,30 @@ import warnings
 import numpy as np
 import pytest
 
-from ddlib import (
-    actuators,
+from ddlib import trajectories  # fmt: skip
+from ddlib.analysis import (  # fmt: skip
     coverage,
-    delays,
-    derivation,
-    effects,
-    experiment,
     filters,
-    friction,
-    harmonics,
-    identification,
-    linear,
-    loops,
-    modulation,
-    network,
-    noise_floor,
-    parity,
-    random_arms,
-    responses,
+    following,
+    hidden_units,
+    noise,
     sensitivity,
-    serial,
     simplified,
-    simulate,
-    solver,
-    state_space,
+)
+from ddlib.control import PID, delays, linear, pd, velocity  # fmt: skip
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.dynamics import Arm, Link, derivation, serial  # fmt: skip
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  # fmt: skip
+from ddlib.experiments import random_arms, setups, states, two_harmonics  # fmt: skip
+from ddlib.identification import equations, regression  # fmt: skip
+from ddlib.learning import (  # fmt: skip
+    levenberg_marquardt,
+    network,
+    parity_networks,
     training,
-    trajectories,
-    units,
-    velocity,
     windows,
-)  # fmt: skip
-from ddlib.arm import CMU_DD_ARM_II as ARM
-from ddlib.arm import Arm, Link
-from ddlib.controllers import PID, pd
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS
+)
+from ddlib.simulation import loops, simulate  # fmt: skip
 
 OVER, UNDER = 1 + 1e-9, 1 - 1e-9
 JUST_BELOW = -1e-12
@@ -62,7 +51,7 @@ DATA = training.TrainingSet(
     windows.Scaler(np.zeros(2), np.ones(2)), windows.Scaler(np.zeros(2), np.ones(2)),
 )  # fmt: skip
 SINGLE = network.TorqueModel(NETWORK, DATA.inputs, DATA.outputs)
-EQUATIONS = identification.from_states(*MOTION, ARM.inverse_dynamics(*MOTION))
+EQUATIONS = regression.from_states(*MOTION, ARM.inverse_dynamics(*MOTION))
 COURSE = training.History(np.array([1, 10, 100]), np.array([[1.0], [0.5], [0.4]]), None)
 
 
@@ -76,17 +65,17 @@ def train(**options):
 
 def solve(**options):
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", solver.NotConverged)
-        return solver.solve(WEIGHTS, DATA, progress=False, **{"steps": 1, **options})
+        warnings.simplefilter("ignore", levenberg_marquardt.NotConverged)
+        return levenberg_marquardt.solve(WEIGHTS, DATA, progress=False, **{"steps": 1, **options})
 
 
 def learn(**options):
     small = {"members": 1, "epochs": 1, "every": 1}
-    return parity.learn(2, 2, **{**small, **options})
+    return parity_networks.learn(2, 2, **{**small, **options})
 
 
 def estimate(level):
-    return identification.least_squares(EQUATIONS).half_width(level)
+    return regression.least_squares(EQUATIONS).half_width(level)
 
 
 def a_random_arm(name):
@@ -112,10 +101,10 @@ ROWS = [
     ("late", lambda x: delays.late_poles(JOINTS, GAIN, 2e-3, x), [0.0, 9e-3], [JUST_BELOW]),
     ("gain", lambda x: delays.late_poles(JOINTS, x, 2e-3, 0.0), [GAIN], [GAIN[:, :3]]),
     ("links", derivation.derive, [1], [0, derivation.MAX_LINKS + 1, 1.0]),
-    ("step", effects.Quantisation, [1e-9, 0.5], [0.0]),
-    ("periods", effects.Delay, [0, 1], [-1, 1.0]),
-    ("members", lambda x: experiment.train_windows(
-        experiment.STATE_FEEDBACK, None, 11, x), [], [0, 1.0]),
+    ("step", real_arm.Quantisation, [1e-9, 0.5], [0.0]),
+    ("periods", real_arm.Delay, [0, 1], [-1, 1.0]),
+    ("members", lambda x: setups.train_windows(
+        setups.STATE_FEEDBACK, None, 11, x), [], [0, 1.0]),
     ("convention", lambda x: filters.decompose(FILTERS, x), ["paper", "symmetric"], ["odd"]),
     ("pure", lambda x: filters.classify(FILTERS, pure=x), [0.5, 1.0], [0.5 * UNDER, OVER]),
     ("smooth", lambda x: filters.classify(FILTERS, smooth=x), [0.0, 0.5, 1.0], [-1e-12, OVER]),
@@ -130,9 +119,9 @@ ROWS = [
     ("smoothing", lambda x: friction.StribeckFriction((1, 1), (2, 2), 0.1, x), [1e-6], [0.0]),
     ("speed", lambda x: friction.StribeckFriction((1, 1), (2, 2), x), [1e-6, 0.5], [0.0]),
     ("speed", lambda x: friction.StickSlipFriction((1, 1), (2, 2), x), [1e-6, 0.5], [0.0]),
-    ("order", lambda x: harmonics.two_harmonics((9.0, 9.0), (1.0, 1.0), T, x), [2, 5], [1, 2.0]),
+    ("order", lambda x: two_harmonics.two_harmonics((9.0, 9.0), (1.0, 1.0), T, x), [2, 5], [1, 2.0]),
     ("level", estimate, [1e-3, 0.95], [0.0, OVER]),
-    ("rounds", lambda x: identification.least_squares(EQUATIONS, x), [1, 2], [0, 1.0]),
+    ("rounds", lambda x: regression.least_squares(EQUATIONS, x), [1, 2], [0, 1.0]),
     ("inertia", lambda x: linear.loop_gain(x, 0.1, 9.0), [1e-3, 0.5], [0.0]),
     ("viscous", lambda x: linear.loop_gain(1.0, x, 9.0), [0.0, 0.5], [JUST_BELOW]),
     ("kp", lambda x: linear.loop_gain(1.0, 0.1, x), [0.0, 0.5], [JUST_BELOW]),
@@ -148,7 +137,7 @@ ROWS = [
     ("posture", lambda x: loops.SecondOrderModel(ARM, x), [(0.0, -1.0)], [(1.0,)]),
     ("speed", lambda x: loops.fast_pick_and_place((9, 9), T, x), [1e-3, 0.5], [0.0]),
     ("speed", lambda x: loops.smooth_pick_and_place((9, 9), T, x), [1e-3, 0.5], [0.0]),
-    ("repetitions", lambda x: modulation.repeat(
+    ("repetitions", lambda x: equations.repeat(
         ARM, pd((9, 9), (9, 9)), (9.0, 9.0), CMU_DD_ARM_II_EFFECTS, x), [1], [0, 1.0]),
     ("hidden", lambda x: network.WindowNetwork(5, x), [1, 2], [0, 1.0]),
     ("members", lambda x: network.Weights.random(x, 5), [1, 2], [0, 1.0]),
@@ -156,19 +145,19 @@ ROWS = [
     ("hidden", lambda x: network.Weights.random(1, 5, x), [1, 2], [0, 1.0]),
     ("seed", lambda x: network.Weights.random(1, 5, seed=x), [0, 1], [-1, 1.0]),
     ("initial", lambda x: network.WindowNetwork(5, initial=x), [1e-6, 0.5], [0.0]),
-    ("width", lambda x: noise_floor.acceleration_noise_gain(x, 0.1), [3, 5], [2, 4, 3.0]),
-    ("period", lambda x: noise_floor.acceleration_noise_gain(5, x), [1e-6, 0.5], [0.0]),
-    ("deviation", lambda x: noise_floor.noise_floor(ARM, x, 5, 16, 0.1, 0.1),
+    ("width", lambda x: noise.acceleration_noise_gain(x, 0.1), [3, 5], [2, 4, 3.0]),
+    ("period", lambda x: noise.acceleration_noise_gain(5, x), [1e-6, 0.5], [0.0]),
+    ("deviation", lambda x: noise.noise_floor(ARM, x, 5, 16, 0.1, 0.1),
      [(0.5, 0.1)], [(0.5, 0.0), (0.0, 1.0), (1.0,), ((1.0, 1.0),)]),
-    ("bits", lambda x: noise_floor.noise_floor(ARM, (1, 1), 5, x, 0.1, 0.1),
+    ("bits", lambda x: noise.noise_floor(ARM, (1, 1), 5, x, 0.1, 0.1),
      [1, 40], [UNDER, 40 * OVER]),
-    ("torque_noise", lambda x: noise_floor.noise_floor(ARM, (1, 1), 5, 9, x, 0.1),
+    ("torque_noise", lambda x: noise.noise_floor(ARM, (1, 1), 5, 9, x, 0.1),
      [0.0, 0.5], [JUST_BELOW]),
-    ("bits", parity.patterns, [1, 2], [0, parity.MOST_BITS + 1]),
-    ("bits", parity.one_layer, [1, 2], [0, 1.0]),
-    ("bits", parity.direct, [1, 2], [0, 1.0]),
-    ("bits", parity.counter, [1, 2], [0, 1.0]),
-    ("bits", parity.tree, [1, 2], [0, 1.0]),
+    ("bits", parity_networks.patterns, [1, 2], [0, parity_networks.MOST_BITS + 1]),
+    ("bits", parity_networks.one_layer, [1, 2], [0, 1.0]),
+    ("bits", parity_networks.direct, [1, 2], [0, 1.0]),
+    ("bits", parity_networks.counter, [1, 2], [0, 1.0]),
+    ("bits", parity_networks.tree, [1, 2], [0, 1.0]),
     ("rate", lambda x: learn(rate=x), [1e-6, 0.5], [0.0]),
     ("momentum", lambda x: learn(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),
     ("every", lambda x: learn(every=x, epochs=2), [1, 2], [0, 1.0]),
@@ -178,7 +167,7 @@ ROWS = [
     *((name, a_random_arm(name), [low, high], [low * UNDER, high * OVER])
       for name, (low, high) in random_arms.RANGES.items()),
     ("column", lambda x: random_arms.distance({}, x), [], ["best"]),
-    ("step", lambda x: responses.gains(FILTERS, x), [1e-6, 0.5], [0.0]),
+    ("step", lambda x: following.gains(FILTERS, x), [1e-6, 0.5], [0.0]),
     ("margin", lambda x: sensitivity.transition_range(WEIGHTS, x),
      [1e-6, 0.49], [0.0, 0.49 * OVER]),
     ("joints", serial.PUMA_560.first, [1, 6], [0, 7, 1.0]),
@@ -199,7 +188,7 @@ ROWS = [
     ("damping", lambda x: solve(damping=x), [0.0, 0.5], [JUST_BELOW]),
     ("decay", lambda x: solve(decay=x), [0.0, 0.5], [JUST_BELOW]),
     ("smoothness", lambda x: solve(smoothness=x), [0.0, 0.5], [JUST_BELOW]),
-    ("radius", lambda x: state_space.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
+    ("radius", lambda x: states.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
     ("steepest", COURSE.settled, [0.0, 0.5], [JUST_BELOW]),
     ("rate", lambda x: train(rate=x), [1e-6, training.MAX_RATE], [0.0, training.MAX_RATE * OVER]),
     ("momentum", lambda x: train(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),
@@ -211,9 +200,9 @@ ROWS = [
     ("max_deg", lambda x: trajectories.random_extents(2, 0, x), [1e-6, 0.5], [0.0]),
     ("step", trajectories.time_grid, [0.01, 0.5], [0.0]),
     ("rest", lambda x: trajectories.time_grid(0.01, x), [0.0, 0.5], [JUST_BELOW]),
-    ("margin", lambda x: units.saturated(SAMPLES, x), [0.0, 0.5], [JUST_BELOW, 0.5 * OVER]),
-    ("margin", lambda x: units.transition_width(SAMPLES, x), [1e-6, 0.49], [0.0, 0.49 * OVER]),
-    ("group", lambda x: units.ablation(SINGLE, DATA.x, DATA.y, x), [1, 2], [0, 3, 1.0]),
+    ("margin", lambda x: hidden_units.saturated(SAMPLES, x), [0.0, 0.5], [JUST_BELOW, 0.5 * OVER]),
+    ("margin", lambda x: hidden_units.transition_width(SAMPLES, x), [1e-6, 0.49], [0.0, 0.49 * OVER]),
+    ("group", lambda x: hidden_units.ablation(SINGLE, DATA.x, DATA.y, x), [1, 2], [0, 3, 1.0]),
     ("periods", lambda x: velocity.difference(x, 0.1), [1, 2], [0, 1.0]),
     ("step", lambda x: velocity.difference(1, x), [1e-6, 0.5], [0.0]),
     ("degree", lambda x: velocity.end_slope(5, x, 0.1), [1, 4], [0, 1.0]),

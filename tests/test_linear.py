@@ -6,10 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ddlib.arm import CMU_DD_ARM_II, Arm
-from ddlib.controllers import PID
-from ddlib.effects import Delay, Effects, ViscousFriction
-from ddlib.linear import (
+from ddlib.control import (
+    PID,
     closed_loop,
     loop_gain,
     margins,
@@ -17,7 +15,10 @@ from ddlib.linear import (
     plant,
     proportional_limit,
 )
-from ddlib.simulate import follow
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from ddlib.effects import Delay, Effects
+from ddlib.effects.real_arm import ViscousFriction
+from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
 
 STEP = 0.002

@@ -3,22 +3,26 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.controllers import PID, Feedforward, pd, proportional
-from ddlib.effects import CoulombFriction, Effects, ViscousFriction
-from ddlib.experiment import KD, KP
-from ddlib.loops import (
+from ddlib.control import PID, Feedforward, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.effects import Effects
+from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.experiments import KD, KP
+from ddlib.simulation import (
     Load,
     SecondOrderModel,
     fast_pick_and_place,
     feedforward_system,
+    follow,
+    free_motion,
     predicted_response,
+    record,
     run_system,
     score,
     simulated_response,
     smooth_pick_and_place,
 )
-from ddlib.simulate import Recording, follow, free_motion, record
+from ddlib.simulation.simulate import Recording
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II as ARM
-from ddlib.controllers import Feedforward, pd
-from ddlib.experiment import KD, KP
-from ddlib.loops import SecondOrderModel, smooth_pick_and_place
-from ddlib.measures.control import EXTENTS, TIMES, track
-from ddlib.simulate import follow
+from ddlib.control import Feedforward, pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.evidence.measures.control import EXTENTS, TIMES, track
+from ddlib.experiments import KD, KP
+from ddlib.simulation import SecondOrderModel, follow, smooth_pick_and_place
 
 
 def nothing(q, qd, qdd):

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from ddlib.filters import savitzky_golay
-from ddlib.measures import committed, filters
-from ddlib.network import TorqueModel, Weights
-from ddlib.simulate import LOG_STEP
-from ddlib.windows import Scaler
+from ddlib.analysis import savitzky_golay
+from ddlib.evidence.measures import committed, filters
+from ddlib.learning import Scaler, TorqueModel, Weights
+from ddlib.simulation import LOG_STEP
 
 
 @pytest.fixture

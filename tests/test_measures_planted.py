@@ -6,12 +6,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS
-from ddlib.filters import basis, savitzky_golay
-from ddlib.measures import backpropagation, committed, filters, networks, state_space, weights
-from ddlib.measures import windows as of_windows
-from ddlib.simulate import LOG_STEP
+from ddlib.analysis import basis, savitzky_golay
+from ddlib.evidence.measures import (
+    backpropagation,
+    committed,
+    filters,
+    networks,
+    state_space,
+    weights,
+)
+from ddlib.evidence.measures import windows as of_windows
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
+from ddlib.simulation import LOG_STEP
 
 STATE, POSITION = "state feedback", "position feedback"
 
@@ -554,7 +560,7 @@ def test_errors_settle_where_their_power_law_bends(plant, power, flat_from, word
 
 
 def test_when_errors_reach_a_level():
-    from ddlib.training import History
+    from ddlib.learning import History
 
     errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
     history = History(np.array([10, 20, 40]), errors, None)

@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 
-from ddlib.measures import real_arm
+from ddlib.evidence.measures import real_arm
+from ddlib.simulation import rms
 from ddlib.trajectories import APPENDIX_I, pick_and_place
-from ddlib.unmodelled import rms
 
 ARM, EFFECTS = real_arm.SETUP.arm, real_arm.SETUP.effects
 T = np.arange(0.0, 3.0, 0.002)

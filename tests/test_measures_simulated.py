@@ -6,14 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II as ARM
-from ddlib.controllers import PID, Feedforward, pd
+from ddlib.control import PID, Feedforward, pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.dynamics import PUMA_560_ROTORS
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL
-from ddlib.experiment import KD, KP
-from ddlib.loops import smooth_pick_and_place
-from ddlib.measures import control, dynamics, real_arm
-from ddlib.serial import PUMA_560_ROTORS
-from ddlib.simulate import follow
+from ddlib.evidence.measures import control, dynamics, real_arm
+from ddlib.experiments import KD, KP
+from ddlib.simulation import follow, smooth_pick_and_place
 from ddlib.trajectories import random_extents
 
 EXTENTS = (25.0, 40.0)

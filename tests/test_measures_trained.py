@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib.experiment import INITIAL, POSITION_FEEDBACK, STATE_FEEDBACK
-from ddlib.measures import backpropagation, real_arm, state_space, trajectories
-from ddlib.measures import windows as of_windows
-from ddlib.training import History, default_rate
+from ddlib.evidence.measures import backpropagation, real_arm, state_space, trajectories
+from ddlib.evidence.measures import windows as of_windows
+from ddlib.experiments import POSITION_FEEDBACK, STATE_FEEDBACK
+from ddlib.experiments.setups import INITIAL
+from ddlib.learning import History, default_rate
 
 SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
 

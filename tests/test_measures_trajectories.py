@@ -5,8 +5,8 @@ from math import comb
 import numpy as np
 import pytest
 
-from ddlib.experiment import SETUPS
-from ddlib.measures import trajectories
+from ddlib.evidence.measures import trajectories
+from ddlib.experiments import SETUPS
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG, SAMPLES_PER_TRAJECTORY
 
 

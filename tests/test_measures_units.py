@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS
-from ddlib.measures import committed, filters, weights
-from ddlib.network import TorqueModel, Weights
-from ddlib.windows import Scaler
+from ddlib.evidence.measures import committed, filters, weights
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS
+from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)
 

@@ -5,21 +5,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
-from ddlib.controllers import pd, proportional
-from ddlib.effects import (
-    CMU_DD_ARM_II_EFFECTS,
-    IDEAL,
-    ComputingTime,
-    CoulombFriction,
-    Effects,
-    Noise,
-    Quantisation,
-    ViscousFriction,
+from ddlib.control import pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, Noise, Quantisation
+from ddlib.effects.real_arm import ComputingTime, CoulombFriction, ViscousFriction
+from ddlib.identification import (
+    FRICTION,
+    GRAVITY,
+    RIGID,
+    by_differences,
+    by_modulation,
+    by_smoothing,
+    least_squares,
+    repeat,
+    true_parameters,
 )
-from ddlib.identification import FRICTION, GRAVITY, RIGID, least_squares, true_parameters
-from ddlib.modulation import by_differences, by_modulation, by_smoothing, repeat
-from ddlib.simulate import record
+from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 NAMES = RIGID + FRICTION

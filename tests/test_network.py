@@ -11,8 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from ddlib import paper
-from ddlib.network import TorqueModel, Weights, WindowNetwork
-from ddlib.windows import Scaler
+from ddlib.learning import Scaler, TorqueModel, Weights, WindowNetwork
 
 NAMES = tuple(field.name for field in fields(Weights))
 RNG = np.random.default_rng(2)

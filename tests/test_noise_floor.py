@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.filters import savitzky_golay
-from ddlib.noise_floor import acceleration_noise_gain, noise_floor
+from ddlib.analysis import acceleration_noise_gain, noise_floor, savitzky_golay
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 
 GOOD = dict(arm=CMU_DD_ARM_II, deviation=(7.0, 2.0), width=21, bits=16.0, torque_noise=0.02,

@@ -11,25 +11,26 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from ddlib.arm import Arm
-from ddlib.controllers import pd
-from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
-from ddlib.experiment import predict, run
-from ddlib.filters import decompose
+from ddlib.analysis import decompose
+from ddlib.control import pd
+from ddlib.dynamics import Arm
+from ddlib.effects import Effects, Noise, Quantisation
+from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.experiments import predict, run
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
     RIGID,
     Equations,
+    by_modulation,
     from_states,
     least_squares,
+    repeat,
     true_parameters,
 )
-from ddlib.modulation import by_modulation, repeat
-from ddlib.network import TorqueModel, Weights
-from ddlib.recording import Recording
-from ddlib.simulate import record
-from ddlib.training import TrainingSet, cases, train_ensemble
+from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
+from ddlib.learning.training import cases
+from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
 DATA = Path(__file__).parents[1] / "book" / "data"

@@ -16,9 +16,8 @@ import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
-from ddlib import results
-from ddlib.network import TorqueModel, Weights
-from ddlib.windows import Scaler
+from ddlib.experiments import results
+from ddlib.learning import Scaler, TorqueModel, Weights
 
 ROOT = Path(__file__).parents[1]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))

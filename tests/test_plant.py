@@ -6,17 +6,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from ddlib.actuators import FlexibleJoint, Ripple
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
-from ddlib.effects import IDEAL, Effects
-from ddlib.friction import (
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
+from ddlib.effects import (
+    IDEAL,
     CoulombFriction,
+    Effects,
+    FlexibleJoint,
+    Ripple,
     StickSlipFriction,
     StribeckFriction,
     ViscousFriction,
 )
-from ddlib.plant import Plant, substeps
-from ddlib.simulate import free_motion
+from ddlib.simulation import Plant, free_motion, substeps
 
 ARM = CMU_DD_ARM_II
 STICKY = StickSlipFriction((0.5, 0.15), (0.65, 0.2))

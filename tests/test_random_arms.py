@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib import paper
-from ddlib.experiment import KD, KP, STATE_FEEDBACK
-from ddlib.random_arms import RANGES, distance, draw, setup
+from ddlib.experiments import KD, KP, RANGES, STATE_FEEDBACK, distance, draw, setup
 
 DEFAULT = {name: 1.0 for name in RANGES} | {"encoder bits": 16.0}
 

@@ -3,17 +3,9 @@
 import numpy as np
 import pytest
 
-from ddlib.filters import savitzky_golay
-from ddlib.network import TorqueModel, Weights
-from ddlib.responses import (
-    LAYERS,
-    explained,
-    gains,
-    mean_gradient,
-    responses,
-    summary,
-)
-from ddlib.windows import Scaler
+from ddlib.analysis import LAYERS, explained, gains, mean_gradient, savitzky_golay, summary
+from ddlib.analysis.following import responses
+from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)
 STEP, WIDTH = 0.01, 11

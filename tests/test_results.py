@@ -11,14 +11,23 @@ import numpy as np
 import pytest
 import torch
 
-from ddlib import paper, reproduce, results
-from ddlib.experiment import SETUPS, STATE_FEEDBACK, WINDOWS, errors, split
-from ddlib.harmonics import record_two_harmonics, true_states
-from ddlib.network import TorqueModel, Weights
-from ddlib.responses import LAYERS, summary
-from ddlib.studies import PARTS
-from ddlib.studies.harmonics import NAME
-from ddlib.training import cases
+from ddlib import paper
+from ddlib.analysis import LAYERS, summary
+from ddlib.experiments import (
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    errors,
+    record_two_harmonics,
+    reproduce,
+    results,
+    split,
+    true_states,
+)
+from ddlib.experiments.studies import PARTS
+from ddlib.experiments.studies.harmonics import NAME
+from ddlib.learning import TorqueModel, Weights
+from ddlib.learning.training import cases
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
 
@@ -280,7 +289,14 @@ def test_apart_is_the_same_command_with_one_thread(monkeypatch):
         reproduce.subprocess, "run", lambda command, **k: seen.update(command=command, **k)
     )
     reproduce.make_apart("clean")
-    assert seen["command"][1:] == ["-m", "ddlib.reproduce", "--force", "--jobs", "1", "clean"]
+    assert seen["command"][1:] == [
+        "-m",
+        "ddlib.experiments.reproduce",
+        "--force",
+        "--jobs",
+        "1",
+        "clean",
+    ]
     assert seen["env"]["OMP_NUM_THREADS"] == "1" and seen["env"]["PATH"]
 
 

@@ -4,25 +4,21 @@ import control
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
-from ddlib.controllers import PID, ComputedTorque, pd, proportional
-from ddlib.effects import (
-    Backlash,
+from ddlib.control import PID, ComputedTorque, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
+from ddlib.effects import Backlash, Delay, Effects, Noise, Quantisation
+from ddlib.effects.real_arm import (
     ComputingTime,
     CoulombFriction,
     DeadZone,
-    Delay,
-    Effects,
     FlexibleJoint,
-    Noise,
-    Quantisation,
     Ripple,
     Saturation,
     StickSlipFriction,
     StribeckFriction,
     ViscousFriction,
 )
-from ddlib.simulate import follow, record
+from ddlib.simulation import follow, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, random_extents, time_grid
 
 ARM = CMU_DD_ARM_II

@@ -4,18 +4,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.network import TorqueModel, Weights
-from ddlib.sensitivity import (
-    INPUTS,
-    input_shares,
-    responses,
-    shuffled,
-    transition_centre,
-    transition_range,
-)
-from ddlib.state_space import random_states, torque
-from ddlib.training import TrainingSet
+from ddlib.analysis import INPUTS, input_shares, shuffled, transition_centre, transition_range
+from ddlib.analysis.sensitivity import responses
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.experiments import random_states, torque
+from ddlib.learning import TorqueModel, TrainingSet, Weights
 
 STATES = random_states(4000, seed=9)
 SCALE = torque(STATES).std(0)

@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm, Link
-from ddlib.serial import PUMA_560, PUMA_560_GEARS, PUMA_560_ROTORS, SerialArm, SpatialLink
+from ddlib.dynamics import (
+    CMU_DD_ARM_II,
+    PUMA_560,
+    PUMA_560_GEARS,
+    PUMA_560_ROTORS,
+    REYES_KELLY_ARM,
+    Arm,
+    Link,
+    SerialArm,
+    SpatialLink,
+)
 
 CMU = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
 VERTICAL = (Link(23.902, 0.45, 0.091, 1.266), Link(3.880, 0.45, 0.048, 0.093))

@@ -11,7 +11,7 @@ import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
 
-from ddlib.style import illustrate
+from ddlib.figures import illustrate
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import slim

@@ -9,16 +9,21 @@ import pytest
 import torch
 from scipy.optimize import least_squares, minimize
 
-from ddlib import gauss_newton
-from ddlib.experiment import STATE_FEEDBACK, split
-from ddlib.filters import roughness
-from ddlib.gauss_newton import Objective, penalty
+from ddlib.analysis import roughness
+from ddlib.experiments import STATE_FEEDBACK, split
+from ddlib.experiments.results import read
+from ddlib.learning import (
+    NotConverged,
+    Objective,
+    TrainingSet,
+    Weights,
+    gauss_newton,
+    penalty,
+    sliding_windows,
+    solve,
+    train_ensemble,
+)
 from ddlib.metrics import rmss
-from ddlib.network import Weights
-from ddlib.results import read
-from ddlib.solver import NotConverged, solve
-from ddlib.training import TrainingSet, train_ensemble
-from ddlib.windows import sliding_windows
 
 NAMES = tuple(field.name for field in fields(Weights))
 WIDTH, HIDDEN = 7, 3

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.state_space import RADIUS, random_states, states_along, torque
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.experiments import RADIUS, random_states, states_along, torque
 from ddlib.trajectories import pick_and_place
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ddlib import paper, results
-from ddlib.state_space import EPOCHS, SAMPLES
-from ddlib.studies import state_space_sizes as study
+from ddlib import paper
+from ddlib.experiments import EPOCHS, SAMPLES, results
+from ddlib.experiments.studies import state_space_sizes as study
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from ddlib.stated import DRAWS, resampled, stated
+from ddlib.evidence import resampled, stated
+from ddlib.evidence.statements import DRAWS
 
 
 def test_what_is_so_passes_and_shows_nothing():

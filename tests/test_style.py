@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ddlib import style
-from ddlib.style import COLOURS, DASHES, FAINT, INK, illustrate
+from ddlib.figures import COLOURS, DASHES, FAINT, INK, illustrate, style
 
 SVG = "{http://www.w3.org/2000/svg}"
 

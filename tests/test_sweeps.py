@@ -16,8 +16,8 @@ import joblib
 import numpy as np
 import pytest
 
-from ddlib import sweeps
-from ddlib.sweeps import SweepFailed, code_hash, sweep, table
+from ddlib.experiments import sweeps
+from ddlib.experiments.sweeps import SweepFailed, code_hash, sweep, table
 
 GAIN = 3.0
 

@@ -10,22 +10,24 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib import training
-from ddlib.descent import Descent, prepare
-from ddlib.experiment import STATE_FEEDBACK
-from ddlib.metrics import rmss
-from ddlib.network import Weights, WindowNetwork
-from ddlib.training import (
+from ddlib.experiments import STATE_FEEDBACK
+from ddlib.learning import (
+    Descent,
     History,
     TrainingDiverged,
     TrainingSet,
-    cases,
+    Weights,
+    WindowNetwork,
     check_points,
     default_rate,
+    prepare,
+    sliding_windows,
     train,
     train_ensemble,
+    training,
 )
-from ddlib.windows import sliding_windows
+from ddlib.learning.training import cases
+from ddlib.metrics import rmss
 
 NAMES = tuple(field.name for field in fields(Weights))
 WIDTH = 7

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
+from ddlib.analysis import ablation, cancellation, match, net_inputs, saturated, transition_width
+from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.metrics import rmss
-from ddlib.network import TorqueModel, Weights
-from ddlib.training import TrainingSet
-from ddlib.units import ablation, cancellation, match, net_inputs, saturated, transition_width
 
 RNG = np.random.default_rng(5)
 

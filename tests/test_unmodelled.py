@@ -5,21 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddlib.arm import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.controllers import pd
-from ddlib.effects import (
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.effects import Effects
+from ddlib.effects.real_arm import (
     ComputingTime,
     CoulombFriction,
-    Effects,
     FlexibleJoint,
     Ripple,
     StickSlipFriction,
     ViscousFriction,
 )
-from ddlib.experiment import KD, KP
-from ddlib.simulate import CONTROL_STEP, record
+from ddlib.experiments import KD, KP
+from ddlib.simulation import CONTROL_STEP, record, residual_torque, rms
 from ddlib.trajectories import APPENDIX_I
-from ddlib.unmodelled import residual_torque, rms
 
 ARM = CMU_DD_ARM_II
 

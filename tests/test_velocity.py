@@ -6,13 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import savgol_coeffs
 
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.controllers import pd
+from ddlib.analysis import frequency_response, savitzky_golay
+from ddlib.control import EstimatedVelocity, difference, end_slope, lag, noise_gain, pd, stacked
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Quantisation
-from ddlib.filters import frequency_response, savitzky_golay
-from ddlib.simulate import follow
+from ddlib.simulation import follow
 from ddlib.trajectories import pick_and_place, time_grid
-from ddlib.velocity import EstimatedVelocity, difference, end_slope, lag, noise_gain, stacked
 
 STEP = 0.002
 

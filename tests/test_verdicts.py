@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from ddlib.verdicts import (
+from ddlib.evidence import (
     CONTRADICTS,
     DECIDED,
     DRAWS,

@@ -23,8 +23,8 @@ from widget_samples import (
 )
 
 from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter
-from ddlib.widgets.baked import MAX_BYTES, MAX_VALUES, Baked
-from ddlib.widgets.sampled import Sampled, evaluate
+from ddlib.widgets.baking.baked import MAX_BYTES, MAX_VALUES, Baked
+from ddlib.widgets.baking.sampled import Sampled, evaluate
 
 
 @pytest.fixture(scope="module")
@@ -244,7 +244,7 @@ def test_many_is_called_in_blocks(monkeypatch):
         sizes.append(len(gain))
         return many_waves(gain, **others)
 
-    monkeypatch.setattr("ddlib.widgets.sampled.BLOCK", 20)
+    monkeypatch.setattr("ddlib.widgets.baking.sampled.BLOCK", 20)
     Baked(wave, options(), many=many, tolerance=0.05)
     assert sizes == [20, 16]
 

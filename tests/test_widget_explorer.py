@@ -10,11 +10,10 @@ from scipy.signal import freqz
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of, settings
 
-from ddlib import results
-from ddlib.experiment import WINDOWS
-from ddlib.filters import CLASSES, classify, savitzky_golay
-from ddlib.network import TorqueModel, Weights
-from ddlib.simulate import LOG_STEP
+from ddlib.analysis import CLASSES, classify, savitzky_golay
+from ddlib.experiments import WINDOWS, results
+from ddlib.learning import TorqueModel, Weights
+from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import FLOOR_DB, FREQUENCIES, FilterExplorer
 from ddlib.widgets.hinton import diagram, zero_padded
 

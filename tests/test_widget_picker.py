@@ -10,12 +10,11 @@ from test_accessibility import violations
 from traitlets import TraitError
 from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings, shown_values
 
-from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS, errors, predict, run
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, errors, predict, results, run
 from ddlib.metrics import rmss
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
-from ddlib.widgets.baked import MAX_BYTES
+from ddlib.widgets.baking.baked import MAX_BYTES
 from ddlib.widgets.picker import inside_hull
 
 

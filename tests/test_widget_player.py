@@ -7,9 +7,9 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, READ, page_of, settings
 
-from ddlib.experiment import STATE_FEEDBACK, split
-from ddlib.network import TorqueModel, Weights
-from ddlib.training import TrainingSet, cases
+from ddlib.experiments import STATE_FEEDBACK, split
+from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.learning.training import cases
 from ddlib.widgets.hinton import diagram
 from ddlib.widgets.player import TrainingPlayer
 

@@ -9,11 +9,11 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.controllers import pd
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
-from ddlib.experiment import KD, KP
-from ddlib.simulate import CONTROL_STEP, record
+from ddlib.experiments import KD, KP
+from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.switches import (
     CLOSE_UP,

@@ -10,12 +10,12 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 
-from ddlib.arm import CMU_DD_ARM_II
-from ddlib.controllers import PID, Feedforward
-from ddlib.effects import Effects, ViscousFriction
-from ddlib.experiment import KD, KP
-from ddlib.linear import closed_loop, opened_loop, plant
-from ddlib.simulate import CONTROL_STEP, record
+from ddlib.control import PID, Feedforward, closed_loop, opened_loop, plant
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import Effects
+from ddlib.effects.real_arm import ViscousFriction
+from ddlib.experiments import KD, KP
+from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.tuner import TIMES, VISCOUS, PIDTuner, gains
 

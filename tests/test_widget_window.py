@@ -7,11 +7,10 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, READ, page_of, settings
 
-from ddlib import results
-from ddlib.experiment import STATE_FEEDBACK, WINDOWS, split
-from ddlib.simulate import Recording
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results, split
+from ddlib.learning import sliding_windows
+from ddlib.simulation.simulate import Recording
 from ddlib.widgets.window import SlidingWindow
-from ddlib.windows import sliding_windows
 
 MEMBER = 1
 

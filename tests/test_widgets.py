@@ -13,7 +13,7 @@ from widget_pages import saved
 from widget_samples import T, make, make_kinds, options, oscillation, wave
 
 from ddlib.widgets import CurveWidget, Pad, Panel, Parameter, Scalar
-from ddlib.widgets.baked import MAX_BYTES
+from ddlib.widgets.baking.baked import MAX_BYTES
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ddlib.controllers import proportional
-from ddlib.experiment import STATE_FEEDBACK
-from ddlib.simulate import record
-from ddlib.windows import Scaler, check_width, sliding_windows
+from ddlib.control import proportional
+from ddlib.experiments import STATE_FEEDBACK
+from ddlib.learning import Scaler, check_width, sliding_windows
+from ddlib.simulation import record
 
 RNG = np.random.default_rng(11)
 

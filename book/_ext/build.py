@@ -24,7 +24,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ddlib.claims import SHARED
+from ddlib.evidence.claims import SHARED
 from jupyter_cache import get_cache
 from jupyter_cache.executors import load_executor
 from sphinx.util.console import strip_colors

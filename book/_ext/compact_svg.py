@@ -23,7 +23,7 @@ def compact(svg: str, prefix: str, letters: dict[str, str] | None = None) -> str
     Parameters
     ----------
     svg : str
-        An ``<svg>`` element as `ddlib.style` writes it; one that went through here before is
+        An ``<svg>`` element as `ddlib.figures.style` writes it; one that went through here before is
         returned as it is.
     prefix : str
         Different for each picture of a page.

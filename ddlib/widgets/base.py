@@ -10,11 +10,11 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import integer, number, one_of
-from ddlib.widgets.baked import Baked
+from ddlib.widgets.baking.baked import Baked
+from ddlib.widgets.baking.sampled import evaluate
+from ddlib.widgets.baking.still import Still, still_picture
 from ddlib.widgets.panels import Pad, Panel, Scalar
 from ddlib.widgets.parameters import Choice, Parameter
-from ddlib.widgets.sampled import evaluate
-from ddlib.widgets.still import Still, still_picture
 
 HERE = Path(__file__).parent
 

@@ -8,17 +8,9 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import integer
-from ddlib.filters import (
-    CLASSES,
-    basis,
-    classify,
-    content,
-    decompose,
-    frequency_response,
-    shares,
-)
-from ddlib.network import TorqueModel
-from ddlib.simulate import LOG_STEP
+from ddlib.analysis import CLASSES, basis, classify, content, decompose, frequency_response, shares
+from ddlib.learning import TorqueModel
+from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, Panel, module
 from ddlib.widgets.hinton import (
     EXACT,

@@ -8,7 +8,7 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import one_of
-from ddlib.network import TorqueModel, Weights
+from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parameters import Choice
 

@@ -10,15 +10,14 @@ import traitlets as t
 from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array, number
-from ddlib.experiment import STATE_FEEDBACK, Setup
+from ddlib.experiments import STATE_FEEDBACK, Setup
+from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
-from ddlib.network import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parameters import Parameter
-from ddlib.windows import sliding_windows
 
 JOINTS = ("shoulder", "elbow")
 RIGID = "Lagrange-Euler"
@@ -78,7 +77,7 @@ class TrajectoryPicker(CurveWidget):
     Parameters
     ----------
     models : mapping
-        Legend name -> a single trained network, as from `ddlib.results.median_network`.
+        Legend name -> a single trained network, as from `ddlib.experiments.results.median_network`.
     setup : Setup
         Arm, effects and controller that record.
     on_record : callable, optional

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib._check import finite_array, integer
-from ddlib.experiment import errors
-from ddlib.network import TorqueModel
-from ddlib.simulate import LOG_STEP, Recording
+from ddlib.experiments import errors
+from ddlib.learning import TorqueModel
+from ddlib.simulation import LOG_STEP
+from ddlib.simulation.simulate import Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
     EXACT,
@@ -33,7 +34,7 @@ class TrainingPlayer(HintonWidget):
     epochs : array_like, shape (epochs,)
         Epochs after which weights were kept, 0 for the initial ones.
     model : TorqueModel
-        Weights with leading axes ``(epochs, members)``, as from `ddlib.results.course`.
+        Weights with leading axes ``(epochs, members)``, as from `ddlib.experiments.results.course`.
     recording : Recording
         The six runs of Appendix I, on which the errors are taken.
     member : int

@@ -8,21 +8,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from ddlib.arm import CMU_DD_ARM_II, Arm
-from ddlib.controllers import pd
-from ddlib.effects import (
-    CoulombFriction,
-    DeadZone,
-    Delay,
-    Effects,
-    Quantisation,
-    Saturation,
-    ViscousFriction,
-    started,
-)
-from ddlib.experiment import KD, KP
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from ddlib.effects import Delay, Effects, Quantisation, started
+from ddlib.effects.real_arm import CoulombFriction, DeadZone, Saturation, ViscousFriction
+from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.simulate import CONTROL_STEP, Recording, follow
+from ddlib.simulation import CONTROL_STEP, follow
+from ddlib.simulation.simulate import Recording
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.panels import Panel, Scalar
@@ -63,7 +56,7 @@ CLOSE_UP = _T[_CLOSE]
 class RealArmSwitches(CurveWidget):
     """Switch friction, dead zone, saturation, quantisation and delay on and off.
 
-    The arm follows trajectory 6 under the PD law of `ddlib.experiment.STATE_FEEDBACK`, with
+    The arm follows trajectory 6 under the PD law of `ddlib.experiments.setups.STATE_FEEDBACK`, with
     the difference of two encoder readings as its velocity. All 243 combinations are simulated
     beforehand and none is interpolated. The charts show the shoulder; the elbow's effects
     have 0.3 times the strength of the shoulder's, as its gains have.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib.arm import CMU_DD_ARM_II, Arm
-from ddlib.controllers import PID, Feedforward
-from ddlib.effects import Effects, ViscousFriction
-from ddlib.experiment import KD, KP
-from ddlib.linear import margins, opened_loop, plant
+from ddlib.control import PID, Feedforward, margins, opened_loop, plant
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from ddlib.effects import Effects
+from ddlib.effects.real_arm import ViscousFriction
+from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.simulate import CONTROL_STEP, follow
+from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.panels import Panel, Scalar
@@ -38,7 +38,7 @@ _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 class PIDTuner(CurveWidget):
     """Tune the gains of both joints on trajectory 6, with or without feedforward.
 
-    The sliders set the shoulder's gains; the elbow's are in the ratio of `ddlib.experiment`
+    The sliders set the shoulder's gains; the elbow's are in the ratio of `ddlib.experiments.setups`
     (its integral gain in that of the proportional gains). The arm is rigid, with viscous
     friction and exact sensors; feedforward uses the rigid arm as its model, without friction.
     Margins are those of the sampled loop at the stretched arm, cut open at one joint's torque

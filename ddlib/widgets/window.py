@@ -7,12 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from ddlib._check import finite_array
-from ddlib.network import TorqueModel
-from ddlib.simulate import LOG_STEP, Recording
+from ddlib.learning import TorqueModel, sliding_windows
+from ddlib.simulation import LOG_STEP
+from ddlib.simulation.simulate import Recording
 from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
 from ddlib.widgets.parameters import Choice
-from ddlib.windows import sliding_windows
 
 
 class SlidingWindow(CurveWidget):

@@ -1,0 +1,216 @@
+"""What weights respond to: not their shape, but what their output follows along a recording.
+
+The shape of a filter says what it *could* see (`ddlib.analysis.filters`). What it does see depends on the
+motion, too: a small constant times a large position can outweigh a pure parabola times a small
+acceleration. Here the output itself is compared with true positions, velocities, accelerations.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, number
+from ddlib.analysis.filters import CLASSES, DERIVATIVES, classify
+from ddlib.learning import TorqueModel
+from ddlib.simulation import LOG_STEP
+
+QUANTITIES = DERIVATIVES[:3]
+"""What outputs are compared with: position, velocity, acceleration."""
+
+LAYERS = {"hidden": "hidden_weights", "direct": "skip_weights"}
+"""Attributes of `ddlib.learning.network.Weights` that hold filters, by the name of their layer."""
+
+
+def explained(target, *by) -> float:
+    """Share of the variance of a signal that others explain, linearly with a constant.
+
+    Parameters
+    ----------
+    target : array_like, shape (cases,)
+    *by : array_like, shape (cases,)
+        One or more other signals.
+
+    Returns
+    -------
+    float
+        The coefficient of determination, between 0 and 1.
+    """
+    target = finite_array("target", target)
+    signals = [finite_array("by", x) for x in by]
+    if target.ndim != 1 or not signals or any(x.shape != target.shape for x in signals):
+        shapes = [x.shape for x in signals]
+        raise ValueError(
+            f"by must hold signals of the shape of target {target.shape}, got {shapes}"
+        )
+    if target.std() == 0:
+        raise ValueError("target must vary")
+    return float(_explained(target[:, None], np.stack(signals, -1))[0])
+
+
+def _explained(outputs, signals) -> np.ndarray:
+    """The same for several outputs ``(cases, n)`` at once; ``(cases, m)`` signals."""
+    outputs, signals = (x - x.mean(0) for x in (outputs, signals))
+    size = signals.std(0)
+    signals = signals / np.where(size > 0, size, 1)
+    left = outputs - signals @ np.linalg.lstsq(signals, outputs, rcond=None)[0]
+    return np.clip(1 - (left**2).sum(0) / (outputs**2).sum(0), 0, 1)
+
+
+class Responses(NamedTuple):
+    """What the outputs of filters follow, along the last axis by `QUANTITIES`.
+
+    Attributes
+    ----------
+    alone : ndarray, shape (..., 3)
+        Squared correlation with each quantity.
+    unique : ndarray, shape (..., 3)
+        What the three together explain of the output and two without this one do not.
+    together : ndarray, shape (...)
+        What the three together explain.
+    """
+
+    alone: np.ndarray
+    unique: np.ndarray
+    together: np.ndarray
+
+    @property
+    def strongest(self) -> np.ndarray:
+        """Index of the quantity with which the output correlates best, shape (...)."""
+        return self.alone.argmax(-1)
+
+
+def responses(f, windows, states) -> Responses:
+    """What the filters of units follow, each joint's filter by itself.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., joint, width)
+        Weights along the windows of the joints.
+    windows : array_like, shape (cases, joint, width)
+        Positions that the network sees.
+    states : array_like, shape (cases, joint, 3)
+        True position, velocity and acceleration at the windows' centres.
+
+    Returns
+    -------
+    Responses
+        Leading shape ``(..., joint)``.
+
+    Raises
+    ------
+    ValueError
+        If the shapes do not fit.
+    """
+    f, windows = finite_array("f", f), finite_array("windows", windows)
+    states = finite_array("states", states, 3)
+    if windows.ndim != 3 or f.shape[-2:] != windows.shape[-2:]:
+        raise ValueError(
+            f"windows must have shape (cases, joint, width) with the last two of f {f.shape}, "
+            f"got {windows.shape}"
+        )
+    if states.shape != (*windows.shape[:2], 3):
+        raise ValueError(
+            f"states must have shape {(*windows.shape[:2], 3)} like windows, got {states.shape}"
+        )
+    found = []
+    for joint in range(f.shape[-2]):
+        taps = f[..., joint, :].reshape(-1, f.shape[-1])
+        outputs, signals = windows[:, joint] @ taps.T, states[:, joint]
+        alone = np.stack([_explained(outputs, signals[:, [k]]) for k in range(3)], -1)
+        together = _explained(outputs, signals)
+        others = ([1, 2], [0, 2], [0, 1])
+        without = np.stack([_explained(outputs, signals[:, two]) for two in others], -1)
+        found.append((alone, np.clip(together[:, None] - without, 0, 1), together))
+    lead = f.shape[:-2]
+    return Responses(
+        *(
+            np.stack([x.reshape(*lead, *x.shape[1:]) for x in joints], len(lead))
+            for joints in zip(*found)
+        )
+    )
+
+
+def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
+    """Filter that a whole network amounts to: the gradient of its torques, averaged over cases.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        One network or an ensemble.
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad.
+
+    Returns
+    -------
+    ndarray, shape (..., output, joint, width)
+        N m/rad.
+    """
+    weights = model.weights
+    hidden, output = weights.activity(model.scaled(windows))
+    hidden, output = hidden * (1 - hidden), output * (1 - output)  # slopes of the sigmoids
+    through = np.einsum("...no,...nh->...oh", output, hidden) / len(windows)
+    direct = output.mean(-2)[..., None, None] * weights.skip_weights
+    indirect = np.einsum(
+        "...oh,...hjw->...ojw", through * weights.output_weights, weights.hidden_weights
+    )
+    return (direct + indirect) * (model.inputs.gain[:, None] / model.outputs.gain[:, None, None])
+
+
+def gains(f, step: float = LOG_STEP) -> np.ndarray:
+    """Gains of filters on position, velocity and acceleration: moments of a Taylor expansion.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Filters, oldest sample first.
+    step : float
+        Sampling period, s.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        In the unit of `f`, times s for velocity and s^2 for acceleration. For the gradient of a
+        torque they are a stiffness (N m/rad), a damping (N m s/rad) and an inertia (kg m^2).
+    """
+    f = finite_array("f", f)
+    number("step", step, 0.0, open_low=True)
+    if f.ndim == 0 or f.shape[-1] % 2 == 0:
+        raise ValueError(f"f must have an odd last axis, got shape {f.shape}")
+    x = step * (np.arange(f.shape[-1]) - f.shape[-1] // 2)
+    return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)
+
+
+def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict:
+    """Names of filters and what they follow, network by network.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        An ensemble.
+    windows, states
+        As in `responses`.
+    step : float
+        Sampling period of the windows, s.
+
+    Returns
+    -------
+    dict
+        For each of `LAYERS` shares of its filters, one for each member: ``"classes"`` by name,
+        ``"follow"`` by the quantity that the output correlates best with; ``"unique"``, medians
+        of the unique shares, ``(members, 3)``. And the whole networks' ``"gains"``,
+        ``(members, output, joint, 3)``.
+    """
+    found: dict = {}
+    for layer, attribute in LAYERS.items():
+        f = getattr(model.weights, attribute)
+        if f.ndim != 4:
+            raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
+        names, heard = classify(f), responses(f, windows, states)
+        found[layer] = {
+            "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
+            "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
+            "unique": np.median(heard.unique, (1, 2)),
+        }
+    return {**found, "gains": gains(mean_gradient(model, windows), step)}

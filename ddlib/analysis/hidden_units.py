@@ -1,0 +1,164 @@
+"""Hidden units at work (section 5.2): saturation, ablation, cancellation, matching.
+
+All functions take the activities of hidden units along some cases, ``(..., cases, hidden)``,
+as `ddlib.learning.network.Weights.activity` gives them; leading axes are networks.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number
+from ddlib.learning import TorqueModel
+from ddlib.metrics import rmss
+
+
+def saturated(activity, margin: float = 0.1) -> np.ndarray:
+    """Share of cases in which each unit is nearly off or nearly on.
+
+    Parameters
+    ----------
+    activity : array_like, shape (..., cases, hidden)
+        Between 0 and 1.
+    margin : float
+        Nearly: below `margin` or above ``1 - margin``.
+
+    Returns
+    -------
+    ndarray, shape (..., hidden)
+    """
+    activity = _activity(activity)
+    number("margin", margin, 0.0, 0.5)
+    return ((activity < margin) | (activity > 1 - margin)).mean(-2)
+
+
+def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
+    """Width of each unit's transition region, in standard deviations of its net input.
+
+    Between activities of `margin` and ``1 - margin`` a sigmoid's net input moves by
+    ``2 ln((1 - margin) / margin)``, whatever the weights; large weights make the net input vary
+    much, so that this width becomes a small part of what the unit sees.
+
+    Parameters
+    ----------
+    net_input : array_like, shape (..., cases, hidden)
+        Weighted sums, bias included: ``logit`` of the activities.
+    margin : float
+        Above 0, below 0.5.
+    """
+    net_input = finite_array("net_input", net_input)
+    number("margin", margin, 0.0, 0.49, open_low=True)
+    return 2 * np.log((1 - margin) / margin) / net_input.std(-2)
+
+
+def net_inputs(model: TorqueModel, windows) -> np.ndarray:
+    """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``.
+
+    Parameters
+    ----------
+    model : TorqueModel
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad.
+    """
+    x, weights = model.scaled(windows), model.weights
+    net = np.einsum("...hjw,njw->...nh", weights.hidden_weights, x)
+    return net + weights.hidden_bias[..., None, :]
+
+
+def ablation(model: TorqueModel, windows, torque, group: int = 1) -> tuple[list, np.ndarray]:
+    """Error of one network when units are held at their mean activity.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        A single network.
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad.
+    torque : array_like, shape (cases, joint)
+        Measured torques, N m.
+    group : int
+        How many units are held at the same time: 1 or 2.
+
+    Returns
+    -------
+    groups : list of tuple
+        The units held.
+    errors : ndarray, shape (groups,)
+        Pooled RMSS of each.
+    """
+    integer("group", group, 1, 2)
+    weights = model.weights
+    if weights.hidden_bias.ndim != 1:
+        raise ValueError(f"model must be a single network, got {weights.hidden_bias.shape[0]}")
+    hidden, output = weights.activity(model.scaled(windows))
+    logit = np.log(output / (1 - output))
+    shift = hidden.mean(0) - hidden
+    groups = list(itertools.combinations(range(hidden.shape[1]), group))
+    errors = []
+    for units in groups:
+        chosen = list(units)
+        held = logit + shift[:, chosen] @ weights.output_weights[:, chosen].T
+        errors.append(rmss(model.outputs.unscale(1 / (1 + np.exp(-held))), torque))
+    return groups, np.array(errors)
+
+
+def cancellation(model: TorqueModel, windows) -> np.ndarray:
+    """How much of the hidden units' influence on each output cancels, ``(..., output)``.
+
+    One minus the standard deviation of their sum over the sum of their standard deviations:
+    0 if all push the same way at the same time, near 1 if they undo each other.
+
+    Parameters
+    ----------
+    model : TorqueModel
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad.
+    """
+    hidden, _ = model.weights.activity(model.scaled(windows))
+    parts = hidden[..., None, :] * model.weights.output_weights[..., None, :, :]
+    return 1 - parts.sum(-1).std(-2) / parts.std(-3).sum(-1)
+
+
+def match(first, second) -> tuple[np.ndarray, np.ndarray]:
+    """Pair the units of two networks by what they do on the same cases.
+
+    The pairs maximise the sum of absolute correlations (Hungarian algorithm): a unit and its
+    mirror image, which is on when the other is off, serve the network alike.
+
+    Parameters
+    ----------
+    first, second : array_like, shape (cases, hidden)
+        Activities of two networks.
+
+    Returns
+    -------
+    partner : ndarray of int, shape (hidden,)
+        Unit of `second` for each one of `first`.
+    correlation : ndarray, shape (hidden,)
+        Absolute correlation of each pair; 0 for units that never change.
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    first, second = _activity(first), _activity(second)
+    if first.ndim != 2 or first.shape != second.shape:
+        raise ValueError(
+            "first and second must both have shape (cases, hidden), "
+            f"got {first.shape} and {second.shape}"
+        )
+    a, b = (x - x.mean(0) for x in (first, second))
+    size = np.outer(np.linalg.norm(a, axis=0), np.linalg.norm(b, axis=0))
+    alike = np.abs(np.divide(a.T @ b, size, out=np.zeros_like(size), where=size > 1e-12))
+    rows, partner = linear_sum_assignment(-alike)
+    return partner, alike[rows, partner]
+
+
+def _activity(activity) -> np.ndarray:
+    activity = finite_array("activity", activity)
+    if activity.ndim < 2 or activity.min() < 0 or activity.max() > 1:
+        raise ValueError(
+            "activity must have shape (..., cases, hidden) and lie between 0 and 1, got shape "
+            f"{activity.shape}"
+        )
+    return activity

@@ -1,0 +1,158 @@
+"""What a network of states responds to (section 6): which inputs, and which ranges of them.
+
+A state has six numbers, position, velocity and acceleration of each joint. They are the last
+two axes, ``(joint, 3)``, everywhere here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number
+from ddlib.learning import TorqueModel, Weights
+from ddlib.metrics import rmss
+
+INPUTS = ("q1", "v1", "a1", "q2", "v2", "a2")
+"""Names of the six inputs in their order: shoulder, then elbow."""
+
+
+def input_shares(weights: Weights) -> np.ndarray:
+    """Share of each input in the variance of each hidden unit's net input.
+
+    The squared weight over the sum of the squared weights: this holds for inputs that vary
+    independently and equally much, as in a cube of random states.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network or an ensemble.
+
+    Returns
+    -------
+    ndarray, shape (..., hidden, joint, width)
+        Adds up to 1 over the last two axes.
+
+    Raises
+    ------
+    ValueError
+        If all weights of a unit are zero or one is not finite.
+    """
+    square = finite_array("weights.hidden_weights", weights.hidden_weights) ** 2
+    total = square.sum((-2, -1), keepdims=True)
+    if not (total > 0).all():
+        raise ValueError("weights must have an input weight other than zero for each hidden unit")
+    return square / total
+
+
+def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
+    """Length of each unit's transition region along each input, the others held still.
+
+    A unit's activity goes from `margin` to ``1 - margin`` while an input of weight w moves by
+    ``2 ln((1 - margin) / margin) / |w|``. Inputs are scaled to 0..1, so 1 is the whole range of
+    the training set. Longer than 1: the unit responds all along the input's range, and to no
+    part of it in particular.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network or an ensemble.
+    margin : float
+        Above 0, below 0.5.
+
+    Returns
+    -------
+    ndarray, shape (..., hidden, joint, width)
+        Infinite for a weight of zero.
+    """
+    number("margin", margin, 0.0, 0.49, open_low=True)
+    size = np.abs(finite_array("weights.hidden_weights", weights.hidden_weights))
+    with np.errstate(divide="ignore"):
+        return 2 * np.log((1 - margin) / margin) / size
+
+
+def transition_centre(model: TorqueModel) -> np.ndarray:
+    """Value of each input at which a hidden unit's activity is one half, the others at zero.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        One network or an ensemble.
+
+    Returns
+    -------
+    ndarray, shape (..., hidden, joint, width)
+        In the input's own unit; far outside its range for a unit that hardly responds to it.
+    """
+    weights = model.weights.hidden_weights
+    zero = model.scaled(np.zeros((1, *weights.shape[-2:])))[0]
+    net = np.einsum("...hjw,jw->...h", weights, zero) + model.weights.hidden_bias
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return -net[..., None, None] / (weights * model.inputs.gain[:, None])
+
+
+def responses(model: TorqueModel, values, centre=None) -> np.ndarray:
+    """Activities of the hidden units while one input moves and the others stay.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        One network or an ensemble.
+    values : array_like, shape (points,)
+        What the moving input passes through, in its own unit.
+    centre : array_like, shape (joint, width), optional
+        The state at which the other inputs stay; default: all zero.
+
+    Returns
+    -------
+    ndarray, shape (..., joint, width, points, hidden)
+    """
+    values = finite_array("values", values)
+    shape = model.weights.hidden_weights.shape[-2:]
+    centre = np.zeros(shape) if centre is None else finite_array("centre", centre, shape[1])
+    if values.ndim != 1 or centre.shape != shape:
+        raise ValueError(
+            f"values must have shape (points,) and centre {shape}, "
+            f"got {values.shape} and {centre.shape}"
+        )
+    states = np.tile(centre, (*shape, values.size, 1, 1))
+    for joint, place in np.ndindex(*shape):
+        states[joint, place, :, joint, place] = values
+    hidden = model.weights.activity(model.scaled(states.reshape(-1, *shape)))[0]
+    return hidden.reshape(*hidden.shape[:-2], *shape, values.size, hidden.shape[-1])
+
+
+def shuffled(
+    predict: Callable[[np.ndarray], np.ndarray], states, scale, seed: int = 0
+) -> np.ndarray:
+    """How much the torque changes when one input is shuffled among the states.
+
+    Parameters
+    ----------
+    predict : callable
+        States ``(cases, joint, width)`` to torques ``(..., cases, joint)``, N m: a network's
+        ``torque``, or the analytic model.
+    states : array_like, shape (cases, joint, width)
+    scale : array_like, shape (joint,)
+        Standard deviations by which the change is divided, N m.
+    seed : int
+        Seed of the shuffling.
+
+    Returns
+    -------
+    ndarray, shape (joint, width, ...)
+        RMSS of the change for each input; 0 if it is ignored.
+    """
+    states = finite_array("states", states)
+    if states.ndim != 3:
+        raise ValueError(f"states must have shape (cases, joint, width), got {states.shape}")
+    before = predict(states)
+    rng = np.random.default_rng(integer("seed", seed, 0))
+    order = rng.permutation(len(states))
+    changes = []
+    for joint, place in np.ndindex(*states.shape[1:]):
+        other = states.copy()
+        other[:, joint, place] = states[order, joint, place]
+        changes.append(rmss(predict(other), before, scale=scale))
+    return np.reshape(changes, (*states.shape[1:], *np.shape(changes[0])))

@@ -1,0 +1,36 @@
+"""Controllers of the joints, and the linear analysis of their loops."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "controllers": [
+            "ComputedTorque",
+            "ControlLaw",
+            "Controller",
+            "Feedforward",
+            "PID",
+            "pd",
+            "proportional",
+        ],
+        "linear": [
+            "Margins",
+            "closed_loop",
+            "loop_gain",
+            "margins",
+            "opened_loop",
+            "plant",
+            "proportional_limit",
+        ],
+        "delays": ["late_poles"],
+        "velocity": [
+            "EstimatedVelocity",
+            "difference",
+            "end_slope",
+            "lag",
+            "noise_gain",
+            "stacked",
+        ],
+    },
+)

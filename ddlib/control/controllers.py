@@ -1,0 +1,158 @@
+"""Joint controllers: proportional, PD, PID, and off-line feedforward (paper, section 1.1).
+
+A controller is a frozen description. ``start(reference, step)`` gives the control
+law for one run (or a batch of runs): a function ``law(k, q, qd)`` called once a
+control period with the sample number and the *measured* state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ddlib._check import finite_array, non_negative, number
+from ddlib.dynamics import Arm
+from ddlib.trajectories import Trajectory
+
+ControlLaw = Callable[[int, np.ndarray, np.ndarray], np.ndarray]
+
+
+class Controller(Protocol):
+    """Anything that can start a control law."""
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+
+
+@dataclass(frozen=True)
+class PID:
+    """Independent PID control of each joint.
+
+    ``tau = kp e + ki integral(e) + kd de/dt`` with ``e = q_ref - q``. The derivative
+    part uses the reference velocity and the measured velocity.
+
+    Parameters
+    ----------
+    kp : array_like, shape (2,) or (runs, 2)
+        Proportional gain, N m/rad.
+    ki : array_like
+        Integral gain, N m/(rad s).
+    kd : array_like
+        Derivative gain, N m s/rad.
+    integral_limit : float
+        Largest magnitude of the integral's torque, N m (anti wind-up).
+
+    Raises
+    ------
+    ValueError
+        If a gain is negative, not finite or not one per joint.
+    """
+
+    kp: tuple[float, float]
+    ki: tuple[float, float] = (0.0, 0.0)
+    kd: tuple[float, float] = (0.0, 0.0)
+    integral_limit: float = 1e6
+
+    def __post_init__(self):
+        for name in ("kp", "ki", "kd"):
+            non_negative(name, getattr(self, name), 2)
+        number("integral_limit", self.integral_limit, 0.0)
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        kp, ki, kd = (np.asarray(g, dtype=float) for g in (self.kp, self.ki, self.kd))
+        integral = np.zeros(())
+
+        def law(k, q, qd):
+            nonlocal integral
+            error = reference.q[..., k, :] - q
+            tau = kp * error
+            if ki.any():
+                integral = integral + ki * error * step
+                integral = np.clip(integral, -self.integral_limit, self.integral_limit)
+                tau = tau + integral
+            if kd.any():
+                tau = tau + kd * (reference.qd[..., k, :] - qd)
+            return tau
+
+        return law
+
+
+def proportional(kp) -> PID:
+    """Proportional control: ``tau = kp (q_ref - q)``, the paper's controller (section 4).
+
+    Parameters
+    ----------
+    kp : array_like, shape (2,) or (runs, 2)
+        Gain in N m/rad per joint.
+    """
+    return PID(kp)
+
+
+def pd(kp, kd) -> PID:
+    """Proportional-derivative control: gains `kp` in N m/rad, `kd` in N m s/rad per joint."""
+    return PID(kp, kd=kd)
+
+
+@dataclass(frozen=True)
+class Feedforward:
+    """Off-line inverse dynamics of the reference, added to a feedback law (Figure 2-1).
+
+    Parameters
+    ----------
+    model : callable
+        ``model(q, qd, qdd) -> tau`` over arrays ``(..., 2)``: the box marked "inverse
+        arm". An `Arm` is accepted too; its `inverse_dynamics` is used.
+    feedback : Controller
+        Corrects what the model gets wrong.
+    """
+
+    model: Callable | Arm
+    feedback: Controller
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        model = self.model.inverse_dynamics if isinstance(self.model, Arm) else self.model
+        torque = finite_array("model(q, qd, qdd)", model(*reference), 2)
+        samples = reference.q.shape[-2]
+        if torque.ndim < 2 or torque.shape[-2] != samples:
+            raise ValueError(
+                f"model(q, qd, qdd) must return shape (..., {samples}, 2), got {torque.shape}"
+            )
+        feedback = self.feedback.start(reference, step)
+
+        def law(k, q, qd):
+            return torque[..., k, :] + feedback(k, q, qd)
+
+        return law
+
+
+@dataclass(frozen=True)
+class ComputedTorque:
+    """Feedback linearisation: the model is evaluated at the *measured* state.
+
+    ``tau = M(q) (qdd_ref + kd (qd_ref - qd) + kp (q_ref - q)) + C(q, qd) qd + g(q)``
+    with gains in 1/s^2 and 1/s, the same closed-loop dynamics for every joint.
+    """
+
+    arm: Arm
+    kp: tuple[float, float]
+    kd: tuple[float, float]
+
+    def __post_init__(self):
+        for name in ("kp", "kd"):
+            non_negative(name, getattr(self, name), 2)
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        kp, kd = np.asarray(self.kp), np.asarray(self.kd)
+
+        def law(k, q, qd):
+            error, error_rate = reference.q[..., k, :] - q, reference.qd[..., k, :] - qd
+            wanted = reference.qdd[..., k, :] + kd * error_rate + kp * error
+            return self.arm.inverse_dynamics(q, qd, wanted)
+
+        return law

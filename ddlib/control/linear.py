@@ -1,0 +1,259 @@
+"""Linear loops around a joint or an arm near one posture, as python-control systems.
+
+Joints obey ``M qdd + F qd + K q = tau`` with a constant inertia ``M`` (a number, or a mass
+matrix), viscous friction ``F`` and, where gravity pulls, its stiffness ``K``. The loops are
+those of `ddlib.control.controllers.PID`: position errors against a reference at rest, velocity of the
+reference zero.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import control
+import numpy as np
+
+from ddlib._check import finite_array, integer, non_negative, number
+
+
+def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
+    """Joints that obey ``inertia qdd + viscous qd + stiffness q = tau``, torques in.
+
+    Parameters
+    ----------
+    inertia : float or array_like, shape (joint, joint)
+        Inertia of one joint or mass matrix of several, kg m^2.
+    viscous : float or array_like, shape (joint,)
+        Viscous friction, N m s/rad.
+    stiffness : float or array_like, shape (joint, joint)
+        What gravity adds to a joint's torque when it leaves its posture, N m/rad; negative
+        where the arm would fall over.
+
+    Returns
+    -------
+    control.StateSpace
+        States and outputs: the angles (rad) from the posture, then the velocities (rad/s).
+
+    Raises
+    ------
+    ValueError
+        If the inertia is not symmetric positive definite or the shapes do not fit.
+    """
+    inertia = np.atleast_2d(finite_array("inertia", inertia))
+    joints = len(inertia)
+    if inertia.shape != (joints, joints) or not np.allclose(inertia, inertia.T):
+        raise ValueError(f"inertia must be a number or a symmetric matrix, got {inertia.tolist()}")
+    if np.linalg.eigvalsh(inertia).min() <= 0:
+        raise ValueError(f"inertia must be positive definite, got {inertia.tolist()}")
+    viscous = np.diag(_per_joint("viscous", viscous, joints))
+    zero, one = np.zeros((joints, joints)), np.eye(joints)
+    stiffness = finite_array("stiffness", stiffness)
+    if stiffness.shape != zero.shape and (stiffness.ndim or (joints > 1 and stiffness != 0)):
+        raise ValueError(f"stiffness must have shape {zero.shape}, got {stiffness.shape}")
+    back = (-np.linalg.solve(inertia, x) for x in (zero + stiffness, viscous))
+    A = np.block([[zero, one], [*back]])
+    B = np.vstack([zero, np.linalg.inv(inertia)])
+    return control.ss(A, B, np.eye(2 * joints), np.zeros((2 * joints, joints)))
+
+
+def loop_gain(inertia, viscous, kp, ki=0.0, kd=0.0) -> control.TransferFunction:
+    """Open loop of one joint under PID control, from position error to position.
+
+    Parameters
+    ----------
+    inertia, viscous : float
+        kg m^2 and N m s/rad.
+    kp, ki, kd : float
+        Gains in N m/rad, N m/(rad s) and N m s/rad.
+    """
+    number("inertia", inertia, 0.0, open_low=True)
+    for name, value in (("viscous", viscous), ("kp", kp), ("ki", ki), ("kd", kd)):
+        number(name, value, 0.0)
+    numerator, denominator = [kd, kp, ki], [inertia, viscous, 0.0, 0.0]
+    if ki == 0:  # without an integral the pole at zero would only cancel
+        numerator, denominator = numerator[:-1], denominator[:-1]
+    return control.tf(numerator, denominator)
+
+
+def closed_loop(
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0
+) -> control.StateSpace:
+    """The PID loop around joints: reference angles and disturbance torques in, angles out.
+
+    Parameters
+    ----------
+    joints : control.StateSpace
+        From `plant`.
+    kp, ki, kd : float or array_like, shape (joint,)
+        Gains of `ddlib.control.controllers.PID`.
+    period : float, optional
+        Control period in s: the torque is computed once a period and held. The loop is
+        then a discrete-time system, exact at the samples. Default: continuous control.
+    delay : int
+        Whole periods between a reading and the moment its torque acts; sampled loops only.
+
+    Returns
+    -------
+    control.StateSpace
+        Inputs: reference angles (rad), then torques (N m) that disturb the joints.
+    """
+    n = joints.ninputs
+    A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
+    B = np.hstack([command @ reference[0] + reference[1], torque])
+    C = np.hstack([np.eye(n), np.zeros((n, len(A) - n))])
+    time = 0 if period is None else period
+    return control.ss(A + command @ law, B, C, np.zeros((n, 2 * n)), time)
+
+
+def opened_loop(
+    joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0, *, joint=0
+) -> control.StateSpace:
+    """The PID loop cut open where one joint's torque is commanded, the other loops closed.
+
+    What goes in is that torque; what comes out is the torque with which the controller
+    answers, its sign reversed. For one joint alone this is the loop gain ``L`` of
+    `loop_gain`, and of its sampled counterpart.
+
+    Parameters
+    ----------
+    joints, kp, ki, kd, period, delay
+        As in `closed_loop`.
+    joint : int
+        Number of the joint whose loop is open.
+    """
+    number("joint", joint, 0, joints.ninputs - 1)
+    A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
+    others = [k for k in range(joints.ninputs) if k != joint]
+    A = A + command[:, others] @ law[others]
+    time = 0 if period is None else period
+    return control.ss(A, command[:, [joint]], -law[[joint]], 0, time)
+
+
+def _parts(joints, kp, ki, kd, period, delay):
+    """The loop in pieces.
+
+    State ``x``: angles, velocities, integrals (only if there are any), waiting torques.
+    With the commanded torque ``v = law x + reference[0] r``,
+    ``x' = A x + command v + reference[1] r + torque d``.
+    """
+    n = joints.ninputs
+    kp, ki, kd = (np.diag(_per_joint(k, v, n)) for k, v in (("kp", kp), ("ki", ki), ("kd", kd)))
+    integer("delay", delay, 0)
+    if period is None and delay:
+        raise ValueError(f"delay must be 0 in continuous control, got {delay} periods")
+    zero, one = np.zeros((n, n)), np.eye(n)
+    A, B, step, at_once, hold = joints.A, joints.B, ki, zero, zero
+    if period is not None:
+        number("period", period, 0.0, open_low=True)
+        sampled = control.sample_system(joints, period, "zoh")
+        # the law adds the newest error to the integral before using it
+        A, B, step, at_once, hold = sampled.A, sampled.B, ki * period, ki * period, one
+    law, size, above = np.hstack([-(kp + at_once), -kd]), 2 * n, n if ki.any() else 0
+    integral, waiting = slice(size, size + above), size + above
+    total = waiting + n * delay
+    F, command, torque, of_law, reference = (
+        np.zeros(shape) for shape in ((total, total), *[(total, n)] * 2, (n, total), (total, n))
+    )
+    F[:size, :size], torque[:size], of_law[:, :size] = A, B, law
+    if above:
+        F[integral, :n], F[integral, integral] = -step, hold
+        of_law[:, integral], reference[integral] = one, step
+    if delay:  # v enters the queue at its end and acts when it has reached the front
+        F[:size, waiting : waiting + n] = B
+        F[waiting : total - n, waiting + n :] = np.eye(total - n - waiting)
+        command[total - n :] = one
+    else:
+        command[:size] = B
+    return F, command, torque, of_law, (kp + at_once, reference)
+
+
+class Margins(NamedTuple):
+    """How far a stable loop is from instability.
+
+    Attributes
+    ----------
+    phase_deg : float
+        Angle in degrees that the loop may lose at its crossover.
+    crossover : float
+        Frequency in rad/s at which the loop gain is 1.
+    most, least : float
+        Factors by which the gain may rise and to which it may fall (infinite and 0 if
+        there is no such limit).
+    """
+
+    phase_deg: float
+    crossover: float
+    most: float
+    least: float
+
+
+def margins(loop) -> Margins:
+    """Gain and phase margins of an open loop, by python-control.
+
+    A sampled loop is first mapped to the w plane, ``z = (1 + w T / 2) / (1 - w T / 2)``:
+    the unit circle becomes the imaginary axis, on which the polynomials of python-control
+    are well conditioned; its frequencies are mapped back.
+
+    Parameters
+    ----------
+    loop : control.StateSpace or control.TransferFunction
+        From `opened_loop` or `loop_gain`; one input, one output.
+
+    Raises
+    ------
+    ValueError
+        If the loop gain never is 1.
+    """
+    period = loop.dt or 0.0
+    if period:
+        state = np.eye(loop.nstates)
+        inverse = np.linalg.inv(loop.A + state)
+        A = 2 / period * inverse @ (loop.A - state)
+        B = 2 / period * inverse @ loop.B
+        C = 2 * loop.C @ inverse
+        loop = control.ss(A, B, C, loop.D - loop.C @ inverse @ loop.B)
+    gains, phases, _, _, crossovers, _ = control.stability_margins(loop, returnall=True)
+    if not len(phases):
+        raise ValueError("loop must have a gain of 1 at some frequency, got none")
+    if period and loop.D[0, 0] < 0:  # w of infinity, the highest frequency samples can show
+        gains = np.append(gains, -1 / loop.D[0, 0])
+    k = np.argmin(np.abs(phases))
+    crossover = crossovers[k]
+    if period:
+        crossover = 2 / period * np.arctan(crossover * period / 2)
+    most, least = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
+    return Margins(float(phases[k]), float(crossover), float(most), float(least))
+
+
+def proportional_limit(inertia, viscous, period) -> float:
+    """Largest gain at which sampled proportional control of one joint is stable, N m/rad.
+
+    With ``x = viscous period / inertia`` the poles of the sampled loop have the product
+    ``exp(-x) + kp (...)``; it reaches 1 at the value returned, nearly ``2 viscous / period``.
+    A very long period loses stability in another way (a real pole at -1); it is covered too.
+
+    Parameters
+    ----------
+    inertia, viscous : float
+        kg m^2 and N m s/rad.
+    period : float
+        Control period, s.
+    """
+    number("inertia", inertia, 0.0, open_low=True)
+    number("viscous", viscous, 0.0)
+    number("period", period, 0.0, open_low=True)
+    x = viscous * period / inertia
+    if x < 1e-4:  # series: the closed form would lose its digits
+        return 2 * viscous / period * (1 + x / 6)
+    p = np.exp(-x)
+    swing = (1 - p) / ((1 - p) / x - p)
+    flip = 2 * (1 + p) / (1 + p - 2 * (1 - p) / x)
+    return viscous / period * min(swing, flip)
+
+
+def _per_joint(name, value, joints) -> np.ndarray:
+    """A number or one value per joint as an array, refused if negative."""
+    value = non_negative(name, value)
+    if value.ndim > 1 or value.size not in (1, joints):
+        raise ValueError(f"{name} must be a number or have {joints} values, got {value.tolist()}")
+    return np.broadcast_to(value, joints)

@@ -1,0 +1,121 @@
+"""Velocity from position readings, up to the newest one: noise against lag.
+
+A causal estimate is a row of weights, oldest reading first, like the filters of
+`ddlib.analysis.filters`, which look ahead as well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number
+from ddlib.control.controllers import ControlLaw, Controller
+from ddlib.trajectories import Trajectory
+
+
+def difference(periods: int, step: float) -> np.ndarray:
+    """Weights of ``(q(t) - q(t - periods step)) / (periods step)``, shape ``(periods + 1,)``.
+
+    Parameters
+    ----------
+    periods : int
+        Sampling periods between the two readings, 1 or more.
+    step : float
+        Sampling period, s.
+    """
+    span = integer("periods", periods, 1) * number("step", step, 0.0, open_low=True)
+    weights = np.zeros(periods + 1)
+    weights[[0, -1]] = -1 / span, 1 / span
+    return weights
+
+
+def end_slope(width: int, degree: int, step: float) -> np.ndarray:
+    """Weights of the slope, at the newest reading, of a least-squares polynomial.
+
+    A line (degree 1) gives the velocity half a window ago; a parabola has no lag, and pays
+    for it in noise.
+
+    Parameters
+    ----------
+    width : int
+        Readings, more than `degree`.
+    degree : int
+        Degree of the polynomial, 1 or more.
+    step : float
+        Sampling period, s.
+
+    Returns
+    -------
+    ndarray, shape (width,)
+    """
+    integer("degree", degree, 1)
+    integer("width", width, degree + 1)
+    number("step", step, 0.0, open_low=True)
+    x = np.arange(1 - width, 1) / width  # in windows, for the sake of conditioning
+    return np.linalg.pinv(np.vander(x, degree + 1, increasing=True))[1] / (width * step)
+
+
+def stacked(filters) -> np.ndarray:
+    """Several weight rows as one array ``(filters, width)``, older readings weighted 0."""
+    rows = [finite_array("filters", row) for row in filters]
+    width = max(map(len, rows))
+    return np.stack([np.pad(row, (width - len(row), 0)) for row in rows])
+
+
+def noise_gain(weights) -> np.ndarray:
+    """Noise of the estimate per white noise of the readings, 1/s, shape ``(...)``."""
+    return np.linalg.norm(finite_array("weights", weights), axis=-1)
+
+
+def lag(weights, step: float) -> np.ndarray:
+    """How late an estimate is, s: the true velocity of that long ago, to first order.
+
+    Parameters
+    ----------
+    weights : array_like, shape (..., width)
+        Oldest reading first.
+    step : float
+        Sampling period, s.
+    """
+    weights = finite_array("weights", weights)
+    age = np.arange(weights.shape[-1])[::-1] * number("step", step, 0.0, open_low=True)
+    return weights @ age**2 / -2
+
+
+@dataclass(frozen=True)
+class EstimatedVelocity:
+    """A controller that gets its velocity from readings, not from a tachometer.
+
+    Parameters
+    ----------
+    feedback : Controller
+        What the estimated velocity is for.
+    weights : array_like, shape (width,) or (runs, width)
+        Weights of the estimate, oldest reading first; before the first reading the arm rests.
+    """
+
+    feedback: Controller
+    weights: tuple
+
+    def __post_init__(self):
+        if finite_array("weights", self.weights).ndim == 0:
+            raise ValueError(f"weights must have shape (..., width), got {self.weights}")
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        weights = np.asarray(self.weights, dtype=float)[..., None]
+        law, past = self.feedback.start(reference, step), None
+
+        def estimated(k, q, qd):
+            nonlocal past
+            if past is None:
+                past = np.repeat(q[..., None, :], weights.shape[-2], -2)
+            elif past.shape[:-2] != q.shape[:-1]:  # runs may part with the first torque
+                past = np.broadcast_to(past, (*q.shape[:-1], *past.shape[-2:])).copy()
+            past[..., :-1, :] = past[..., 1:, :]
+            past[..., -1, :] = q
+            return law(k, q, (weights * past).sum(-2))
+
+        return estimated

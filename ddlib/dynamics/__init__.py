@@ -1,0 +1,29 @@
+"""The rigid body: arms, their equations of motion, and what computing them costs."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "arm": ["Arm", "CMU_DD_ARM_II", "IMI_ARM", "Link", "REYES_KELLY_ARM", "STANDARD_GRAVITY"],
+        "serial": ["PUMA_560", "PUMA_560_GEARS", "PUMA_560_ROTORS", "SerialArm", "SpatialLink"],
+        "formulations": [
+            "Constants",
+            "LinkConstants",
+            "lagrange_euler",
+            "newton_euler",
+            "recursive_lagrange",
+        ],
+        "derivation": ["Derivation", "MAX_LINKS", "derive"],
+        "counting": ["Counted", "Operations", "Tape"],
+        "costs": [
+            "KNOWLEDGE",
+            "PUBLISHED",
+            "PUBLISHED_CUSTOMISED",
+            "Published",
+            "count",
+            "count_closed_form",
+            "table",
+        ],
+    },
+)

@@ -1,0 +1,323 @@
+"""Rigid-body dynamics of a two-link arm in Lagrange-Euler form.
+
+The equations of motion are ``M(q) qdd + C(q, qd) qd + g(q) = tau``. For two
+links they need only five constants: the base inertial parameters `a`, `b`, `d`
+and, in a vertical plane, two gravity moments. Everything that is not rigid-body
+mechanics (friction, quantisation, ...) lives in `ddlib.effects.real_arm`.
+
+Arrays are ``(..., joint)`` with joint 0 the shoulder and joint 1 the elbow;
+angles are in rad and, for arms with gravity, counted from hanging straight down.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+import numpy as np
+
+from ddlib._check import finite_array, non_negative, number
+
+STANDARD_GRAVITY = 9.81
+"""Acceleration of free fall, m/s^2."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid link: mass (kg), length (m), centre of mass (m from its joint), inertia (kg m^2).
+
+    The inertia is about the centre of mass, about an axis parallel to the joint's.
+    """
+
+    mass: float
+    length: float
+    com: float
+    inertia: float
+
+    def __post_init__(self):
+        for name in ("mass", "length", "com", "inertia"):
+            number(name, getattr(self, name), 0.0)
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A planar two-link arm, reduced to its base parameters.
+
+    Parameters
+    ----------
+    name : str
+        What the arm is called in tables and figures.
+    a, b, d : float
+        Base inertial parameters in kg m^2, so that ``M11 = a + 2 b cos q2``,
+        ``M12 = d + b cos q2``, ``M22 = d``. The mass matrix is positive definite
+        for every elbow angle when ``d > 0`` and ``a d > d^2 + b^2``.
+    lengths : tuple of float
+        Link lengths in m (for drawing and kinematics only).
+    gravity_moments : tuple of float
+        ``((m1 lc1 + m2 l1) g, m2 lc2 g)`` in N m; zero for a horizontal arm.
+    provenance : mapping
+        For each quantity, where its value comes from.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not finite or the mass matrix is not positive definite.
+    """
+
+    name: str
+    a: float
+    b: float
+    d: float
+    lengths: tuple[float, float]
+    gravity_moments: tuple[float, float] = (0.0, 0.0)
+    provenance: Mapping[str, str] = field(default_factory=dict, compare=False, hash=False)
+
+    def __post_init__(self):
+        for name in ("a", "b", "d"):
+            number(name, getattr(self, name))
+        for name, check in (("lengths", non_negative), ("gravity_moments", finite_array)):
+            pair = check(name, getattr(self, name), 2)
+            if pair.ndim != 1:
+                raise ValueError(f"{name} must have shape (2,), got {pair.shape}")
+            object.__setattr__(self, name, tuple(pair.tolist()))
+        if not (self.d > 0 and self.a * self.d > self.d**2 + self.b**2):
+            raise ValueError(
+                "a, b, d must make the mass matrix positive definite "
+                f"(d > 0 and a d > d^2 + b^2), got a={self.a}, b={self.b}, d={self.d}"
+            )
+        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
+
+    def __reduce__(self):
+        # a MappingProxyType does not pickle, its dict does
+        values = (self.name, self.a, self.b, self.d, self.lengths, self.gravity_moments)
+        return (Arm, (*values, dict(self.provenance)))
+
+    @classmethod
+    def from_links(cls, name, link1: Link, link2: Link, gravity=0.0, provenance=()) -> Arm:
+        """Arm with two given links.
+
+        The base parameters are ``a = I1 + m1 lc1^2 + m2 l1^2 + d``,
+        ``b = m2 l1 lc2`` and ``d = I2 + m2 lc2^2``.
+
+        Parameters
+        ----------
+        name : str
+            What the arm is called in tables and figures.
+        link1, link2 : Link
+            Upper arm and forearm.
+        gravity : float
+            Acceleration of free fall, m/s^2; 0 for a horizontal plane.
+        provenance : mapping
+            For each quantity, where its value comes from.
+        """
+        d = link2.inertia + link2.mass * link2.com**2
+        a = link1.inertia + link1.mass * link1.com**2 + link2.mass * link1.length**2 + d
+        b = link2.mass * link1.length * link2.com
+        moments = (
+            gravity * (link1.mass * link1.com + link2.mass * link1.length),
+            gravity * link2.mass * link2.com,
+        )
+        return cls(name, a, b, d, (link1.length, link2.length), moments, dict(provenance))
+
+    def mass_matrix(self, q) -> np.ndarray:
+        """Mass matrix M(q) in kg m^2, shape ``(..., 2, 2)``, symmetric positive definite.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., 2)
+            Joint angles, rad.
+        """
+        c2 = np.cos(finite_array("q", q, 2)[..., 1])
+        m12 = self.d + self.b * c2
+        m11 = self.a + 2 * self.b * c2
+        m22 = np.full_like(c2, self.d)
+        return np.stack([np.stack([m11, m12], -1), np.stack([m12, m22], -1)], -2)
+
+    def coriolis_matrix(self, q, qd) -> np.ndarray:
+        """Coriolis and centrifugal matrix C(q, qd), shape ``(..., 2, 2)``, N m s/rad.
+
+        Built from Christoffel symbols, so that ``dM/dt - 2 C`` is skew-symmetric.
+
+        Parameters
+        ----------
+        q, qd : array_like, shape (..., 2)
+            Joint angles (rad) and velocities (rad/s).
+        """
+        q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
+        h = self.b * np.sin(q[..., 1])
+        row1 = np.stack([-h * qd[..., 1], -h * (qd[..., 0] + qd[..., 1])], -1)
+        row2 = np.stack([h * qd[..., 0], np.zeros_like(h * qd[..., 0])], -1)
+        return np.stack([row1, row2], -2)
+
+    def gravity(self, q) -> np.ndarray:
+        """Gravity torque g(q) in N m, shape ``(..., 2)``; zero for a horizontal arm.
+
+        Parameters
+        ----------
+        q : array_like, shape (..., 2)
+            Joint angles, rad, from hanging straight down.
+        """
+        return self._gravity(finite_array("q", q, 2))
+
+    def _gravity(self, q) -> np.ndarray:
+        """`gravity` without checks, for the inner loop of a simulation."""
+        g1, g2 = self.gravity_moments
+        elbow = g2 * np.sin(q[..., 0] + q[..., 1])
+        return np.stack([g1 * np.sin(q[..., 0]) + elbow, elbow], -1)
+
+    def inverse_dynamics(self, q, qd, qdd) -> np.ndarray:
+        """Torque that produces acceleration `qdd` in state `q`, `qd` (Lagrange-Euler).
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+
+        Returns
+        -------
+        ndarray, shape (..., 2)
+            Joint torques, N m.
+        """
+        return sum(self.torque_terms(q, qd, qdd).values())
+
+    def torque_terms(self, q, qd, qdd) -> dict[str, np.ndarray]:
+        """The torque of `inverse_dynamics`, split by physical origin.
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+
+        Returns
+        -------
+        dict
+            ``inertial``, ``coupling`` (off-diagonal inertia), ``centrifugal``,
+            ``coriolis`` and ``gravity``, each of shape ``(..., 2)`` in N m.
+        """
+        q, qd, qdd = _state(q, qd, qdd)
+        c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
+        m12 = self.d + self.b * c2
+        v1, v2 = qd[..., 0], qd[..., 1]
+        return {
+            "inertial": np.stack(
+                [(self.a + 2 * self.b * c2) * qdd[..., 0], self.d * qdd[..., 1]], -1
+            ),
+            "coupling": np.stack([m12 * qdd[..., 1], m12 * qdd[..., 0]], -1),
+            "centrifugal": np.stack([-h * v2**2, h * v1**2], -1),
+            "coriolis": np.stack([-2 * h * v1 * v2, np.zeros_like(h * v1)], -1),
+            "gravity": self.gravity(q),
+        }
+
+    def forward_dynamics(self, q, qd, tau) -> np.ndarray:
+        """Acceleration under torque `tau`, shape ``(..., 2)``, rad/s^2.
+
+        Parameters
+        ----------
+        q, qd, tau : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), net joint torques (N m).
+        """
+        q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
+        tau = finite_array("tau", tau, 2)
+        return self._acceleration(q, qd, tau)
+
+    def _acceleration(self, q, qd, tau) -> np.ndarray:
+        """`forward_dynamics` without checks, for the inner loop of a simulation."""
+        c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
+        v1, v2 = qd[..., 0], qd[..., 1]
+        r1 = tau[..., 0] + h * v2 * (2 * v1 + v2)
+        r2 = tau[..., 1] - h * v1 * v1
+        if any(self.gravity_moments):
+            weight = self._gravity(q)
+            r1, r2 = r1 - weight[..., 0], r2 - weight[..., 1]
+        m11, m12 = self.a + 2 * self.b * c2, self.d + self.b * c2
+        determinant = m11 * self.d - m12 * m12
+        numerators = self.d * r1 - m12 * r2, m11 * r2 - m12 * r1
+        qdd = np.empty((2, *np.shape(numerators[0])))  # joint by joint: contiguous over runs
+        for joint, numerator in enumerate(numerators):
+            np.divide(numerator, determinant, out=qdd[joint, ...])
+        return np.moveaxis(qdd, 0, -1)
+
+    def kinetic_energy(self, q, qd) -> np.ndarray:
+        """Kinetic energy ``qd' M(q) qd / 2`` in J, shape ``(...)``."""
+        qd = finite_array("qd", qd, 2)
+        return 0.5 * np.einsum("...i,...ij,...j", qd, self.mass_matrix(q), qd)
+
+    def potential_energy(self, q) -> np.ndarray:
+        """Potential energy in J, zero for a horizontal arm, shape ``(...)``."""
+        q = finite_array("q", q, 2)
+        g1, g2 = self.gravity_moments
+        return -g1 * np.cos(q[..., 0]) - g2 * np.cos(q[..., 0] + q[..., 1])
+
+    @staticmethod
+    def regressor(q, qd, qdd) -> np.ndarray:
+        """Matrix Y with ``tau = Y @ [a, b, d, g1, g2]``, shape ``(..., 2, 5)``, for every arm.
+
+        The torque is linear in the base parameters; this is what identification
+        by least squares rests on (An 1988; Khosla 1986).
+
+        Parameters
+        ----------
+        q, qd, qdd : array_like, shape (..., 2)
+            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+        """
+        q, qd, qdd = _state(q, qd, qdd)
+        c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
+        (v1, v2), (a1, a2) = np.moveaxis(qd, -1, 0), np.moveaxis(qdd, -1, 0)
+        s1, s12, zero = np.sin(q[..., 0]), np.sin(q[..., 0] + q[..., 1]), np.zeros_like(a1 * c2)
+        row1 = [a1 + zero, c2 * (2 * a1 + a2) - s2 * v2 * (2 * v1 + v2), a2 + zero, s1, s12]
+        row2 = [zero, c2 * a1 + s2 * v1**2, a1 + a2, zero, s12]
+        return np.stack([np.stack(row1, -1), np.stack(row2, -1)], -2)
+
+    def forward_kinematics(self, q) -> np.ndarray:
+        """Elbow and hand position in m, shape ``(..., 2, 2)`` as ``(..., point, xy)``.
+
+        A stretched arm with ``q = 0`` lies along the x axis.
+        """
+        q = finite_array("q", q, 2)
+        l1, l2 = self.lengths
+        q12 = q[..., 0] + q[..., 1]
+        elbow = np.stack([l1 * np.cos(q[..., 0]), l1 * np.sin(q[..., 0])], -1)
+        return np.stack([elbow, elbow + np.stack([l2 * np.cos(q12), l2 * np.sin(q12)], -1)], -2)
+
+
+def _state(q, qd, qdd) -> tuple[np.ndarray, ...]:
+    """Checked angles, velocities and accelerations, broadcast against each other."""
+    checked = (finite_array(n, x, 2) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
+    return np.broadcast_arrays(*checked)
+
+
+CMU_DD_ARM_II = Arm.from_links(
+    "CMU DD Arm II (surrogate)",
+    Link(mass=14.0, length=0.50, com=0.22, inertia=0.40),
+    Link(mass=14.0, length=0.40, com=0.09, inertia=0.60),
+    provenance={
+        "two vertical axes": "inferred: the paper's network ignores shoulder position",
+        "masses": "assumed; together they fit the 70 lb that is remembered of the arm",
+        "lengths, centres, inertias": "assumed; link 2 stands for links 2 to 6, locked",
+        "a, b, d": "computed from the assumed links",
+    },
+)
+"""Stand-in for the first two links of the CMU Direct-Drive Arm II; no value is the real one's."""
+
+IMI_ARM = Arm(
+    "IMI direct-drive arm",
+    a=3.473,
+    b=0.242,
+    d=0.193,
+    lengths=(0.36, 0.24),
+    provenance={
+        "a, b, d": "read in public code that simulates this arm (p1, p3, p2)",
+        "lengths": "assumed",
+    },
+)
+"""A planar direct-drive arm; its parameters are those that public simulations of it use."""
+
+REYES_KELLY_ARM = Arm.from_links(
+    "Reyes-Kelly vertical arm",
+    Link(mass=23.902, length=0.45, com=0.091, inertia=1.266),
+    Link(mass=3.880, length=0.45, com=0.048, inertia=0.093),
+    gravity=STANDARD_GRAVITY,
+    provenance={"all": "read in public code that simulates this arm"},
+)
+"""A direct-drive arm that moves in a vertical plane, to show the gravity terms."""

@@ -1,0 +1,236 @@
+"""What Lagrange-Euler leaves out: friction, actuators and sensors as they are.
+
+Each effect is a small frozen object. `Effects` collects them in the order in
+which a signal meets them; leaving one out switches it off. Frictions are written in
+`ddlib.effects.friction`, motors and shafts in `ddlib.effects.actuators`; all can be imported from here.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ddlib._check import integer, non_negative, number
+from ddlib.effects.actuators import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
+from ddlib.effects.friction import (
+    CoulombFriction,
+    StickSlipFriction,
+    StribeckFriction,
+    ViscousFriction,
+)
+
+__all__ = [
+    "CMU_DD_ARM_II_EFFECTS", "IDEAL", "Backlash", "ComputingTime", "CoulombFriction", "DeadZone",
+    "Delay", "Effects", "FlexibleJoint", "Noise", "Quantisation", "Ripple", "Saturation",
+    "StickSlipFriction", "StribeckFriction", "ViscousFriction", "started",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Quantisation:
+    """A reading rounded to the nearest multiple of `step` (in the reading's unit)."""
+
+    step: float
+
+    def __post_init__(self):
+        number("step", self.step, 0.0, open_low=True)
+
+    @classmethod
+    def encoder(cls, bits: int) -> Quantisation:
+        """Absolute encoder with 2**`bits` steps a turn, in rad."""
+        return cls(2 * np.pi / 2 ** integer("bits", bits, 1, 40))
+
+    def apply(self, x, rng=None):
+        """The reading `x`, rounded."""
+        return np.round(np.asarray(x) / self.step) * self.step
+
+
+@dataclass(frozen=True)
+class Noise:
+    """White Gaussian noise of standard deviation `std` (per joint, in the reading's unit)."""
+
+    std: tuple[float, float]
+
+    def __post_init__(self):
+        non_negative("std", self.std, 2)
+
+    def apply(self, x, rng):
+        """The reading `x` with noise drawn from `rng` (a numpy Generator)."""
+        return x + rng.standard_normal(np.shape(x)) * np.asarray(self.std)
+
+
+@dataclass(frozen=True)
+class Delay:
+    """A signal that arrives `periods` samples late (whole control periods, 0 or more)."""
+
+    periods: int
+
+    def __post_init__(self):
+        integer("periods", self.periods, 0)
+
+    def start(self, initial):
+        """The delay of one run: a function ``late(x, rng)``, called once a sample.
+
+        Until its first sample arrives it gives `initial`.
+        """
+        waiting = deque([initial] * self.periods)
+
+        def late(x, rng=None):
+            waiting.append(x)
+            return waiting.popleft()
+
+        return late
+
+
+@dataclass(frozen=True)
+class Backlash:
+    """Play of a gear between joint and encoder: the reading follows when a tooth touches.
+
+    The play operator: with the joint at `x` the reading stays where it is as long as it is
+    within ``gap / 2`` of `x`, and is dragged along otherwise. It does not depend on the
+    speed, only on the turning points that have been passed (Krasnosel'skii & Pokrovskii 1989).
+    It stands for gears whose motor is light and held by its own friction; `FlexibleJoint`
+    has play with the motor's motion. A direct-drive joint has none.
+
+    Parameters
+    ----------
+    gap : array_like, shape (2,) or (..., 2)
+        Whole play, rad per joint, not negative.
+    """
+
+    gap: tuple[float, float]
+
+    def __post_init__(self):
+        non_negative("gap", self.gap, 2)
+
+    def start(self, initial):
+        """The play of one run: a function ``play(x, rng)``, centred on `initial` at first."""
+        half, held = np.asarray(self.gap) / 2, initial
+
+        def play(x, rng=None):
+            nonlocal held
+            held = np.clip(held, x - half, x + half)
+            return held
+
+        return play
+
+
+_METHODS = {
+    "friction": ("torque",),
+    "actuator": ("apply", "start"),
+    "encoder": ("apply", "start"),
+    "torque_sensor": ("apply", "start"),
+    "motor": ("shaft_torque",),
+    "transmission": ("spring_torque",),
+}
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Everything between the rigid-body equations and what is written to the log.
+
+    Parameters
+    ----------
+    friction : tuple of effects with ``torque(qd)``
+        Opposes the motion, inside the plant.
+    actuator : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
+        Between commanded and applied torque.
+    encoder : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
+        Between true and measured position; the controller sees the measured one.
+    torque_sensor : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
+        Between applied and logged torque.
+    motor : tuple of effects with ``shaft_torque(tau, q)``
+        Between applied torque, which is a current, and torque on the shaft, inside the plant.
+    transmission : tuple of one `FlexibleJoint`, or empty
+        Between motor and link, inside the plant.
+    """
+
+    friction: tuple = ()
+    actuator: tuple = ()
+    encoder: tuple = ()
+    torque_sensor: tuple = ()
+    motor: tuple = ()
+    transmission: tuple = ()
+
+    def __post_init__(self):
+        for part, methods in _METHODS.items():
+            effects = getattr(self, part)
+            if not isinstance(effects, tuple) or not all(_fits(e, part) for e in effects):
+                names = " or ".join(f"{m}()" for m in methods)
+                raise TypeError(f"{part} must be a tuple of effects with {names}, got {effects}")
+        if len(self.transmission) > 1:
+            raise ValueError(f"transmission must hold one effect at most, got {self.transmission}")
+
+    @property
+    def computing_time(self) -> float:
+        """Time between reading and torque, s: the sum over the actuator's `ComputingTime`."""
+        return sum(e.seconds for e in self.actuator if isinstance(e, ComputingTime))
+
+    def friction_torque(self, qd) -> np.ndarray:
+        """Sum of all friction torques (N m) at `qd` (rad/s), shape ``(..., joint)``."""
+        torques = [effect.torque(qd) for effect in self.friction]
+        return sum(torques[1:], torques[0]) if torques else np.zeros_like(qd)
+
+    def without(self, *parts: str) -> Effects:
+        """A copy with whole parts switched off.
+
+        Parameters
+        ----------
+        *parts : {"friction", "actuator", "encoder", "torque_sensor", "motor", "transmission"}
+
+        Raises
+        ------
+        ValueError
+            If a part is unknown.
+        """
+        for part in parts:
+            if part not in _METHODS:
+                raise ValueError(f"parts must be among {tuple(_METHODS)}, got {part!r}")
+        return replace(self, **dict.fromkeys(parts, ()))
+
+
+def _fits(effect, part: str) -> bool:
+    """Whether an effect can stand in a part of `Effects`."""
+    if isinstance(effect, ComputingTime) and part != "actuator":
+        return False
+    return any(hasattr(effect, method) for method in _METHODS[part])
+
+
+def started(effects: tuple, initial) -> Callable:
+    """A signal path for one run (or a batch): a function ``path(x, rng)``, once a sample.
+
+    Parameters
+    ----------
+    effects : tuple
+        Effects with ``apply(x, rng)`` or, if they have a memory, ``start(initial)``.
+    initial : ndarray, shape (..., 2)
+        What the memories hold at first.
+    """
+    steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
+
+    def path(x, rng):
+        for step in steps:
+            x = step(x, rng)
+        return x
+
+    return path
+
+
+IDEAL = Effects()
+"""No effect at all: the rigid-body arm with perfect sensors."""
+
+CMU_DD_ARM_II_EFFECTS = Effects(
+    friction=(ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15))),
+    actuator=(Saturation((100.0, 30.0)),),
+    encoder=(Quantisation.encoder(16),),
+    torque_sensor=(Noise((0.163, 0.043)),),
+)
+"""Effects of the surrogate arm: every number is assumed.
+
+The torque noise is 2.4 % of the standard deviation of the torques that
+`ddlib.experiments.setups.STATE_FEEDBACK` records: the share that the training errors of Table 4-1
+leave room for.
+"""

@@ -1,0 +1,67 @@
+"""The ledger's picture: verdicts by section of the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from matplotlib.figure import Figure
+
+from ddlib._check import integer
+from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate
+
+LOOKS = (
+    {"color": COLOURS[2]},
+    {"color": COLOURS[0], "alpha": 0.75},
+    {"color": COLOURS[1]},
+    {"color": COLOURS[3], "alpha": 0.75},
+    {"facecolor": "none", "edgecolor": COLOURS[2], "lw": 1, "hatch": "///"},
+    {"facecolor": "none", "edgecolor": FAINT, "lw": 1},
+)
+"""How a bar's parts look, in the order of the verdicts."""
+
+
+def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
+    """Verdicts by section: one bar each, a part for every verdict with its number.
+
+    Parameters
+    ----------
+    counts : mapping
+        ``{section: {verdict: number}}``, up to six verdicts, the same for each section.
+    """
+    if not counts:
+        raise ValueError("counts must hold one section or more, got none")
+    names = list(next(iter(counts.values())))
+    if len(names) > len(LOOKS):
+        raise ValueError(f"counts must have at most {len(LOOKS)} verdicts, got {len(names)}")
+    for section, row in counts.items():
+        if list(row) != names:
+            raise ValueError(f"counts must have the verdicts {names} in {section!r}, got {[*row]}")
+        for number in row.values():
+            integer(f"counts of {section!r}", number, 0)
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        starts = [0] * len(counts)
+        places = range(len(counts))
+        for name, look in zip(names, LOOKS):
+            numbers = [row[name] for row in counts.values()]
+            axis.barh(places, numbers, left=starts, height=0.66, label=name, **look)
+            for place, start, number in zip(places, starts, numbers):
+                if number:
+                    axis.text(
+                        start + number / 2, place, str(number), color=INK, size=8.5,
+                        ha="center", va="center",
+                    )  # fmt: skip
+            starts = [a + b for a, b in zip(starts, numbers)]
+        axis.set_yticks(places, list(counts))
+        axis.invert_yaxis()
+        axis.grid(visible=False, axis="y")
+        axis.set_xlabel("claims")
+        figure.legend(loc="outside upper center", ncols=3)
+
+    rows = "; ".join(
+        f"{section}: " + ", ".join(f"{number} {name}" for name, number in row.items() if number)
+        for section, row in counts.items()
+    )
+    height = 1.4 + 0.32 * len(counts)
+    return illustrate(draw, f"Verdicts by section of the paper. {rows}.", 7.0, height)

@@ -1,0 +1,191 @@
+"""The ledger's tables of claims: by section of the paper, and counted."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+import re
+from collections.abc import Iterable, Mapping
+
+from ddlib.evidence.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
+from ddlib.evidence.verdicts import VERDICTS
+from ddlib.experiments import SETUPS, STATE_FEEDBACK
+from ddlib.tables import Table, number, number_beside, typeset
+
+_SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
+
+HEADER = ("claim", "printed", "here", "verdict (judged by)", "why")
+"""Heads of a table of claims; ``book.css`` repeats them where a row becomes a card."""
+
+_OTHERWISE = {
+    "not reproduced": "What would have supported it",
+    "by construction": "Why nothing could have refuted it",
+    "not testable": "What a test would need",
+}
+"""What a claim's `refuted` tells, if not what would have refuted it."""
+
+
+def ledger_table(section: str) -> Table:
+    """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
+
+    The verdict comes with the share of the draws in which it comes out, the value that is judged
+    and its bands; the reason is followed by the outcome that would have changed the verdict. A
+    value that is measured at one window size names it.
+
+    The place in the paper is a link to the chapter that deals with the claim.
+
+    Parameters
+    ----------
+    section : str
+        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
+    """
+    rows = [
+        (f"{c.claim} ({_linked(c)})", printed(c), _here(c), _judged(c), _reasons(c))
+        for c in of_section(section)
+    ]
+    return Table(HEADER, [tuple(map(typeset, row)) for row in rows])
+
+
+def _here(claim: Claim) -> str:
+    """What we find, and at which window size if the words beside it do not tell."""
+    text, width = here(claim), window(claim)
+    named = rf"(window|at) {width}\b|\b{width} samples"
+    known = width is None or re.search(named, f"{claim.claim} {text}")
+    return text if known else f"{text} (window {width})"
+
+
+def window(claim: Claim) -> int | None:
+    """The one window size that a claim is measured at; None if there is none or there are several.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if not claim.measure:
+        return None
+    module, _, name = claim.measure.partition(".")
+    function = getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), name)
+    given = inspect.signature(function).bind(**claim.arguments)
+    given.apply_defaults()
+    return given.arguments.get("width")
+
+
+def _reasons(claim: Claim) -> str:
+    head = _OTHERWISE.get(claim.verdict, "What would have refuted it")
+    return f"{claim.why} *{head}:* {claim.refuted}"
+
+
+def left_out(claims: Iterable[Claim]) -> Table:
+    """Claims that are not testable: why, what a test would need, where the verdict would turn.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+    """
+    rows = [
+        (c.where, c.claim, c.why, c.refuted, here(c))
+        for c in sorted(claims, key=Claim.place)
+        if c.verdict == "not testable"
+    ]
+    header = ("where", "claim", "why", "a test would need", "here, and where it would turn")
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
+
+
+def _judged(claim: Claim) -> str:
+    return f"{sure(claim)} ({bands(claim)})" if claim.band else claim.judge()
+
+
+def bands(claim: Claim) -> str:
+    """The value that is judged and what decides the verdict, in words.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if not claim.band:
+        return "not judged"
+    value = claim.measured().value
+    told = number_beside(float(value), claim.edges())
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else told
+    best = "holds" if claim.verdict == "by construction" else "reproduced"
+    text = f"{shown}; {best} {_bounds(claim.band)}"
+    return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
+
+
+def _bounds(bounds: Mapping) -> str:
+    if "is" in bounds:
+        return "if yes" if bounds["is"] else "if no"
+    if "factor" in bounds:
+        return f"within a factor of {bounds['factor']:g}"
+    edges = {
+        name: number(edge) if isinstance(edge, int) else f"{edge:g}"
+        for name, edge in bounds.items()
+    }
+    if "from" not in edges:
+        return f"up to {edges['to']}"
+    return f"from {edges['from']}" + (f" to {edges['to']}" if "to" in edges else "")
+
+
+def _linked(claim: Claim) -> str:
+    """The claim's place in the paper, as a link to its chapter."""
+    names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
+    page = next((name for name in names if FILE.with_name(name).is_file()), None)
+    own = claim.chapter == LEDGER or page is None
+    return claim.where if own else f"[{claim.where}]({page})"
+
+
+def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
+    """How many claims of each section of the paper have which verdict.
+
+    Returns
+    -------
+    dict
+        ``{title of the section: {verdict: number}}``, sections without claims left out.
+    """
+    found: dict[str, dict[str, int]] = {}
+    for claim in sorted(claims, key=Claim.place):
+        row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
+        row[claim.judge()] += 1
+    return found
+
+
+def summary(claims: Iterable[Claim]) -> Table:
+    """How many claims have which verdict."""
+    verdicts = [claim.judge() for claim in claims]
+    rows = [(verdict, str(verdicts.count(verdict))) for verdict in VERDICTS]
+    return Table(("verdict", "claims"), [*rows, ("all", str(len(verdicts)))])
+
+
+def readings(claims: Iterable[Claim]) -> dict[str, tuple[int, dict[str, int]]]:
+    """Claims judged under every reading of the controller, and how many each one reproduces.
+
+    They have the same measure and arguments but for the argument ``setup``; without it the
+    reading is state feedback.
+
+    Parameters
+    ----------
+    claims : iterable of Claim
+
+    Returns
+    -------
+    dict
+        For "table" (Table 4-1) and "figures" (those of section 5): the number of claims, and
+        of the reproduced ones for each name of a reading.
+    """
+    verdicts = {"table": {}, "figures": {}}
+    for claim in claims:
+        kinds = [k for k, place in _SHOWN.items() if claim.where.startswith(place)]
+        for kind in kinds:
+            rest = {k: v for k, v in claim.arguments.items() if k != "setup"}
+            key = (claim.measure, json.dumps(rest, sort_keys=True))
+            setup = claim.arguments.get("setup", STATE_FEEDBACK.name)
+            verdicts[kind].setdefault(key, {})[setup] = claim.verdict
+    found = {}
+    for kind, cells in verdicts.items():
+        both = [cell for cell in cells.values() if set(cell) == set(SETUPS)]
+        found[kind] = (
+            len(both),
+            {name: sum(cell[name] == "reproduced" for cell in both) for name in SETUPS},
+        )
+    return found

@@ -1,0 +1,261 @@
+"""Section 5: weights as filters and hidden units at work, measured on the committed networks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ddlib.analysis import (
+    LAYERS,
+    QUANTITIES,
+    ablation,
+    cancellation,
+    classify,
+    decompose,
+    net_inputs,
+    roughness,
+    saturated,
+    shares,
+    transition_width,
+)
+from ddlib.analysis.following import responses
+from ddlib.evidence.measures import committed
+from ddlib.evidence.verdicts import Measured, mean, median, over_members
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, run, true_states
+from ddlib.learning.training import cases
+from ddlib.metrics import rmss
+from ddlib.tables import number, scientific, spread
+
+
+def _more(trained, untrained):
+    """Mean over trained networks less the mean over the same before training."""
+    return mean(trained) - mean(untrained)
+
+
+def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
+    """Filters of the trained networks, and of the same before training."""
+    models = committed.networks, committed.untrained
+    return [committed.filters(width, layer, model, setup) for model in models]
+
+
+def of_class(
+    width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
+) -> Measured:
+    """Share of a layer's filters that `ddlib.analysis.filters.classify` gives a name, less untrained.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    name : str
+        One of `ddlib.analysis.filters.CLASSES`.
+    layer : {"hidden", "skip"}
+        To the hidden units, or directly to the outputs.
+    setup : str
+        Which reading of the controller.
+    """
+    trained, before = (classify(f) == name for f in _pair(width, layer, setup))
+    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
+    text = f"{trained.sum()} of {trained.size} filters, {before.sum()} before training"
+    return Measured(value, text, replicates)
+
+
+def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
+    """Share of hidden filters that are not analysable after training, over a narrower window's.
+
+    Before training all are, at every window: what is judged is where more are left.
+
+    Parameters
+    ----------
+    wide, narrow : int
+        Window sizes.
+    """
+    cells = [classify(committed.filters(w, "hidden")) == "not analysable" for w in (wide, narrow)]
+
+    def ratio(a, b):
+        return mean(a) / np.maximum(mean(b), 1 / cells[1].size)
+
+    value, replicates = over_members(ratio, *cells)
+    text = ", ".join(f"{c.sum()} of {c.size} at {w}" for c, w in zip(cells, (wide, narrow)))
+    before = [(classify(_pair(w, "hidden")[1]) == "not analysable").mean() for w in (wide, narrow)]
+    return Measured(value, f"{text}; before training {100 * min(before):.0f} %", replicates)
+
+
+def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
+    """Share of a layer's filters whose output correlates best with a quantity (judged).
+
+    Along the training motions, with the true position, velocity and acceleration of the joint
+    whose window the filter sees. The replicates draw networks.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    name : str
+        One of `ddlib.analysis.following.QUANTITIES`.
+    layer : str
+        One of `ddlib.analysis.following.LAYERS`.
+    """
+    training = committed.training()
+    states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
+    f = getattr(committed.networks(width).weights, LAYERS[layer])
+    strongest = responses(f, cases(training, width)[0], states).strongest
+    each = (strongest == QUANTITIES.index(name)).mean((1, 2))
+    share, draws = over_members(lambda x: x.mean(-1), each)
+    counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))
+    return Measured(share, f"best correlated with {counts} of {strongest.size}", draws)
+
+
+def rougher(wide: int = 41, narrow: int = 21) -> Measured:
+    """Ratio of the median roughness of hidden filters at two window sizes."""
+    cells = [roughness(committed.filters(w, "hidden")) for w in (wide, narrow)]
+    before = [roughness(_pair(w, "hidden")[1]) for w in (wide, narrow)]
+    wide_, narrow_, *null = (number(np.median(x), 2) for x in (*cells, *before))
+    text = f"roughness {wide_} at {wide}, {narrow_} at {narrow}; before training {null[0]} and "
+    value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
+    return Measured(value, text + null[1], replicates)
+
+
+def direct_smoothness() -> Measured:
+    """Largest median roughness of the direct weights over the windows (white noise: 1)."""
+    cells, before = zip(*(map(roughness, _pair(w, "skip")) for w in WINDOWS))
+
+    def largest(*cells):
+        return np.max([median(cell) for cell in cells], axis=0)
+
+    value, replicates = over_members(largest, *cells)
+    now, then = (", ".join(number(np.median(x), 2) for x in xs) for xs in (cells, before))
+    return Measured(value, f"roughness {now}; before training {then}", replicates)
+
+
+def changed_roughness(width: int = 41) -> Measured:
+    """Roughness of what training adds to the initial weights of the hidden units."""
+    trained, before = _pair(width, "hidden")
+    change = roughness(trained - before)
+    value, replicates = over_members(median, change)
+    return Measured(value, f"{spread(change)}; the filters have {spread(roughness(trained))}",
+                    replicates)  # fmt: skip
+
+
+def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
+    """Median share of the constant term in the energy of the filters."""
+    trained, before = (shares(f)[..., 0] for f in _pair(width, layer))
+    value, replicates = over_members(median, trained)
+    text = f"{100 * value:.1f} % of the energy, {100 * np.median(before):.1f} % before training"
+    return Measured(value, text, replicates)
+
+
+def parts_sum_up() -> Measured:
+    """Largest difference between a filter and the sum of its parts as the paper prints them."""
+    f = committed.filters(21, "hidden").reshape(-1, 21)
+    gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
+    odd = decompose(f, "paper").odd
+    skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))
+    return Measured(
+        skew,
+        f"the parts sum to f (to {scientific(gap)}); as printed, odd(x) + odd(-x) reaches "
+        f"{100 * skew:.0f} % of odd's peak in the median",
+    )
+
+
+def zero_crossings(width: int = 41) -> Measured:
+    """Share of hidden filters that are smooth with an odd part that crosses zero, less untrained.
+
+    It crosses between the centre and the edge; smooth means that a cubic leaves less than a fifth
+    of the energy. Rough odd parts change sign all the time.
+    """
+    both = []
+    for f in _pair(width, "hidden"):
+        odd = decompose(f).odd[..., width // 2 + 1 :]
+        both.append((np.diff(np.sign(odd), axis=-1) != 0).any(-1) & (shares(f)[..., 4] < 0.2))
+    value, replicates = over_members(lambda pair: _more(*pair), tuple(both))
+    text = f"{both[0].sum()} of {both[0].size} filters are smooth and cross, "
+    return Measured(value, f"{text}{both[1].sum()} before training", replicates)
+
+
+def _activities(width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name):
+    windows, torque = cases(committed.training(setup), width)
+    found = model(width, setup)
+    return windows, torque, found.weights.activity(found.scaled(windows))[0]
+
+
+def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
+    """Median share of cases in which a hidden unit is below 0.1 or above 0.9."""
+    share, before = (
+        saturated(_activities(width, model, setup)[2])
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(median, share)
+    text = f"{100 * value:.0f} % of the time, {100 * np.median(before):.0f} % before training"
+    return Measured(value, text, replicates)
+
+
+def transition(width: int) -> Measured:
+    """Median width of the transition region in standard deviations of the net input."""
+    found, before = (
+        transition_width(net_inputs(model(width), _activities(width)[0]))
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(median, found)
+    text = f"{number(value, 2)} standard deviations, {number(np.median(before), 2)} before training"
+    return Measured(value, text, replicates)
+
+
+def cancel(width: int) -> Measured:
+    """Median share of the hidden units' influence that cancels at the outputs, less untrained.
+
+    Of independent influences much cancels too: ten equal ones leave less than a third.
+    """
+    trained, before = (
+        cancellation(model(width), _activities(width)[0])
+        for model in (committed.networks, committed.untrained)
+    )
+    value, replicates = over_members(lambda pair: median(pair[0]) - median(pair[1]),
+                                     (trained, before))  # fmt: skip
+    now, then = (f"{100 * np.median(x):.0f} %" for x in (trained, before))
+    return Measured(value, f"{now}, {then} before training", replicates)
+
+
+def _spare(width: int, worse: float, model: Callable) -> np.ndarray:
+    windows, torque = cases(committed.training(), width)
+    found = model(width)
+    spare = []
+    for k in range(len(found.weights)):
+        before = rmss(found[k].torque(windows), torque)
+        spare.append(int((ablation(found[k], windows, torque)[1] < worse * before).sum()))
+    return np.array(spare)
+
+
+def spare_units(width: int, worse: float = 1.1) -> Measured:
+    """Median number of hidden units of ten that can be held still at almost no loss.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    worse : float
+        "Almost no loss": the training error grows by less than this factor.
+    """
+    spare = _spare(width, worse, committed.networks)
+    before = _spare(width, worse, committed.untrained)
+    value, replicates = over_members(median, spare)
+    text = f"{value:.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "
+    return Measured(value, f"{text}{np.median(before):.0f} before training", replicates)
+
+
+def structured(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
+    """Share of hidden filters that are analysable, less that of untrained networks."""
+    trained, before = (classify(f) != "not analysable" for f in _pair(width, "hidden", setup))
+    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
+    text = f"{100 * trained.mean():.0f} % of the filters have a name, "
+    return Measured(value, f"{text}{100 * before.mean():.0f} % before training", replicates)
+
+
+def shoulder_profile(width: int) -> Measured:
+    """Error of the shoulder's torque alone on trajectory 6 (Figure 4-1), median of networks."""
+    test = run(committed.recording(), 5)
+    predicted = predict(committed.networks(width), test)
+    wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
+    value, replicates = over_members(median, wrong)
+    return Measured(value, spread(wrong), replicates)

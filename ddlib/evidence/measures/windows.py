@@ -1,0 +1,297 @@
+"""Sections 2 to 4, 5.3 and 7.1: what windows hold, what networks cost, how training goes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib.analysis import savitzky_golay
+from ddlib.evidence.measures import committed
+from ddlib.evidence.verdicts import Measured, mean, median, over_members
+from ddlib.experiments import SETUPS, STATE_FEEDBACK, WINDOWS, results
+from ddlib.learning import TrainingSet, Weights, default_rate, train_ensemble
+from ddlib.learning.training import cases
+from ddlib.metrics import rmss
+from ddlib.simulation import LOG_STEP
+from ddlib.tables import number, scientific
+
+
+def estimates(orders: list, widths: list) -> Measured:
+    """Error of derivatives that a least-squares filter takes from a window, the worst order.
+
+    Relative to the true derivative's standard deviation, on the training recordings; of
+    several window sizes the best counts.
+
+    Parameters
+    ----------
+    orders : list of int
+        Orders of the derivatives: 1 velocity, 2 acceleration, 3 jerk.
+    widths : list of int
+        Window sizes.
+    """
+    run, names = committed.training(), {1: "velocity", 2: "acceleration", 3: "jerk"}
+    true, errors = run.qd_true, {}
+    for order in range(1, max(orders) + 1):
+        if order > 1:
+            true = np.gradient(true, LOG_STEP, axis=-2)
+        exact = true[..., run.motion, :].reshape(-1, 2)
+        found = {
+            w: cases(run, w)[0] @ savitzky_golay(w, order, LOG_STEP, degree=max(order, 2))
+            for w in widths
+        }
+        errors[order] = min(
+            float(np.sqrt(((f - exact) ** 2).mean() / exact.var(0).mean())) for f in found.values()
+        )
+    shown = ", ".join(f"{names[k]} {number(errors[k], 2)}" for k in orders)
+    return Measured(max(errors[k] for k in orders), f"relative error {shown}")
+
+
+def without_noise() -> Measured:
+    """Largest change of the largest weight when training data have no noise and no friction.
+
+    The same initial weights in both; the median over networks is taken for each window.
+    """
+    table, clean = results.read("table-4-1")["setups"][STATE_FEEDBACK.name], results.read("clean")
+    ratios = {}
+    for width in WINDOWS:
+        perfect = np.array(clean["windows"][str(width)]["largest weight"])
+        noisy = np.array(table[str(width)]["largest weight"])[: perfect.size]
+        ratios[width] = perfect / noisy
+    text = ", ".join(f"{number(np.median(r), 2)} at {w}" for w, r in ratios.items())
+
+    def change(*cells):
+        return np.max([np.abs(median(cell) - 1) for cell in cells], axis=0)
+
+    value, replicates = over_members(change, *ratios.values())
+    return Measured(value, f"largest weight without noise over with: {text}", replicates)
+
+
+def paths(width: int = 11) -> Measured:
+    """Whether inputs reach the outputs through hidden units and directly, and no other way."""
+    network = Weights.random(1, width)[0]
+    hidden, output = network.hidden_weights.size, network.output_weights.size
+    direct = network.skip_weights.size
+    text = f"{hidden} weights into hidden units, {output} from them, {direct} direct ones"
+    joined = hidden + output + direct == network.count() and min(hidden, output, direct) > 0
+    x = np.random.default_rng(0).uniform(0, 1, (2, 2, width))
+    blind = Weights(*(0 * w for w in (network.hidden_weights, network.hidden_bias)),
+                    network.output_weights, network.skip_weights, network.output_bias)  # fmt: skip
+    differs = np.ptp(blind.activity(x)[1], axis=0).min() > 0
+    return Measured(bool(joined and differs), text + f" at window {width}")
+
+
+def growth(width: int = 21) -> Measured:
+    """Weights over those in proportion to window, joints or hidden units, each doubled.
+
+    The one furthest from 1 is judged.
+
+    Parameters
+    ----------
+    width : int
+        Window size before doubling.
+    """
+    base = {"width": width, "hidden": 10, "joints": 2, "outputs": 2}
+    before = Weights.random(1, **base)[0].count()
+    larger = {
+        "window": ((2 * width - 1) / width, {"width": 2 * width - 1}),
+        "hidden units": (2, {"hidden": 20}),
+        "joints": (2, {"joints": 4, "outputs": 4}),
+    }
+    ratios = {}
+    for name, (factor, change) in larger.items():
+        ratios[name] = Weights.random(1, **(base | change))[0].count() / (factor * before)
+    text = ", ".join(f"{r:.2f} for {name}" for name, r in ratios.items())
+    worst = max(ratios.values(), key=lambda r: abs(np.log(r)))
+    return Measured(worst, f"weights over what proportion gives: {text}")
+
+
+def sigmoids(width: int = 11) -> Measured:
+    """Multiplications for each sigmoid of a network.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    network = Weights.random(1, width)[0]
+    units = network.hidden_bias.size + network.output_bias.size
+    text = f"{network.count()} multiplications, {units} sigmoids at window {width}"
+    return Measured(network.count() / units, text)
+
+
+def _furthest(ratios) -> np.ndarray:
+    """Of some ratios the one furthest from 1, for each draw; shape ``(ratios, draws)``."""
+    ratios = np.asarray(ratios)
+    return np.take_along_axis(ratios, np.abs(np.log(ratios)).argmax(0)[None], 0)[0]
+
+
+def more_hidden_units(column: str = "test") -> Measured:
+    """Median error with 20 or 40 hidden units over that with ten: the one furthest from 1.
+
+    Parameters
+    ----------
+    column : str
+        Which error: "training", "test" or "best test".
+    """
+    rows = {row["units"]: row[column] for row in results.read("hidden-units")["rows"]}
+    cells = [rows[units] for units in (10, 20, 40)]
+
+    def furthest(ten, *more):
+        return _furthest([median(cell) / median(ten) for cell in more])
+
+    value, replicates = over_members(furthest, *cells)
+    text = ", ".join(f"{number(np.median(rows[u]), 2)} with {u}" for u in (10, 20, 40))
+    return Measured(value, f"{column}: {text}", replicates)
+
+
+@cache
+def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, np.ndarray]:
+    """Last training errors, ``(members, factors)``, without and with momentum."""
+    data = TrainingSet.from_recording(committed.training(), 21)
+    start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
+    alphas = (0.0, STATE_FEEDBACK.momentum)
+    tried = [(alpha, f) for alpha in alphas for f in factors]
+    _, history, _ = train_ensemble(
+        Weights.concatenate([start] * len(tried)),
+        data,
+        rate=np.repeat([f * default_rate(21) for _, f in tried], members),
+        momentum=np.repeat([alpha for alpha, _ in tried], members),
+        epochs=epochs,
+        progress=False,
+    )
+    last = history.training[-1].reshape(len(alphas), len(factors), members)
+    return {alpha: errors.T for alpha, errors in zip(alphas, last)}
+
+
+def acceleration(epochs: int = 2000, members: int = 8, factors=(0.5, 1, 1.5)) -> Measured:
+    """Training error without momentum over that with it, each at its best step size.
+
+    Parameters
+    ----------
+    epochs, members : int
+        Length of training; networks for each setting, of which the median counts.
+    factors : sequence of float
+        Step sizes tried, as multiples of the usual one.
+    """
+    errors = tuple(_momentum_errors(epochs, members, tuple(factors)).values())
+
+    def best(drawn):
+        return np.median(drawn, axis=1).min(-1)
+
+    value, replicates = over_members(lambda pair: best(pair[0]) / best(pair[1]), errors)
+    without, with_it = (number(np.median(e, axis=0).min(), 2) for e in errors)
+    text = f"{without} without, {with_it} with it after {epochs:,} epochs"
+    return Measured(value, text, replicates)
+
+
+def scaling() -> Measured:
+    """Largest change of the RMSS when torque is shifted and scaled, relative."""
+    rng = np.random.default_rng(0)
+    torque = rng.normal(size=(300, 2)) * [20.0, 3.0]
+    predicted = torque + rng.normal(size=torque.shape)
+    before = rmss(predicted, torque, pooled=False)
+    after = rmss(0.6 * predicted / 50 + 0.5, 0.6 * torque / 50 + 0.5, pooled=False)
+    change = float(np.abs(after / before - 1).max())
+    return Measured(change, f"changes by {scientific(change)}")
+
+
+def _mean_of_cells(*cells) -> np.ndarray:
+    return np.mean([mean(cell) for cell in cells], axis=0)
+
+
+def training_is_monotone(other: int = 2) -> Measured:
+    """Share of the steps between records, over 60,000 epochs, at which the error falls.
+
+    Every record counts; how often it falls depends on how far apart they are.
+
+    Parameters
+    ----------
+    other : int
+        The text tells the share for every so many records, too.
+    """
+    windows = results.read("longer")["windows"].values()
+    histories = [np.array(w["history"]["training"]) for w in windows]
+    falls, apart = ([np.diff(h[:, ::k], axis=-1) < 0 for h in histories] for k in (1, other))
+    value, replicates = over_members(_mean_of_cells, *falls)
+    text = ", ".join(f"{100 * f.mean():.0f} %" for f in falls)
+    wider = float(np.mean([f.mean() for f in apart]))
+    text = f"falls at {text} of the records: {number(value, 3)} of all, "
+    return Measured(value, f"{text}{number(wider, 3)} at 1 record in {other}", replicates)
+
+
+def rises_again(factor: float = 1.05) -> Measured:
+    """Share of networks whose last test error is well above their best one.
+
+    Parameters
+    ----------
+    factor : float
+        Well above: by more than this factor.
+    """
+    table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
+    worse = {
+        w: np.array(table[str(w)]["errors"]["test"]) > factor * np.array(table[str(w)]["best test"])
+        for w in WINDOWS
+    }
+    value, replicates = over_members(_mean_of_cells, *worse.values())
+    text = ", ".join(f"{x.sum()} of {x.size} at {w}" for w, x in worse.items())
+    return Measured(value, text, replicates)
+
+
+def accurate(level: float = 0.1) -> Measured:
+    """Largest median test error over window sizes and readings of the controller.
+
+    Parameters
+    ----------
+    level : float
+        Cells with a larger error are named in the text.
+    """
+    table = results.read("table-4-1")["setups"]
+    cells = {
+        (name, w): np.array(table[name][str(w)]["errors"]["test"])
+        for name in SETUPS
+        for w in WINDOWS
+    }
+
+    def largest(*drawn):
+        return np.max([median(cell) for cell in drawn], axis=0)
+
+    value, replicates = over_members(largest, *cells.values())
+    medians = {key: float(np.median(cell)) for key, cell in cells.items()}
+    fail = [f"{name} {w}: {number(m, 2)}" for (name, w), m in medians.items() if m > level]
+    text = f"RMSS {number(min(medians.values()), 2)} to {number(value, 2)}; above {level:g} are "
+    return Measured(
+        value, f"{text}{len(fail)} of {len(cells)} cells: {', '.join(fail)}", replicates
+    )
+
+
+def short_window(short: int = 11, long: int = 21) -> Measured:
+    """Error of the least-squares acceleration from a short window over that from a long one.
+
+    Parameters
+    ----------
+    short, long : int
+        Window sizes.
+    """
+    rows = {row["width"]: row["acceleration error"] for row in results.read("window-sizes")["rows"]}
+    text = f"{number(rows[short], 2)} at {short}, {number(rows[long], 2)} at {long}"
+    return Measured(rows[short] / rows[long], text)
+
+
+def magnitudes(narrow: int = 21, wide: int = 41) -> Measured:
+    """Largest weight of a wide window over that of a narrow one, medians over networks.
+
+    Beside it the same for the taps of least-squares acceleration filters.
+
+    Parameters
+    ----------
+    narrow, wide : int
+        Window sizes.
+    """
+    table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
+    cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
+    taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
+    fall = taps[0] / taps[1]
+    value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
+    text = f"{number(value, 2)} of the weight at {narrow}, the filter {number(fall, 2)}"
+    return Measured(value, text, replicates)

@@ -1,0 +1,119 @@
+"""Measure anew what is too slow for a chapter: ``make reproduce``.
+
+A study (`ddlib.experiments.studies`) whose result is there already, made by the same code, is skipped;
+so an interrupted run resumes. Several studies run side by side, each on one core.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+
+from tqdm.auto import tqdm
+
+from ddlib import figures
+from ddlib.analysis import purest, upright
+from ddlib.experiments import results
+from ddlib.experiments.studies import PARTS
+from ddlib.simulation import LOG_STEP
+
+
+def picture() -> None:
+    """The README's picture: two filters found in the networks of window 21."""
+    networks = results.networks(21).weights
+    found = {
+        f"{name} filter": upright(purest(networks.hidden_weights, name))
+        for name in ("velocity", "acceleration")
+    }
+    target = results.FOLDER.parent / "_static" / "readme.svg"
+    figures.decomposition(found, LOG_STEP).save(target)
+
+
+def make(name: str, code: str) -> None:
+    """Run one study and write its result with the hash `code` of what made it."""
+    started = time.monotonic()
+    content = PARTS[name]()
+    made_by = {"code": code, **results.stamp(time.monotonic() - started)}
+    results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
+
+
+def make_apart(name: str) -> subprocess.CompletedProcess:
+    """`make` in a process of its own with one thread; what it says is kept."""
+    command = [sys.executable, "-m", "ddlib.experiments.reproduce", "--force", "--jobs", "1", name]
+    one_thread = {**os.environ, "OMP_NUM_THREADS": "1"}
+    return subprocess.run(command, env=one_thread, capture_output=True, text=True)
+
+
+def side_by_side(names: list[str], jobs: int) -> None:
+    """Make results in as many processes as cores: no thread waits for another.
+
+    The longest come first. What is finished is kept when another one fails.
+    """
+    last = {name: _seconds(name) for name in names}
+    failed = {}
+    bar = tqdm(total=round(sum(last.values())), desc="all results", unit="s of work")
+    with bar, ThreadPoolExecutor(jobs) as pool:
+        order = sorted(names, key=last.get, reverse=True)
+        tasks = {pool.submit(make_apart, name): name for name in order}
+        for task in as_completed(tasks):
+            name, done = tasks[task], task.result()
+            bar.update(round(last[name]))
+            if done.returncode:
+                failed[name] = done.stderr[-2000:]
+                tqdm.write(f"==> {name}: FAILED")
+            else:
+                tqdm.write(f"==> {name}: {_seconds(name):.0f} s")
+    if failed:
+        said = "\n".join(f"{name}: {text}" for name, text in failed.items())
+        raise RuntimeError(f"failed: {', '.join(failed)}; the others are written\n{said}")
+
+
+def _seconds(name: str) -> float:
+    """How long a result took to make the last time, s; a minute if it is not there."""
+    path = results.FOLDER / f"{name}.json"
+    return results.read(name)["made by"]["seconds"] if path.is_file() else 60.0
+
+
+def main(arguments=None) -> None:
+    """Run the parts that are missing or stale; ``--force`` runs them all."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("parts", nargs="*", help=f"among {', '.join(PARTS)}; default: all")
+    parser.add_argument("--force", action="store_true", help="also what is up to date")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="parts at a time")
+    options = parser.parse_args(arguments)
+    for name in options.parts:
+        if name not in PARTS:
+            parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
+    if options.jobs < 1:
+        parser.error(f"jobs must be 1 or more, got {options.jobs}")
+    results.FOLDER.mkdir(parents=True, exist_ok=True)
+    codes = {name: results.code_hash(name) for name in PARTS}  # now: files may change meanwhile
+    stale = []
+    for name in options.parts or PARTS:
+        path = results.FOLDER / f"{name}.json"
+        fresh = path.is_file() and results.read(name)["made by"]["code"] == codes[name]
+        if fresh and not options.force:
+            print(f"==> {name}: up to date", flush=True)
+        else:
+            stale.append(name)
+    started = time.monotonic()
+    if len(stale) > 1 and options.jobs > 1:
+        side_by_side(stale, options.jobs)
+    else:
+        for name in stale:
+            print(f"==> {name}", flush=True)
+            make(name, codes[name])
+            print(f"==> {name}: {_seconds(name):.0f} s", flush=True)
+    if len(stale) == len(PARTS):
+        made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
+        results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
+    if "table-4-1" in stale:  # the picture shows two of its networks
+        picture()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,251 @@
+"""Committed results: where they are, which code made them, and whether it still does."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import os
+import platform
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from ddlib.experiments.setups import COURSE, STATE_FEEDBACK
+from ddlib.learning import TorqueModel, kernels
+
+PACKAGE = Path(__file__).parent
+FOLDER = PACKAGE.parent / "book" / "results"
+"""Where `make reproduce` writes and the chapters read."""
+
+STUDIES = "studies"
+"""Folder of the package with the functions that make the results."""
+
+ASIDE = ("_check", "results")
+"""Modules that a study imports and that do not decide what it finds."""
+
+
+def code_hash(result: str) -> str:
+    """Hash of the code that makes a result: docstrings, comments and layout do not count.
+
+    It covers every module of ddlib that the result's study depends on through its imports,
+    and of the study's own file all but the other public functions.
+
+    Parameters
+    ----------
+    result : str
+        Name of the result, like "table-4-1".
+
+    Raises
+    ------
+    ValueError
+        If no function in `STUDIES` makes it.
+    """
+    body = _study(result).body
+    others = {node.name for node in body if isinstance(node, ast.FunctionDef)}
+    others = {name for name in others if not name.startswith("_")} - {result.replace("-", "_")}
+    trees: list = [[node for node in body if getattr(node, "name", None) not in others]]
+    trees += [_tree(name) for name in modules(result)]
+    return hashlib.sha256("\n".join(map(_normal_form, trees)).encode()).hexdigest()[:16]
+
+
+def modules(result: str) -> list[str]:
+    """Modules of ddlib on which a result depends, through all imports of its study's file.
+
+    Parameters
+    ----------
+    result : str
+        Name of the result, like "table-4-1".
+    """
+    reached, waiting = set(ASIDE), _imports(_study(result))
+    while waiting - reached:
+        name = min(waiting - reached)
+        reached.add(name)
+        waiting |= _imports(_tree(name))
+    return sorted(reached - set(ASIDE))
+
+
+def _study(result: str) -> ast.Module:
+    """The file whose function makes a result."""
+    own = result.replace("-", "_")
+    for path in sorted((PACKAGE / STUDIES).glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == own for node in tree.body):
+            return tree
+    raise ValueError(f"result must be made by a function of ddlib.{STUDIES}, got {result!r}")
+
+
+def _imports(tree) -> set[str]:
+    """Modules of ddlib that a syntax tree imports from."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module == "ddlib":
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib."):
+            found.add(node.module.partition(".")[2])
+    return found
+
+
+def _tree(module: str) -> ast.Module:
+    path = PACKAGE.joinpath(*module.split("."))
+    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def _normal_form(node) -> str:
+    """A syntax tree as text, the same for every Python version the book supports."""
+    if isinstance(node, list):
+        return "[" + ",".join(_normal_form(item) for item in node if not _is_text(item)) + "]"
+    if isinstance(node, ast.AST):
+        parts = [
+            f"{name}={_normal_form(value)}"
+            for name, value in ast.iter_fields(node)
+            if value not in (None, []) and name not in ("ctx", "kind", "type_params")
+        ]
+        return f"{type(node).__name__}({','.join(parts)})"
+    return repr(node)
+
+
+def _is_text(node) -> bool:
+    """A statement that is only a string: a docstring or the note below a constant."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def peak_memory() -> float | None:
+    """Largest memory that this process ever held, GiB; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return None
+    unit = 2**30 if sys.platform == "darwin" else 2**20  # bytes on macOS, KiB elsewhere
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+def stamp(seconds: float) -> dict:
+    """What is kept beside a result: time, peak memory if known, the machine's kernels, versions."""
+    peak = peak_memory()
+    return {
+        "seconds": round(seconds, 1),
+        "peak GiB": None if peak is None else round(peak, 2),
+        "machine": f"{platform.system()} {platform.machine()}, {kernels()}",
+        "python": platform.python_version(),
+        "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
+    }
+
+
+def write_json(path: Path, content: dict) -> None:
+    """Write a JSON file in one step, so that an interrupted run leaves no half file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(path.name + ".part")
+    text = json.dumps(_plain(content), indent=1, allow_nan=False)
+    temporary.write_text(text + "\n", encoding="utf-8")
+    os.replace(temporary, path)
+
+
+def _plain(value):
+    """Floats with five digits (null if not finite), arrays as lists; the rest is refused."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return [_plain(v) for v in value] if value.ndim else _plain(value[()])
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.5g}") if np.isfinite(value) else None
+    if isinstance(value, (np.integer, np.bool_)):
+        return value.item()
+    if value is None or isinstance(value, (str, int)):
+        return value
+    raise TypeError(f"{type(value).__name__} does not go into a results file")
+
+
+def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained networks of a cell of Table 4-1.
+
+    Parameters
+    ----------
+    width : int
+        Window size, one of `ddlib.experiments.setups.WINDOWS`.
+    setup : str
+        Name of one of `ddlib.experiments.setups.SETUPS`.
+    """
+    return TorqueModel.load(networks_path(setup, width))
+
+
+def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained network of a cell of Table 4-1 whose test error is the median.
+
+    Parameters
+    ----------
+    width, setup
+        As in `networks`.
+    """
+    errors = read("table-4-1")["setups"][setup][str(width)]["errors"]["test"]
+    return networks(width, setup)[int(np.argsort(errors)[len(errors) // 2])]
+
+
+def networks_path(setup: str, width: int) -> Path:
+    """File of the trained networks of one cell of Table 4-1."""
+    return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
+
+
+def course_path(width: int) -> Path:
+    """File of the first two networks of a window size on their way through training."""
+    return FOLDER / f"course-{width}.npz"
+
+
+def course(width: int) -> tuple[np.ndarray, TorqueModel]:
+    """The first two networks (state feedback) of a window size, all along their training.
+
+    Parameters
+    ----------
+    width : int
+        Window size, among those of Table 4-1.
+
+    Returns
+    -------
+    epochs : ndarray, shape (epochs,)
+        `ddlib.experiments.setups.COURSE`: 0 stands for the initial weights.
+    model : TorqueModel
+        Weights with leading axes ``(epochs, 2)``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such result.
+    """
+    return np.array(COURSE), TorqueModel.load(course_path(width))
+
+
+def read(name: str) -> dict:
+    """The committed result `name`.
+
+    Parameters
+    ----------
+    name : str
+        Name of a file in `FOLDER`, without its ending.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such result; says how to make it.
+    ValueError
+        If the file is damaged.
+    """
+    path = FOLDER / f"{name}.json"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"no result {name!r} in {FOLDER}: run `make reproduce` first"
+        ) from error
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise ValueError(f"result {name!r} in {FOLDER} is damaged: {error}") from error

@@ -1,0 +1,36 @@
+"""What is too slow for a chapter: the studies that ``make reproduce`` repeats.
+
+Every study is a function without required arguments that returns a plain dictionary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ddlib.experiments.studies import (
+    arms,
+    harmonics,
+    inputs,
+    nulls,
+    state_space,
+    state_space_sizes,
+    table,
+    windows,
+)
+
+PARTS: dict[str, Callable[[], dict]] = {
+    "table-4-1": table.table_4_1,
+    "arms": arms.arms,
+    "longer": table.longer,
+    "clean": table.clean,
+    "window-sizes": windows.window_sizes,
+    "hidden-units": windows.hidden_units,
+    "memory": windows.memory,
+    "state-inputs": inputs.state_inputs,
+    "null-controls": nulls.null_controls,
+    "harmonics": harmonics.harmonics,
+    "table-6-1": state_space.table_6_1,
+    "state-space-choices": state_space.state_space_choices,
+    "state-space-sizes": state_space_sizes.state_space_sizes,
+}
+"""The studies by the name of their result."""

@@ -1,0 +1,65 @@
+"""Section 3.1: windows of positions against position, velocity and acceleration themselves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib.analysis import savitzky_golay
+from ddlib.experiments.setups import STATE_FEEDBACK, split
+from ddlib.learning import TrainingSet, Weights, train_ensemble
+from ddlib.learning.training import cases
+from ddlib.metrics import rmss
+from ddlib.simulation import LOG_STEP
+from ddlib.simulation.simulate import Recording
+
+
+def _states(recording: Recording, kind: str) -> np.ndarray:
+    """Position, velocity and acceleration of both joints at every sample, ``(cases, 2, 3)``.
+
+    "exact" is what a perfect sensor reads, its acceleration by central differences of the true
+    velocity; "differences" are those of neighbouring measured positions; "least squares" fits
+    parabolas to 21 of them.
+    """
+    if kind == "exact":
+        acceleration = np.gradient(recording.qd_true, LOG_STEP, axis=-2)
+        whole = np.stack([recording.q_true, recording.qd_true, acceleration], -1)
+        return whole[..., recording.motion, :, :].reshape(-1, 2, 3)
+    width = {"differences": 3, "least squares": 21}[kind]
+    taps = np.stack([savitzky_golay(width, k, LOG_STEP, degree=2) for k in range(3)], -1)
+    taps[:, 0] = np.eye(width)[width // 2]  # the position itself, unsmoothed
+    return cases(recording, width)[0] @ taps
+
+
+def state_inputs(members=6) -> dict:
+    """Networks that get the state at one moment: exact, by differences, by least squares.
+
+    Each of the three quantities is scaled to its own range, and the training is the one of
+    Table 4-1.
+    """
+    training, test = split(STATE_FEEDBACK.record())
+    (_, tau), (_, tau6) = cases(training, 3), cases(test, 3)
+    rows = []
+    for kind in ("exact", "differences", "least squares"):
+        x, x6 = _states(training, kind), _states(test, kind)
+        low, high = x.min(0), x.max(0)
+        x, x6 = (x - low) / (high - low), (x6 - low) / (high - low)
+        data = TrainingSet.from_arrays(x, tau)
+        model, history, _ = train_ensemble(
+            Weights.random(members, 3, initial=STATE_FEEDBACK.initial),
+            data,
+            test=data.transform(x6, tau6),
+            momentum=STATE_FEEDBACK.momentum,
+            warm_up=STATE_FEEDBACK.warm_up,
+            epochs=STATE_FEEDBACK.epochs,
+            label=f"states, {kind}",
+        )
+        rows.append(
+            {
+                "kind": kind,
+                "training": rmss(model.torque(x), tau),
+                "test": rmss(model.torque(x6), tau6),
+                "best test": history.best_test,
+                "largest weight": model.weights.largest,
+            }
+        )
+    return {"members": members, "rows": rows}

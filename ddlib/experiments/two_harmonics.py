@@ -1,0 +1,137 @@
+"""A control for the paper's family: motions in which position and acceleration differ.
+
+One sine is proportional to its own second derivative, so along the paper's reference a filter
+cannot tell position from acceleration. A second, faster sine of drawn amplitude and sign tells
+them apart, at nearly the same extents and speeds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number
+from ddlib.experiments.setups import STATE_FEEDBACK, Setup
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MAX_EXTENT_DEG,
+    MOTION_SECONDS,
+    Trajectory,
+    pick_and_place,
+    time_grid,
+)
+
+ORDER = 5
+"""Frequency of the second sine over that of the first. Odd: then both are symmetric about the
+middle of the motion, where half of the paper's sine turns."""
+
+SHARE = 2.0
+"""Largest acceleration of the second sine over that of the first one at 45 degrees."""
+
+
+def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
+    """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``.
+
+    They rest at zero before 0 s and from 3 s on, like the paper's family, which they are for
+    ``rho = 0``.
+
+    Parameters
+    ----------
+    extents_deg, second_deg : array_like, shape (..., 2)
+        Amplitudes theta and rho of shoulder and elbow in degrees.
+    t : array_like, shape (time,)
+        Times, s.
+    order : int
+        2 or more.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape ``(..., time, 2)``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not numeric, not finite or of the wrong shape.
+    """
+    first = pick_and_place(extents_deg, t)
+    rho = np.deg2rad(finite_array("second_deg", second_deg, 2))
+    if rho.shape != np.shape(extents_deg):
+        raise ValueError(
+            f"second_deg must have the shape of extents_deg {np.shape(extents_deg)}, "
+            f"got {rho.shape}"
+        )
+    t = np.asarray(t, dtype=float)
+    omega = integer("order", order, 2) * np.pi / MOTION_SECONDS
+    moving = (t >= 0) & (t < MOTION_SECONDS)
+    sine, cosine = (f(omega * t) * moving for f in (np.sin, np.cos))
+    second = (-sine, -omega * cosine, omega**2 * sine)
+    return Trajectory(*(x + rho[..., None, :] * y[:, None] for x, y in zip(first, second)))
+
+
+def second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
+    """Amplitudes of the second sine for the six runs, degrees, shape (6, 2).
+
+    Uniform, of either sign, up to the amplitude whose acceleration is `SHARE` times that of the
+    first sine at 45 degrees.
+
+    Parameters
+    ----------
+    order, seed : int
+        As in `two_harmonics`; seed of the draw.
+    """
+    most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
+    draw = np.random.default_rng(integer("seed", seed, 0))
+    return draw.uniform(-most, most, APPENDIX_I.shape)
+
+
+def record_two_harmonics(
+    setup: Setup = STATE_FEEDBACK, order: int = ORDER, seed: int = 0
+) -> Recording:
+    """The six runs of Appendix I with a second sine on top, recorded as the paper's are.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects, controller and the seed of the noise.
+    order, seed : int
+        As in `second_amplitudes`.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    reference = two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order)
+    return follow(
+        setup.arm,
+        setup.controller,
+        reference,
+        t,
+        effects=setup.effects,
+        seed=setup.seed,
+        log_every=round(LOG_STEP / CONTROL_STEP),
+        duration=MOTION_SECONDS,
+    )
+
+
+def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:
+    """What perfect sensors would have read in the motion: position, velocity, acceleration.
+
+    Parameters
+    ----------
+    recording : Recording
+    setup : Setup
+        Its arm and its friction give the acceleration from the torque.
+    skip : float
+        Seconds left out at the start of the motion, where the transient is; less than its length.
+
+    Returns
+    -------
+    ndarray, shape (..., samples, joint, 3)
+        In rad, rad/s and rad/s^2.
+    """
+    motion, (begin, end) = recording.motion, recording.span
+    number("skip", skip, 0.0, end - begin - recording.step)
+    inside = slice(motion.start + round(skip / recording.step), motion.stop)
+    q, qd, tau = (
+        x[..., inside, :] for x in (recording.q_true, recording.qd_true, recording.tau_true)
+    )
+    driving = tau - setup.effects.friction_torque(qd)
+    return np.stack([q, qd, setup.arm.forward_dynamics(q, qd, driving)], -1)

@@ -1,0 +1,166 @@
+"""Figures of the dynamics chapter: paths of the hand, cost of computing, confidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ddlib._check import finite_array, number
+from ddlib.dynamics import Arm, Operations
+from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
+from ddlib.identification import Estimate
+from ddlib.trajectories import MOTION_SECONDS, pick_and_place
+
+MARKERS = "os^DvPX"
+CENTRED = dict(ha="center", va="center")
+
+
+def hand_paths(arm: Arm, extents_deg) -> Illustration:
+    """Paths of the hand on pick-and-place trajectories, with the arm where each turns back.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm, seen from above, at rest along the x axis.
+    extents_deg : array_like, shape (trajectories, 2)
+        Extents of shoulder and elbow, degrees; numbered from 1.
+    """
+    extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
+    t = np.linspace(0.0, MOTION_SECONDS / 2, 60)
+    points = arm.forward_kinematics(pick_and_place(extents, t).q)  # (runs, time, point, xy)
+    reach = np.linalg.norm(points[:, -1, 1], axis=-1)
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        turned = np.concatenate([np.zeros((len(points), 1, 2)), points[:, -1]], 1)
+        along = np.linspace(0.0, 1.0, 40)[:, None, None, None]
+        arms = turned[:, :-1] + along * np.diff(turned, axis=1)
+        drawn = np.concatenate([points[:, :, 1].reshape(-1, 2), arms.reshape(-1, 2)])
+        for k, path in enumerate(points):
+            joints = np.vstack([np.zeros(2), path[-1]])
+            axis.plot(*joints.T, color=FAINT, lw=2.5, alpha=0.45, solid_joinstyle="round")
+            colour = COLOURS[k % len(COLOURS)]
+            axis.plot(*path[:, 1].T, color=colour, ls=DASHES[k % len(DASHES)], lw=2)
+            axis.plot(*path[-1, 1], "o", color=colour, ms=5)
+            axis.text(*_free_place(path[-1, 1], drawn), str(k + 1), color=colour, **CENTRED)
+        rest = np.vstack([np.zeros(2), points[0, 0]])
+        axis.plot(*rest.T, color=INK, lw=3.5, marker="o", ms=6, mfc="white", mec=INK)
+        axis.set(xlabel="x, m", ylabel="y, m", aspect="equal")
+        axis.margins(0.06)
+
+    alt = (
+        f"The arm from above at rest and at the turning points of {len(extents)} trajectories, "
+        f"with the path of the hand; its distance from the shoulder at the turning points runs "
+        f"from {reach.min():.2f} to {reach.max():.2f} m."
+    )
+    return illustrate(draw, alt, 5.2, 3.9)
+
+
+def _free_place(point, drawn, distance: float = 0.035):
+    """Where a label near a point is farthest from what is drawn, all in metres."""
+    angle = np.arange(0.0, 2 * np.pi, np.pi / 12)
+    places = point + distance * np.stack([np.cos(angle), np.sin(angle)], -1)
+    room = np.linalg.norm(places[:, None] - drawn, axis=-1).min(-1)
+    return places[room.argmax()]
+
+
+def operations(
+    counts: Mapping[str, Mapping[int, Operations]],
+    published: Mapping[str, tuple[int, int]],
+    band: tuple[float, float],
+) -> Illustration:
+    """Multiplications of each formulation by number of joints.
+
+    Parameters
+    ----------
+    counts : mapping
+        ``{formulation: {joints: operations}}``, from `ddlib.dynamics.costs.table`.
+    published : mapping
+        ``{source: (joints, multiplications)}``: counts from the literature.
+    band : tuple of float
+        Range to shade: what "several hundred" may mean.
+    """
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        axis.axhspan(*band, color=FAINT, alpha=0.16, lw=0)
+        for k, (name, by_joints) in enumerate(counts.items()):
+            look = dict(color=(*COLOURS, INK)[k % 7], ls=DASHES[k % len(DASHES)])
+            values = [o.multiplications for o in by_joints.values()]
+            axis.plot(list(by_joints), values, marker=MARKERS[k % len(MARKERS)], label=name, **look)
+        for k, (name, point) in enumerate(published.items()):
+            axis.plot(*point, "x+1*"[k % 4], color=INK, ms=10, mew=2, ls="none", label=name)
+        axis.set(xlabel="joints", ylabel="multiplications", yscale="log")
+        axis.set_xticks(sorted({n for by_joints in counts.values() for n in by_joints}))
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+    most = {name: max(v.items()) for name, v in counts.items()}
+    listed = "; ".join(f"{name}: {o.multiplications:,}" for name, (_, o) in most.items())
+    alt = f"Multiplications by number of joints, logarithmic. With most joints, {listed}."
+    return illustrate(draw, alt, 7.4, 3.6)
+
+
+def estimates(
+    found: Mapping[str, Estimate], truth, names: Sequence[str], limit: float
+) -> Illustration:
+    """Estimated parameters and their stated confidence, as errors in percent.
+
+    A thick bar holds the middle 95 % of repeated estimates, a dot their median. The thin line
+    is as wide as the confidence interval that is stated on average. A number at the right says
+    how often the interval held the truth. What lies beyond the axis is marked by an arrow.
+
+    Parameters
+    ----------
+    found : mapping
+        ``{label: estimate}``, one row each; with or without repetitions.
+    truth : array_like, shape (parameters,)
+        The true values of the estimates' parameters.
+    names : sequence of str
+        Parameters to show, a panel each.
+    limit : float
+        Largest error on the axis, percent.
+    """
+    number("limit", limit, 0.0, open_low=True)
+    rows = list(found.items())
+    shown = {name: [_summary(e, truth, name) for e in found.values()] for name in names}
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(names), sharey=True, squeeze=False)[0]
+        for axis, name in zip(axes, names):
+            axis.axvline(0.0, color=INK, lw=1)
+            for y, (middle, low, high, half, share) in enumerate(shown[name]):
+                colour = COLOURS[y % len(COLOURS)]
+                centre = np.clip(middle, -limit, limit)
+                ends = np.clip([middle - half, middle + half], -limit, limit)
+                axis.plot(ends, [y, y], color=colour, lw=1.2)
+                axis.plot(
+                    np.clip([low, high], -limit, limit), [y, y], color=colour, lw=6, alpha=0.5
+                )
+                beyond = "<" if middle < -limit else ">" if middle > limit else "o"
+                axis.plot(centre, y, beyond, color=colour, ms=6, clip_on=False)
+                if share is not None:
+                    axis.annotate(
+                        f"{100 * share:.0f} %", (1.0, y), (3, 0), ("axes fraction", "data"),
+                        textcoords="offset points", va="center", fontsize=8,
+                    )  # fmt: skip
+            axis.set(xlim=(-1.04 * limit, 1.04 * limit), xlabel=f"error of {name}, %")
+            axis.set_yticks(range(len(rows)), [label for label, _ in rows])
+            axis.set_ylim(len(rows) - 0.5, -0.5)
+
+    alt = "Errors of estimated parameters in percent. "
+    for y, (label, _) in enumerate(rows):
+        parts = (f"{name} {shown[name][y][0]:.2g}" for name in names)
+        alt += f"{label}: {', '.join(parts)}. "
+    return illustrate(draw, alt.strip(), 7.4, 0.42 * len(rows) + 0.9)
+
+
+def _summary(estimate: Estimate, truth, name: str):
+    """Median, 2.5 % and 97.5 % points, stated half width (in %), share of hits or None."""
+    k = list(estimate.names).index(name)
+    true = finite_array("truth", truth, len(estimate.names))[k]
+    error = 100 * (estimate.values[..., k] / true - 1)
+    half = np.mean(100 * estimate.half_width()[..., k] / abs(true))
+    share = estimate.covers(truth)[..., k].mean() if error.ndim else None
+    return (*np.percentile(error, (50, 2.5, 97.5)), half, share)

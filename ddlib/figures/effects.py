@@ -1,0 +1,140 @@
+"""Figures of the chapter on unmodelled effects: laws side by side, cases, torques in order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+from ddlib._check import finite_array
+from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, Illustration, check_label, illustrate
+from ddlib.tables import number
+
+
+def side_by_side(
+    panels: Mapping[tuple[str, str], Mapping[str, tuple]],
+    alt: str,
+    height: float = 2.5,
+    *,
+    log: bool = False,
+) -> Illustration:
+    """Panels in one row, each with axes of its own.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{(x label, y label): {curve name: (x, y)}}``. A curve of the same name looks the
+        same in every panel; a panel with one curve has no legend.
+    alt : str
+        Alternative text.
+    height : float
+        Inches.
+    log : bool
+        Logarithmic axes, the same in all panels.
+    """
+    shown = [name for panel in panels.values() if len(panel) > 1 for name in panel]
+    look = {name: k for k, name in enumerate(dict.fromkeys(shown))}
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(panels), squeeze=False, sharex=log, sharey=log)[0]
+        for axis, ((x_label, y_label), curves) in zip(axes, panels.items()):
+            for name, (x, y) in curves.items():
+                k = look.get(name, 0)
+                style = dict(color=COLOURS[k % len(COLOURS)], ls=DASHES[k % len(DASHES)])
+                axis.plot(x, y, label=name, **style)
+            axis.set(xlabel=x_label, ylabel=y_label)
+            if log:
+                axis.set(xscale="log", yscale="log")
+                axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+                for side in (axis.xaxis, axis.yaxis):
+                    side.set_major_formatter("{x:g}")
+                    side.set_minor_formatter(NullFormatter())
+            else:
+                axis.xaxis.set_major_locator(MaxNLocator(5))
+            if len(curves) > 1:
+                axis.legend(loc="best")
+
+    return illustrate(draw, alt, 7.0, height)
+
+
+def by_case(
+    x, cases: Mapping[str, np.ndarray], x_label: str, y_label: str, alt: str, height: float = 1.3
+) -> Illustration:
+    """One quantity in several cases: a panel each, the case as its title, one below the other.
+
+    Parameters
+    ----------
+    x : array_like, shape (points,)
+        The common axis.
+    cases : mapping
+        ``{case: values (points,)}``.
+    x_label, y_label, alt : str
+        Labels of the axes, each a quantity with its unit; alternative text.
+    height : float
+        Height of a panel, inches.
+
+    Raises
+    ------
+    ValueError
+        If a label names no quantity, or there is no case.
+    """
+    if not cases:
+        raise ValueError("cases must hold one case or more, got none")
+
+    def draw(figure: Figure):
+        axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, (case, values) in zip(axes, cases.items()):
+            axis.plot(x, values, color=COLOURS[0])
+            axis.set(title=case, ylabel=check_label(y_label))
+        axes[-1].set_xlabel(check_label(x_label))
+
+    return illustrate(draw, alt, 7.0, height * len(cases) + 0.4)
+
+
+def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Illustration:
+    """Torques as bars on a logarithmic axis, largest first, one bar for each joint.
+
+    Parameters
+    ----------
+    sizes : mapping
+        ``{name: torque (joint,)}``, N m, positive.
+    joints : sequence of str
+        Names of the joints.
+
+    Raises
+    ------
+    ValueError
+        If a torque is not positive.
+    """
+    for name, size in sizes.items():
+        if (finite_array(f"sizes[{name!r}]", size, len(joints)) <= 0).any():
+            raise ValueError(f"sizes must be positive, got {size} for {name!r}")
+    order = sorted(sizes, key=lambda name: sizes[name][0], reverse=True)
+    values = np.array([sizes[name] for name in order])
+    places = np.arange(len(order))
+    height = 0.8 / len(joints)
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        low = 10.0 ** np.floor(np.log10(values.min()))
+        for j, joint in enumerate(joints):
+            rows = places + (j - (len(joints) - 1) / 2) * height
+            look = dict(color=COLOURS[j], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
+            axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
+            for y, value in zip(rows, values[:, j]):
+                axis.text(value * 1.12, y, number(value, 2), va="center", fontsize=7.5, color=INK)
+        axis.set_yticks(places, order)
+        axis.set(xscale="log", xlim=(low, values.max() * 2.5), xlabel="torque, N m (RMS)")
+        axis.set_ylim(len(order) - 0.4, -0.6)
+        axis.grid(axis="y", visible=False)
+        axis.tick_params(axis="y", length=0)
+        axis.axhline(0.5, color=FAINT, lw=0.8)
+        axis.legend(loc="lower right")
+
+    listed = "; ".join(
+        f"{name} {' and '.join(number(v, 2) for v in row)}" for name, row in zip(order, values)
+    )
+    alt = f"Bars of torque in N m for {' and '.join(joints)}, largest first: {listed}."
+    return illustrate(draw, alt, 7.0, 0.36 * len(order) + 0.9)

@@ -1,0 +1,147 @@
+"""Figures of the chapter on trajectories and recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from ddlib._check import finite_array, number
+from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
+
+
+def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
+    """Where recordings lie in the cube of states: shoulder against elbow, three planes.
+
+    Parameters
+    ----------
+    states : mapping
+        ``{name: states (runs, time, 6)}``: positions (rad) of shoulder and elbow, then their
+        velocities (rad/s) and accelerations (rad/s^2). Later ones are drawn on top.
+    radius : float
+        Half the edge of the cube.
+    """
+    number("radius", radius, 0.0, open_low=True)
+    checked = {name: finite_array(f"states[{name!r}]", x, 6) for name, x in states.items()}
+    if not checked or any(x.ndim != 3 for x in checked.values()):
+        shapes = {name: x.shape for name, x in checked.items()}
+        raise ValueError(f"states must hold arrays (runs, time, 6), got {shapes}")
+    units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
+    edge = 1.15 * radius
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, 3)
+        for k, (axis, (title, unit)) in enumerate(zip(axes, units.items())):
+            box = Rectangle((-radius, -radius), 2 * radius, 2 * radius, fill=False)
+            box.set(edgecolor=INK, lw=1.0)
+            axis.add_patch(box)
+            for j, (name, x) in enumerate(checked.items()):
+                for run, line in enumerate(x[..., 2 * k : 2 * k + 2]):
+                    label = name if run == 0 else None
+                    axis.plot(*line.T, color=COLOURS[j], lw=0.6 + 0.5 * j, label=label)
+            axis.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal", title=title)
+            axis.axhline(0, color=FAINT, lw=0.5)
+            axis.axvline(0, color=FAINT, lw=0.5)
+            axis.set(xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)
+
+    largest = ", ".join(
+        f"{name}: {np.abs(x[..., :2]).max():.1f} rad, {np.abs(x[..., 2:4]).max():.1f} rad/s, "
+        f"{np.abs(x[..., 4:]).max():.1f} rad/s²"
+        for name, x in checked.items()
+    )
+    alt = (
+        "Three squares, shoulder against elbow, for position, velocity and acceleration, each "
+        f"with the box of ±{radius:.2f}; the recordings are thin curves in a part of it. Largest "
+        f"values: {largest}."
+    )
+    return illustrate(draw, alt, 7.0, 2.9)
+
+
+def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
+    """Readings of an encoder sample by sample, and accelerations computed from them.
+
+    Parameters
+    ----------
+    t : array_like, shape (time,)
+        Times of the samples, s.
+    steps : array_like, shape (time,)
+        Readings, in steps of the encoder.
+    estimates : mapping
+        ``{name: acceleration (time,)}``, rad/s^2; the first one as dots, the others as curves.
+    """
+    t, steps = finite_array("t", t), finite_array("steps", steps)
+    drawn = {name: finite_array(f"estimates[{name!r}]", x) for name, x in estimates.items()}
+    for name, x in {"steps": steps, **{f"estimates[{n!r}]": x for n, x in drawn.items()}}.items():
+        if t.ndim != 1 or x.shape != t.shape:
+            raise ValueError(f"{name} must have the shape (time,) of t {t.shape}, got {x.shape}")
+
+    def draw(figure: Figure):
+        top, bottom = figure.subplots(2, 1, sharex=True)
+        top.step(t, steps, where="mid", color=FAINT, lw=0.9)
+        top.plot(t, steps, ".", color=COLOURS[0], ms=5)
+        top.set_ylabel("angle, encoder steps")
+        for k, (name, x) in enumerate(drawn.items()):
+            look = dict(ls="", marker=".", ms=5) if k == 0 else dict(lw=2)
+            bottom.plot(t, x, color=COLOURS[k + 1], label=name, **look)
+            if k == 0:
+                bottom.vlines(t, 0, x, color=COLOURS[1], lw=0.7, alpha=0.6)
+        bottom.set(xlabel="time, s", ylabel="acceleration, rad/s²")
+        figure.legend(*bottom.get_legend_handles_labels(), loc="outside upper left", ncols=3)
+
+    sizes = ", ".join(f"{name} {np.std(x):.3f}" for name, x in drawn.items())
+    alt = (
+        f"Above, readings that change by whole steps, {int(np.ptp(steps))} in all; below, "
+        f"accelerations computed from them, with standard deviations in rad/s²: {sizes}."
+    )
+    return illustrate(draw, alt, 7.0, 4.0)
+
+
+def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
+    """Acceleration against position: a line where one follows from the other, a cloud where not.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{panel title: {name: points (runs, samples, 2)}}``, position (rad) and acceleration
+        (rad/s^2) along the last axis. The first of each panel is drawn as lines, run by run, the
+        others as dots. A name looks the same in every panel.
+    """
+    checked = {
+        title: {name: finite_array(f"points of {name!r}", x, 2) for name, x in named.items()}
+        for title, named in panels.items()
+    }
+    shapes = [x.shape for named in checked.values() for x in named.values()]
+    if not shapes or any(len(shape) != 3 for shape in shapes):
+        raise ValueError(f"panels must hold points of shape (runs, samples, 2), got {shapes}")
+    look = {n: k for k, n in enumerate(dict.fromkeys(n for p in checked.values() for n in p))}
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(checked), squeeze=False, sharex=True)[0]
+        for axis, (title, named) in zip(axes, checked.items()):
+            for place, (name, points) in enumerate(named.items()):
+                q, qdd = np.rad2deg(points[..., 0]), points[..., 1]
+                if place:
+                    k = look[name] - 1
+                    axis.plot(q.ravel(), qdd.ravel(), "os^"[k % 3], color=COLOURS[k], ms=1.6,
+                              mew=0, alpha=0.7, label=name)  # fmt: skip
+                else:
+                    lines = axis.plot(q.T, qdd.T, color=INK, lw=1.3, zorder=3)
+                    lines[0].set_label(name)
+            axis.set(xlabel="position, °", title=title)
+        axes[0].set_ylabel("acceleration, rad/s²")
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper left", ncols=3, markerscale=3)
+
+    def told(points):
+        q, qdd = points[..., 0].ravel(), points[..., 1].ravel()
+        return f"correlation {np.corrcoef(q, qdd)[0, 1]:.2f}"
+
+    parts = [
+        f"{title}: " + ", ".join(f"{name}, {told(points)}" for name, points in named.items())
+        for title, named in checked.items()
+    ]
+    alt = f"Acceleration against position. {'; '.join(parts)}."
+    return illustrate(draw, alt, 7.0, 3.0)

@@ -1,0 +1,249 @@
+"""Figures of the chapter on the whole state space."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
+
+from ddlib._check import finite_array
+from ddlib.figures.style import COLOURS, DASHES, INK, Illustration, illustrate
+from ddlib.learning import Weights
+from ddlib.tables import number
+
+SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")
+"""The six inputs in their order, as labels."""
+
+UNITS = ("rad", "rad/s", "rad/s²") * 2
+"""Their units."""
+
+JOINTS = ("shoulder", "elbow")
+MARKERS = "osD^v"
+_WIDTH, _BLOB = 12.0, "#8c8c8c"
+
+
+def hinton_states(weights: Weights) -> Illustration:
+    """Figure 6-1: all weights of a network of states, one row of six for each unit.
+
+    Every grey blob is a unit: the outputs on top (shoulder left, elbow right), the hidden
+    units below. The bottom row of a blob holds the weights from position, velocity and
+    acceleration of the shoulder, then of the elbow. The bias is at the upper left; the two
+    dots at the upper right of a hidden unit, and the middle row of an output unit, are the
+    weights between them. A row of more than ten is squeezed.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network with two joints and three numbers each.
+
+    Raises
+    ------
+    ValueError
+        If it is not one such network, or its weights are not finite or all zero.
+    """
+    if weights.hidden_bias.ndim != 1 or weights.hidden_weights.shape[-2:] != (2, 3):
+        raise ValueError(
+            "weights must be of one network of two joints and three numbers each, "
+            f"got hidden weights of shape {weights.hidden_weights.shape}"
+        )
+    largest = float(weights.largest)
+    if not 0 < largest < np.inf:
+        raise ValueError(f"weights must be finite and not all zero, got {largest:g} as largest")
+    hidden, outputs = len(weights.hidden_bias), len(weights.output_bias)
+    rows = -(-hidden // 2)
+    tall, low, step = 5.1, 3.6, 4.4
+
+    def squares(axis: Axes, values, x, y, gap):
+        for k, value in enumerate(values):
+            if value == 0:
+                continue
+            side = np.sqrt(abs(value) / largest)
+            place = (x + k * gap - side / 2, y - side / 2)
+            colour = "#ffffff" if value > 0 else "#000000"
+            axis.add_patch(Rectangle(place, side, side, facecolor=colour, lw=0))
+
+    def blob(axis, x, y, height, bias, top, inputs):
+        axis.add_patch(Rectangle((x, y), _WIDTH, -height, facecolor=_BLOB, lw=0))
+        squares(axis, [bias], x + 1.0, y - 0.9, 1.0)
+        if len(top) == 2:
+            squares(axis, top, x + _WIDTH - 2.2, y - 0.9, 1.2)
+        else:
+            gap = min(1.1, 10.0 / max(len(top) - 1, 1))
+            squares(axis, top, x + 1.05, y - 2.35, gap)
+        squares(axis, inputs.ravel(), x + 1.5, y - height + 0.95, 1.8)
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        for k in range(outputs):
+            blob(axis, k * (_WIDTH + 1.2), 0, tall, weights.output_bias[k],
+                 weights.output_weights[k], weights.skip_weights[k])  # fmt: skip
+        for k in range(hidden):
+            x, y = (k % 2) * (_WIDTH + 1.2), -tall - 0.9 - step * (k // 2)
+            blob(axis, x, y, low, weights.hidden_bias[k], weights.output_weights[:, k],
+                 weights.hidden_weights[k])  # fmt: skip
+        bottom = -tall - 0.9 - step * (rows - 1) - low
+        for column in range(2):
+            for k, symbol in enumerate(SYMBOLS):
+                x = column * (_WIDTH + 1.2) + 1.5 + 1.8 * k
+                axis.text(x, bottom - 0.25, symbol, ha="center", va="top", fontsize=9)
+            title = f"output: {JOINTS[column]} torque"
+            axis.text(column * (_WIDTH + 1.2), 0.25, title, ha="left", va="bottom", fontsize=9)
+        axis.set(xlim=(-0.2, 2 * _WIDTH + 1.4), ylim=(bottom - 1.6, 1.6), aspect="equal")
+        axis.axis("off")
+
+    mean = np.abs(weights.hidden_weights).mean(0).ravel()
+    sizes = ", ".join(f"{s} {m:.1f}" for s, m in zip(("q1", "v1", "a1", "q2", "v2", "a2"), mean))
+    alt = (
+        f"Hinton diagram of a network of states: {outputs} output units on top, {hidden} hidden "
+        "units below; white squares are positive, black negative weights, the largest has "
+        f"magnitude {largest:.1f}. Mean magnitude of the hidden units' weights by input: {sizes}."
+    )
+    height = (tall + 0.9 + step * rows + 2.6) / (2 * _WIDTH + 1.6)
+    return illustrate(draw, alt, 5.6, 5.6 * height)
+
+
+def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
+    """Figure 6-2: the exact torque (fine) and networks' torque (bold) along a trajectory.
+
+    The bold line is the network whose root mean square error, each joint in units of its
+    torque's standard deviation, is the median; the shade holds the middle `share` of all
+    networks at each time.
+
+    Parameters
+    ----------
+    t : array_like, shape (time,)
+        Times, s.
+    exact : array_like, shape (time, joint)
+        Torque of the analytic model, N m.
+    predicted : array_like, shape (networks, time, joint)
+        Torque of each network, N m.
+    share : float
+        Part of the networks inside the shade, above 0, up to 1.
+    """
+    exact, predicted = finite_array("exact", exact), finite_array("predicted", predicted)
+    t = finite_array("t", t)
+    if predicted.ndim != 3 or predicted.shape[1:] != exact.shape or t.shape != exact.shape[:1]:
+        raise ValueError(
+            "t, exact and predicted must have shapes (time,), (time, joint) and (networks, time, "
+            f"joint), got {t.shape}, {exact.shape} and {predicted.shape}"
+        )
+    if not 0 < share <= 1:
+        raise ValueError(f"share must lie in (0, 1], got {share:g}")
+    square = ((predicted - exact) ** 2).mean(1)
+    error = (square / exact.var(0)).mean(-1)
+    middle = predicted[np.argsort(error)[len(error) // 2]]
+    low, high = np.quantile(predicted, [(1 - share) / 2, (1 + share) / 2], axis=0)
+
+    def draw(figure: Figure):
+        axes = figure.subplots(exact.shape[1], 1, sharex=True, squeeze=False)[:, 0]
+        for j, axis in enumerate(axes):
+            label = f"{100 * share:.0f} % of the networks"
+            axis.fill_between(t, low[:, j], high[:, j], color=COLOURS[1], alpha=0.25, lw=0,
+                              label=label)  # fmt: skip
+            axis.plot(t, middle[:, j], color=COLOURS[1], lw=2.4, label="median network")
+            axis.plot(t, exact[:, j], color=INK, lw=0.9, label="analytic model")
+            axis.set_ylabel(f"{JOINTS[j]} torque, N m")
+        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=3)
+        axes[-1].set_xlabel("time, s")
+
+    size = np.sqrt(np.median(square, axis=0))
+    listed = ", ".join(f"{n} {e:.2f} N m" for n, e in zip(JOINTS, size))
+    alt = (
+        f"Torque along a trajectory: the analytic model's and that of {len(predicted)} networks. "
+        f"Median root mean square error: {listed}."
+    )
+    return illustrate(draw, alt, 7.0, 1.8 * exact.shape[1] + 0.5)
+
+
+def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) -> Illustration:
+    """Error against a size: every network as a point, the medians joined; log-log.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{x label: {curve name: {size: errors (networks,)}}}``. A curve of the same name looks
+        the same in every panel.
+    """
+    names = list(dict.fromkeys(name for named in panels.values() for name in named))
+    look = {name: k for k, name in enumerate(names)}
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
+        handles = {}
+        for axis, (label, named) in zip(axes, panels.items()):
+            for name, by_size in named.items():
+                k = look[name]
+                colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
+                for size, errors in by_size.items():
+                    axis.plot([size] * len(errors), errors, ".", ms=4, color=colour, alpha=0.55)
+                medians = [float(np.median(errors)) for errors in by_size.values()]
+                (handles[name],) = axis.plot(
+                    list(by_size), medians, color=colour, ls=DASHES[k % len(DASHES)],
+                    marker=marker, ms=5,
+                )  # fmt: skip
+            sizes = sorted({size for by_size in named.values() for size in by_size})
+            axis.set(xscale="log", yscale="log", xlabel=label)
+            axis.xaxis.set_major_locator(FixedLocator(sizes))
+            axis.xaxis.set_minor_locator(NullLocator())
+            axis.set_xticks(sizes, [_short(size) for size in sizes])
+            axis.yaxis.set_major_formatter("{x:g}")
+            axis.yaxis.set_minor_formatter(NullFormatter())
+        low, high = axes[0].get_ylim()
+        marks = [m for m in (0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0) if low <= m <= high]
+        axes[0].yaxis.set_major_locator(FixedLocator(marks))
+        axes[0].set_ylabel("RMSS")
+        figure.legend(handles.values(), handles, loc="outside upper left", ncols=2)
+
+    parts = []
+    for label, named in panels.items():
+        for name, by_size in named.items():
+            sizes = list(by_size)
+            first, last = sizes[0], sizes[-1]
+            e0, e1 = (number(np.median(by_size[size]), 2) for size in (first, last))
+            parts.append(f"{name}: from {e0} with {first:,} to {e1} with {last:,} {label}")
+    return illustrate(draw, "Median RMSS by size. " + "; ".join(parts) + ".", 7.2, 3.3)
+
+
+def responses(values, activity) -> Illustration:
+    """Activity of every hidden unit while one of the six inputs moves, one panel each.
+
+    Parameters
+    ----------
+    values : array_like, shape (points,)
+        What the input passes through.
+    activity : array_like, shape (2, 3, points, hidden)
+        From `ddlib.analysis.sensitivity.responses`, of one network.
+    """
+    values, activity = finite_array("values", values), finite_array("activity", activity)
+    if activity.ndim != 4 or activity.shape[:3] != (2, 3, values.size):
+        raise ValueError(
+            f"activity must have shape (2, 3, {values.size}, hidden), got {activity.shape}"
+        )
+    swing = np.ptp(activity, axis=2).mean(-1).ravel()
+
+    def draw(figure: Figure):
+        axes = figure.subplots(2, 3, sharex=True, sharey=True).ravel()
+        for k, axis in enumerate(axes):
+            axis.plot(values, activity[k // 3, k % 3], color=COLOURS[k // 3], lw=1.1)
+            axis.set_title(f"{SYMBOLS[k]}, {UNITS[k]}")
+            axis.set_ylim(-0.04, 1.04)
+        for row in (0, 3):
+            axes[row].set_ylabel("activity")
+
+    listed = ", ".join(
+        f"{name} {size:.2f}" for name, size in zip(("q1", "v1", "a1", "q2", "v2", "a2"), swing)
+    )
+    alt = (
+        f"Activities of {activity.shape[-1]} hidden units while one input moves, six panels. "
+        f"Mean swing by input: {listed}."
+    )
+    return illustrate(draw, alt, 7.0, 3.6)
+
+
+def _short(size: int) -> str:
+    """A number for a crowded axis: 30,000 as 30k."""
+    return f"{size // 1000}k" if size >= 1000 and size % 1000 == 0 else str(size)

@@ -1,0 +1,23 @@
+"""Parameters of an arm from recordings of it, with a confidence for each."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "regression": [
+            "Equations",
+            "Estimate",
+            "FRICTION",
+            "GRAVITY",
+            "RIGID",
+            "SIGN_SPEED",
+            "columns",
+            "excitation",
+            "from_states",
+            "least_squares",
+            "true_parameters",
+        ],
+        "equations": ["SLOW", "by_differences", "by_modulation", "by_smoothing", "repeat"],
+    },
+)

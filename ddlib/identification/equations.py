@@ -1,0 +1,285 @@
+"""From recordings to equations for identification: differences, smoothing, modulation.
+
+A recording holds quantised positions. Differences of them are noisy, and noise in the motion
+biases least squares; smoothing filters bend what they smooth, and that biases it too.
+Modulating functions (Shinbrot 1957) need no acceleration and treat torque and motion alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.signal import savgol_filter
+
+from ddlib._check import finite_array, integer, number
+from ddlib.control import Controller
+from ddlib.dynamics import Arm
+from ddlib.effects import Effects, Quantisation
+from ddlib.identification.regression import (
+    FRICTION,
+    RIGID,
+    SIGN_SPEED,
+    Equations,
+    columns,
+    from_states,
+)
+from ddlib.simulation import Recording, record
+
+SLOW = 0.1
+"""Where a joint moves slower than this (rad/s), the sign of its friction is not trusted."""
+
+
+def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
+    """Equations with velocity and acceleration from differences of neighbouring samples.
+
+    Parameters
+    ----------
+    recording : Recording
+        Leading axes of `q` before those of the reference are repetitions.
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    """
+    step, q = recording.step, recording.q
+    velocity, acceleration = np.zeros_like(q), np.zeros_like(q)
+    velocity[..., 1:-1, :] = (q[..., 2:, :] - q[..., :-2, :]) / (2 * step)
+    acceleration[..., 1:-1, :] = np.diff(q, 2, axis=-2) / step**2
+    return _sampled(recording, velocity, acceleration, names, 1)
+
+
+def by_smoothing(
+    recording: Recording,
+    width: int,
+    names: Sequence[str] = RIGID + FRICTION,
+    smooth_torque: bool = False,
+) -> Equations:
+    """Equations with the derivatives of parabolas, fitted to windows of the positions.
+
+    The filters of Savitzky & Golay (1964).
+
+    Parameters
+    ----------
+    recording : Recording
+        As in `by_differences`.
+    width : int
+        Samples of a window, odd.
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    smooth_torque : bool
+        Whether the torque passes through the same window.
+    """
+    if integer("width", width, 3) % 2 == 0:
+        raise ValueError(f"width must be an odd number of samples, got {width}")
+    if smooth_torque:
+        recording = replace(recording, tau=savgol_filter(recording.tau, width, 2, axis=-2))
+    step = recording.step
+    velocity, acceleration = (
+        savgol_filter(recording.q, width, 2, order, step, axis=-2) for order in (1, 2)
+    )
+    return _sampled(recording, velocity, acceleration, names, width // 2)
+
+
+def by_modulation(
+    recording: Recording,
+    names: Sequence[str] = RIGID + FRICTION,
+    width: float = 0.6,
+    hold: float | None = None,
+) -> Equations:
+    """Equations of motion averaged under smooth bumps, so that no acceleration is needed.
+
+    Both sides are multiplied by a bump ``w(t)`` (a B-spline of degree 5) and integrated.
+    Integration by parts moves the derivatives from the measured position to the bump, of
+    which they are known exactly: ``int w qdd dt = int w'' q dt``. Overlapping bumps share
+    torque noise; the equations are combined so that their noise is independent. The method
+    of modulating functions is Shinbrot's (1957).
+
+    Parameters
+    ----------
+    recording : Recording
+        As in `by_differences`.
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    width : float
+        Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a
+        multiple of six samples, with which sums over samples are as good as integrals. Narrow
+        bumps let quantisation through, wide ones lose detail.
+    hold : float, optional
+        Time for which the controller holds a torque, s: a sample stands for the torque half
+        of it later. Default: as the recording says, its computing time included.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or nothing says how long torques were held.
+    """
+    begin, end = recording.span
+    shortest, tiny = 12 * recording.step, 1e-6 * recording.step
+    if end - begin < shortest - tiny:
+        raise ValueError(f"recording must have 12 samples of motion or more, got {end - begin:g} s")
+    number("width", width, shortest - tiny, end - begin + tiny)
+    width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
+    late = _lateness(recording) if hold is None else number("hold", hold, 0.0) / 2
+    recording = _in_runs(recording)
+    t, length = recording.t - begin, end - begin
+    bumps, later = _bumps(t, width, length), _bumps(t + late, width, length)[0]
+    rows = _modulated(bumps, recording.q, recording.step)
+    steady = _steady(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
+    regressors, torques = [], []
+    for j in range(2):
+        torque = recording.tau[..., j] @ later.T
+        a = columns(rows[j], names, torque)
+        parts = []
+        for run, keep in enumerate(steady[j]):
+            whiten = np.linalg.inv(np.linalg.cholesky(later[keep] @ later[keep].T))
+            parts.append((whiten @ a[..., run, keep, :], torque[..., run, keep] @ whiten.T))
+        regressors.append(np.concatenate([x for x, _ in parts], -2))
+        torques.append(np.concatenate([y for _, y in parts], -1))
+    return Equations(tuple(names), tuple(regressors), tuple(torques))
+
+
+def repeat(
+    arm: Arm,
+    controller: Controller,
+    extents_deg,
+    effects: Effects,
+    repetitions: int,
+    seed: int = 0,
+    **options,
+) -> Recording:
+    """The same motions recorded many times: new sensor noise, the encoder mounted anew.
+
+    Parameters
+    ----------
+    arm, controller, effects
+        As in `ddlib.simulation.simulate.record`.
+    extents_deg : array_like, shape (runs, 2)
+        Extents in degrees.
+    repetitions : int
+        How often. In each the zero of the encoders falls elsewhere within a step.
+    seed : int
+        Of the noise and of the encoders' zeros.
+    **options
+        Duration, rests and periods, as in `ddlib.simulation.simulate.record`.
+
+    Returns
+    -------
+    Recording
+        Arrays ``(repetitions, runs, time, joint)``; the reference is ``(runs, time, joint)``.
+    """
+    integer("repetitions", repetitions, 1)
+    extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
+    runs = len(extents)
+    steps = [e.step for e in effects.encoder if isinstance(e, Quantisation)]
+    zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions, 1, 2))
+    shift = _Shift(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
+    mounted = replace(effects, encoder=(shift, *effects.encoder))
+    options |= {"effects": mounted, "seed": seed}
+    many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
+    reference = type(many.reference)(*(x[:runs] for x in many.reference))
+    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
+    shaped = {f: getattr(many, f).reshape(repetitions, runs, many.t.size, 2) for f in fields}
+    return replace(many, reference=reference, **shaped)
+
+
+@dataclass(frozen=True)
+class _Shift:
+    """A reading with a constant added: an encoder whose zero lies elsewhere."""
+
+    offset: np.ndarray
+
+    def apply(self, x, rng=None):
+        return x + self.offset
+
+
+def _in_runs(recording: Recording) -> Recording:
+    """The recording with an axis for runs, even if it is a single one."""
+    if recording.reference.q.ndim > 2:
+        return recording
+    reference = type(recording.reference)(*(x[None] for x in recording.reference))
+    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
+    arrays = {f: getattr(recording, f)[..., None, :, :] for f in fields}
+    return replace(recording, reference=reference, **arrays)
+
+
+def _lateness(recording: Recording) -> float:
+    """How much later than its sample a logged torque acts in the mean, s."""
+    if recording.control_step is None:
+        raise ValueError("hold must be given, as the recording has no control_step; got None")
+    middle = recording.control_step / 2
+    late = recording.computing_time  # with one, a sample holds the torque of the reading before
+    return late - middle if late else middle
+
+
+def _steady(recording: Recording, names) -> np.ndarray:
+    """Where friction has a sure sign, by the speed over all repetitions: (joint, run, time)."""
+    q = recording.q
+    speed = np.abs(_five_point(q, recording.step))
+    speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
+    wanted = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
+    return speed >= wanted[:, None, None]
+
+
+def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equations:
+    """Equations at the samples of the motion, `margin` samples away from its ends."""
+    recording = _in_runs(recording)
+    shape = recording.q.shape
+    equations = from_states(
+        recording.q, velocity.reshape(shape), acceleration.reshape(shape), recording.tau, names
+    )
+    inside = np.zeros(recording.t.size, bool)
+    inside[recording.motion.start + margin : recording.motion.stop - margin] = True
+    keep = _steady(recording, names) & inside
+    regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
+    return Equations(
+        tuple(names), regressors, tuple(y[..., k] for y, k in zip(equations.torque, keep))
+    )
+
+
+def _bumps(t, width, length) -> list[np.ndarray]:
+    """B-splines inside a motion from 0 to `length` s and their first two derivatives.
+
+    Each ``(bumps, time)``. The log jumps where the reference starts and stops; no bump reaches
+    over these samples.
+    """
+    knot = width / 6
+    shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)
+    first = knot * np.arange(int((length - width) / knot + 1e-9) + 1)
+    place = t - first[:, None]
+    return [np.nan_to_num(f(place)) for f in (shape, shape.derivative(), shape.derivative(2))]
+
+
+def _modulated(bumps, q, step) -> list[dict]:
+    """What each parameter contributes to the modulated torque, for shoulder and elbow."""
+    w, w1, w2 = (x.T for x in bumps)
+    velocity = _five_point(q, step)
+    sign = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
+    q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
+    c2, s2 = np.cos(q2), np.sin(q2)
+    weight = np.sin(q1 + q2) @ w
+    shoulder = {
+        "a": q1 @ w2,
+        "b": s2 @ w2 - (2 * c2 * v1) @ w1,
+        "d": q2 @ w2,
+        "g1": np.sin(q1) @ w,
+        "g2": weight,
+        "F_v1": -q1 @ w1,
+        "F_c1": sign[..., 0] @ w,
+    }
+    elbow = {
+        "b": (s2 * v1 * (v1 + v2)) @ w - (c2 * v1) @ w1,
+        "d": (q1 + q2) @ w2,
+        "g2": weight,
+        "F_v2": -q2 @ w1,
+        "F_c2": sign[..., 1] @ w,
+    }
+    return [shoulder, elbow]
+
+
+def _five_point(q, step) -> np.ndarray:
+    """Velocity by central differences of fourth order (plain ones at the ends)."""
+    velocity = np.gradient(q, step, axis=-2)
+    near, far = q[..., 3:-1, :] - q[..., 1:-3, :], q[..., 4:, :] - q[..., :-4, :]
+    velocity[..., 2:-2, :] = (8 * near - far) / (12 * step)
+    return velocity

@@ -1,0 +1,225 @@
+"""Base parameters and friction from recordings, with a confidence for each.
+
+The torque is linear in the parameters, so identification is linear least squares once
+the motion is known (An, Atkeson & Hollerbach 1988; Khosla 1986). How the motion is found in
+recordings of quantised positions is the subject of `ddlib.identification.equations`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.stats import t as student
+
+from ddlib._check import finite_array, integer, number
+from ddlib.dynamics import Arm
+from ddlib.effects import Effects
+from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.trajectories import Trajectory
+
+RIGID = ("a", "b", "d")
+"""Base parameters of a horizontal two-link arm, kg m^2."""
+
+GRAVITY = ("g1", "g2")
+"""Gravity moments of a vertical arm, N m."""
+
+FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
+"""Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow."""
+
+SIGN_SPEED = 0.005
+"""Below this estimated speed (rad/s) the sign of a velocity is blurred."""
+
+
+class Equations(NamedTuple):
+    """Linear equations ``torque = regressor @ parameters + noise``, a set for each joint.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The parameters.
+    regressor : tuple of ndarray, each (..., equations, parameters)
+    torque : tuple of ndarray, each (..., equations)
+    """
+
+    names: tuple[str, ...]
+    regressor: tuple[np.ndarray, ...]
+    torque: tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Parameters with their uncertainty; leading axes are repetitions.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The parameters.
+    values, errors : ndarray, shape (..., parameters)
+        Estimates and their standard errors.
+    noise : ndarray, shape (..., joint)
+        Standard deviation of an equation's torque, N m.
+    freedom : int
+        Degrees of freedom: equations minus parameters.
+    """
+
+    names: tuple[str, ...]
+    values: np.ndarray
+    errors: np.ndarray
+    noise: np.ndarray
+    freedom: int
+
+    def half_width(self, level: float = 0.95) -> np.ndarray:
+        """Half the width of the confidence interval, from Student's distribution."""
+        number("level", level, 0.0, 1.0, open_low=True)
+        return student.ppf(0.5 + level / 2, self.freedom) * self.errors
+
+    def covers(self, truth, level: float = 0.95) -> np.ndarray:
+        """Whether each confidence interval holds the true parameter.
+
+        Parameters
+        ----------
+        truth : array_like, shape (parameters,)
+        level : float
+            Confidence, 0 to 1.
+        """
+        truth = finite_array("truth", truth, len(self.names))
+        return np.abs(self.values - truth) <= self.half_width(level)
+
+
+def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
+    """Weighted linear least squares: each joint counts by the inverse of its own noise.
+
+    A joint's noise is what its equations leave over. It decides the weights, which decide
+    what is left over; a few rounds settle both.
+
+    Parameters
+    ----------
+    equations : Equations
+        Leading axes are repetitions, each solved for itself.
+    rounds : int
+        How often the weights are renewed.
+
+    Raises
+    ------
+    ValueError
+        If there are not more equations than parameters, or they do not determine them all.
+    """
+    integer("rounds", rounds, 1)
+    names, regressors, torques = equations
+    counts = [y.shape[-1] for y in torques]
+    if sum(counts) <= len(names):
+        raise ValueError(
+            f"equations must be more than the {len(names)} parameters, got {sum(counts)}"
+        )
+    a, y = np.concatenate(regressors, -2), np.concatenate(torques, -1)
+    joints = [slice(end - n, end) for n, end in zip(counts, np.cumsum(counts))]
+    smallest = 1e-12 * np.sqrt(np.mean(y**2, -1, keepdims=True)) + 1e-300
+    noise = np.ones((*y.shape[:-1], len(joints)))
+    for _ in range(rounds):
+        sigma = np.repeat(np.maximum(noise, smallest), counts, axis=-1)
+        basis, triangle = np.linalg.qr(a / sigma[..., None])
+        size = np.linalg.norm(triangle, axis=-2)
+        if not (size > 0).all() or np.linalg.cond(triangle / size[..., None, :]).max() > 1e10:
+            raise ValueError(f"equations must determine all of {', '.join(names)}; they do not")
+        inverse = np.linalg.inv(triangle)
+        found = np.einsum("...np,...n->...p", basis, y / sigma)
+        left = y - np.einsum("...np,...p->...n", basis, found) * sigma
+        noise = np.stack([_spread(left[..., j], basis[..., j, :]) for j in joints], -1)
+    values = np.einsum("...pq,...q->...p", inverse, found)
+    freedom = sum(counts) - len(names)
+    return Estimate(names, values, np.linalg.norm(inverse, axis=-1), noise, freedom)
+
+
+def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
+    """Equations at known states: one for every sample and joint.
+
+    Parameters
+    ----------
+    q, qd, qdd, torque : array_like, shape (..., samples, 2)
+        Angles (rad), velocities (rad/s), accelerations (rad/s^2) and torques (N m).
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    """
+    q, qd, qdd, torque = np.broadcast_arrays(
+        *(finite_array(n, x, 2) for n, x in zip(("q", "qd", "qdd", "torque"), (q, qd, qdd, torque)))
+    )
+    rigid = Arm.regressor(q, qd, qdd)
+    sign = np.clip(qd / SIGN_SPEED, -1.0, 1.0)
+    regressors = []
+    for j in range(2):
+        row = dict(zip((*RIGID, *GRAVITY), np.moveaxis(rigid[..., j, :], -1, 0)))
+        row |= {f"F_v{j + 1}": qd[..., j], f"F_c{j + 1}": sign[..., j]}
+        regressors.append(columns(row, names, qd[..., j]))
+    return Equations(tuple(names), tuple(regressors), (torque[..., 0], torque[..., 1]))
+
+
+def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
+    """What an identification should find, in the order of `names`.
+
+    Parameters
+    ----------
+    arm, effects
+        The plant; of its frictions the viscous and Coulomb ones are known here.
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    """
+    _known(names)
+    viscous = sum(np.asarray(f.coefficient) for f in effects.friction if _is_viscous(f))
+    coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
+    pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
+    known = dict(zip((*RIGID, *GRAVITY, *FRICTION), (arm.a, arm.b, arm.d, *pairs)))
+    return np.array([known[name] for name in names])
+
+
+def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID) -> float:
+    """Condition number of the regressor along a motion; infinite if a parameter is unseen.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion, arrays of shape ``(..., time, 2)``.
+    names : sequence of str
+        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    """
+    equations = from_states(*trajectory, np.zeros(2), names)
+    values = np.linalg.svd(
+        np.concatenate([a.reshape(-1, len(names)) for a in equations.regressor]), compute_uv=False
+    )
+    return float(values[0] / values[-1]) if values[-1] > 1e-12 * values[0] else np.inf
+
+
+def _spread(left, basis) -> np.ndarray:
+    """Standard deviation of one joint's residuals; what its equations spent is not counted."""
+    free = left.shape[-1] - np.sum(basis**2, (-2, -1))
+    return np.sqrt(np.sum(left**2, -1) / np.maximum(free, 1e-9))
+
+
+def _is_viscous(friction) -> bool:
+    return isinstance(friction, ViscousFriction)
+
+
+def _known(names) -> None:
+    """A ValueError for a name of no parameter."""
+    known = (*RIGID, *GRAVITY, *FRICTION)
+    for name in names:
+        if name not in known:
+            raise ValueError(f"names must be among {', '.join(known)}, got {name!r}")
+
+
+def columns(row: dict, names: Sequence[str], like) -> np.ndarray:
+    """The regressor of one joint, ``(..., parameters)``.
+
+    Parameters
+    ----------
+    row : dict
+        For each parameter that the joint feels, its column.
+    names : sequence of str
+        Parameters wanted, from `RIGID`, `GRAVITY` and `FRICTION`.
+    like : ndarray
+        Shape of the zeros for a parameter that the joint does not feel.
+    """
+    _known(names)
+    return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

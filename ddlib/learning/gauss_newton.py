@@ -1,0 +1,236 @@
+"""Error, gradient and second derivatives of a window network, for `ddlib.learning.levenberg_marquardt`.
+
+Neighbouring samples of a window hardly differ, so that windows vary some hundred thousand
+times more in one direction than in another, and a step that is short in all weights alike
+leaves most directions as they were. The parameters are therefore taken in coordinates in
+which the inputs have unit mean square in every direction ("whitened"). The network, its
+error and its optima stay the same; the way there, and so the optimum that is reached, does
+not.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import torch
+
+from ddlib.learning.network import Weights
+from ddlib.learning.training import TrainingSet
+
+_BLOCK = 512  # cases whose products of inputs are held at once
+_float64 = partial(torch.as_tensor, dtype=torch.float64)
+_zeros = partial(torch.zeros, dtype=torch.float64)
+
+
+def penalty(joints: int, width: int, decay: float = 0.0, smoothness: float = 0.0) -> np.ndarray:
+    """Matrix P of the penalty ``w'P w / 2`` on one unit's weights w from the window.
+
+    Parameters
+    ----------
+    joints, width : int
+        Length of w, which is joint by joint, oldest sample first.
+    decay, smoothness : float
+        As in `ddlib.learning.levenberg_marquardt.solve`.
+
+    Returns
+    -------
+    ndarray, shape (joints * width, joints * width)
+    """
+    second = np.diff(np.eye(width), 2, axis=0)
+    return np.kron(np.eye(joints), decay * np.eye(width) + smoothness * second.T @ second)
+
+
+class Objective:
+    """What `ddlib.learning.levenberg_marquardt.solve` minimises, as a function of one vector of parameters.
+
+    The vector holds a row for each hidden unit, then for each output unit (the weights
+    from the window, then the bias), and then the hidden-to-output weights. A row w is
+    held as ``C'w`` with ``CC'`` the mean square of the inputs and the penalty, so that the
+    inputs ``C^-1 [x, 1]`` are white.
+
+    Parameters
+    ----------
+    weights : Weights
+        A network, for its shape.
+    data : TrainingSet
+        Cases.
+    decay, smoothness : float
+        As in `ddlib.learning.levenberg_marquardt.solve`.
+    test : tuple of ndarray, optional
+        Scaled windows and targets for `test_rmss`.
+    """
+
+    def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, smoothness=0.0, test=None):
+        self._hidden, *self._window = weights.hidden_weights.shape
+        self._outputs = len(weights.output_bias)
+        self._rows = self._hidden + self._outputs
+        x = _columns(data.x)
+        self._inputs, cases = x.shape
+        self._split = self._rows * self._inputs
+
+        self._decay = decay
+        matrix = _zeros(self._inputs, self._inputs)  # no penalty on the bias
+        matrix[:-1, :-1] = _float64(penalty(*self._window, decay, smoothness))
+        power, axes = torch.linalg.eigh((x @ x.T + matrix) / cases)
+        idle = power < 1e-14 * power[-1]  # nothing but rounding: weights stay as they are
+        power[idle] = power[-1]
+        self._colour, self._whiten = axes * power.sqrt(), axes / power.sqrt()
+        busy = torch.where(idle, 0.0, self._whiten).T
+        self._z, self._y = busy @ x, _float64(data.y).T.contiguous()
+        self._test = (self._whiten.T @ _columns(test[0]), _float64(test[1]).T) if test else None
+        self._penalty = busy @ matrix @ busy.T
+
+        self._pairs = torch.tril_indices(self._rows, self._rows)
+        row, column = _pair_number(self._rows), _pair_number(self._inputs)
+        size = column.max() + 1
+        # Where the table of `_sums` has the element (row r, input i; row s, input j).
+        place = row[:, None, :, None] * size + column[None, :, None, :]
+        self._place = place.reshape(self._split, self._split)
+        self._products = _zeros(size, _BLOCK)
+
+    def pack(self, weights: Weights) -> torch.Tensor:
+        """Vector of a network's parameters, shape (parameter,)."""
+        parts = [(weights.hidden_weights, weights.hidden_bias)]
+        parts += [(weights.skip_weights, weights.output_bias)]
+        rows = [np.column_stack([w.reshape(len(w), -1), b]) for w, b in parts]
+        first = _float64(np.concatenate(rows)) @ self._colour
+        return torch.cat([first.flatten(), _float64(weights.output_weights).flatten()])
+
+    def unpack(self, vector: torch.Tensor) -> Weights:
+        """Network of a vector of parameters."""
+        first, second = self._parts(vector)
+        rows = (first @ self._whiten.T).numpy()
+        window, h = rows[:, :-1].reshape(self._rows, *self._window), self._hidden
+        return Weights(window[:h], rows[:h, -1], second.numpy().copy(), window[h:], rows[h:, -1])
+
+    def value(self, vector: torch.Tensor) -> tuple[float, float]:
+        """The objective (penalties included) and the pooled training RMSS."""
+        square = (self._activity(vector, self._z)[1] - self._y).square()
+        return 0.5 * float(square.sum()) + self._penalise(vector)[0], _rmss(square, self._y)
+
+    def test_rmss(self, vector: torch.Tensor) -> float:
+        """Pooled RMSS of the test cases, NaN if there are none."""
+        if self._test is None:
+            return np.nan
+        z, y = self._test
+        return _rmss((self._activity(vector, z)[1] - y).square(), y)
+
+    def normal(self, vector: torch.Tensor, exact: bool = False) -> tuple[torch.Tensor, ...]:
+        """Matrix of a Newton step, gradient and lengths of the residuals' derivatives.
+
+        Parameters
+        ----------
+        vector : Tensor, shape (parameter,)
+        exact : bool
+            False: the Gauss-Newton matrix ``J'J``, J being the derivatives of the
+            residuals (penalties among them). True: all second derivatives.
+
+        Returns
+        -------
+        matrix : Tensor, shape (parameter, parameter)
+            Its lower triangle only; what lies above is not set.
+        gradient : Tensor, shape (parameter,)
+        lengths : Tensor, shape (parameter,)
+            Of the columns of J.
+        """
+        hidden, split = self._hidden, self._split
+        table, cross, corner, slopes, squares = self._sums(vector, exact)
+        matrix = _zeros(len(vector), len(vector))
+        first = matrix[:split, :split]
+        first.numpy()[...] = np.take(table.numpy(), self._place)
+        matrix[split:, :split] = cross.view(-1, split)
+        for o in range(self._outputs):
+            own = slice(split + o * hidden, split + (o + 1) * hidden)
+            matrix[own, own] = corner[o]
+        for r in range(self._rows):
+            own = slice(r * self._inputs, (r + 1) * self._inputs)
+            first[own, own] += self._penalty
+        matrix.diagonal()[split:] += self._decay
+        squares[0] += self._penalty.diagonal()
+        squares[1] += self._decay
+        gradient, squares = (torch.cat([x.flatten() for x in pair]) for pair in (slopes, squares))
+        return matrix, gradient + self._penalise(vector)[1], squares.sqrt()
+
+    def _parts(self, vector):
+        first = vector[: self._split].view(self._rows, self._inputs)
+        return first, vector[self._split :].view(self._outputs, self._hidden)
+
+    def _activity(self, vector, z):
+        first, second = self._parts(vector)
+        net = first @ z
+        hidden = torch.sigmoid(net[: self._hidden])
+        return hidden, torch.sigmoid(torch.addmm(net[self._hidden :], second, hidden))
+
+    def _penalise(self, vector):
+        """The penalties and their gradient."""
+        first, second = self._parts(vector)
+        slope = torch.cat([(first @ self._penalty).flatten(), self._decay * second.flatten()])
+        return 0.5 * float(vector @ slope), slope
+
+    def _sums(self, vector, exact):
+        """The sums over cases of which matrix, gradient and lengths consist.
+
+        The net input of output o has the derivative ``factor[o, r] z[i]`` by the weight i
+        of row r, and ``hidden[h]`` by the weight from hidden unit h. The block of the
+        matrix between rows r and s sums ``z[i] z[j]`` times a product of factors, so that
+        one product of matrices gives all blocks, each pair of rows and inputs once.
+        """
+        (_, second), (r, s) = self._parts(vector), self._pairs
+        h = torch.arange(self._hidden)
+        table = _zeros(len(r), len(self._products))
+        cross = _zeros(self._outputs * self._hidden * self._rows, self._inputs)
+        corner = _zeros(self._outputs, self._hidden, self._hidden)
+        slopes, squares = (
+            [_zeros(self._rows, self._inputs), _zeros(self._outputs, self._hidden)]
+            for _ in range(2)
+        )
+        for start in range(0, self._z.shape[1], _BLOCK):
+            z, y = (array[:, start : start + _BLOCK] for array in (self._z, self._y))
+            n = z.shape[1]
+            hidden, output = self._activity(vector, z)
+            slope, hidden_slope = output - output * output, hidden - hidden * hidden
+            delta = (output - y) * slope
+            factor = _zeros(self._outputs, self._rows, n)
+            torch.mul(second[:, :, None], hidden_slope, out=factor[:, : self._hidden])
+            for o in range(self._outputs):
+                factor[o, self._hidden + o] = 1
+            slopes[0].addmm_((factor * delta[:, None]).sum(0), z.T)
+            slopes[1].addmm_(delta, hidden.T)
+            bend = slope * slope
+            squares[0].addmm_((bend[:, None] * factor * factor).sum(0), (z * z).T)
+            squares[1].addmm_(bend, (hidden * hidden).T)
+
+            if exact:
+                bend = bend + delta * (1 - 2 * output)
+            bent = bend[:, None] * factor
+            weight, mixed = (bent[:, r] * factor[:, s]).sum(0), bent[:, None] * hidden[:, None]
+            if exact:
+                weight[h * (h + 3) // 2] += (second.T @ delta) * hidden_slope * (1 - 2 * hidden)
+                mixed[:, h, h] += delta[:, None] * hidden_slope
+            products = self._products[:, :n]
+            for i in range(self._inputs):
+                row = i * (i + 1) // 2
+                torch.mul(z[i], z[: i + 1], out=products[row : row + i + 1])
+            table.addmm_(weight, products.T)
+            cross.addmm_(mixed.view(-1, n), z.T)
+            corner += (bend[:, None] * hidden) @ hidden.T
+        return table, cross, corner, slopes, squares
+
+
+def _columns(x) -> torch.Tensor:
+    """Windows as columns, with a one for the bias, shape (input, cases)."""
+    x = _float64(x).flatten(1)
+    return torch.cat([x, torch.ones(len(x), 1, dtype=torch.float64)], 1).T
+
+
+def _rmss(square, y) -> float:
+    """Pooled RMSS as of `ddlib.metrics.rmss`; both arguments of shape (output, cases)."""
+    return float((square.mean(1) / y.var(1, correction=0)).mean().sqrt())
+
+
+def _pair_number(size: int) -> np.ndarray:
+    """Number of the pair (i, j) in a lower triangle read by rows, shape (size, size)."""
+    i, j = np.indices((size, size))
+    i, j = np.maximum(i, j), np.minimum(i, j)
+    return i * (i + 1) // 2 + j

@@ -1,0 +1,283 @@
+"""Levenberg-Marquardt: the optimum of a window network, where the path does not matter.
+
+Each step solves ``(J'J + mu I) step = -gradient`` with J the derivatives of all residuals
+by all parameters (Levenberg 1944; Marquardt 1963; for networks Hagan & Menhaj 1994). The
+damping mu follows the ratio of the achieved to the predicted fall of the objective
+(Nielsen 1999). Near the end all second derivatives take the place of ``J'J``, if they and
+mu make a positive definite matrix (Dennis, Gay & Welsch 1981 join the two in a similar way):
+where residuals remain, ``J'J`` alone converges slowly. The parameters are those of
+`ddlib.learning.gauss_newton`.
+"""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from tqdm.auto import tqdm
+
+from ddlib._check import finite_array, integer, number
+from ddlib.learning.gauss_newton import Objective
+from ddlib.learning.network import TorqueModel, Weights
+from ddlib.learning.training import WORKERS, History, TrainingSet
+
+_NEAR = 1e-2  # the measure of `tolerance` from which all second derivatives are used
+
+
+class NotConverged(UserWarning):
+    """A network was left before its gradient was small enough."""
+
+
+class Solution(NamedTuple):
+    """What `solve` found.
+
+    Attributes
+    ----------
+    model : TorqueModel
+        The networks, in the shape of the initial weights.
+    history : History
+        RMSS after each step, 0 being the start; a member that has ended keeps its last
+        value.
+    objective : ndarray, shape (members,)
+        What was minimised, penalties included.
+    gradient : ndarray, shape (members,)
+        What `tolerance` is compared with, at the end.
+    steps : ndarray of int, shape (members,)
+        How many were taken.
+    ended : ndarray of str, shape (members,)
+        "gradient" or "target" if the member converged; "steps" if they ran out,
+        "no descent" if nothing nearby is lower by more than rounding.
+    """
+
+    model: TorqueModel
+    history: History
+    objective: np.ndarray
+    gradient: np.ndarray
+    steps: np.ndarray
+    ended: np.ndarray
+
+    @property
+    def converged(self) -> np.ndarray:
+        """Members whose gradient is within the tolerance, or whose RMSS met the target."""
+        return np.isin(self.ended, ("gradient", "target"))
+
+
+def solve(
+    weights: Weights,
+    data: TrainingSet,
+    *,
+    test: tuple | None = None,
+    decay: float = 0.0,
+    smoothness: float = 0.0,
+    steps: int = 300,
+    tolerance: float = 1e-6,
+    target_rmss: float | None = None,
+    damping: float = 0.1,
+    progress: bool = True,
+    label: str = "solving",
+) -> Solution:
+    """Minimise the error of networks by Levenberg-Marquardt.
+
+    The objective is half the summed squared error of all cases and outputs, as in
+    `ddlib.learning.training.train`, plus ``decay / 2`` times the sum of the squared weights, plus
+    ``smoothness / 2`` times the sum of the squared second differences of each unit's
+    weights along the window. Biases are free of both penalties. Without penalties some
+    directions of the weights hardly matter, and hundreds of steps may not reach the end.
+
+    Parameters
+    ----------
+    weights : Weights
+        Initial weights of one network or, with a leading axis, of an ensemble.
+    data : TrainingSet
+        Cases and scaling.
+    test : tuple of ndarray, optional
+        Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
+    decay, smoothness : float
+        Strengths of the penalties, 0 or more.
+    steps : int
+        Largest number of steps of each member.
+    tolerance : float
+        A member has converged when the cosine between the residuals and each column of
+        J is at most this. The penalties count as residuals.
+    target_rmss : float, optional
+        Training RMSS at which a member may stop.
+    damping : float
+        First mu, in units of the largest diagonal element of ``J'J``; 0: a Gauss-Newton
+        step.
+    progress : bool
+        Show a progress bar with the RMSS after the last step.
+    label : str
+        What the bar says.
+
+    Returns
+    -------
+    Solution
+
+    Warns
+    -----
+    NotConverged
+        If some member met neither the tolerance nor the target.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind, out of range or not finite, or shapes differ.
+    """
+    _check(weights, data, test)
+    options = (
+        integer("steps", steps, 1),
+        number("tolerance", tolerance, 0.0, 1.0),
+        None if target_rmss is None else number("target_rmss", target_rmss, 0.0),
+        number("damping", damping, 0.0),
+    )
+    penalties = number("decay", decay, 0.0), number("smoothness", smoothness, 0.0)
+    single = weights.hidden_bias.ndim == 1
+    members = [weights] if single else [weights[k] for k in range(len(weights))]
+    lock = threading.Lock()
+    bar = tqdm(total=steps * len(members), desc=label, disable=not progress, mininterval=0.5)
+
+    def tell(count: int, error: float) -> None:
+        with lock:
+            bar.set_postfix(rmss=f"{error:.3f}", refresh=False)
+            bar.update(count)
+
+    def work(member: Weights):
+        torch.set_num_threads(1)  # of this thread: one core for each member
+        objective = Objective(member, data, *penalties, test)
+        end = _descend(objective, objective.pack(member), *options, tell)
+        tell(steps + 1 - len(end.path), end.path[-1][0])
+        return objective.unpack(end.vector), end
+
+    threads = torch.get_num_threads()
+    pool = ThreadPoolExecutor(min(WORKERS, len(members)))
+    try:
+        found, ends = zip(*pool.map(work, members))
+    finally:
+        pool.shutdown(cancel_futures=True)
+        torch.set_num_threads(threads)
+        bar.close()
+    solution = Solution(
+        TorqueModel(found[0] if single else _stack(found), data.inputs, data.outputs, data.step),
+        _history([end.path for end in ends], test is not None),
+        np.array([end.objective for end in ends]),
+        np.array([end.gradient for end in ends]),
+        np.array([len(end.path) - 1 for end in ends]),
+        np.array([end.reason for end in ends]),
+    )
+    left = np.flatnonzero(~solution.converged)
+    if len(left):
+        warnings.warn(
+            f"{len(left)} of {len(members)} networks have not converged (ended by "
+            f"{', '.join(sorted(set(solution.ended[left])))}): the gradient's measure is "
+            f"up to {solution.gradient[left].max():.1e}, the tolerance {tolerance:g}",
+            NotConverged,
+            stacklevel=2,
+        )
+    return solution
+
+
+class _End(NamedTuple):
+    """Where the search for one member ended."""
+
+    vector: torch.Tensor
+    path: list  # training and test RMSS at the start and after each step
+    objective: float
+    gradient: float
+    reason: str
+
+
+def _descend(objective, vector, steps, tolerance, target, damping, tell) -> _End:
+    """Minimise one member's objective from `vector`; `tell` hears of each step."""
+    value, error = objective.value(vector)
+    if not (np.isfinite(value) and torch.isfinite(vector).all()):
+        raise ValueError(f"weights must be small enough to add up, got {vector.abs().max():g}")
+    path, mu, exact = [(error, objective.test_rmss(vector))], None, False
+    while True:
+        matrix, gradient, lengths = objective.normal(vector, exact)
+        cosine = gradient.abs() / ((2 * value) ** 0.5 * lengths).clamp_min(1e-300)
+        measure = float(cosine.max()) if lengths.any() else np.inf  # inf: saturated
+        if measure <= tolerance:
+            reason = "gradient"
+        elif target is not None and error <= target:
+            reason = "target"
+        elif len(path) > steps:
+            reason = "steps"
+        else:
+            mu = damping * float(matrix.diagonal().max()) if mu is None else mu
+            step = _step(objective, vector, value, matrix, gradient, mu, exact)
+            if exact and step is None:
+                matrix = objective.normal(vector)[0]
+                step = _step(objective, vector, value, matrix, gradient, mu, False)
+            reason = "" if step else "no descent"
+        if reason:
+            return _End(vector, path, value, measure, reason)
+        vector, value, error, mu = step
+        exact = measure < _NEAR
+        path.append((error, objective.test_rmss(vector)))
+        tell(1, error)
+
+
+def _step(objective, vector, value, matrix, gradient, mu, exact):
+    """The next vector, its objective and RMSS, and the next mu.
+
+    None if nothing is lower, or if `exact` and the matrix is not positive definite.
+    """
+    growth, smallest = 2.0, 1e-12 * float(matrix.diagonal().max())
+    while np.isfinite(mu):
+        damped = matrix.clone()
+        damped.diagonal().add_(mu)
+        lower, failed = torch.linalg.cholesky_ex(damped)
+        if failed and exact:
+            return None
+        if not failed:
+            step = -torch.cholesky_solve(gradient[:, None], lower)[:, 0]
+            predicted = 0.5 * float(step @ (mu * step - gradient))
+            if not predicted > 1e-15 * value:
+                return None
+            trial, error = objective.value(vector + step)
+            ratio = (value - trial) / predicted
+            if ratio > 1e-4:
+                return vector + step, trial, error, mu * max(1 / 3, 1 - (2 * ratio - 1) ** 3)
+        mu, growth = max(mu * growth, smallest), 2 * growth
+    return None
+
+
+def _check(weights, data, test) -> None:
+    for field in fields(weights):
+        finite_array(f"weights.{field.name}", getattr(weights, field.name))
+    if weights.hidden_bias.ndim > 2 or weights.hidden_bias.size == 0:
+        raise ValueError(
+            "weights must be of one network, or of an ensemble along one axis, "
+            f"got hidden_bias of shape {weights.hidden_bias.shape}"
+        )
+    window, outputs = weights.hidden_weights.shape[-2:], weights.output_bias.shape[-1]
+    for name, pair in {"data": (data.x, data.y), "test": test}.items():
+        if pair is None:
+            continue
+        x, y = (finite_array(f"{part} of {name}", array) for part, array in zip("xy", pair))
+        if x.shape[1:] != window or y.shape != (len(x), outputs):
+            raise ValueError(
+                f"{name} must have x of shape (cases, {window[0]}, {window[1]}) and y of "
+                f"shape (cases, {outputs}) like the weights, got {x.shape} and {y.shape}"
+            )
+        if len(y) < 2 or (np.ptp(y, axis=0) == 0).any():
+            raise ValueError(f"y of {name} must vary in each column, got {y[:1]} throughout")
+
+
+def _stack(members) -> Weights:
+    """An ensemble of single networks."""
+    names = [field.name for field in fields(Weights)]
+    return Weights(*(np.stack([getattr(m, name) for m in members]) for name in names))
+
+
+def _history(paths, tested: bool) -> History:
+    """All members' errors; those that ended early keep their last ones."""
+    length = max(map(len, paths))
+    padded = np.array([path + path[-1:] * (length - len(path)) for path in paths])
+    training, test = padded.transpose(2, 1, 0)
+    return History(np.arange(length), training, test if tested else np.zeros((0, 0)))

@@ -1,0 +1,348 @@
+"""The parity function of section 1.1: as a polynomial, as networks of units, and learned.
+
+Parity is "1 or 0 depending on whether the number of 1 bits in an input string of length n is
+even or odd". `monomials` counts what a polynomial needs, exactly; `one_layer`, `direct`,
+`counter` and `tree` are networks with weights set by hand; `learn` trains networks from
+random weights by batch descent with acceleration.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number, one_of
+from ddlib.learning.descent import Descent
+from ddlib.learning.network import Weights
+from ddlib.learning.training import TARGET_RANGE
+
+MOST_BITS = 16
+"""Most bits for which all inputs are listed."""
+
+CODINGS = ("bits", "signs")
+"""Ways to write an input for a polynomial: 0 and 1, or 1 and -1 (-1 for a bit that is on)."""
+
+
+def patterns(bits: int) -> np.ndarray:
+    """All inputs of a length, shape ``(2**bits, bits)``: input i holds the binary digits of i."""
+    integer("bits", bits, 1, MOST_BITS)
+    return np.arange(2**bits)[:, None] >> np.arange(bits) & 1
+
+
+def parity(x) -> np.ndarray:
+    """1 where an even number of bits is on, else 0.
+
+    Parameters
+    ----------
+    x : array_like, shape (..., bits)
+        Zeros and ones.
+
+    Returns
+    -------
+    ndarray of int, shape (...)
+
+    Raises
+    ------
+    ValueError
+        If `x` holds anything else.
+    """
+    x = finite_array("x", x)
+    if x.ndim == 0 or not np.isin(x, (0, 1)).all():
+        raise ValueError("x must hold zeros and ones only, along its last axis")
+    return (x.sum(-1) % 2 == 0).astype(int)
+
+
+def monomials(values, coding: str = "bits") -> np.ndarray:
+    """Coefficients of the polynomial that equals a function of bits on all its inputs.
+
+    No variable appears squared in it, since a bit (or a sign) squared is nothing new; so the
+    polynomial is unique. Its coefficients come from the Möbius transform for bits and from
+    the Walsh-Hadamard transform for signs, and are exact: whole numbers for bits, whole
+    numbers over ``2**bits`` for signs.
+
+    Parameters
+    ----------
+    values : array_like of int, shape (2**bits,)
+        The function's values in the order of `patterns`.
+    coding : {"bits", "signs"}
+        What stands in the products: 0 and 1, or 1 and -1 for a bit that is off and on.
+
+    Returns
+    -------
+    ndarray, shape (2**bits,)
+        Entry i belongs to the product of the variables whose binary digits in i are 1; entry
+        0 is the constant.
+
+    Raises
+    ------
+    ValueError
+        If the number of values is no power of two, or the coding is unknown.
+    """
+    values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
+    bits = values.size.bit_length() - 1
+    if values.ndim != 1 or values.size != 2**bits or not 1 <= bits <= MOST_BITS:
+        raise ValueError(
+            f"values must be one for each of 2 to 2**{MOST_BITS} inputs, got shape {values.shape}"
+        )
+    if (values != np.round(values)).any():
+        raise ValueError("values must be whole numbers")
+    table = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
+    for axis in range(bits):
+        off, on = np.split(table, 2, axis)
+        pair = (off, on - off) if coding == "bits" else (off + on, off - on)
+        table = np.concatenate(pair, axis)
+    flat = table.ravel()
+    return flat if coding == "bits" else flat / 2**bits
+
+
+@dataclass(frozen=True)
+class UnitNetwork:
+    """Units one after the other, each seeing the inputs and any unit before it.
+
+    That is the most general network with activity in one direction only. The last unit is the
+    output. Weights and biases are kept as small whole or half numbers; `activity` multiplies
+    them by a gain.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (units, inputs + units)
+        Weight 0 means no connection.
+    bias : ndarray, shape (units,)
+    """
+
+    weights: np.ndarray
+    bias: np.ndarray
+
+    def __post_init__(self):
+        weights, bias = finite_array("weights", self.weights), finite_array("bias", self.bias)
+        if bias.ndim != 1 or bias.size == 0 or weights.shape[:-1] != bias.shape:
+            raise ValueError(
+                "weights and bias must have shapes (units, inputs + units) and (units,), "
+                f"got {weights.shape} and {bias.shape}"
+            )
+        if weights.shape[1] <= bias.size:
+            raise ValueError(f"weights must leave room for inputs, got shape {weights.shape}")
+        if np.triu(weights[:, weights.shape[1] - bias.size :]).any():
+            raise ValueError("weights must lead from earlier units to later ones only")
+        object.__setattr__(self, "weights", weights)
+        object.__setattr__(self, "bias", bias)
+
+    @property
+    def inputs(self) -> int:
+        """Number of inputs."""
+        return self.weights.shape[1] - self.bias.size
+
+    @property
+    def connections(self) -> int:
+        """Number of weights that are not zero, biases not counted."""
+        return int(np.count_nonzero(self.weights))
+
+    @property
+    def coefficients(self) -> int:
+        """Number of weights and biases."""
+        return self.connections + self.bias.size
+
+    @property
+    def word(self) -> int:
+        """Bits that the largest weight or bias needs: counted in halves, with its sign."""
+        largest = max(np.abs(self.weights).max(), np.abs(self.bias).max())
+        return int(np.ceil(2 * largest)).bit_length() + 1
+
+    @property
+    def depth(self) -> int:
+        """Units on the longest way from an input to the output."""
+        depth = np.zeros(self.bias.size, int)
+        for k, row in enumerate(self.weights[:, self.inputs :]):
+            depth[k] = 1 + max(depth[row != 0], default=0)
+        return int(depth[-1])
+
+    def activity(self, x, gain: float = np.inf) -> np.ndarray:
+        """Activities of all units.
+
+        Parameters
+        ----------
+        x : array_like, shape (..., inputs)
+        gain : float
+            Factor of all weights and biases of sigmoid units; infinite: units that are on
+            exactly where their net input is positive.
+
+        Returns
+        -------
+        ndarray, shape (..., units)
+        """
+        x = finite_array("x", x, self.inputs)
+        if gain != np.inf:
+            number("gain", gain, 0.0, open_low=True)
+        seen = np.concatenate([x, np.zeros((*x.shape[:-1], self.bias.size))], -1)
+        for k, (row, bias) in enumerate(zip(self.weights, self.bias)):
+            net = seen @ row + bias
+            on = net > 0 if gain == np.inf else 0.5 * (1 + np.tanh(0.5 * gain * net))
+            seen[..., self.inputs + k] = on
+        return seen[..., self.inputs :]
+
+    def output(self, x, gain: float = np.inf) -> np.ndarray:
+        """Activity of the last unit, shape (...), for inputs and gain as for `activity`."""
+        return self.activity(x, gain)[..., -1]
+
+
+def _build(inputs: int, rows) -> UnitNetwork:
+    """A network of ``(weights of the inputs, weights of earlier units by number, bias)``."""
+    weights = np.zeros((len(rows), inputs + len(rows)))
+    for k, (own, earlier, _) in enumerate(rows):
+        weights[k, :inputs] = own
+        for unit, weight in earlier.items():
+            weights[k, inputs + unit] = weight
+    return UnitNetwork(weights, np.array([bias for *_, bias in rows], float))
+
+
+def one_layer(bits: int) -> UnitNetwork:
+    """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986).
+
+    The output sees the hidden units with weights -1, +1, -1, ...; about ``bits**2`` weights.
+    """
+    bits = integer("bits", bits, 1)
+    hidden = [(1, {}, 0.5 - k) for k in range(1, bits + 1)]
+    return _build(bits, [*hidden, (0, {k: -((-1) ** k) for k in range(bits)}, 0.5)])
+
+
+def direct(bits: int) -> UnitNetwork:
+    """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999).
+
+    Hidden unit k is on if 2k bits or more are on, and takes away two from the number of bits
+    that the output sees directly; about ``bits**2 / 2`` weights.
+    """
+    bits = integer("bits", bits, 1)
+    hidden = [(1, {}, 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
+    return _build(bits, [*hidden, (-1, {k: 2 for k in range(len(hidden))}, 0.5)])
+
+
+def counter(bits: int) -> UnitNetwork:
+    """Parity by a counter: each unit is a binary digit of the number of bits that are on.
+
+    A unit sees all inputs and the higher digits, which take their value away from the number;
+    the lowest digit is parity. About ``bits log2(bits)`` weights, in a depth of ``log2(bits)``.
+    """
+    bits = integer("bits", bits, 1)
+    higher = [2**j for j in range(bits.bit_length() - 1, 0, -1)]
+    rows = []
+    for k, value in enumerate(higher):
+        rows.append((1, {i: -higher[i] for i in range(k)}, 0.5 - value))
+    lowest = (-1, dict(enumerate(higher)), 0.5)
+    return _build(bits, [*rows, lowest])
+
+
+def tree(bits: int) -> UnitNetwork:
+    """Parity by a tree of two-bit parities, two units each: seven coefficients for a bit more."""
+    bits = integer("bits", bits, 1)
+    rows, ends = [], list(range(bits))  # places of what is still to be joined
+    while len(ends) > 1:
+        joined = []
+        for a, b in zip(ends[::2], ends[1::2]):
+            both = bits + len(rows)
+            rows.append(({a: 1, b: 1}, -1.5))
+            rows.append(({a: 1, b: 1, both: -2}, -0.5))
+            joined.append(both + 1)
+        ends = joined + ends[len(joined) * 2 :]
+    if not rows:  # a single bit
+        rows = [({0: 1}, -0.5)]
+    links, bias = rows[-1]
+    rows[-1] = ({place: -weight for place, weight in links.items()}, -bias)  # odd to even
+    weights = np.zeros((len(rows), bits + len(rows)))
+    for k, (links, _) in enumerate(rows):
+        weights[k, list(links)] = list(links.values())
+    return UnitNetwork(weights, np.array([bias for _, bias in rows]))
+
+
+NETWORKS = {
+    "one hidden layer": one_layer,
+    "with direct weights": direct,
+    "binary counter": counter,
+    "tree of pairs": tree,
+}
+"""Networks that compute parity, by name: functions of the number of bits."""
+
+
+def cases(bits: int, coding: str = "bits") -> tuple[np.ndarray, np.ndarray]:
+    """All inputs and their parity as cases for training.
+
+    Returns
+    -------
+    x : ndarray, shape (2**bits, 1, bits)
+        Windows of one joint, in the given `coding`.
+    y : ndarray, shape (2**bits, 1)
+        Targets in `ddlib.learning.training.TARGET_RANGE`.
+    """
+    bit, coding = patterns(bits), one_of("coding", coding, CODINGS)
+    low, high = TARGET_RANGE
+    x = bit if coding == "bits" else 1 - 2 * bit
+    return x[:, None, :].astype(float), low + (high - low) * parity(bit)[:, None]
+
+
+def right(weights: Weights, x, y) -> np.ndarray:
+    """Share of the cases on whose side of the targets' middle the output lies, shape (...).
+
+    Parameters
+    ----------
+    weights : Weights
+        Networks with one output.
+    x, y : array_like, shapes (cases, 1, bits) and (cases, 1)
+        Inputs and targets in `ddlib.learning.training.TARGET_RANGE`.
+    """
+    middle = sum(TARGET_RANGE) / 2
+    output = weights.activity(x)[1]
+    return ((output > middle) == (finite_array("y", y, 1) > middle)).mean((-2, -1))
+
+
+def learn(
+    bits: int,
+    hidden: int,
+    *,
+    members: int = 30,
+    seed: int = 0,
+    initial: float = 1.0,
+    rate: float = 8.0,
+    momentum: float = 0.9,
+    epochs: int = 4000,
+    every: int = 20,
+    coding: str = "bits",
+) -> tuple[Weights, np.ndarray]:
+    """Train networks on parity by batch descent with acceleration.
+
+    They have one hidden layer and direct weights, like the paper's.
+
+    Parameters
+    ----------
+    bits, hidden : int
+        Number of inputs and of hidden units.
+    members, seed : int
+        Number of networks, seed of the first one's weights.
+    initial : float
+        Initial weights are uniform in plus or minus this.
+    rate, momentum : float
+        Step size per case; share of the last step that is added to the next.
+    epochs, every : int
+        How long to train, how often to look.
+    coding : {"bits", "signs"}
+        How an input is written.
+
+    Returns
+    -------
+    weights : Weights
+        The trained networks.
+    epochs : ndarray, shape (members,)
+        When each was first seen to have every input on the right side; infinite if never.
+    """
+    number("rate", rate, 0.0, open_low=True)
+    number("momentum", momentum, 0.0, 0.999)
+    integer("epochs", epochs, integer("every", every, 1))
+    x, y = cases(bits, coding)
+    start = Weights.random(members, bits, hidden, 1, 1, initial, seed)
+    descent = Descent(start, x, y, rate / len(x), momentum)
+    learned = np.full(members, np.inf)
+    for epoch in range(1, epochs + 1):
+        descent.epoch()
+        if epoch % every == 0:
+            done = right(descent.weights(), x, y) == 1
+            learned[done & np.isinf(learned)] = epoch
+    return descent.weights(), learned

@@ -1,0 +1,381 @@
+"""Control loops around the arm: predicted, interconnected, measured.
+
+The linear prediction and the simulation of one loop give the same `Response`, so that they
+can be compared; Figure 2-1 is a python-control system; `score` judges any recording.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import control
+import numpy as np
+
+from ddlib._check import finite_array, integer, non_negative, number
+from ddlib.control import PID, closed_loop, plant
+from ddlib.dynamics import Arm
+from ddlib.effects import IDEAL, Effects
+from ddlib.effects.real_arm import ViscousFriction
+from ddlib.simulation.recording import Recording
+from ddlib.simulation.simulate import CONTROL_STEP, follow
+from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place
+
+
+@dataclass(frozen=True)
+class Load:
+    """A constant torque that disturbs the joints, as an effect of the actuator.
+
+    Parameters
+    ----------
+    torque : array_like, shape (2,) or (runs, 2)
+        N m per joint.
+    """
+
+    torque: tuple[float, float]
+
+    def __post_init__(self):
+        finite_array("torque", self.torque, 2)
+
+    def apply(self, x, rng=None):
+        """The torque `x` (N m) and the load."""
+        return x + np.asarray(self.torque)
+
+
+@dataclass(frozen=True)
+class SecondOrderModel:
+    """Inverse dynamics of linear, coupled joints: ``tau = M qdd + F qd`` with constant M and F.
+
+    The mass matrix is that of the arm in one posture, with its off-diagonal entry. It is this
+    book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
+    section 1.1, after Asada, Kanade & Takeyama 1982). A vertical arm's weight is no part of it.
+
+    Parameters
+    ----------
+    arm : Arm
+        Whose mass matrix is taken.
+    posture : array_like, shape (2,)
+        Joint angles at which it is taken, rad.
+    viscous : array_like, shape (2,)
+        Viscous friction, N m s/rad.
+    """
+
+    arm: Arm
+    posture: tuple[float, float] = (0.0, 0.0)
+    viscous: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self):
+        finite_array("posture", self.posture, 2)
+        non_negative("viscous", self.viscous, 2)
+
+    def __call__(self, q, qd, qdd) -> np.ndarray:
+        """Torque (N m) for a motion, arrays ``(..., 2)``; the angles `q` do not matter."""
+        M = self.arm.mass_matrix(self.posture)
+        return np.asarray(qdd) @ M.T + np.asarray(self.viscous) * np.asarray(qd)
+
+
+class Response(NamedTuple):
+    """How a position loop answers its reference and a load.
+
+    Attributes
+    ----------
+    overshoot : float
+        Of a step of the reference, as a share of the step.
+    bandwidth : float
+        Frequency in rad/s from which a sine of the reference comes out smaller than
+        1/sqrt(2) of its size.
+    compliance : float
+        Angle by which a constant torque of 1 N m displaces the joint for good, rad/(N m).
+    """
+
+    overshoot: float
+    bandwidth: float
+    compliance: float
+
+
+def predicted_response(
+    arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
+    seconds=12.0,
+) -> Response:  # fmt: skip
+    """Linear analysis of the sampled loop around a posture.
+
+    Gravity's torque in the posture is taken to be compensated; what it adds when the arm
+    leaves the posture is part of the loop.
+
+    Parameters
+    ----------
+    arm : Arm
+    controller : PID
+        One set of gains, shape (2,) each.
+    viscous : array_like, shape (2,)
+        Viscous friction, N m s/rad.
+    posture : array_like, shape (2,)
+        Joint angles, rad.
+    joint : {0, 1}
+        Whose reference steps, and on whom the load acts.
+    period, seconds : float
+        Control period and length of the step response, s.
+    """
+    integer("joint", joint, 0, 1)
+    posture = finite_array("posture", posture, 2)
+    joints = plant(arm.mass_matrix(posture), viscous, _gravity_stiffness(arm, posture))
+    loop = closed_loop(joints, controller.kp, controller.ki, controller.kd, period)
+    t = np.arange(round(seconds / period)) * period
+    inputs = np.zeros((4, t.size))
+    inputs[joint] = 1.0
+    step = control.forced_response(loop, t, inputs).outputs[joint]
+    omega = np.geomspace(0.5, 0.1 * np.pi / period, 4000)
+    answer = np.abs(loop(np.exp(1j * omega * period))[joint, joint])
+    return Response(_overshoot(step), _half_power(omega, answer), loop.dcgain()[joint, 2 + joint])
+
+
+def simulated_response(
+    arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
+    seconds=12.0, step_deg=1.0, effects: Effects = IDEAL,
+) -> Response:  # fmt: skip
+    """The same measures from the full, non-linear simulation.
+
+    A constant torque holds the arm against gravity in the posture. One run steps the reference,
+    a second one carries a load. The bandwidth comes from the Fourier transform of the step
+    response's rate, so the loop must settle within `seconds`; one that rings longer has a
+    bandwidth of NaN.
+
+    Parameters
+    ----------
+    arm, controller, viscous, posture, joint, period, seconds
+        As in `predicted_response`.
+    step_deg : float
+        Size of the step, degrees; the load would displace a spring of stiffness ``kp`` by as
+        much.
+    effects : Effects
+        More effects, beside the viscous friction.
+    """
+    integer("joint", joint, 0, 1)
+    number("step_deg", step_deg, 0.0, open_low=True)
+    size = np.deg2rad(step_deg)
+    t = np.arange(round(seconds / period)) * period
+    target = np.zeros((2, t.size, 2)) + finite_array("posture", posture, 2)
+    target[0, 1:, joint] += size
+    holding, push = arm.gravity(posture), size * controller.kp[joint]
+    load = np.zeros((2, 2)) + holding
+    load[1, joint] += push
+    effects = replace(
+        effects,
+        friction=(ViscousFriction(viscous), *effects.friction),
+        actuator=(*effects.actuator, Load(load)),
+    )
+    still = np.zeros_like(target)
+    recording = follow(
+        arm, controller, Trajectory(target, still, still), t, effects=effects, log_every=1
+    )
+    moved = recording.q_true[..., joint] - np.asarray(posture)[joint]
+    step = moved[0, 1:] / size
+    late = np.hanning(t.size // 2)  # a window that averages what still swings
+    compliance = (moved[1, -late.size :] * late).sum() / late.sum() / push
+    if np.ptp(step[-t.size // 10 :]) > 0.01:
+        return Response(_overshoot(step), np.nan, compliance)
+    omega = np.geomspace(0.5, 0.1 * np.pi / period, 400)
+    answer = np.abs(np.exp(-1j * np.outer(omega, t[1:])) @ np.diff(step, prepend=0.0))
+    return Response(_overshoot(step), _half_power(omega, answer), compliance)
+
+
+def _gravity_stiffness(arm: Arm, posture) -> np.ndarray:
+    """Derivative of an arm's gravity torque by its angles, N m/rad, shape (2, 2)."""
+    g1, g2 = arm.gravity_moments * np.cos([posture[0], posture.sum()])
+    return np.array([[g1 + g2, g2], [g2, g2]])
+
+
+def _overshoot(step) -> float:
+    return float(step.max() - 1)
+
+
+def _half_power(omega, answer) -> float:
+    """Highest frequency at which the answer is still 1/sqrt(2), between samples."""
+    level = np.log(answer * np.sqrt(2))
+    above = np.flatnonzero(level > 0)
+    if not above.size or above[-1] == omega.size - 1:
+        return np.nan
+    k = above[-1]
+    share = level[k] / (level[k] - level[k + 1])
+    return float(omega[k] * (omega[k + 1] / omega[k]) ** share)
+
+
+def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.InterconnectedSystem:
+    """Figure 2-1 of the paper as an interconnected python-control system.
+
+    Four blocks, by the names of the figure: ``inverse_arm``, ``feedback``, ``arm`` and the
+    two sums. Control is continuous here; only the simulator samples.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm that moves.
+    model : callable
+        ``model(q, qd, qdd) -> tau``, the box "inverse arm"; an `Arm` is accepted too.
+    kp, kd : array_like, shape (2,)
+        Feedback gains, N m/rad and N m s/rad.
+    viscous : array_like, shape (2,)
+        Viscous friction of the arm, N m s/rad.
+
+    Returns
+    -------
+    control.InterconnectedSystem
+        Inputs ``reference[0..5]``: positions, velocities, accelerations (shoulder, elbow).
+        Outputs ``motion[0..3]``: positions and velocities, then ``tau[0..1]``. Four states.
+    """
+    inverse = model.inverse_dynamics if isinstance(model, Arm) else model
+    kp, kd, viscous = (
+        non_negative(name, value, 2)
+        for name, value in (("kp", kp), ("kd", kd), ("viscous", viscous))
+    )
+
+    def torque(t, x, u, params):
+        return np.asarray(inverse(u[:2], u[2:4], u[4:]), dtype=float)
+
+    def motion(t, x, u, params):
+        return np.concatenate([x[2:], arm.forward_dynamics(x[:2], x[2:], u - viscous * x[2:])])
+
+    def named(name, count):
+        return [f"{name}[{k}]" for k in range(count)]
+
+    blocks = [
+        control.nlsys(None, torque, name="inverse_arm", inputs=named("reference", 6),
+                      outputs=named("feedforward", 2)),
+        control.summing_junction(["reference", "-motion"], "error", dimension=4, name="comparison"),
+        control.ss([], [], [], np.hstack([np.diag(kp), np.diag(kd)]), name="feedback",
+                   inputs=named("error", 4), outputs=named("correction", 2)),
+        control.summing_junction(["feedforward", "correction"], "tau", dimension=2, name="sum"),
+        control.nlsys(motion, None, name="arm", states=4, inputs=named("tau", 2),
+                      outputs=named("motion", 4)),
+    ]  # fmt: skip
+    return control.interconnect(
+        blocks,
+        inputs=named("reference", 6),
+        outputs=[*named("motion", 4), *named("tau", 2)],
+        name="figure_2_1",
+    )
+
+
+def run_system(
+    system: control.InterconnectedSystem, reference: Trajectory, t, start=None
+) -> Recording:
+    """Simulate a `feedforward_system` along a reference.
+
+    Parameters
+    ----------
+    system : control.InterconnectedSystem
+    reference : Trajectory
+        One run, arrays ``(time, 2)``, interpolated between samples.
+    t : array_like, shape (time,)
+        Times of the samples, s.
+    start : array_like, shape (2, 2), optional
+        Angles (rad) and velocities (rad/s) at the first sample; default: at rest at the
+        reference's first position.
+
+    Returns
+    -------
+    Recording
+        With perfect sensors: measured and true values are the same.
+    """
+    t = finite_array("t", t)
+    reference = Trajectory(*(finite_array("reference", x, 2) for x in reference))
+    if t.ndim != 1 or any(x.shape != (t.size, 2) for x in reference):
+        raise ValueError(
+            f"reference must be one run with a sample for each of the {t.size} times, got shape "
+            f"{reference.q.shape}"
+        )
+    start = [reference.q[0], [0.0, 0.0]] if start is None else finite_array("start", start, 2)
+    if np.shape(start) != (2, 2):
+        raise ValueError(f"start must have shape (2, 2), got {np.shape(start)}")
+    start = np.ravel(start)
+    answer = control.input_output_response(
+        system, t, np.concatenate(reference, axis=1).T, start, solve_ivp_kwargs={"rtol": 1e-6}
+    )
+    q, qd, tau = np.split(answer.outputs.T, 3, axis=1)
+    return Recording(t, reference, q, tau, q, qd, tau, control_step=0.0)
+
+
+def fast_pick_and_place(extents_deg, t, speed: float) -> Trajectory:
+    """A member of the paper's family, `speed` times as fast.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (..., 2)
+        As in `ddlib.trajectories.pick_and_place`.
+    t : array_like, shape (time,)
+        Times, s; the motion lasts ``3 / speed``.
+    speed : float
+        Velocities grow by this factor, accelerations by its square.
+    """
+    number("speed", speed, 0.0, open_low=True)
+    slow = pick_and_place(extents_deg, speed * finite_array("t", t))
+    return Trajectory(slow.q, speed * slow.qd, speed**2 * slow.qdd)
+
+
+def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
+    """Out and back to the same extents, from rest to rest: ``phi = -theta sin(pi s t / 3)^2``.
+
+    Unlike the paper's family its velocity does not jump, so that an arm can follow it.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (..., 2)
+        Extents theta of shoulder and elbow, degrees.
+    t : array_like, shape (time,)
+        Times, s; the motion lasts ``3 / speed``, before and after it the reference rests.
+    speed : float
+        The s of the formula: velocities grow by it, accelerations by its square.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape ``(..., time, 2)``.
+    """
+    number("speed", speed, 0.0, open_low=True)
+    size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2
+    t, rate = finite_array("t", t), speed * 2 * np.pi / MOTION_SECONDS
+    moving = ((t >= 0) & (speed * t < MOTION_SECONDS))[:, None]
+    cosine, sine = np.cos(rate * t)[:, None] * moving, np.sin(rate * t)[:, None] * moving
+    return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
+
+
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> dict:
+    """What a controller made of a motion: errors and effort of every run, shape (...).
+
+    Parameters
+    ----------
+    arm : Arm
+        Gives the hand's place.
+    recording : Recording
+    seconds : float, optional
+        Length of the motion, which begins at 0 s; default: as the recording says. Its first
+        third is the transient.
+
+    Returns
+    -------
+    dict
+        ``largest, °``: largest error of a joint. ``whole, °`` and ``settled, °``: root mean
+        square over joints and time, without the first third for the latter. ``hand, mm``:
+        root mean square distance of the hand from its place, without the first third.
+        ``turn, mm``: that distance half-way. ``effort, N m``: root mean square of the torque
+        vector over the motion.
+    """
+    if seconds is not None:
+        recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
+    t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion
+    begin, end = recording.span
+    early = 1e-6 * recording.step
+    settled = slice(int(np.searchsorted(t, begin + (end - begin) / 3 - early)), moving.stop)
+    hand, wanted = (
+        arm.forward_kinematics(q)[..., 1, :] for q in (recording.q_true, recording.reference.q)
+    )
+    gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
+    half = int(np.argmin(np.abs(t - (begin + end) / 2)))
+    return {
+        "largest, °": np.abs(error[..., moving, :]).max((-2, -1)),
+        "whole, °": np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
+        "settled, °": np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),
+        "hand, mm": np.sqrt((gap[..., settled] ** 2).mean(-1)),
+        "turn, mm": gap[..., half],
+        "effort, N m": np.sqrt((recording.tau_true[..., moving, :] ** 2).sum(-1).mean(-1)),
+    }

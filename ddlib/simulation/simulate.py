@@ -1,0 +1,316 @@
+"""Recordings: controller, arm and sensors at their own rates.
+
+The controller reads the encoder every 2 ms and holds its torque until the next
+reading; the log takes every fifth sample (10 ms), as on the real arm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number, one_of
+from ddlib.control import Controller
+from ddlib.dynamics import Arm
+from ddlib.effects import IDEAL, Effects, started
+from ddlib.simulation.plant import Plant, substeps
+from ddlib.simulation.recording import Recording, equal_steps
+from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
+
+CONTROL_STEP = 0.002
+"""Control period of the DD Arm II, s."""
+
+LOG_STEP = 0.010
+"""Sampling period of the recordings, s (Appendix I: 100 samples per second)."""
+
+REST = 0.5
+"""Rest recorded before and after a motion, s, so that every window is whole."""
+
+
+class _Streams:
+    """Noise for many runs, each from a generator of its own; drawn in blocks."""
+
+    BLOCK = 256
+
+    def __init__(self, seeds: np.ndarray):
+        self.shape = seeds.shape
+        self.generators = [np.random.default_rng(int(s)) for s in seeds.ravel()]
+        self.used = self.BLOCK
+
+    def standard_normal(self, shape) -> np.ndarray:
+        """The next sample of every run, shape ``(*runs, 2)``; `shape` must fit to it."""
+        runs, own = shape[:-1], self.shape
+        if len(runs) > len(own) or any(n not in (1, m) for n, m in zip(runs[::-1], own[::-1])):
+            raise ValueError(f"seed must be one number or one for each run {runs}, got {own}")
+        if self.used == self.BLOCK:
+            drawn = np.stack([g.standard_normal((self.BLOCK, 2)) for g in self.generators], 1)
+            self.block, self.used = drawn.reshape(self.BLOCK, *self.shape, 2), 0
+        self.used += 1
+        return self.block[self.used - 1]
+
+
+def _generator(seed):
+    """Source of noise for one seed (all runs share it) or for an array of them."""
+    if np.ndim(seed) == 0:
+        return np.random.default_rng(integer("seed", seed, 0))
+    seeds = np.asarray(seed)
+    if seeds.dtype.kind not in "iu":
+        raise TypeError(f"seed must be an integer or an array of integers, got {seed!r}")
+    if not seeds.size or (seeds < 0).any():
+        raise ValueError(f"seed must hold integers from 0 and up, got {seed!r}")
+    return _Streams(seeds)
+
+
+def _held(plant: Plant, x, v, tau, seconds, parts):
+    """Positions and velocities after `seconds` under constant torque, in `parts` steps a run."""
+    most = int(np.max(parts))
+    if np.min(parts) == most:
+        for _ in range(most):
+            x, v = plant.advance(x, v, tau, seconds / most)
+        return x, v
+    parts = parts[..., None]
+    for k in range(most):  # runs that need fewer steps wait for the others
+        x_next, v_next = plant.advance(x, v, tau, seconds / parts)
+        x, v = np.where(k < parts, x_next, x), np.where(k < parts, v_next, v)
+    return x, v
+
+
+def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
+    """The arm left to itself, without torque: times, positions and velocities.
+
+    Parameters
+    ----------
+    arm : Arm
+        The arm that moves.
+    q, qd : array_like, shape (..., 2)
+        Initial angles (rad) and velocities (rad/s); motors behind a shaft have the same.
+    seconds, step : float
+        Duration and integration step, s; a whole number of steps.
+    effects : Effects
+        Those that act inside the plant: friction, motor, transmission.
+
+    Returns
+    -------
+    t : ndarray, shape (time,)
+    q, qd : ndarray, shape (..., time, 2)
+    """
+    q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
+    number("seconds", seconds, 0.0, open_low=True)
+    number("step", step, 0.0, seconds, open_low=True)
+    count = seconds / step
+    if abs(count - round(count)) > 1e-6:
+        raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
+    t = np.arange(round(count) + 1) * step
+    plant = Plant(arm, effects)
+    x, v = _moving(plant, q, qd)
+    states = [(x, v)]
+    zero = np.zeros_like(q)
+    for _ in t[1:]:
+        states.append(plant.advance(*states[-1], zero, step))
+    states = [np.broadcast_arrays(*series) for series in zip(*states)]
+    q, qd = (np.stack(series, -2)[..., :2] for series in states)
+    return t, q, qd
+
+
+def _moving(plant: Plant, q, qd):
+    """Positions and velocities of a plant whose motors turn like the joints behind them."""
+    x, v = plant.rest(q)
+    return x, v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
+
+
+def follow(
+    arm: Arm,
+    controller: Controller,
+    reference: Trajectory,
+    t,
+    *,
+    effects: Effects = IDEAL,
+    seed: int | np.ndarray = 0,
+    log_every: int = 5,
+    velocity: str = "tachometer",
+    start=None,
+    duration: float | None = None,
+) -> Recording:
+    """Drive the arm along a sampled reference and log what the sensors say.
+
+    Runs may differ in their
+    reference, in the gains of the controller, the strengths of the effects and the seed:
+    leading axes of all of them are broadcast. No run depends on which others it is
+    simulated with, except through a shared noise generator (`seed`).
+
+    Parameters
+    ----------
+    arm, controller, effects
+        Plant, control law and everything the rigid-body equations leave out.
+    reference : Trajectory
+        Sampled at the control period, shape ``(..., time, joint)``; leading axes are runs.
+    t : array_like, shape (time,)
+        Times of the control samples, equally spaced, s.
+    seed : int or array_like of int, shape (...)
+        Seed of the sensor noise. With one number the runs of a batch share a generator and
+        the noise of a run depends on its place in the batch; with an array of the shape of
+        the runs each run has its own, the same as if it ran alone with that seed.
+    log_every : int
+        Control periods between two logged samples.
+    velocity : {"tachometer", "difference"}
+        What the controller gets as velocity: the true one, or the difference of two
+        encoder readings.
+    start : pair of array_like, each of shape (..., 2), optional
+        Angles (rad) and velocities (rad/s) with which the arm starts. Default: at rest at
+        the reference's first position.
+    duration : float, optional
+        Length of the motion, which begins at 0 s; default: where the reference moves, as
+        `Recording` says.
+
+    Raises
+    ------
+    ValueError
+        If shapes or options do not fit, or the loop diverges.
+    """
+    t = finite_array("t", t)
+    if t.ndim != 1 or t.size < 2:
+        raise ValueError(f"t must have shape (time,) with two or more samples, got {t.shape}")
+    reference = Trajectory(
+        *(finite_array(f"reference.{n}", x, 2) for n, x in zip(Trajectory._fields, reference))
+    )
+    if reference.q.ndim < 2 or reference.q.shape[-2] != t.size:
+        raise ValueError(
+            f"reference must have {t.size} samples like t, got shape {reference.q.shape}"
+        )
+    for name, x in zip(Trajectory._fields, reference):
+        if x.shape != reference.q.shape:
+            raise ValueError(
+                f"reference.{name} must have the shape of reference.q {reference.q.shape}, "
+                f"got {x.shape}"
+            )
+    if not callable(getattr(controller, "start", None)):
+        raise TypeError(f"controller must have a start method, got {controller!r}")
+    step = equal_steps(t)
+    integer("log_every", log_every, 1)
+    one_of("velocity", velocity, ("tachometer", "difference"))
+    late = effects.computing_time
+    if late > step * (1 - 1e-9):
+        raise ValueError(
+            f"effects must have a computing time below the control period {step:g} s, got "
+            f"{late:g}; Delay adds whole periods"
+        )
+    reference = Trajectory(*(_time_first(x) for x in reference))
+    first = reference.q[..., 0, :]
+    start = _initial_state(first, (first, np.zeros(2)) if start is None else start)
+    rng = _generator(seed)
+    law = controller.start(reference, step)
+    plant, parts = Plant(arm, effects), substeps(arm, effects, step)
+
+    x, v = _moving(plant, *start)
+    tau = np.zeros_like(start[0])
+    encoder = started(effects.encoder, x[..., -2:])
+    actuator, torque_sensor = (started(e, tau) for e in (effects.actuator, effects.torque_sensor))
+    reading = encoder(x[..., -2:] - step * v[..., -2:], rng)
+    log = []
+    for k in range(t.size):
+        if not np.abs(v).max() < 1e6:
+            raise ValueError(
+                f"the control loop diverges: joint speeds pass 1e6 rad/s at t = {t[k]:.3f} s; "
+                "lower the gains or the control period"
+            )
+        previous, reading = reading, encoder(x[..., -2:], rng)
+        speed = v[..., -2:] if velocity == "tachometer" else (reading - previous) / step
+        before, tau = tau, actuator(law(k, reading, speed), rng)
+        if k % log_every == 0:
+            now = before if late else tau
+            log.append((reading, torque_sensor(now, rng), x[..., :2], v[..., :2], now))
+        with np.errstate(over="ignore", invalid="ignore"):  # divergence is reported above
+            if late:
+                x, v = _held(plant, x, v, before, late, parts)
+            x, v = _held(plant, x, v, tau, step - late, parts)
+    read, tau, q_true, qd_true, tau_true = (
+        np.stack(np.broadcast_arrays(*series), -2) for series in zip(*log)
+    )
+    logged = Trajectory(*(x[..., ::log_every, :] for x in reference))
+    arrays = (read, tau, q_true, qd_true, tau_true)
+    return Recording(t[::log_every], logged, *arrays, duration, step, late)
+
+
+def _initial_state(first, start):
+    """Angles and velocities at the start of each run, checked, in the shape of the runs."""
+    try:
+        q, qd = start
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"start must be a pair of angles and velocities, got {start!r}") from error
+    pair = finite_array("start[0]", q, 2), finite_array("start[1]", qd, 2)
+    try:
+        q, qd, _ = np.broadcast_arrays(*pair, first)
+    except ValueError as error:
+        raise ValueError(
+            f"start must fit to the runs {first.shape[:-1]}, got {pair[0].shape} and "
+            f"{pair[1].shape}"
+        ) from error
+    return q, qd
+
+
+def _time_first(x):
+    """`x` unchanged, but one sample of all runs lies together in memory, joint by joint."""
+    return np.moveaxis(np.ascontiguousarray(np.moveaxis(x, (-2, -1), (0, 1))), (0, 1), (-2, -1))
+
+
+def record(
+    arm: Arm,
+    controller: Controller,
+    extents_deg,
+    *,
+    effects: Effects = IDEAL,
+    seed: int | np.ndarray = 0,
+    rest: float = REST,
+    control_step: float = CONTROL_STEP,
+    log_step: float = LOG_STEP,
+    velocity: str = "tachometer",
+    duration: float = MOTION_SECONDS,
+    start=None,
+) -> Recording:
+    """Record pick-and-place motions as in section 4 of the paper.
+
+    Parameters
+    ----------
+    arm, controller
+        Plant and control law.
+    extents_deg : array_like, shape (2,) or (runs, 2)
+        Extents in degrees; several rows are several runs, simulated together.
+    effects, seed, velocity, start
+        As in `follow`.
+    rest : float
+        Rest before and after the motion, s.
+    control_step, log_step : float
+        Periods of control and log, s; the second a multiple of the first.
+    duration : float
+        Length of the motion, s.
+
+    Returns
+    -------
+    Recording
+        With ``duration / log_step`` samples of motion, 300 for the paper's.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is of the wrong kind, shape or range.
+    """
+    number("control_step", control_step, 1e-5, 0.1)
+    number("log_step", log_step, control_step, 1.0)
+    ratio = log_step / control_step
+    if abs(ratio - round(ratio)) > 1e-6:
+        raise ValueError(f"log_step must be a multiple of control_step, got ratio {ratio:g}")
+    t = time_grid(control_step, rest, duration)
+    if round(rest / control_step) % round(ratio):
+        raise ValueError(f"rest must be a multiple of log_step={log_step:g}, got {rest:g}")
+    reference = pick_and_place(extents_deg, t, duration)
+    return follow(
+        arm,
+        controller,
+        reference,
+        t,
+        effects=effects,
+        seed=seed,
+        log_every=round(ratio),
+        velocity=velocity,
+        start=start,
+        duration=duration,
+    )
