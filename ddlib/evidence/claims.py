@@ -51,7 +51,7 @@ from ddlib._check import one_of
 from ddlib.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
 from ddlib.tables import Table
 
-FILE = Path(__file__).parent.parent / "book" / "claims.yml"
+FILE = Path(__file__).parents[2] / "book" / "claims.yml"
 """Where the claims are kept."""
 
 LEDGER = "ledger"

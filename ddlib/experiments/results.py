@@ -16,14 +16,14 @@ import numpy as np
 from ddlib.experiments.setups import COURSE, STATE_FEEDBACK
 from ddlib.learning import TorqueModel, kernels
 
-PACKAGE = Path(__file__).parent
+PACKAGE = Path(__file__).parents[1]
 FOLDER = PACKAGE.parent / "book" / "results"
 """Where `make reproduce` writes and the chapters read."""
 
-STUDIES = "studies"
+STUDIES = "experiments/studies"
 """Folder of the package with the functions that make the results."""
 
-ASIDE = ("_check", "results")
+ASIDE = ("_check", "experiments.results")
 """Modules that a study imports and that do not decide what it finds."""
 
 
@@ -74,22 +74,39 @@ def _study(result: str) -> ast.Module:
         tree = ast.parse(path.read_text(encoding="utf-8"))
         if any(isinstance(node, ast.FunctionDef) and node.name == own for node in tree.body):
             return tree
-    raise ValueError(f"result must be made by a function of ddlib.{STUDIES}, got {result!r}")
+    raise ValueError(f"result must be made by a function of ddlib/{STUDIES}, got {result!r}")
 
 
 def _imports(tree) -> set[str]:
-    """Modules of ddlib that a syntax tree imports from."""
+    """Modules of ddlib that a syntax tree imports from; a package's names lead to its modules."""
     found = set()
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.module == "ddlib":
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib."):
-            found.add(node.module.partition(".")[2])
+        if not isinstance(node, ast.ImportFrom) or (node.module or "").split(".")[0] != "ddlib":
+            continue
+        place = node.module.partition(".")[2]
+        names = [alias.name for alias in node.names]
+        found |= {_home(place, name) for name in names} if _path(place).is_dir() else {place}
     return found
 
 
+def _home(package: str, name: str) -> str:
+    """The module behind a name that a package hands on, as its ``__init__`` says."""
+    inside = f"{package}.{name}".lstrip(".")
+    if _path(inside).is_dir() or _path(inside).with_suffix(".py").is_file():
+        return inside
+    for node in ast.walk(_tree(package)):
+        if isinstance(node, ast.keyword) and node.arg == "submod_attrs":
+            homes = ast.literal_eval(node.value)
+            return next(f"{package}.{module}" for module in homes if name in homes[module])
+    return package
+
+
+def _path(module: str) -> Path:
+    return PACKAGE.joinpath(*filter(None, module.split(".")))
+
+
 def _tree(module: str) -> ast.Module:
-    path = PACKAGE.joinpath(*module.split("."))
+    path = _path(module)
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     return ast.parse(path.read_text(encoding="utf-8"))
 
