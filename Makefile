@@ -58,11 +58,11 @@ notebooks: $(READY)
 
 FOREIGN ?=
 foreign: $(READY)  ## notebooks and claims on machines that round otherwise
-	$(BIN)/python tests/foreign_machines.py --jobs $(JOBS) $(FOREIGN)
+	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) $(FOREIGN)
 
 foreign-ci: $(READY)
 	@echo "==> Notebooks and claims on two foreign machines"
-	$(BIN)/python tests/foreign_machines.py --jobs $(JOBS) --ci
+	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict
@@ -78,7 +78,7 @@ reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/result
 	$(BIN)/python -m ddlib.experiments.reproduce
 
 mutants: $(READY)  ## which mistakes would the tests notice? a sample, about 25 minutes
-	$(BIN)/python tests/mutation.py --jobs $(JOBS)
+	$(BIN)/python tests/support/mutation.py --jobs $(JOBS)
 
 bench: $(READY)  ## speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py

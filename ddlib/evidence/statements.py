@@ -16,13 +16,13 @@ should hold in nearly all; it stands until results made anew say something else.
 def stated(name: str, holds, share: float = SURE) -> None:
     """Check what a sentence of the page says in words.
 
-    `tests/bound_words.yml` names the sentence; a test fails on words of direction or order
+    `tests/support/bound_words.yml` names the sentence; a test fails on words of direction or order
     about trained outcomes that no such check stands behind.
 
     Parameters
     ----------
     name : str
-        Under which `tests/bound_words.yml` refers to the check.
+        Under which `tests/support/bound_words.yml` refers to the check.
     holds : bool, or array_like of bool
         Whether it is so; several values are draws of `resampled` ensembles.
     share : float

@@ -16,7 +16,7 @@ from ddlib.widgets.baking.still import Still, still_picture
 from ddlib.widgets.panels import Pad, Panel, Scalar
 from ddlib.widgets.parameters import Choice, Parameter
 
-HERE = Path(__file__).parent
+STATIC = Path(__file__).with_name("static")
 
 SCRIPT = ("baked.js", "charts.js", "controls.js", "curves.js")
 """Files of the script that every widget has; a subclass adds its own after them."""
@@ -26,8 +26,8 @@ STYLE = ("curves.css",)
 
 
 def module(*names: str) -> str:
-    """The named files of this folder as one text: a widget's script must stand alone."""
-    return "\n".join((HERE / name).read_text(encoding="utf-8") for name in names)
+    """The named files of the folder `static` as one text: a widget's script must stand alone."""
+    return "\n".join((STATIC / name).read_text(encoding="utf-8") for name in names)
 
 
 class _Checked(t.TraitType):

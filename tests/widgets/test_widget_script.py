@@ -10,7 +10,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from test_accessibility import violations
+from axe import violations
 from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings, shown_values
 from widget_samples import T, axes, make, make_kinds, parameters, parts, wave
 

@@ -33,23 +33,22 @@ import pytest
 import yaml
 from mutators import Mutant, mutants_of
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 CACHE = ROOT / ".cache" / "mutants"
 JUDGED = Path(__file__).with_suffix("").with_name("mutants.yml")
 
-ASIDE = ("widgets", "studies", "figures", "diagrams", "control_figures", "style")
+ASIDE = ("widgets", "experiments/studies", "figures", "evidence/chart")
 """Modules that are not mutated: pages and pictures are judged in a browser and by eye, and the
 studies take minutes; their outcome is committed and guarded by a hash."""
 
-PAGES = tuple(
-    "accessibility benchmarks build compact_svg control_figures docstrings figures foreign imports "
-    "lab mutation notebooks other_systems pages prose reactions slim status style widget".split()
-)
-"""Beginnings of the names of test modules that look at words, pictures and pages."""
+PAGES = ("book", "house", "figures", "widgets", "evidence/test_chart")
+"""Tests that look at words, pictures and pages, and at the shape of the code."""
 STALENESS = "test_committed_results_are_of_this_code"
 """The test that any change of code fails."""
-HASHES = ("test_results.py",)  # reads the text of modules: counts for these modules only
-HASHING = ("results", "reproduce")
+HASHES = (
+    "experiments/test_results.py",
+)  # reads the text of modules: counts for these modules only
+HASHING = ("experiments/results", "experiments/reproduce")
 
 TESTS_SECONDS = 20.0
 """Time of the tests that a mutant has to survive, as recorded without it."""
@@ -61,13 +60,13 @@ HEAVY = (
 
 
 def group(module: str) -> str:
-    return "measures" if module.startswith("measures/") else "library"
+    return "measures" if module.startswith("evidence/measures/") else "library"
 
 
 def modules() -> list[str]:
     """Names of the modules that are mutated."""
     found = (p.relative_to(ROOT / "ddlib") for p in sorted((ROOT / "ddlib").rglob("*.py")))
-    return [p.with_suffix("").as_posix() for p in found if not p.parts[0].startswith(ASIDE)]
+    return [p.with_suffix("").as_posix() for p in found if not p.as_posix().startswith(ASIDE)]
 
 
 @cache
@@ -155,8 +154,8 @@ def apart(folder: Path, work, limit: float) -> dict | None:
         try:
             resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 5))
             os.chdir(folder)
-            os.environ.update(PYTHONPATH=f"{folder}:{folder}/tests", CI="1")
-            sys.path[:0] = [str(folder), str(folder / "tests")]
+            os.environ.update(PYTHONPATH=f"{folder}:{folder}/tests/support", CI="1")
+            sys.path[:0] = [str(folder), str(folder / "tests" / "support")]
             quiet = os.open("output.txt", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
             os.dup2(quiet, 1)
             os.dup2(quiet, 2)
@@ -186,11 +185,11 @@ def digest(*texts: str) -> str:
 
 def state(name: str, executed: list[str]) -> str:
     """Digest of a test file, the modules beside it that it names, and those that it executes."""
-    beside = {p.stem: p for p in sorted((ROOT / "tests").glob("*.py"))}
+    beside = {p.stem: p for p in sorted((ROOT / "tests" / "support").glob("*.py"))}
     named = set(re.findall(r"\w+", (ROOT / "tests" / name).read_text(encoding="utf-8")))
     files = [ROOT / "tests" / name, *(p for stem, p in beside.items() if stem in named)]
     files += [ROOT / "ddlib" / f"{module}.py" for module in executed]
-    if name == "test_claims.py":
+    if name == "evidence/test_claims.py":
         files.append(ROOT / "book" / "claims.yml")
     return digest(*(p.read_text(encoding="utf-8") if p.exists() else "" for p in files))
 
@@ -222,33 +221,38 @@ def trace(name: str, folder: Path) -> dict:
     return found | {"state": state(name, sorted(found["lines"]))}
 
 
-def files_with_tests() -> list[Path]:
-    paths = sorted((ROOT / "tests").glob("test_*.py"))
-    return [path for path in paths if not path.stem.removeprefix("test_").startswith(PAGES)]
+def files_with_tests() -> list[str]:
+    """Test files that run against mutants, by their place in the folder of the tests."""
+    found = (p.relative_to(ROOT / "tests") for p in sorted((ROOT / "tests").rglob("test_*.py")))
+    return [path.as_posix() for path in found if not path.as_posix().startswith(PAGES)]
+
+
+def traced(name: str) -> Path:
+    """Where the trace of a test file is kept."""
+    return CACHE / f"{name.removesuffix('.py').replace('/', '-')}.json"
 
 
 def traces(jobs: int) -> dict[str, dict]:
     """What `trace` finds for every test file; only those that changed run again."""
     known, stale = {}, []
-    for path in files_with_tests():
-        kept = CACHE / f"{path.stem}.json"
-        known[path.name] = json.loads(kept.read_text()) if kept.exists() else {"state": ""}
-        executed = sorted(known[path.name].get("lines", ()))
-        if known[path.name]["state"] != state(path.name, executed):
-            stale.append(path.name)
+    for name in files_with_tests():
+        kept = traced(name)
+        known[name] = json.loads(kept.read_text()) if kept.exists() else {"state": ""}
+        if known[name]["state"] != state(name, sorted(known[name].get("lines", ()))):
+            stale.append(name)
     for name, found in in_copies(jobs, trace, stale):
         total = sum(found["seconds"].values())
         print(f"  {name}: {len(found['seconds'])} tests, {total:.0f} s", flush=True)
         if found["failed"]:
             print(f"  not used, since they fail without a mutant: {', '.join(found['failed'])}")
-        (CACHE / f"{Path(name).stem}.json").write_text(json.dumps(found))
+        traced(name).write_text(json.dumps(found))
         known[name] = found
     return {name: found for name, found in known.items() if found["state"]}
 
 
 def tests_for(mutant: Mutant, known: dict) -> list[str]:
     """Tests to run against a mutant, in order, until their time is used up."""
-    chosen, own = [], f"test_{mutant.module.replace('/', '_')}.py"
+    chosen, own = [], f"test_{Path(mutant.module).name}.py"
     for name, found in known.items():
         lines = found["lines"].get(mutant.module)
         if lines is None or (name in HASHES and mutant.module not in HASHING):
@@ -259,7 +263,7 @@ def tests_for(mutant: Mutant, known: dict) -> list[str]:
             direct = {test for tests in lines.values() for test in tests}
         for test, seconds in found["seconds"].items():
             if direct and test not in found["failed"] and STALENESS not in test:
-                chosen.append((test not in direct, name != own, seconds, test))
+                chosen.append((test not in direct, Path(name).name != own, seconds, test))
     picked, total = [], 0.0
     for *_, seconds, test in sorted(chosen):
         if total + seconds <= TESTS_SECONDS:
@@ -328,8 +332,9 @@ def in_copies(jobs: int, function, work: list):
 def _start(folders):
     global _folder
     _folder = folders.get()
-    files = [path.name for path in files_with_tests()]
-    apart(_folder, lambda: run_tests(files, Chosen(), "--collect-only"), 600)  # compiles them
+    apart(
+        _folder, lambda: run_tests(files_with_tests(), Chosen(), "--collect-only"), 600
+    )  # compiles them
 
 
 def _call(function, item):

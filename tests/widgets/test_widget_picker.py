@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from test_accessibility import violations
+from axe import violations
 from traitlets import TraitError
 from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings, shown_values
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from ipywidgets.embed import embed_data
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
 VIEW = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'

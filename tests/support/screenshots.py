@@ -1,6 +1,6 @@
 """Full-page pictures of the built book, for looking at it.
 
-    python tests/screenshots.py OUTDIR [PAGE ...]
+    python tests/support/screenshots.py OUTDIR [PAGE ...]
 
 A page is a name such as `dynamics`; without any, all pages are taken. Each is taken light,
 dark and narrow, tall ones in pieces of at most 2400 px.

@@ -107,13 +107,15 @@ def test_text_with_wide_characters():
 def test_samples_are_drawn_anew_with_each_seed():
     first, again, other = (mutation.draw(seed, 50, "measures") for seed in (1, 1, 2))
     assert first == again and len(set(first) & set(other)) < 25
-    assert {m.module.split("/")[0] for m in first} == {"measures"}
+    assert {m.module.rpartition("/")[0] for m in first} == {"evidence/measures"}
     assert mutation.draw(1, 60, "measures")[:50] == first
 
 
 def test_pages_and_pictures_are_left_out():
     found = mutation.modules()
-    assert {"arm", "measures/weights", "training", "_check"} <= set(found)
+    assert {"dynamics/arm", "evidence/measures/weights", "learning/training", "_check"} <= set(
+        found
+    )
     assert not [name for name in found if "figures" in name or "widgets" in name]
 
 

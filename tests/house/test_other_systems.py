@@ -19,7 +19,7 @@ from packaging.utils import canonicalize_name
 from ddlib.experiments import results
 from ddlib.learning import Scaler, TorqueModel, Weights
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 EVERY_MODULE = """

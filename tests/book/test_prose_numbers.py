@@ -11,7 +11,9 @@ import yaml
 from book_pages import PAGES, ROOT, source
 
 ELSEWHERE = {"book/provenance", "book/api"}  # pages of parameters and of signatures
-ALLOWED = yaml.safe_load((ROOT / "tests" / "allowed_numbers.yml").read_text(encoding="utf-8"))
+ALLOWED = yaml.safe_load(
+    (ROOT / "tests" / "support" / "allowed_numbers.yml").read_text(encoding="utf-8")
+)
 REASONS = {"parameter", "criterion", "mathematics", "literature", "printed"}
 READ = [page for page in PAGES if page not in ELSEWHERE]
 

@@ -16,7 +16,7 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 JOGS = str(Path(__file__).parent / "foreign")
 """Folder whose ``sitecustomize`` jogs random draws."""
 
@@ -40,7 +40,7 @@ CI = ("jog-1", "other-libraries")
 """Those that every run of the test suite tries."""
 
 CHECKS = {
-    "claims": ["tests/test_claims.py", "-k", "verdicts_are"],
+    "claims": ["tests/evidence/test_claims.py", "-k", "verdicts_are"],
     "notebooks": ["--nbmake", "--nbmake-timeout=900"],
 }
 """Arguments of pytest; the notebooks are added."""
@@ -93,7 +93,8 @@ def reproduce(name: str, jobs: int) -> list[str]:
         ]
         if subprocess.run(command, env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
-        files = ["tests/test_results.py", "tests/test_ledger.py", "tests/test_prose_numbers.py"]
+        names = ("experiments/test_results", "evidence/test_ledger", "book/test_prose_numbers")
+        files = [f"tests/{name}.py" for name in names]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
         told = subprocess.run(command, env=env, cwd=copy).returncode
         return [f"{name}: results"] * bool(told) + check(name, jobs, copy)
