@@ -23,8 +23,8 @@ def compact(svg: str, prefix: str, letters: dict[str, str] | None = None) -> str
     Parameters
     ----------
     svg : str
-        An ``<svg>`` element as `ddlib.figures.style` writes it; one that went through here before is
-        returned as it is.
+        An ``<svg>`` element as `ddlib.figures.style` writes it; one that went through here
+        before is returned as it is.
     prefix : str
         Different for each picture of a page.
     letters : dict, optional

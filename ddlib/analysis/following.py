@@ -1,8 +1,9 @@
 """What weights respond to: not their shape, but what their output follows along a recording.
 
-The shape of a filter says what it *could* see (`ddlib.analysis.filters`). What it does see depends on the
-motion, too: a small constant times a large position can outweigh a pure parabola times a small
-acceleration. Here the output itself is compared with true positions, velocities, accelerations.
+The shape of a filter says what it *could* see (`ddlib.analysis.filters`). What it does see
+depends on the motion, too: a small constant times a large position can outweigh a pure parabola
+times a small acceleration. Here the output itself is compared with true positions, velocities,
+accelerations.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 Joints obey ``M qdd + F qd + K q = tau`` with a constant inertia ``M`` (a number, or a mass
 matrix), viscous friction ``F`` and, where gravity pulls, its stiffness ``K``. The loops are
-those of `ddlib.control.controllers.PID`: position errors against a reference at rest, velocity of the
-reference zero.
+those of `ddlib.control.controllers.PID`: position errors against a reference at rest, velocity
+of the reference zero.
 """
 
 from __future__ import annotations

@@ -133,7 +133,8 @@ class StickSlipFriction(_Stribeck):
 
     A stuck joint does not move at all; friction then is whatever torque holds it, up to
     `breakaway` (Karnopp 1985, with a band of zero width). The plant decides at each step
-    which joints stick (`ddlib.simulation.plant`): friction's state is that the velocity is exactly zero.
+    which joints stick (`ddlib.simulation.plant`): friction's state is that the velocity is
+    exactly zero.
 
     Parameters
     ----------

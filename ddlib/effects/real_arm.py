@@ -2,7 +2,7 @@
 
 Each effect is a small frozen object. `Effects` collects them in the order in
 which a signal meets them; leaving one out switches it off. Frictions are written in
-`ddlib.effects.friction`, motors and shafts in `ddlib.effects.actuators`; all can be imported from here.
+`ddlib.effects.friction`, motors and shafts in `ddlib.effects.actuators`.
 """
 
 from __future__ import annotations

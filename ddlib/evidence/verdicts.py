@@ -7,8 +7,8 @@ its value, from a bootstrap over the networks, and its verdict is what most repl
 - The *fresh* verdict is the one that at least `DECIDED` of the replicates get, and "undecided"
   if none has so many.
 - The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
-  (`ddlib.evidence.judging`). Results made anew on another machine are another draw; there it *stands*
-  until the replicates contradict it: a decided one while at least `STANDS` of them agree,
+  (`ddlib.evidence.judging`). Results made anew on another machine are another draw; there it
+  *stands* until the replicates contradict it: a decided one while at least `STANDS` of them agree,
   "undecided" while no verdict has `CONTRADICTS`.
 
 Measures without replicates, of exact mathematics or a deterministic simulation, have one value

@@ -1,7 +1,7 @@
 """Measure anew what is too slow for a chapter: ``make reproduce``.
 
-A study (`ddlib.experiments.studies`) whose result is there already, made by the same code, is skipped;
-so an interrupted run resumes. Several studies run side by side, each on one core.
+A study (`ddlib.experiments.studies`) whose result is there already, made by the same code, is
+skipped; so an interrupted run resumes. Several studies run side by side, each on one core.
 """
 
 from __future__ import annotations

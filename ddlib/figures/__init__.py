@@ -1,4 +1,4 @@
-"""The book"s figures: data in, `Illustration` out. No plot detail lives in a chapter."""
+"""The book's figures: data in, `Illustration` out. No plot detail lives in a chapter."""
 
 import lazy_loader
 
@@ -17,24 +17,12 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "legend_above",
             "plain_ticks",
         ],
-        "weights": [
-            "arm_sketch",
-            "curves",
-            "decomposition",
-            "extents_square",
-            "hinton",
-            "network_diagram",
-            "overlay",
-            "rmss_by_window",
-            "share_map",
-        ],
-        "learning": ["clusters", "families"],
-        "dynamics": ["CENTRED", "estimates", "hand_paths", "operations"],
+        "weights": ["decomposition", "hinton", "network_diagram", "share_map"],
+        "dynamics": ["CENTRED", "arm_sketch", "estimates", "hand_paths", "operations"],
         "effects": ["by_case", "ranking", "side_by_side"],
-        "recording": ["reached", "rounding", "tied"],
+        "recording": ["extents_square", "reached", "rounding", "tied"],
         "maps": ["COLOUR_MAP", "plane", "scatter"],
         "states": ["SYMBOLS", "error_by_size", "hinton_states", "responses", "torque_along"],
-        "control": ["root_loci"],
-        "diagrams": ["feedforward_loop"],
+        "control": ["feedforward_loop", "root_loci"],
     },
 )

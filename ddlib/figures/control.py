@@ -1,4 +1,4 @@
-"""Figures of control engineering: where the poles of a loop go."""
+"""Figures of control engineering: where the poles of a loop go, and block diagrams."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 import control
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle, FancyBboxPatch
 
 from ddlib._check import finite_array
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
@@ -56,3 +58,64 @@ def root_loci(loops: Mapping[str, control.TransferFunction], gains) -> Illustrat
 def _words(pole) -> str:
     imaginary = f" ± {pole.imag:.2g}i" if pole.imag > 1e-9 else ""
     return f"{pole.real + 0.0:.2g}{imaginary}".replace("-", "−")
+
+
+def feedforward_loop() -> Illustration:
+    """Figure 2-1: feedforward torque from the inverse arm, feedback at each joint, the arm."""
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        _block(axis, 1.3, 1.1, "reference\ntrajectory")
+        _block(axis, 5.0, 2.75, "inverse arm", colour=COLOURS[1])
+        _block(axis, 5.0, 1.1, "feedback\nat each joint", colour=COLOURS[0])
+        _block(axis, 9.2, 1.1, "arm")
+        _sum(axis, 3.25, 1.1)
+        _sum(axis, 7.0, 1.1)
+        _arrow(axis, (2.2, 1.1), (3.07, 1.1), r"$q_r,\ \dot q_r$")
+        _arrow(axis, (1.3, 1.5), (1.3, 2.75), (4.1, 2.75))
+        axis.text(2.6, 2.85, r"$q_r,\ \dot q_r,\ \ddot q_r$", ha="center", va="bottom")
+        _arrow(axis, (3.43, 1.1), (4.1, 1.1), "$e$")
+        _arrow(axis, (5.9, 1.1), (6.82, 1.1), r"$\tau_{\mathrm{fb}}$")
+        _arrow(axis, (5.9, 2.75), (7.0, 2.75), (7.0, 1.28))
+        axis.text(6.45, 2.85, r"$\tau_{\mathrm{ff}}$", ha="center", va="bottom")
+        _arrow(axis, (7.18, 1.1), (8.3, 1.1), r"$\tau$")
+        _arrow(axis, (10.1, 1.1), (11.3, 1.1), r"$q,\ \dot q$")
+        _arrow(axis, (10.6, 1.1), (10.6, 0.1), (3.25, 0.1), (3.25, 0.92))
+        axis.plot(10.6, 1.1, "o", ms=3.5, color=INK)
+        for x, y, sign in ((2.93, 0.9, "+"), (3.42, 0.78, "−"), (6.68, 0.9, "+"), (7.2, 1.4, "+")):
+            axis.text(x, y, sign, ha="center", va="center", fontsize=9)
+        axis.text(5.0, 3.25, "off line", ha="center", va="bottom", color=FAINT)
+        axis.text(6.6, 0.18, "sensors", ha="center", va="bottom", color=FAINT)
+        axis.set(xlim=(0.2, 11.5), ylim=(-0.1, 3.6), aspect="equal")
+        axis.axis("off")
+
+    alt = (
+        "Block diagram. The reference trajectory feeds two branches: the inverse arm, which "
+        "computes the feedforward torque off line, and a comparison with the measured motion, "
+        "whose error drives a feedback law at each joint. Both torques are added and drive the "
+        "arm; its measured motion returns to the comparison."
+    )
+    return illustrate(draw, alt, 7.0, 2.5)
+
+
+def _block(axis: Axes, x, y, text, colour=INK):
+    """A box of the diagram with its centre at `x`, `y`."""
+    style = "round,pad=0,rounding_size=0.08"
+    box = FancyBboxPatch((x - 0.9, y - 0.4), 1.8, 0.8, style, fc="none", ec=colour, lw=1.6)
+    axis.add_patch(box)
+    axis.text(x, y, text, ha="center", va="center", linespacing=1.15)
+
+
+def _sum(axis: Axes, x, y):
+    """A summing point."""
+    axis.add_patch(Circle((x, y), 0.18, fc="none", ec=INK, lw=1.2))
+
+
+def _arrow(axis: Axes, *points):
+    """A line through `points` with an arrow head at its end; a last text names the first part."""
+    *points, name = points if isinstance(points[-1], str) else (*points, "")
+    (x0, y0), (x1, _) = points[:2]
+    axis.plot(*np.array(points).T, color=INK, lw=1.1, solid_joinstyle="miter")
+    head = {"arrowstyle": "-|>", "color": INK, "lw": 1.1, "shrinkA": 0, "shrinkB": 0}
+    axis.annotate("", points[-1], points[-2], arrowprops=head)
+    axis.text((x0 + x1) / 2, y0 + 0.1, name, ha="center", va="bottom")

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from ddlib._check import finite_array, number
 from ddlib.dynamics import Arm, Operations
@@ -164,3 +165,47 @@ def _summary(estimate: Estimate, truth, name: str):
     half = np.mean(100 * estimate.half_width()[..., k] / abs(true))
     share = estimate.covers(truth)[..., k].mean() if error.ndim else None
     return (*np.percentile(error, (50, 2.5, 97.5)), half, share)
+
+
+def arm_sketch(arm: Arm, q) -> Illustration:
+    """The arm seen from above at joint angles `q` (rad, shape (2,)), with its angles named."""
+    q = finite_array("q", q, 2)
+    (ex, ey), (hx, hy) = arm.forward_kinematics(q)
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        l1 = arm.lengths[0]
+        axis.plot([0, 1.25 * l1], [0, 0], color=FAINT, ls=":")
+        reach = 1.55
+        axis.plot([ex, ex * reach], [ey, ey * reach], color=FAINT, ls=":")
+        axis.plot([0, ex], [0, ey], color=COLOURS[0], lw=9, solid_capstyle="round", alpha=0.85)
+        axis.plot([ex, hx], [ey, hy], color=COLOURS[1], lw=7, solid_capstyle="round", alpha=0.85)
+        for x, y in ((0, 0), (ex, ey)):
+            axis.add_patch(Circle((x, y), 0.022, facecolor="white", edgecolor=INK, zorder=3))
+        for centre, start, angle, radius, name in (
+            ((0, 0), 0.0, q[0], 0.20, "$q_1$"),
+            ((ex, ey), q[0], q[1], 0.15, "$q_2$"),
+        ):
+            arc = np.linspace(start, start + angle, 40)
+            x, y = centre[0] + radius * np.cos(arc), centre[1] + radius * np.sin(arc)
+            axis.plot(x, y, color=INK, lw=1)
+            middle = start + angle / 2
+            axis.text(
+                centre[0] + 1.3 * radius * np.cos(middle),
+                centre[1] + 1.3 * radius * np.sin(middle),
+                name, ha="center", va="center", fontsize=12,
+            )  # fmt: skip
+        axis.text(ex * 0.62 - 0.04, ey * 0.62 + 0.05, "link 1", ha="right")
+        axis.text((ex + hx) / 2 - 0.05, (ey + hy) / 2 + 0.03, "link 2", ha="right")
+        axis.text(0.02, -0.07, "shoulder", ha="left")
+        axis.text(ex - 0.05, ey + 0.03, "elbow", ha="right")
+        axis.text(hx + 0.03, hy + 0.02, "hand", ha="left")
+        axis.set_aspect("equal")
+        axis.margins(0.1)
+        axis.axis("off")
+
+    alt = (
+        f"The arm from above: link 1 turned by q1 = {np.rad2deg(q[0]):.0f} degrees from the "
+        f"x axis, link 2 by q2 = {np.rad2deg(q[1]):.0f} degrees from link 1's direction."
+    )
+    return illustrate(draw, alt, 4.6, 3.0)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from ddlib._check import finite_array, number
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
@@ -145,3 +145,42 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
     ]
     alt = f"Acceleration against position. {'; '.join(parts)}."
     return illustrate(draw, alt, 7.0, 3.0)
+
+
+def extents_square(training, test, extra=None) -> Illustration:
+    """The square of extents with the training and test trajectories and their hull.
+
+    Parameters
+    ----------
+    training, test : array_like, shapes (runs, 2) and (2,)
+        Extents of shoulder and elbow, degrees.
+    extra : array_like, shape (n, 2), optional
+        Further members of the family.
+    """
+    from scipy.spatial import ConvexHull
+
+    training, test = finite_array("training", training, 2), finite_array("test", test, 2)
+    hull = training[ConvexHull(training).vertices]
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        axis.add_patch(Rectangle((0, 0), 45, 45, fill=False, edgecolor=INK, lw=0.8))
+        shade = Polygon(hull, facecolor=COLOURS[0], alpha=0.18, edgecolor="none")
+        axis.add_patch(shade)
+        if extra is not None:
+            axis.plot(*np.asarray(extra).T, ".", color=FAINT, ms=4, label="random members")
+        axis.plot(*training.T, "o", color=COLOURS[0], ms=8, label="training", clip_on=False)
+        axis.plot(*test, "D", color=COLOURS[1], ms=8, label="test", clip_on=False)
+        for i, (x, y) in enumerate([*training, test], 1):
+            axis.annotate(str(i), (x, y), (7, 5), textcoords="offset points")
+        axis.set(xlabel="shoulder extent, degrees", ylabel="elbow extent, degrees")
+        axis.set(xlim=(-2, 50), ylim=(-2, 50), aspect="equal", xticks=range(0, 46, 15))
+        axis.set_yticks(range(0, 46, 15))
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+    alt = (
+        "Square of extents from 0 to 45 degrees for shoulder and elbow with five training "
+        f"trajectories and test trajectory 6 at {test[0]:g} and {test[1]:g} degrees; the convex "
+        "hull of the training trajectories is shaded."
+    )
+    return illustrate(draw, alt, 5.4, 3.6)

@@ -1,4 +1,4 @@
-"""The book's figures: data in, `Illustration` out. No plot detail lives in a chapter."""
+"""Figures of networks: their layout, their weights as Hinton diagrams and as filters."""
 
 from __future__ import annotations
 
@@ -7,170 +7,21 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.patches import Rectangle
 
 from ddlib._check import finite_array
 from ddlib.analysis import decompose
-from ddlib.dynamics import Arm
 from ddlib.figures.style import (
     COLOURS,
-    DASHES,
     FAINT,
     INK,
     Illustration,
-    check_label,
     illustrate,
-    legend_above,
-    plain_ticks,
 )
 from ddlib.learning import Weights
 
 JOINTS = ("shoulder", "elbow")
 """Names of joint 0 and joint 1."""
-
-
-def curves(
-    x,
-    panels: Mapping[str, Mapping[str, np.ndarray]],
-    x_label: str,
-    alt: str,
-    *,
-    columns: int = 1,
-    height: float = 2.1,
-    x_log=False,
-    y_log=False,
-) -> Illustration:
-    """Curves over a common axis, one panel below (or beside) the other.
-
-    Parameters
-    ----------
-    x : array_like, shape (points,)
-        The common axis.
-    panels : mapping
-        ``{y label: {curve name: values (points,)}}``. A value may also be a pair
-        ``(x, y)`` with an axis of its own.
-    x_label, alt : str
-        Label of the x axis; alternative text.
-    columns : int
-        Panels in one row.
-    height : float
-        Height of a panel, inches.
-    x_log, y_log : bool
-        Logarithmic axes.
-    """  # fmt: skip
-    rows = -(-len(panels) // columns)
-    names = [tuple(named) for named in panels.values()]
-    above = len(names[0]) > 1 and len(set(names)) == 1  # where no curve can run through it
-    look = {name: k for k, name in enumerate(dict.fromkeys(sum(names, ())))}
-
-    def draw(figure: Figure):
-        axes = figure.subplots(rows, columns, sharex=True, squeeze=False).ravel()
-        for axis, (label, named) in zip(axes, panels.items()):
-            for name, y in named.items():
-                x_k, y_k = y if isinstance(y, tuple) else (x, y)
-                k = look[name]  # the same curve looks the same in every panel
-                dash = DASHES[k % len(DASHES)]
-                axis.plot(x_k, y_k, color=COLOURS[k % len(COLOURS)], ls=dash, label=name)
-            axis.set_ylabel(check_label(label))
-            if x_log:
-                axis.set_xscale("log")
-                plain_ticks(axis.xaxis)
-            if y_log:
-                axis.set_yscale("log")
-                plain_ticks(axis.yaxis)
-            if len(named) > 1 and not above:
-                axis.legend(loc="best", ncols=2 if len(named) > 3 else 1)
-        if above:
-            legend_above(figure, *axes[0].get_legend_handles_labels())
-        for axis in axes[max(len(panels) - columns, 0) : len(panels)]:
-            axis.set_xlabel(check_label(x_label))
-        for axis in axes[len(panels) :]:
-            axis.remove()
-
-    return illustrate(draw, alt, 7.0, height * rows + 0.4)
-
-
-def arm_sketch(arm: Arm, q) -> Illustration:
-    """The arm seen from above at joint angles `q` (rad, shape (2,)), with its angles named."""
-    q = finite_array("q", q, 2)
-    (ex, ey), (hx, hy) = arm.forward_kinematics(q)
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        l1 = arm.lengths[0]
-        axis.plot([0, 1.25 * l1], [0, 0], color=FAINT, ls=":")
-        reach = 1.55
-        axis.plot([ex, ex * reach], [ey, ey * reach], color=FAINT, ls=":")
-        axis.plot([0, ex], [0, ey], color=COLOURS[0], lw=9, solid_capstyle="round", alpha=0.85)
-        axis.plot([ex, hx], [ey, hy], color=COLOURS[1], lw=7, solid_capstyle="round", alpha=0.85)
-        for x, y in ((0, 0), (ex, ey)):
-            axis.add_patch(Circle((x, y), 0.022, facecolor="white", edgecolor=INK, zorder=3))
-        for centre, start, angle, radius, name in (
-            ((0, 0), 0.0, q[0], 0.20, "$q_1$"),
-            ((ex, ey), q[0], q[1], 0.15, "$q_2$"),
-        ):
-            arc = np.linspace(start, start + angle, 40)
-            x, y = centre[0] + radius * np.cos(arc), centre[1] + radius * np.sin(arc)
-            axis.plot(x, y, color=INK, lw=1)
-            middle = start + angle / 2
-            axis.text(
-                centre[0] + 1.3 * radius * np.cos(middle),
-                centre[1] + 1.3 * radius * np.sin(middle),
-                name, ha="center", va="center", fontsize=12,
-            )  # fmt: skip
-        axis.text(ex * 0.62 - 0.04, ey * 0.62 + 0.05, "link 1", ha="right")
-        axis.text((ex + hx) / 2 - 0.05, (ey + hy) / 2 + 0.03, "link 2", ha="right")
-        axis.text(0.02, -0.07, "shoulder", ha="left")
-        axis.text(ex - 0.05, ey + 0.03, "elbow", ha="right")
-        axis.text(hx + 0.03, hy + 0.02, "hand", ha="left")
-        axis.set_aspect("equal")
-        axis.margins(0.1)
-        axis.axis("off")
-
-    alt = (
-        f"The arm from above: link 1 turned by q1 = {np.rad2deg(q[0]):.0f} degrees from the "
-        f"x axis, link 2 by q2 = {np.rad2deg(q[1]):.0f} degrees from link 1's direction."
-    )
-    return illustrate(draw, alt, 4.6, 3.0)
-
-
-def extents_square(training, test, extra=None) -> Illustration:
-    """The square of extents with the training and test trajectories and their hull.
-
-    Parameters
-    ----------
-    training, test : array_like, shapes (runs, 2) and (2,)
-        Extents of shoulder and elbow, degrees.
-    extra : array_like, shape (n, 2), optional
-        Further members of the family.
-    """
-    from scipy.spatial import ConvexHull
-
-    training, test = finite_array("training", training, 2), finite_array("test", test, 2)
-    hull = training[ConvexHull(training).vertices]
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        axis.add_patch(Rectangle((0, 0), 45, 45, fill=False, edgecolor=INK, lw=0.8))
-        shade = Polygon(hull, facecolor=COLOURS[0], alpha=0.18, edgecolor="none")
-        axis.add_patch(shade)
-        if extra is not None:
-            axis.plot(*np.asarray(extra).T, ".", color=FAINT, ms=4, label="random members")
-        axis.plot(*training.T, "o", color=COLOURS[0], ms=8, label="training", clip_on=False)
-        axis.plot(*test, "D", color=COLOURS[1], ms=8, label="test", clip_on=False)
-        for number, (x, y) in enumerate([*training, test], 1):
-            axis.annotate(str(number), (x, y), (7, 5), textcoords="offset points")
-        axis.set(xlabel="shoulder extent, degrees", ylabel="elbow extent, degrees")
-        axis.set(xlim=(-2, 50), ylim=(-2, 50), aspect="equal", xticks=range(0, 46, 15))
-        axis.set_yticks(range(0, 46, 15))
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-
-    alt = (
-        "Square of extents from 0 to 45 degrees for shoulder and elbow with five training "
-        f"trajectories and test trajectory 6 at {test[0]:g} and {test[1]:g} degrees; the convex "
-        "hull of the training trajectories is shaded."
-    )
-    return illustrate(draw, alt, 5.4, 3.6)
 
 
 def network_diagram(weights: Weights) -> Illustration:
@@ -218,73 +69,6 @@ def network_diagram(weights: Weights) -> Illustration:
         "inputs are connected to hidden units and directly to the outputs, hidden units to outputs."
     )
     return illustrate(draw, alt, 7.0, 3.4)
-
-
-def rmss_by_window(table: Mapping[str, Mapping[int, np.ndarray]], printed: Mapping) -> Illustration:
-    """Table 4-1 as a picture: every network's error, the medians and the printed values.
-
-    Parameters
-    ----------
-    table : mapping
-        ``{"training" or "test": {window: errors (members,)}}``.
-    printed : mapping
-        ``{"training" or "test": {window: value}}``.
-    """
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(table), sharey=True, squeeze=False)[0]
-        for k, (axis, (name, columns)) in enumerate(zip(axes, table.items())):
-            for place, values in enumerate(columns.values()):
-                spread = np.linspace(-0.16, 0.16, len(values))
-                axis.plot(place + spread, np.sort(values), ".", color=COLOURS[k], ms=4, alpha=0.7)
-                axis.plot([place - 0.25, place + 0.25], [np.median(values)] * 2, color=INK, lw=2)
-            marks = [printed[name][w] for w in columns]
-            axis.plot(range(len(columns)), marks, "D", mfc="none", mec=COLOURS[3], ms=9, mew=1.8)
-            axis.set_xticks(range(len(columns)), [str(w) for w in columns])
-            axis.set(xlabel="window, samples", title=name, yscale="log")
-        axes[0].set_ylabel("RMSS")
-
-    alt = "RMSS of every network by window size; medians as bars, printed values as diamonds. "
-    for name, columns in table.items():
-        medians = ", ".join(f"{w}: {np.median(v):.3f}" for w, v in columns.items())
-        alt += f"Median {name} error {medians}. "
-    return illustrate(draw, alt.strip(), 7.0, 3.1)
-
-
-def overlay(
-    t, measured, predicted: Mapping[str, np.ndarray], joint: str = "shoulder"
-) -> Illustration:
-    """Figure 4-1: measured torque (fine) under the networks' (bold), one panel each.
-
-    Parameters
-    ----------
-    t : array_like, shape (time,)
-        Times, s.
-    measured : array_like, shape (time,)
-        Measured torque, N m.
-    predicted : mapping
-        ``{title: torque (time,)}``.
-    joint : str
-        Name for the axis.
-    """
-
-    def draw(figure: Figure):
-        axes = figure.subplots(len(predicted), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-        for axis, (title, torque) in zip(axes, predicted.items()):
-            axis.plot(t, torque, color=COLOURS[1], lw=2.6, alpha=0.85, label="network")
-            axis.plot(t, measured, color=INK, lw=0.8, label="measured")
-            axis.set_title(title)
-            axis.set_ylabel("torque, N m")
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=2)
-        axes[-1].set_xlabel("time, s")
-
-    worst = max(np.sqrt(np.mean((np.asarray(p) - measured) ** 2)) for p in predicted.values())
-    alt = (
-        f"Measured {joint} torque on the test trajectory with the torque of networks "
-        f"({', '.join(predicted)}) laid over it; largest root mean square difference "
-        f"{worst:.2f} N m."
-    )
-    return illustrate(draw, alt, 7.0, 1.7 * len(predicted) + 0.4)
 
 
 def _dots(axis: Axes, values, x0, y0, dx, dy, largest):

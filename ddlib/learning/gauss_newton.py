@@ -1,4 +1,4 @@
-"""Error, gradient and second derivatives of a window network, for `ddlib.learning.levenberg_marquardt`.
+"""Error, gradient and second derivatives of a window network, for Levenberg-Marquardt.
 
 Neighbouring samples of a window hardly differ, so that windows vary some hundred thousand
 times more in one direction than in another, and a step that is short in all weights alike
@@ -42,7 +42,7 @@ def penalty(joints: int, width: int, decay: float = 0.0, smoothness: float = 0.0
 
 
 class Objective:
-    """What `ddlib.learning.levenberg_marquardt.solve` minimises, as a function of one vector of parameters.
+    """What `ddlib.learning.solve` minimises, as a function of one vector of parameters.
 
     The vector holds a row for each hidden unit, then for each output unit (the weights
     from the window, then the bias), and then the hidden-to-output weights. A row w is

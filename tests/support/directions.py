@@ -3,8 +3,8 @@
 A network comes out otherwise on another machine, so such a word stands for a check: a value
 chosen at run time (``quote("x-direction", "rises" if ... else "falls")``, seen as ``{glue:text}``
 or as ``{...}`` of an f-string), or a `ddlib.evidence.statements.stated` in the page to which
-``bound_words.yml`` ties the piece of the sentence. ``python tests/support/directions.py PAGE`` lists what
-is left.
+``bound_words.yml`` ties the piece of the sentence. ``python tests/support/directions.py PAGE``
+lists what is left.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Functions that measure the paper's claims, for `ddlib.evidence.claims`: one module for each part.
+"""Functions that measure the paper's claims, for `ddlib.evidence.claims`: a module for each part.
 
-Each returns a `ddlib.evidence.verdicts.Measured`: the value that is judged and the text that is shown.
+Each returns a `ddlib.evidence.verdicts.Measured`: the value that is judged and the text that is
+shown.
 """

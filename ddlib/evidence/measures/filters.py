@@ -42,7 +42,7 @@ def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.n
 def of_class(
     width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
 ) -> Measured:
-    """Share of a layer's filters that `ddlib.analysis.filters.classify` gives a name, less untrained.
+    """Share of a layer's filters that `ddlib.analysis.classify` gives a name, less untrained.
 
     Parameters
     ----------
