@@ -4,7 +4,7 @@ import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=["chart", "claims", "judging", "ledger", "ledger_tables", "measures"],
+    submodules=["committed", "chart", "claims", "judging", "ledger", "ledger_tables", "measures"],
     submod_attrs={
         "verdicts": [
             "CONTRADICTS",

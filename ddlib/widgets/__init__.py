@@ -2,8 +2,8 @@
 
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.explorer import FilterExplorer
-from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
-from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice, Parameter
 from ddlib.widgets.picker import TrajectoryPicker, inside_hull
 from ddlib.widgets.player import TrainingPlayer
 from ddlib.widgets.switches import RealArmSwitches

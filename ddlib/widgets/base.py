@@ -13,8 +13,8 @@ from ddlib._check import integer, number, one_of
 from ddlib.widgets.baking.baked import Baked
 from ddlib.widgets.baking.sampled import evaluate
 from ddlib.widgets.baking.still import Still, still_picture
-from ddlib.widgets.panels import Pad, Panel, Scalar
-from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.parts.panels import Pad, Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice, Parameter
 
 STATIC = Path(__file__).with_name("static")
 

@@ -23,7 +23,7 @@ from ddlib.widgets.hinton import (
     width_choice,
     zero_padded,
 )
-from ddlib.widgets.parameters import Choice
+from ddlib.widgets.parts.parameters import Choice
 
 FREQUENCIES = np.geomspace(0.5, 20.0, 31)
 """Where the gain is shown, Hz."""

@@ -10,7 +10,7 @@ import traitlets as t
 from ddlib._check import one_of
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.parameters import Choice
+from ddlib.widgets.parts.parameters import Choice
 
 JOINTS = ("shoulder", "elbow")
 """Names of the joints: of the input windows and of the torques."""

@@ -16,8 +16,8 @@ from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.panels import Mark, Pad, Panel, Scalar
-from ddlib.widgets.parameters import Parameter
+from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
+from ddlib.widgets.parts.parameters import Parameter
 
 JOINTS = ("shoulder", "elbow")
 RIGID = "Lagrange-Euler"

@@ -18,7 +18,7 @@ from ddlib.widgets.hinton import (
     unit_names,
     weight_functions,
 )
-from ddlib.widgets.parameters import Choice
+from ddlib.widgets.parts.parameters import Choice
 
 ERRORS = {"training": "training", "test": "trajectory 6"}
 

@@ -18,8 +18,8 @@ from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.simulation.simulate import Recording
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.panels import Panel, Scalar
-from ddlib.widgets.parameters import Choice
+from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice
 
 JOINTS = ("shoulder", "elbow")
 

@@ -13,8 +13,8 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
-from ddlib.widgets.panels import Panel, Scalar
-from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice, Parameter
 
 JOINTS = ("shoulder", "elbow")
 

@@ -12,7 +12,7 @@ from ddlib.simulation import LOG_STEP
 from ddlib.simulation.simulate import Recording
 from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
-from ddlib.widgets.parameters import Choice
+from ddlib.widgets.parts.parameters import Choice
 
 
 class SlidingWindow(CurveWidget):

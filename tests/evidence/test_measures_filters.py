@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from ddlib.analysis import savitzky_golay
-from ddlib.evidence.measures import committed, filters
+from ddlib.evidence import committed
+from ddlib.evidence.measures import filters
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from ddlib.analysis import basis, savitzky_golay
+from ddlib.evidence import committed
 from ddlib.evidence.measures import (
     backpropagation,
-    committed,
     filters,
     networks,
-    state_space,
     weights,
 )
 from ddlib.evidence.measures import windows as of_windows
@@ -503,18 +502,18 @@ def test_rows_of_table_6_1(plant):
         "table-6-1",
         {"errors": errors, "largest weight": [5.0, 1.0, 9.0], "slope": [-0.3, 0.1, 0.2]},
     )
-    assert state_space.table_6_1("random set A").value == pytest.approx(0.2)
-    assert state_space.table_6_1("random set B", "other").value == pytest.approx(2.0)
-    assert state_space.largest_weight().value == 5.0
-    assert state_space.slope().value == pytest.approx(0.2)
-    assert state_space.generalisation().value == pytest.approx(1.0)  # of 3, 1 and 1
+    assert networks.table_6_1("random set A").value == pytest.approx(0.2)
+    assert networks.table_6_1("random set B", "other").value == pytest.approx(2.0)
+    assert networks.largest_state_weight().value == 5.0
+    assert networks.state_slope().value == pytest.approx(0.2)
+    assert networks.generalisation().value == pytest.approx(1.0)  # of 3, 1 and 1
 
 
 def test_the_best_number_of_units(plant):
     rows = [(10, [0.3, 0.2, 0.9]), (20, [0.1, 0.2, 0.15]), (40, [0.4, 0.4, 0.01])]
     units = [{"units": n, "solver": {"test": e}} for n, e in rows] + [{"units": 80, "solver": None}]
     plant("state-space-sizes", {"units": units, "solver's samples in units": 12_000})
-    found = state_space.best_of_sizes()
+    found = networks.best_of_sizes()
     assert found.value == pytest.approx(0.15) and found.replicates is None
     assert found.text.endswith("with 20 units, 12,000 samples")
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib.evidence.measures import backpropagation, real_arm, state_space, trajectories
+from ddlib.evidence.measures import backpropagation, networks, real_arm, trajectories
 from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.experiments.setups import INITIAL
@@ -43,7 +43,7 @@ def test_speed_ups_here_and_elsewhere(monkeypatch):
 
     monkeypatch.setattr(backpropagation, "_data", lambda: "windows of 21")
     monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
-    monkeypatch.setattr(backpropagation.parity, "learn", learn)
+    monkeypatch.setattr(backpropagation.parity_networks, "learn", learn)
     found = backpropagation.acceleration()
     assert asked == [(0.0, 2200), (0.0, 4400), (0.9, 500), (0.9, 1000)]
     # medians: 800 over 150 epochs here, 600 over 60 there
@@ -60,7 +60,7 @@ def test_runs_that_never_arrive_count_with_their_length(monkeypatch):
 
     monkeypatch.setattr(backpropagation, "_data", lambda: None)
     monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
-    monkeypatch.setattr(backpropagation.parity, "learn", learn)
+    monkeypatch.setattr(backpropagation.parity_networks, "learn", learn)
     assert backpropagation.acceleration().value == pytest.approx(22 / 100, rel=1e-6)
 
 
@@ -185,18 +185,18 @@ def test_inputs_that_are_shuffled(monkeypatch):
         changes[1, 2] = 6.0
         return changes
 
-    monkeypatch.setattr(state_space, "_networks", lambda: SimpleNamespace(torque="torque"))
-    monkeypatch.setattr(state_space, "shuffled", shuffled)
-    assert state_space.shoulder_position().value == pytest.approx(0.2 / 2)
+    monkeypatch.setattr(networks, "_networks", lambda: SimpleNamespace(torque="torque"))
+    monkeypatch.setattr(networks, "shuffled", shuffled)
+    assert networks.shoulder_position().value == pytest.approx(0.2 / 2)
 
 
 def test_transitions_within_the_range_of_velocity(monkeypatch):
     along = np.full((2, 5, 2, 3), 7.0)
     along[0, :3, 0, 1] = 0.9
     along[1, 0, 1, 0] = 0.9
-    monkeypatch.setattr(state_space, "_networks", lambda: SimpleNamespace(weights="weights"))
-    monkeypatch.setattr(state_space, "transition_range", lambda weights: along)
-    found = state_space.velocity_ranges()
+    monkeypatch.setattr(networks, "_networks", lambda: SimpleNamespace(weights="weights"))
+    monkeypatch.setattr(networks, "transition_range", lambda weights: along)
+    found = networks.velocity_ranges()
     assert found.value == pytest.approx(0.3)
     assert found.text == "30 % of the units; of elbow position 10 %"
 
@@ -205,11 +205,11 @@ def test_the_shoulder_on_trajectory_6(monkeypatch):
     wanted = np.random.default_rng(0).normal(size=(300, 2))
     scatter = wanted.std(0)
     wrong = [wanted + np.array([f, 9.0]) * scatter for f in (0.1, 0.4, 0.2)]
-    networks = SimpleNamespace(torque=lambda states: np.array(wrong))
-    monkeypatch.setattr(state_space, "_networks", lambda: networks)
-    monkeypatch.setattr(state_space, "states_along", lambda extents: tuple(extents))
-    monkeypatch.setattr(state_space, "torque", lambda states: wanted)
-    assert state_space.trajectory_shoulder().value == pytest.approx(0.2)
+    planted = SimpleNamespace(torque=lambda states: np.array(wrong))
+    monkeypatch.setattr(networks, "_networks", lambda: planted)
+    monkeypatch.setattr(networks, "states_along", lambda extents: tuple(extents))
+    monkeypatch.setattr(networks, "torque", lambda states: wanted)
+    assert networks.trajectory_shoulder().value == pytest.approx(0.2)
 
 
 # --- the real arm ------------------------------------------------------------------------------

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from ddlib.evidence.measures import committed, filters, weights
+from ddlib.evidence import committed
+from ddlib.evidence.measures import filters, weights
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS
 from ddlib.learning import Scaler, TorqueModel, Weights
 

@@ -71,15 +71,21 @@ def test_each_part_has_its_own_hash(before):
 
 
 def test_words_and_layout_do_not_count(copy, before):
-    copy("training", '"""Batch gradient descent', '"""Some words. Batch gradient descent')
+    copy("learning/training", '"""Batch gradient descent', '"""Some words. Batch gradient descent')
     copy(
-        "training", "history, points = History(), set(", "history, points = History(), set(  # x\n"
+        "learning/training",
+        "history, points = History(), set(",
+        "history, points = History(), set(  # x\n",
     )
     copy("metrics", '    """Root mean square error', '    """Words')
-    copy("windows", "import numpy as np\n", "\n\n# a remark\nimport numpy as np  # another\n")
-    copy("experiment", '"""Window sizes of Table 4-1."""', '"""Other words."""')
-    copy("studies/table", '"""State feedback trained three times', '"""Words')
-    copy("studies/__init__", '"""The studies by the name of their result."""', "")
+    copy(
+        "learning/windows",
+        "import numpy as np\n",
+        "\n\n# a remark\nimport numpy as np  # another\n",
+    )
+    copy("experiments/setups", '"""Window sizes of Table 4-1."""', '"""Other words."""')
+    copy("experiments/studies/table", '"""State feedback trained three times', '"""Words')
+    copy("experiments/studies/__init__", '"""The studies by the name of their result."""', "")
     copy("paper", '    """A pair of printed errors', '    """A couple of printed errors')
     assert hashes() == before
 
@@ -92,7 +98,7 @@ def test_layout_of_every_module_does_not_count(copy, before):
 
 @pytest.mark.parametrize("module", results.modules("clean"))
 def test_code_of_every_module_counts(copy, before, module):
-    path = copy.folder / f"{module}.py"
+    path = copy.folder / f"{module.replace('.', '/')}.py"
     path.write_text(path.read_text() + "\nADDED = 1\n")
     assert results.code_hash("clean") != before["clean"]
 
@@ -100,15 +106,19 @@ def test_code_of_every_module_counts(copy, before, module):
 @pytest.mark.parametrize(
     "module, old, new",
     [
-        ("training", "TARGET_RANGE = (0.2, 0.8)", "TARGET_RANGE = (0.2, 0.9)"),
-        ("training", "return 33.0 / integer", "return 34.0 / integer"),
-        ("training", "momentum=0.95", "momentum=0.96"),
-        ("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.97"),
-        ("experiment", "KP = (300.0, 90.0)", "KP = (300.0, -90.0)"),
+        ("learning/training", "TARGET_RANGE = (0.2, 0.8)", "TARGET_RANGE = (0.2, 0.9)"),
+        ("learning/training", "return 33.0 / integer", "return 34.0 / integer"),
+        ("learning/training", "momentum=0.95", "momentum=0.96"),
+        ("experiments/setups", "MOMENTUM = 0.98", "MOMENTUM = 0.97"),
+        ("experiments/setups", "KP = (300.0, 90.0)", "KP = (300.0, -90.0)"),
         ("metrics", "scale = target.std(-2) if", "scale = target.std(-1) if"),
-        ("network", "0.5 * (1 + np.tanh", "0.5 * (1 - np.tanh"),
-        ("windows", "width // 2", "width / 2"),
-        ("studies/table", "history.best_test", "history.best_tests"),  # in a private helper
+        ("learning/network", "0.5 * (1 + np.tanh", "0.5 * (1 - np.tanh"),
+        ("learning/windows", "width // 2", "width / 2"),
+        (
+            "experiments/studies/table",
+            "history.best_test",
+            "history.best_tests",
+        ),  # in a private helper
     ],
 )
 def test_changed_code_changes_every_hash(copy, before, module, old, new):
@@ -117,7 +127,7 @@ def test_changed_code_changes_every_hash(copy, before, module, old, new):
 
 
 def test_a_part_stales_alone(copy, before):
-    copy("studies/table", "def longer(members=8", "def longer(members=9")
+    copy("experiments/studies/table", "def longer(members=8", "def longer(members=9")
     after = hashes()
     assert {name for name in PARTS if after[name] != before[name]} == {"longer"}
 
@@ -129,8 +139,15 @@ def test_a_result_that_nothing_makes():
 
 def test_modules_are_followed_through_the_imports(copy):
     found = results.modules("clean")
-    assert {"experiment", "training", "descent", "simulate", "arm", "paper"} <= set(found)
-    assert not {"_check", "results", "figures", "tables", "widgets"} & set(found)
+    expected = {
+        "experiments.setups",
+        "learning.training",
+        "learning.descent",
+        "dynamics.arm",
+        "paper",
+    }
+    assert expected <= set(found)
+    assert not {"_check", "experiments.results", "tables", "learning.parity_networks"} & set(found)
     (copy.folder / "deep.py").write_text("VALUE = 1\n")
     copy("metrics", "import numpy as np", "import numpy as np\nfrom ddlib.deep import VALUE")
     assert set(results.modules("clean")) == {*found, "deep"}
@@ -220,7 +237,7 @@ def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     assert "==> clean: up to date" in capsys.readouterr().out
     reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer"]
-    copy("studies/table", "def longer(members=8", "def longer(members=9")
+    copy("experiments/studies/table", "def longer(members=8", "def longer(members=9")
     reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer", "longer"] and results.read("longer")["value"] == 3
     reproduce.main(["--force", "clean"])
@@ -305,7 +322,7 @@ def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
     before = results.code_hash("longer")
 
     def slow():
-        copy("experiment", "MOMENTUM = 0.98", "MOMENTUM = 0.5")
+        copy("experiments/setups", "MOMENTUM = 0.98", "MOMENTUM = 0.5")
         return {}
 
     monkeypatch.setitem(reproduce.PARTS, "longer", slow)

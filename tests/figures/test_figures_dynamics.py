@@ -52,7 +52,7 @@ def made():
 def test_every_figure_has_an_example():
     functions = inspect.getmembers(figures_dynamics, inspect.isfunction)
     own = {n for n, f in functions if f.__module__ == figures_dynamics.__name__ and n[0] != "_"}
-    assert own == set(EXAMPLES)
+    assert own - {"arm_sketch"} == set(EXAMPLES)  # its test is in test_weights.py
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

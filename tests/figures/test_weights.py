@@ -12,7 +12,7 @@ import pytest
 from ddlib import figures, paper
 from ddlib.analysis import CLASSES, classify, shares
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.figures import COLOURS, INK, Illustration, diagrams
+from ddlib.figures import COLOURS, INK, Illustration, control, curves, weights
 from ddlib.learning import Weights
 from ddlib.trajectories import APPENDIX_I, random_extents
 
@@ -52,7 +52,7 @@ EXAMPLES = {
         {f"unit {k}": FILTERS[k] for k in range(3)}, 0.01
     ),
     "share_map": lambda: figures.share_map(shares(FILTERS), classify(FILTERS), CLASSES),
-    "feedforward_loop": diagrams.feedforward_loop,
+    "feedforward_loop": figures.feedforward_loop,
 }
 
 
@@ -73,11 +73,13 @@ each = pytest.mark.parametrize("name", EXAMPLES)
 def test_every_figure_has_an_example():
     public = {
         name
-        for module in (figures, diagrams)
+        for module in (curves, weights, control)
         for name, f in inspect.getmembers(module, inspect.isfunction)
         if f.__module__ == module.__name__ and not name.startswith("_")
     }
-    assert public == set(EXAMPLES)
+    elsewhere = {"arm_sketch", "extents_square"}  # in `dynamics` and `recording`
+    others = {"families", "clusters", "root_loci"}  # with tests of their own
+    assert public - others == set(EXAMPLES) - elsewhere
 
 
 @each

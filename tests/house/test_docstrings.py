@@ -69,7 +69,11 @@ each_entry = pytest.mark.parametrize("node", [pytest.param(n, id=i) for i, n in 
 
 def test_the_search_finds_the_package():
     labels = {label for label, _ in ENTRIES}
-    assert {"arm.py:Arm.inverse_dynamics", "simulate.py:record", "effects.py:Noise"} <= labels
+    assert {
+        "dynamics/arm.py:Arm.inverse_dynamics",
+        "simulation/simulate.py:record",
+        "effects/real_arm.py:Noise",
+    } <= labels
     assert all(not label.split(":")[1].startswith("_") for label in labels)
 
 

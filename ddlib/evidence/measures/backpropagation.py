@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from ddlib import paper
-from ddlib.evidence.measures import committed
+from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, median, over_members
 from ddlib.experiments import WINDOWS, results
 from ddlib.experiments.setups import INITIAL

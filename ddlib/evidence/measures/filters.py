@@ -20,7 +20,7 @@ from ddlib.analysis import (
     transition_width,
 )
 from ddlib.analysis.following import responses
-from ddlib.evidence.measures import committed
+from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, run, true_states
 from ddlib.learning.training import cases

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from ddlib.analysis import classify, saturated, shares
-from ddlib.evidence.measures import committed
+from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS
 from ddlib.learning import TrainingSet, Weights, train_ensemble

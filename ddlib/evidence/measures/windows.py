@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from ddlib.analysis import savitzky_golay
-from ddlib.evidence.measures import committed
+from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import SETUPS, STATE_FEEDBACK, WINDOWS, results
 from ddlib.learning import TrainingSet, Weights, default_rate, train_ensemble

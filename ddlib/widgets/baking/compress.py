@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ddlib.widgets.parameters import Choice, Parameter
+from ddlib.widgets.parts.parameters import Choice, Parameter
 
 STEPS = {2: 32_767, 1: 127}
 """Largest integer of two bytes, and of one byte: numbers are scaled to it."""

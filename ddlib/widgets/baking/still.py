@@ -11,8 +11,8 @@ import numpy as np
 import traitlets
 
 from ddlib.figures import COLOURS, DASHES, illustrate
-from ddlib.widgets.panels import Pad, Panel
-from ddlib.widgets.parameters import Parameter
+from ddlib.widgets.parts.panels import Pad, Panel
+from ddlib.widgets.parts.parameters import Parameter
 
 COLUMNS = 3
 """Most charts side by side."""

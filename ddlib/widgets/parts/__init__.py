@@ -1,0 +1,1 @@
+"""What widgets are made of: parameters with their ranges, and panels that show curves."""
