@@ -17,6 +17,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "legend_above",
             "plain_ticks",
         ],
+        "lines": ["clusters", "curves", "families", "overlay", "rmss_by_window"],
         "weights": ["decomposition", "hinton", "network_diagram", "share_map"],
         "dynamics": ["CENTRED", "arm_sketch", "estimates", "hand_paths", "operations"],
         "effects": ["by_case", "ranking", "side_by_side"],

@@ -95,7 +95,7 @@ def test_networks_that_are_wrong_are_refused(monkeypatch):
     def odd(bits):
         return SimpleNamespace(output=lambda x: x[:, 0], coefficients=1)
 
-    monkeypatch.setitem(backpropagation.parity.NETWORKS, "wrong", odd)
+    monkeypatch.setitem(backpropagation.parity_networks.NETWORKS, "wrong", odd)
     with pytest.raises(AssertionError, match="wrong is wrong at 2 bits"):
         backpropagation.network("wrong")
 

@@ -12,7 +12,7 @@ import pytest
 from ddlib import figures, paper
 from ddlib.analysis import CLASSES, classify, shares
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.figures import COLOURS, INK, Illustration, control, curves, weights
+from ddlib.figures import COLOURS, INK, Illustration, control, lines, weights
 from ddlib.learning import Weights
 from ddlib.trajectories import APPENDIX_I, random_extents
 
@@ -73,7 +73,7 @@ each = pytest.mark.parametrize("name", EXAMPLES)
 def test_every_figure_has_an_example():
     public = {
         name
-        for module in (curves, weights, control)
+        for module in (lines, weights, control)
         for name, f in inspect.getmembers(module, inspect.isfunction)
         if f.__module__ == module.__name__ and not name.startswith("_")
     }
