@@ -1,4 +1,12 @@
-"""What trained weights do, and what data allow: filters, hidden units, coverage, noise."""
+"""What trained weights do, and what data allow: filters, hidden units, coverage, noise.
+
+- ``filters``: weights as convolution filters: their parts, derivatives, names, gains
+- ``following``: which motion the outputs of filters follow along a recording
+- ``hidden_units``: saturation, ablation, cancellation, units matched between networks
+- ``sensitivity``: which inputs and ranges a network of states responds to
+- ``coverage``, ``noise``: what samples reach, and the error that sensors leave to anybody
+- ``simplified``: what simpler models of the arm lose
+"""
 
 import lazy_loader
 

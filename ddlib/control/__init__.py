@@ -1,4 +1,10 @@
-"""Controllers of the joints, and the linear analysis of their loops."""
+"""Controllers of the joints, and the linear analysis of their loops.
+
+- ``controllers``: proportional, PD and PID control, feedforward, computed torque
+- ``linear``: loops as python-control systems: poles, margins, limits of the gain
+- ``delays``: poles of a sampled loop whose torque comes late
+- ``velocity``: velocity from position readings, noise against lag
+"""
 
 import lazy_loader
 

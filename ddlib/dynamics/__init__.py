@@ -1,4 +1,11 @@
-"""The rigid body: arms, their equations of motion, and what computing them costs."""
+"""The rigid body: arms, their equations of motion, and what computing them costs.
+
+- ``arm``: `Arm` of two links, made of `Link`; the book's arm and two measured ones
+- ``serial``: arms in space of any number of joints; the PUMA 560
+- ``derivation``: the equations of motion, derived by sympy
+- ``formulations``: Lagrange-Euler, its recursion and Newton-Euler in plain arithmetic
+- ``counting``, ``costs``: multiplications and additions counted by running a formulation
+"""
 
 import lazy_loader
 

@@ -1,4 +1,8 @@
-"""Parameters of an arm from recordings of it, with a confidence for each."""
+"""Parameters of an arm from recordings of it, with a confidence for each.
+
+- ``equations``: from a recording to linear equations: differences, smoothing, modulation
+- ``regression``: weighted least squares on them, `Estimate`, and the true parameters
+"""
 
 import lazy_loader
 

@@ -1,4 +1,11 @@
-"""Window networks: windows of positions, weights, and ways to train them."""
+"""Window networks: windows of positions, weights, and ways to train them.
+
+- ``windows``: windows of positions, cut from a recording, and their scaling
+- ``network``: `Weights` as arrays, the same network in PyTorch, `TorqueModel` from rad to N m
+- ``training``, ``descent``: training sets, and descent with momentum, of one network or many
+- ``levenberg_marquardt``, ``gauss_newton``: the optimum by second-order steps
+- ``parity_networks``: the parity example of section 1.1
+"""
 
 import lazy_loader
 

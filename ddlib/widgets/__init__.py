@@ -1,4 +1,11 @@
-"""Interactive figures: exact with a kernel, interpolated in the built page without one."""
+"""Interactive figures: exact with a kernel, interpolated in the built page without one.
+
+- ``picker``, ``switches``, ``tuner``, ``window``, ``explorer``, ``player``: a widget each, named
+  after what the reader handles; ``hinton``: the diagram that two of them share
+- ``base``: `CurveWidget`, a function of a few parameters that returns curves
+- ``parts``: parameters, panels, pads; ``baking``: values and a still for pages without a kernel
+- ``static``: the page's half, a script for each: ``picker.js`` draws the picker
+"""
 
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.explorer import FilterExplorer

@@ -1,5 +1,10 @@
 """Functions that measure the paper's claims, for `ddlib.evidence.claims`: a module for each part.
 
 Each returns a `ddlib.evidence.verdicts.Measured`: the value that is judged and the text that is
-shown.
+shown. A claim names its function in ``book/claims.yml`` as "module.function".
+
+- ``dynamics``, ``backpropagation``, ``control``, ``real_arm``: sections 1 and 2, the arm
+- ``trajectories``, ``windows``: sections 2 to 4, motions and what windows hold
+- ``networks``: Tables 4-1 and 6-1, what networks reach
+- ``filters``, ``weights``: sections 5 and 7, what weights show
 """

@@ -1,6 +1,12 @@
 """What is too slow for a chapter: the studies that ``make reproduce`` repeats.
 
-Every study is a function without required arguments that returns a plain dictionary.
+Every study is a function without required arguments that returns a plain dictionary; `PARTS`
+names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
+
+- ``table``, ``arms``: Table 4-1, longer, with clean sensors, on arms drawn at random
+- ``windows``, ``inputs``: window sizes, hidden units, states in place of windows
+- ``nulls``, ``harmonics``: other starts and ends, other motions
+- ``state_space``, ``state_space_sizes``: section 6
 """
 
 from __future__ import annotations
