@@ -24,7 +24,7 @@ from pathlib import Path
 from measure import limit, memory_row, met, not_measured
 
 from ddlib.experiments import WINDOWS, results
-from ddlib.tables import number
+from ddlib.tables import significant
 
 ROOT = Path(__file__).resolve().parent.parent
 BOOK_SECONDS = 120.0
@@ -92,13 +92,15 @@ def text(row: dict) -> str:
     if "not measured" in row:
         return f"{what}: not measured: {row['not measured']}"
     value, unit = (row["ratio"], "times") if "ratio" in row else (row["value"], row["unit"])
-    bound = [f"{key} {number(row[key])}" for key in ("at least", "at most") if key in row]
+    bound = [f"{key} {significant(row[key])}" for key in ("at least", "at most") if key in row]
     verdict = {True: "met", False: "MISSED", None: ""}[met(row)]
     details = [
-        f"{key} {number(value) if isinstance(value, float) else value}"
+        f"{key} {significant(value) if isinstance(value, float) else value}"
         for key, value in row.get("details", {}).items()
     ]
-    first = f"{what:75s} {number(value):>8s} {unit:5s} {' '.join(bound):14s} {verdict}".rstrip()
+    first = (
+        f"{what:75s} {significant(value):>8s} {unit:5s} {' '.join(bound):14s} {verdict}".rstrip()
+    )
     return "\n    ".join([first, *details])
 
 

@@ -15,7 +15,7 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """A power as it stands above the line."""
 
 
-def number(value, digits: int = 3) -> str:
+def significant(value, digits: int = 3) -> str:
     """A number for a table cell: `digits` significant digits, a power of ten if need be."""
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         return f"{value:,}"
@@ -83,8 +83,8 @@ def number_beside(value: float, edges: Iterable[float], digits: int = 2, most: i
     for count in range(digits, most + 1):
         shown = float(f"{value:.{count - 1}e}")
         if (np.sign(shown - edges) == np.sign(value - edges)).all():
-            return number(value, count)
-    return number(value, most)
+            return significant(value, count)
+    return significant(value, most)
 
 
 def spread(values, digits: int = 2) -> str:
@@ -101,7 +101,7 @@ def spread(values, digits: int = 2) -> str:
     values = values[np.isfinite(values)]
     if values.size == 0:
         return "–"
-    parts = [number(v, digits) for v in (np.median(values), values.min(), values.max())]
+    parts = [significant(v, digits) for v in (np.median(values), values.min(), values.max())]
     return "{} ({} to {})".format(*parts)
 
 
@@ -151,7 +151,7 @@ class Table:
 
     def _repr_markdown_(self) -> str:
         def line(cells):
-            texts = (c if isinstance(c, str) else number(c).replace("-", "−") for c in cells)
+            texts = (c if isinstance(c, str) else significant(c).replace("-", "−") for c in cells)
             return "| " + " | ".join(text.replace("|", r"\|") for text in texts) + " |"
 
         rule = "|" + "|".join(" --- " for _ in self.header) + "|"

@@ -16,7 +16,7 @@ from ddlib.control import pd
 from ddlib.dynamics import Arm
 from ddlib.effects import Effects, Noise, Quantisation
 from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
-from ddlib.experiments import predict, run
+from ddlib.experiments import predict
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
@@ -189,7 +189,7 @@ def test_the_way_to_the_filters_works_for_any_arm(duration, log_step, tmp_path):
     model.save(tmp_path / "model.npz")
     kept = TorqueModel.load(tmp_path / "model.npz")
     np.testing.assert_allclose(
-        predict(kept, run(recording, 1)), model.torque(windows[samples : 2 * samples]), atol=1e-4
+        predict(kept, recording[1]), model.torque(windows[samples : 2 * samples]), atol=1e-4
     )
     assert kept.step == pytest.approx(log_step)
     other = record(ARM, LAW, TRAINING[0], duration=6.0, rest=0.6, log_step=2 * log_step)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.tables import Table, number, number_beside, quote, scientific, spread, typeset
+from ddlib.tables import Table, number_beside, quote, scientific, significant, spread, typeset
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -40,7 +40,7 @@ from ddlib.tables import Table, number, number_beside, quote, scientific, spread
     ],
 )
 def test_three_significant_digits(value, text):
-    assert number(value) == text
+    assert significant(value) == text
 
 
 @given(
@@ -48,7 +48,7 @@ def test_three_significant_digits(value, text):
     digits=st.integers(1, 6),
 )
 def test_a_number_can_be_read_back_to_its_digits(value, digits):
-    text = number(value, digits)
+    text = significant(value, digits)
     text = re.sub("^(-?)10(?=[⁻⁰¹²³⁴⁵⁶⁷⁸⁹])", r"\g<1>1 · 10", text)  # a power alone
     text = text.replace(" · 10", "e").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
     read = float(text.replace(",", ""))
@@ -115,7 +115,7 @@ def test_a_shown_value_is_on_its_own_side(value, edge):
 
 def test_words_are_not_numbers():
     with pytest.raises(ValueError):
-        number("many")
+        significant("many")
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_any_text_stays_in_its_cell(rows):
     assert len(lines) == 2 + len(rows)
     assert cells(lines[0]) == ["|a|", "b", "c"] and cells(lines[1]) == ["---"] * 3
     for line, row in zip(lines[2:], rows):
-        assert cells(line) == [row[0], row[1], number(row[2])]
+        assert cells(line) == [row[0], row[1], significant(row[2])]
 
 
 def test_a_negative_number_has_a_minus_sign_and_a_text_stays():

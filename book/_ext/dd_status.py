@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from ddlib.tables import number
+from ddlib.tables import significant
 from docutils import nodes
 from docutils.parsers.rst.directives import choice
 from myst_nb.sphinx_ import NbMetadataCollector
@@ -40,7 +40,7 @@ def table(header: tuple[str, ...], rows: list[tuple[Cell, ...]]) -> nodes.table:
 
 def quantity(value: float, unit: str) -> str:
     """A number and its unit, not to be parted."""
-    return f"{number(value)}\N{NO-BREAK SPACE}{unit}"
+    return f"{significant(value)}\N{NO-BREAK SPACE}{unit}"
 
 
 def duration(seconds: float) -> str:
@@ -60,7 +60,9 @@ def outcome(row: dict) -> str:
     for key, sign, value in (("at least", "≥", "ratio"), ("at most", "≤", "value")):
         if key in row:
             fine = row[value] >= row[key] if sign == "≥" else row[value] <= row[key]
-            return f"{sign}\N{NO-BREAK SPACE}{number(row[key], 2)}: {'met' if fine else 'missed'}"
+            return (
+                f"{sign}\N{NO-BREAK SPACE}{significant(row[key], 2)}: {'met' if fine else 'missed'}"
+            )
     return "none"
 
 
@@ -87,7 +89,7 @@ def benchmark_table(rows: list[dict]) -> Iterator[nodes.Node]:
     for row in pairs:
         beside = {k: v for k, v in row["details"].items() if k.startswith("largest")}
         if beside:
-            words = "; ".join(f"{key}: {number(value)}" for key, value in beside.items())
+            words = "; ".join(f"{key}: {significant(value)}" for key, value in beside.items())
             yield nodes.paragraph(text=f"{row['what']}: {words}.")
 
 

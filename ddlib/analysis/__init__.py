@@ -52,7 +52,12 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "transition_centre",
             "transition_range",
         ],
-        "coverage": ["cells_reached", "principal_deviations", "reachable_share", "used_dimensions"],
+        "coverage": [
+            "cells_reached",
+            "principal_deviations",
+            "log10_reachable_share",
+            "used_dimensions",
+        ],
         "noise": ["acceleration_noise_gain", "noise_floor"],
         "simplified": [
             "OTHER_JOINT",

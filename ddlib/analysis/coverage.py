@@ -29,7 +29,7 @@ def cells_reached(samples, radius: float, cells: int) -> int:
     return len(np.unique(places, axis=0))
 
 
-def reachable_share(width: int, step: float) -> float:
+def log10_reachable_share(width: int, step: float) -> float:
     """Upper bound on the share of windows in a cube whose neighbours differ by at most `step`.
 
     The first sample is free; each further one lies within `step` of its neighbour, an interval

@@ -20,7 +20,7 @@ from ddlib.simulation import LOG_STEP
 QUANTITIES = DERIVATIVES[:3]
 """What outputs are compared with: position, velocity, acceleration."""
 
-LAYERS = {"hidden": "hidden_weights", "direct": "skip_weights"}
+LAYERS = {"hidden": "hidden_weights", "direct": "direct_weights"}
 """Attributes of `ddlib.learning.network.Weights` that hold filters, by the name of their layer."""
 
 
@@ -152,7 +152,7 @@ def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
     hidden, output = weights.activity(model.scaled(windows))
     hidden, output = hidden * (1 - hidden), output * (1 - output)  # slopes of the sigmoids
     through = np.einsum("...no,...nh->...oh", output, hidden) / len(windows)
-    direct = output.mean(-2)[..., None, None] * weights.skip_weights
+    direct = output.mean(-2)[..., None, None] * weights.direct_weights
     indirect = np.einsum(
         "...oh,...hjw->...ojw", through * weights.output_weights, weights.hidden_weights
     )

@@ -176,15 +176,15 @@ class Margins(NamedTuple):
         Angle in degrees that the loop may lose at its crossover.
     crossover : float
         Frequency in rad/s at which the loop gain is 1.
-    most, least : float
-        Factors by which the gain may rise and to which it may fall (infinite and 0 if
+    upper_gain, lower_gain : float
+        Gain margins: factors by which the gain may rise and to which it may fall (infinite and 0 if
         there is no such limit).
     """
 
     phase_deg: float
     crossover: float
-    most: float
-    least: float
+    upper_gain: float
+    lower_gain: float
 
 
 def margins(loop) -> Margins:
@@ -221,8 +221,8 @@ def margins(loop) -> Margins:
     crossover = crossovers[k]
     if period:
         crossover = 2 / period * np.arctan(crossover * period / 2)
-    most, least = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
-    return Margins(float(phases[k]), float(crossover), float(most), float(least))
+    upper, lower = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
+    return Margins(float(phases[k]), float(crossover), float(upper), float(lower))
 
 
 def proportional_limit(inertia, viscous, period) -> float:

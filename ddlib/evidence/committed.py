@@ -51,7 +51,7 @@ def filters(
     ----------
     width : int
         Window size.
-    layer : {"hidden", "skip"}
+    layer : {"hidden", "direct"}
         To the hidden units, or directly to the outputs.
     model : callable
         `networks` or `untrained`.

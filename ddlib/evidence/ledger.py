@@ -9,7 +9,7 @@ from ddlib.evidence.measures.filters import parts_sum_up
 from ddlib.experiments import KD, KP, WINDOWS, results
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import Table, number, spread, typeset
+from ddlib.tables import Table, significant, spread, typeset
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 
 FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
@@ -211,7 +211,7 @@ def _medians(cells, column, first=None) -> list[float]:
 
 
 def _triple(values) -> str:
-    return " · ".join(number(np.median(x), 2) for x in values)
+    return " · ".join(significant(np.median(x), 2) for x in values)
 
 
 def _both(cells, first=None) -> str:
@@ -230,11 +230,11 @@ def _table_4_1() -> list[tuple]:
     one = state["21"]["errors"]["test"]
 
     def pair(row, columns=("training", "test")):
-        return ", ".join(f"{name} {number(np.median(row[name]), 2)}" for name in columns)
+        return ", ".join(f"{name} {significant(np.median(row[name]), 2)}" for name in columns)
 
     weight = ("training", "test", "largest weight")
     test = f"test {_triple(_medians(state, 'test'))}"
-    shifted = _triple(_medians(state, "test, training's deviation"))
+    shifted = _triple(_medians(state, "test by training deviation"))
     return [
         (
             "What is “a proportional controller”?",
@@ -288,8 +288,8 @@ def _table_4_1() -> list[tuple]:
         (
             "What is the error of one network worth (window 21)?",
             f"the median of {len(one)} counts",
-            f"test {number(np.median(one), 2)}",
-            f"one of the {len(one)}: test {number(min(one), 2)} to {number(max(one), 2)}",
+            f"test {significant(np.median(one), 2)}",
+            f"one of the {len(one)}: test {significant(min(one), 2)} to {significant(max(one), 2)}",
         ),
     ]
 
@@ -325,7 +325,7 @@ def _table_6_1() -> list[tuple]:
         return f"step {row['rate']:g}, momentum {row['momentum']:g}, initial ±{row['initial']:g}"
 
     drawn = [[np.median(d["errors"][s]["own deviation"]) for d in table["draws"]] for s in SETS]
-    ranges = " · ".join(f"{number(min(x), 2)} to {number(max(x), 2)}" for x in drawn)
+    ranges = " · ".join(f"{significant(min(x), 2)} to {significant(max(x), 2)}" for x in drawn)
     return [
         (
             "Table 6-1 (set A · set B · trajectory 6): how was it trained?",

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from ddlib.evidence.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
 from ddlib.evidence.verdicts import VERDICTS
 from ddlib.experiments import SETUPS, STATE_FEEDBACK
-from ddlib.tables import Table, number, number_beside, typeset
+from ddlib.tables import Table, number_beside, significant, typeset
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
 
@@ -119,7 +119,7 @@ def _bounds(bounds: Mapping) -> str:
     if "factor" in bounds:
         return f"within a factor of {bounds['factor']:g}"
     edges = {
-        name: number(edge) if isinstance(edge, int) else f"{edge:g}"
+        name: significant(edge) if isinstance(edge, int) else f"{edge:g}"
         for name, edge in bounds.items()
     }
     if "from" not in edges:

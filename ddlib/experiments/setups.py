@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -104,21 +104,13 @@ SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK)}
 """The two readings by name."""
 
 
-def run(recording: Recording, run_number: int | slice) -> Recording:
-    """One run (or several) of a batch recording; numbers count from 0."""
-    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
-    pick = {name: getattr(recording, name)[run_number] for name in fields}
-    reference = type(recording.reference)(*(x[run_number] for x in recording.reference))
-    return replace(recording, reference=reference, **pick)
-
-
 def split(recording: Recording) -> tuple[Recording, Recording]:
     """Training runs 1 to 5 and test run 6 of an Appendix I recording: split by trajectory."""
     if recording.q.ndim != 3 or len(recording.q) != len(APPENDIX_I):
         raise ValueError(
             f"recording must hold the six runs of Appendix I, got shape {recording.q.shape}"
         )
-    return run(recording, slice(0, 5)), run(recording, 5)
+    return recording[:5], recording[5]
 
 
 def train_windows(
@@ -171,7 +163,7 @@ def errors(model: TorqueModel, recording: Recording) -> dict[str, np.ndarray]:
     Returns
     -------
     dict
-        ``training`` and ``test`` (pooled, own standard deviation), ``test, training's
+        ``training`` and ``test`` (pooled, own standard deviation), ``test by training
         deviation``, ``test shoulder``, ``test elbow`` and ``test, desired positions`` (the
         network sees the reference in place of the measured positions); one value per
         member each.
@@ -185,7 +177,7 @@ def errors(model: TorqueModel, recording: Recording) -> dict[str, np.ndarray]:
     return {
         "training": rmss(model.torque(x), y),
         "test": rmss(predicted, y6),
-        "test, training's deviation": rmss(predicted, y6, scale=y.std(0)),
+        "test by training deviation": rmss(predicted, y6, scale=y.std(0)),
         "test shoulder": by_joint[..., 0],
         "test elbow": by_joint[..., 1],
         "test, desired positions": rmss(model.torque(desired), y6),

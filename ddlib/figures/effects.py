@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from ddlib._check import finite_array
 from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, Illustration, check_label, illustrate
-from ddlib.tables import number
+from ddlib.tables import significant
 
 
 def side_by_side(
@@ -124,7 +124,9 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
             look = dict(color=COLOURS[j], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
             axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
             for y, value in zip(rows, values[:, j]):
-                axis.text(value * 1.12, y, number(value, 2), va="center", fontsize=7.5, color=INK)
+                axis.text(
+                    value * 1.12, y, significant(value, 2), va="center", fontsize=7.5, color=INK
+                )
         axis.set_yticks(places, order)
         axis.set(xscale="log", xlim=(low, values.max() * 2.5), xlabel="torque, N m (RMS)")
         axis.set_ylim(len(order) - 0.4, -0.6)
@@ -134,7 +136,7 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
         axis.legend(loc="lower right")
 
     listed = "; ".join(
-        f"{name} {' and '.join(number(v, 2) for v in row)}" for name, row in zip(order, values)
+        f"{name} {' and '.join(significant(v, 2) for v in row)}" for name, row in zip(order, values)
     )
     alt = f"Bars of torque in N m for {' and '.join(joints)}, largest first: {listed}."
     return illustrate(draw, alt, 7.0, 0.36 * len(order) + 0.9)

@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 from ddlib._check import finite_array
 from ddlib.figures.style import COLOURS, DASHES, INK, Illustration, illustrate
 from ddlib.learning import Weights
-from ddlib.tables import number
+from ddlib.tables import significant
 
 SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")
 """The six inputs in their order, as labels."""
@@ -80,7 +80,7 @@ def hinton_states(weights: Weights) -> Illustration:
         axis = figure.subplots()
         for k in range(outputs):
             blob(axis, k * (_WIDTH + 1.2), 0, tall, weights.output_bias[k],
-                 weights.output_weights[k], weights.skip_weights[k])  # fmt: skip
+                 weights.output_weights[k], weights.direct_weights[k])  # fmt: skip
         for k in range(hidden):
             x, y = (k % 2) * (_WIDTH + 1.2), -tall - 0.9 - step * (k // 2)
             blob(axis, x, y, low, weights.hidden_bias[k], weights.output_weights[:, k],
@@ -203,7 +203,7 @@ def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) 
         for name, by_size in named.items():
             sizes = list(by_size)
             first, last = sizes[0], sizes[-1]
-            e0, e1 = (number(np.median(by_size[size]), 2) for size in (first, last))
+            e0, e1 = (significant(np.median(by_size[size]), 2) for size in (first, last))
             parts.append(f"{name}: from {e0} with {first:,} to {e1} with {last:,} {label}")
     return illustrate(draw, "Median RMSS by size. " + "; ".join(parts) + ".", 7.2, 3.3)
 

@@ -116,7 +116,7 @@ def hinton(weights: Weights) -> Illustration:
         axis = figure.subplots()
         for k in range(len(weights.output_bias)):
             blob(axis, k, 0, weights.output_bias[k], weights.output_weights[k],
-                 weights.skip_weights[k])  # fmt: skip
+                 weights.direct_weights[k])  # fmt: skip
         for k in range(hidden):
             blob(axis, k % columns, 1.15 + k // columns, weights.hidden_bias[k],
                  weights.output_weights[:, k], weights.hidden_weights[k])  # fmt: skip

@@ -39,7 +39,7 @@ class Descent:
         columns = np.concatenate(
             [
                 weights.hidden_weights.reshape(n, -1, inputs),
-                weights.skip_weights.reshape(n, -1, inputs),
+                weights.direct_weights.reshape(n, -1, inputs),
             ],
             1,
         )

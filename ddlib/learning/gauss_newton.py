@@ -92,7 +92,7 @@ class Objective:
     def pack(self, weights: Weights) -> torch.Tensor:
         """Vector of a network's parameters, shape (parameter,)."""
         parts = [(weights.hidden_weights, weights.hidden_bias)]
-        parts += [(weights.skip_weights, weights.output_bias)]
+        parts += [(weights.direct_weights, weights.output_bias)]
         rows = [np.column_stack([w.reshape(len(w), -1), b]) for w, b in parts]
         first = _float64(np.concatenate(rows)) @ self._colour
         return torch.cat([first.flatten(), _float64(weights.output_weights).flatten()])

@@ -19,7 +19,7 @@ from torch import nn
 from ddlib._check import finite_array, integer, number
 from ddlib.learning.windows import Scaler
 
-_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias")
+_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def kernels() -> str:
@@ -42,7 +42,7 @@ class Weights:
     hidden_bias : ndarray, shape (..., hidden)
     output_weights : ndarray, shape (..., output, hidden)
         From the hidden to the output units.
-    skip_weights : ndarray, shape (..., output, joint, width)
+    direct_weights : ndarray, shape (..., output, joint, width)
         Direct weights from the input window to the output units.
     output_bias : ndarray, shape (..., output)
     """
@@ -50,7 +50,7 @@ class Weights:
     hidden_weights: np.ndarray
     hidden_bias: np.ndarray
     output_weights: np.ndarray
-    skip_weights: np.ndarray
+    direct_weights: np.ndarray
     output_bias: np.ndarray
 
     def __post_init__(self):
@@ -61,7 +61,7 @@ class Weights:
         wanted = {
             "hidden_bias": (*lead, hidden),
             "output_weights": (*lead, outputs, hidden),
-            "skip_weights": (*lead, outputs, joints, width),
+            "direct_weights": (*lead, outputs, joints, width),
             "output_bias": (*lead, outputs),
         }
         for name, shape in wanted.items():
@@ -155,7 +155,7 @@ class Weights:
             return np.swapaxes(flat @ x.T, -1, -2)
 
         hidden = _sigmoid(dot(self.hidden_weights) + self.hidden_bias[..., None, :])
-        net = dot(self.skip_weights) + hidden @ np.swapaxes(self.output_weights, -1, -2)
+        net = dot(self.direct_weights) + hidden @ np.swapaxes(self.output_weights, -1, -2)
         return hidden, _sigmoid(net + self.output_bias[..., None, :])
 
 
@@ -185,7 +185,7 @@ class WindowNetwork(nn.Module):
         """Output activities, shape (cases, output), for windows (cases, joint, width)."""
         x = x.flatten(1)
         hidden = torch.sigmoid(x @ self.hidden_weights.flatten(1).T + self.hidden_bias)
-        net = x @ self.skip_weights.flatten(1).T + hidden @ self.output_weights.T
+        net = x @ self.direct_weights.flatten(1).T + hidden @ self.output_weights.T
         return torch.sigmoid(net + self.output_bias)
 
     def weights(self) -> Weights:

@@ -339,7 +339,31 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
 
 
-def score(arm: Arm, recording: Recording, seconds: float | None = None) -> dict:
+class Score(NamedTuple):
+    """What a controller made of a motion; every field has the shape of the recording's runs.
+
+    Attributes
+    ----------
+    largest : ndarray
+        Largest error of a joint, degrees.
+    whole, settled : ndarray
+        Root mean square error over joints and time, degrees; `settled` without the first third.
+    hand, turn : ndarray
+        Distance of the hand from its place, mm: root mean square without the first third, and
+        half-way through the motion.
+    effort : ndarray
+        Root mean square of the torque vector over the motion, N m.
+    """
+
+    largest: np.ndarray
+    whole: np.ndarray
+    settled: np.ndarray
+    hand: np.ndarray
+    turn: np.ndarray
+    effort: np.ndarray
+
+
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score:
     """What a controller made of a motion: errors and effort of every run, shape (...).
 
     Parameters
@@ -353,12 +377,7 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> dict:
 
     Returns
     -------
-    dict
-        ``largest, °``: largest error of a joint. ``whole, °`` and ``settled, °``: root mean
-        square over joints and time, without the first third for the latter. ``hand, mm``:
-        root mean square distance of the hand from its place, without the first third.
-        ``turn, mm``: that distance half-way. ``effort, N m``: root mean square of the torque
-        vector over the motion.
+    Score
     """
     if seconds is not None:
         recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
@@ -371,11 +390,11 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> dict:
     )
     gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
     half = int(np.argmin(np.abs(t - (begin + end) / 2)))
-    return {
-        "largest, °": np.abs(error[..., moving, :]).max((-2, -1)),
-        "whole, °": np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
-        "settled, °": np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),
-        "hand, mm": np.sqrt((gap[..., settled] ** 2).mean(-1)),
-        "turn, mm": gap[..., half],
-        "effort, N m": np.sqrt((recording.tau_true[..., moving, :] ** 2).sum(-1).mean(-1)),
-    }
+    return Score(
+        largest=np.abs(error[..., moving, :]).max((-2, -1)),
+        whole=np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
+        settled=np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),
+        hand=np.sqrt((gap[..., settled] ** 2).mean(-1)),
+        turn=gap[..., half],
+        effort=np.sqrt((recording.tau_true[..., moving, :] ** 2).sum(-1).mean(-1)),
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,5 +102,24 @@ class Recording:
 
     @property
     def tracking_error(self) -> np.ndarray:
-        """True position minus reference, rad, shape ``(..., time, joint)``."""
-        return self.q_true - self.reference.q
+        """Reference minus true position, rad, shape ``(..., time, joint)``."""
+        return self.reference.q - self.q_true
+
+    def __getitem__(self, runs) -> Recording:
+        """One run or several of many: ``recording[5]``, ``recording[:5]``.
+
+        Parameters
+        ----------
+        runs : int, slice or array_like
+            Index into the first axis of runs; numbers count from 0.
+
+        Raises
+        ------
+        IndexError
+            If the recording holds a single run without an axis of runs, or has no such run.
+        """
+        if self.q.ndim < 3:
+            raise IndexError(f"recording must have an axis of runs, got q of shape {self.q.shape}")
+        fields = ("q", "tau", "q_true", "qd_true", "tau_true")
+        pick = {name: getattr(self, name)[runs] for name in fields}
+        return replace(self, reference=Trajectory(*(x[runs] for x in self.reference)), **pick)

@@ -27,7 +27,7 @@ def unit_names(weights: Weights) -> tuple[str, ...]:
 
 def weight_functions(weights: Weights) -> np.ndarray:
     """Weights from both windows to all units, ``(..., unit, joint, width)``, outputs first."""
-    return np.concatenate([weights.skip_weights, weights.hidden_weights], axis=-3)
+    return np.concatenate([weights.direct_weights, weights.hidden_weights], axis=-3)
 
 
 def zero_padded(f, reach: int) -> np.ndarray:

@@ -148,6 +148,6 @@ def _margins(arm, law) -> dict[str, np.ndarray]:
         "shoulder phase margin": [m.phase_deg for m in shoulder],
         "elbow phase margin": [m.phase_deg for m in elbow],
         "crossover": [m.crossover for m in shoulder],
-        "gain margin": 20 * np.log10([m.most for m in shoulder]),
+        "gain margin": 20 * np.log10([m.upper_gain for m in shoulder]),
     }
     return {name: np.asarray(values)[where] for name, values in numbers.items()}

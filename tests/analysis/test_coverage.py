@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import cells_reached, principal_deviations, reachable_share, used_dimensions
+from ddlib.analysis import (
+    cells_reached,
+    log10_reachable_share,
+    principal_deviations,
+    used_dimensions,
+)
 
 
 def test_cells_are_counted_once_and_only_inside():
@@ -24,14 +29,14 @@ def test_a_dense_sample_reaches_every_cell(cells):
 def test_the_bound_holds_for_random_windows_and_is_not_far_off(width, step):
     windows = np.random.default_rng(1).uniform(0, 1, (400_000, width))
     share = (np.abs(np.diff(windows)) <= step).all(-1).mean()
-    bound = 10 ** reachable_share(width, step)
+    bound = 10 ** log10_reachable_share(width, step)
     assert 0.4 * bound < share < bound
 
 
 def test_bounds_of_one_sample_and_of_steps_as_large_as_half_the_edge():
-    assert reachable_share(1, 0.01) == 0
-    assert reachable_share(30, 0.5) == 0
-    assert reachable_share(21, 0.01) == pytest.approx(20 * np.log10(0.02))
+    assert log10_reachable_share(1, 0.01) == 0
+    assert log10_reachable_share(30, 0.5) == 0
+    assert log10_reachable_share(21, 0.01) == pytest.approx(20 * np.log10(0.02))
 
 
 def test_deviations_are_those_of_a_known_distribution():
@@ -49,8 +54,8 @@ def test_deviations_are_those_of_a_known_distribution():
         (lambda: cells_reached([[np.nan, 2.0]], 1.0, 4), "samples"),
         (lambda: cells_reached([[1.0, 2.0]], 0.0, 4), "radius"),
         (lambda: cells_reached([[1.0, 2.0]], 1.0, 0), "cells"),
-        (lambda: reachable_share(0, 0.1), "width"),
-        (lambda: reachable_share(11, 0.6), "step"),
+        (lambda: log10_reachable_share(0, 0.1), "width"),
+        (lambda: log10_reachable_share(11, 0.6), "step"),
         (lambda: principal_deviations([[1.0, 2.0]]), "samples"),
         (lambda: used_dimensions([[1.0], [2.0]], -1), "resolution"),
     ],

@@ -107,7 +107,7 @@ def test_a_summary_counts_network_by_network():
     for unit, order in enumerate((2, 2, 1, 0)):
         weights.hidden_weights[:, unit] = TAPS[order]
     weights.hidden_weights[1, 0] = TAPS[1]  # network 1: one acceleration filter fewer
-    weights.skip_weights[:] = TAPS[2]
+    weights.direct_weights[:] = TAPS[2]
     found = summary(model, WINDOWS, STATES)
     np.testing.assert_allclose(found["hidden"]["classes"]["acceleration"][[0, 2]], 0.75)
     np.testing.assert_allclose(found["hidden"]["follow"]["acceleration"], [0.5, 0.25, 0.5])

@@ -56,7 +56,7 @@ def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
         out = w.output_weights.copy()
         out[:, k] = 0
         bias = w.output_bias + w.output_weights[:, k] * hidden[:, k].mean()
-        rebuilt = Weights(w.hidden_weights, w.hidden_bias, out, w.skip_weights, bias)
+        rebuilt = Weights(w.hidden_weights, w.hidden_bias, out, w.direct_weights, bias)
         own = TorqueModel(rebuilt, one.inputs, one.outputs)
         assert error == pytest.approx(rmss(own.torque(windows), torque))
 
@@ -73,7 +73,9 @@ def test_pairs_of_units(model, cases):
 def test_cancellation_of_twins_and_rivals(cases):
     data = TrainingSet.from_arrays(*cases)
     half = RNG.normal(size=(1, 2, 5))
-    zero = dict(hidden_bias=np.zeros(2), skip_weights=np.zeros((2, 2, 5)), output_bias=np.zeros(2))
+    zero = dict(
+        hidden_bias=np.zeros(2), direct_weights=np.zeros((2, 2, 5)), output_bias=np.zeros(2)
+    )
     hidden = np.concatenate([half, half])
     weights = Weights(
         hidden_weights=hidden, output_weights=np.array([[1.0, 1.0], [2.0, -2.0]]), **zero

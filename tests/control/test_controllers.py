@@ -273,8 +273,8 @@ def test_computed_torque_makes_the_error_linear(arm):
         recording = follow(arm, controller, reference, t, log_every=round(1e-3 / step))
         errors[step] = recording.tracking_error
     t = np.arange(800) * 1e-3
-    # the arm starts at rest: e(0) = 0 and e'(0) is minus the reference's velocity
-    start = np.deg2rad([45.0, 20.0]) * np.pi / 3
+    # the arm starts at rest: e(0) = 0 and e'(0) is the velocity of the reference
+    start = -np.deg2rad([45.0, 20.0]) * np.pi / 3
     closed = start * (np.exp(-decay * t) * np.sin(omega * t) / omega)[:, None]
     gaps = [np.abs(errors[step] - closed).max(0) for step in (1e-3, 5e-4)]
     assert (gaps[1] < 0.01 * np.abs(closed).max(0)).all()

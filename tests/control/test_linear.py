@@ -161,7 +161,7 @@ def test_margins_are_python_controls(gains, delay):
     assert found.phase_deg == pytest.approx(np.min(angles), abs=1e-3)
     assert found.crossover == pytest.approx(crossovers[np.argmin(angles)], rel=1e-5)
     if delay:
-        assert found.most == pytest.approx(min(factors[factors > 1]), rel=1e-3)
+        assert found.upper_gain == pytest.approx(min(factors[factors > 1]), rel=1e-3)
 
 
 @pytest.mark.parametrize("gains", GAINS)
@@ -171,9 +171,9 @@ def test_continuous_margins_are_python_controls(gains):
     found = margins(loop)
     assert (found.phase_deg, found.crossover) == pytest.approx((phase, crossover))
     if gains[1]:  # conditionally stable: the margin is downwards
-        assert found.least == pytest.approx(gain) and found.most == np.inf
+        assert found.lower_gain == pytest.approx(gain) and found.upper_gain == np.inf
     else:
-        assert (found.most, found.least) == (np.inf, 0)
+        assert (found.upper_gain, found.lower_gain) == (np.inf, 0)
 
 
 @pytest.mark.parametrize("delay", [0, 1, 5])
@@ -187,9 +187,9 @@ def test_margins_are_where_the_loop_loses_its_stability(gains, delay):
 
     found = margins(opened_loop(joints, *gains, STEP, delay))
     assert largest(1.0) < 1 and found.phase_deg > 0
-    assert largest(0.999 * found.most) < 1 < largest(1.001 * found.most)
-    if found.least:
-        assert largest(1.001 * found.least) < 1 < largest(0.999 * found.least)
+    assert largest(0.999 * found.upper_gain) < 1 < largest(1.001 * found.upper_gain)
+    if found.lower_gain:
+        assert largest(1.001 * found.lower_gain) < 1 < largest(0.999 * found.lower_gain)
 
 
 def test_delay_takes_crossover_times_lateness():

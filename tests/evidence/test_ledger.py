@@ -11,7 +11,7 @@ from book_pages import BACK_MATTER, ROOT
 from ddlib import paper
 from ddlib.evidence import SURE, claims, ledger, ledger_tables, resampled
 from ddlib.experiments import results
-from ddlib.tables import number
+from ddlib.tables import significant
 
 BOOK = ROOT / "book"
 
@@ -71,17 +71,17 @@ def test_open_questions_quote_the_results(questions):
         text = questions["What is “a proportional controller”?"][column]
         for what in ("training", "test"):
             for w in ("11", "21", "41"):
-                assert number(np.median(table[name][w]["errors"][what]), 2) in text
+                assert significant(np.median(table[name][w]["errors"][what]), 2) in text
     six = results.read("table-6-1")["errors"]["trajectory 6"]
     row = questions["Table 6-1: whose standard deviation?"]
-    assert row[1].endswith(number(np.median(six["own deviation"]), 2))
-    assert row[2].endswith(number(np.median(six["deviation of set A"]), 2))
+    assert row[1].endswith(significant(np.median(six["own deviation"]), 2))
+    assert row[2].endswith(significant(np.median(six["deviation of set A"]), 2))
 
 
 def test_both_sides_have_the_same_number_of_networks(questions):
     eight = results.read("clean")["members"]
     state = results.read("table-4-1")["setups"]["state feedback"]
-    median = number(np.median(state["21"]["errors"]["test"][:eight]), 2)
+    median = significant(np.median(state["21"]["errors"]["test"][:eight]), 2)
     assert f" · {median} · " in questions["How much friction and sensor noise?"][1]
 
 

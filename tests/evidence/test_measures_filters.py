@@ -16,7 +16,7 @@ def planted(monkeypatch):
     weights = Weights.random(2, 21)
     taps = [savitzky_golay(21, order, LOG_STEP, degree=2) for order in (0, 1, 2)]
     weights.hidden_weights[:] = taps[0]
-    weights.skip_weights[0], weights.skip_weights[1] = taps[2], taps[1]
+    weights.direct_weights[0], weights.direct_weights[1] = taps[2], taps[1]
     scaler = Scaler(np.zeros(2), np.ones(2))
     monkeypatch.setattr(
         committed, "networks", lambda width, *_: TorqueModel(weights, scaler, scaler)

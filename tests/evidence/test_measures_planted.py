@@ -315,8 +315,8 @@ def test_explained_energy_is_the_least_of_the_medians(plant_filters):
         41: [mix(41, 0, 0, 1)] * 3,
     }
     before = {w: [mix(w, 0.1, 0.1, s, 0.8 - s)] for w, s in ((11, 0.1), (21, 0.3), (41, 0.2))}
-    plant_filters({"skip": trained}, {"skip": before})
-    found = weights.explained("skip")
+    plant_filters({"direct": trained}, {"direct": before})
+    found = weights.explained("direct")
     assert found.value == pytest.approx(0.8)
     assert found.text == (
         "90 % at 11, 80 % at 21, 100 % at 41 of the energy; before training at most 50 %"
@@ -327,13 +327,13 @@ def test_middle_between_two_crossings(plant_filters):
     x = np.arange(-10.0, 11)
     parabolas = [(x - s) ** 2 - 9.3 for s in (0.0, 0.4, 0.6, -0.7)]  # crossings at s ± 3.05
     trained = [*parabolas, x - 0.5, x**3 - 20 * x + 3]
-    plant_filters({"skip": {21: trained}}, {"skip": {21: [x - 0.3, *parabolas[:2]]}})
+    plant_filters({"direct": {21: trained}}, {"direct": {21: [x - 0.3, *parabolas[:2]]}})
     found = weights.asymmetric(21)
     assert found.value == pytest.approx(0.5)
     assert found.text == "2 of 4 filters with two crossings; before training 2 have two"
     assert weights.asymmetric(21, 0.3).value == pytest.approx(0.75)
     # the crossings are between samples: a parabola has its middle where it has
-    plant_filters({"skip": {21: [(x - 0.5) ** 2 - 9.3]}})
+    plant_filters({"direct": {21: [(x - 0.5) ** 2 - 9.3]}})
     assert weights.asymmetric(21, 0.499).value == 1 and weights.asymmetric(21, 0.501).value == 0
 
 
@@ -343,8 +343,8 @@ def pure(width, *derivatives):
 
 def test_filters_that_control_theory_uses(plant_filters):
     hidden = [*pure(21, 1, 2, 3), mix(21, 0, 0.5, 0.5)]
-    trained = {"hidden": {21: hidden}, "skip": {21: pure(21, 3, 3, 2, 3)}}
-    before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "skip": {21: pure(21, 3, 3, 3, 3)}}
+    trained = {"hidden": {21: hidden}, "direct": {21: pure(21, 3, 3, 2, 3)}}
+    before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "direct": {21: pure(21, 3, 3, 3, 3)}}
     plant_filters(trained, before)
     found = weights.interpretable(21)
     assert found.value == pytest.approx(4 / 8 - 1 / 8)
@@ -352,13 +352,13 @@ def test_filters_that_control_theory_uses(plant_filters):
 
 
 def test_classes_of_a_layer(plant_filters):
-    trained = {"hidden": {41: pure(41, 1, 2, 2, 3)}, "skip": {41: pure(41, 1)}}
-    before = {"hidden": {41: pure(41, 1, 3, 3, 2)}, "skip": {41: pure(41, 3)}}
+    trained = {"hidden": {41: pure(41, 1, 2, 2, 3)}, "direct": {41: pure(41, 1)}}
+    before = {"hidden": {41: pure(41, 1, 3, 3, 2)}, "direct": {41: pure(41, 3)}}
     plant_filters(trained, before)
     found = filters.of_class(41, "acceleration")
     assert found.value == pytest.approx(0.25)
     assert found.text == "2 of 4 filters, 1 before training"
-    assert filters.of_class(41, "velocity", "skip").value == 1.0
+    assert filters.of_class(41, "velocity", "direct").value == 1.0
 
 
 def alternating(width, share):
@@ -392,7 +392,7 @@ def test_roughness_of_wide_over_narrow(plant_filters):
 
 
 def test_the_roughest_of_three_windows(plant_filters):
-    plant_filters({"skip": ROUGH})
+    plant_filters({"direct": ROUGH})
     middle = {w: np.median([by_hand(f) for f in ROUGH[w]]) for w in ROUGH}
     found = filters.direct_smoothness()
     assert found.value == pytest.approx(middle[41]) and middle[41] == max(middle.values())
@@ -409,13 +409,13 @@ def test_shares_of_the_constant(plant_filters):
     trained = [mix(21, s, 1 - s) for s in (0.1, 0.3, 0.9)]
     before = [mix(21, s, 1 - s) for s in (0.2, 0.25, 0.9)]
     plant_filters(
-        {"hidden": {21: trained}, "skip": {21: trained[:1]}},
-        {"hidden": {21: before}, "skip": {21: before}},
+        {"hidden": {21: trained}, "direct": {21: trained[:1]}},
+        {"hidden": {21: before}, "direct": {21: before}},
     )
     found = filters.constant_share()
     assert found.value == pytest.approx(0.3)
     assert found.text == "30.0 % of the energy, 25.0 % before training"
-    assert filters.constant_share("skip").value == pytest.approx(0.1)
+    assert filters.constant_share("direct").value == pytest.approx(0.1)
 
 
 def test_printed_parts_are_not_odd(plant_filters):
@@ -530,7 +530,7 @@ def test_the_change_of_the_second_half(monkeypatch):
 
     shapes = {
         "hidden_weights": (2, 3, 2, 5), "hidden_bias": (2, 3), "output_weights": (2, 2, 3),
-        "skip_weights": (2, 2, 2, 5), "output_bias": (2, 2),
+        "direct_weights": (2, 2, 2, 5), "output_bias": (2, 2),
     }  # fmt: skip
     model = SimpleNamespace(weights=SimpleNamespace(**{k: part(*s) for k, s in shapes.items()}))
     still = {k: np.repeat(v[-2:-1], 5, axis=0) for k, v in vars(model.weights).items()}

@@ -108,17 +108,11 @@ def test_units_that_can_be_spared(monkeypatch):
 def test_errors_of_the_shoulder_alone(monkeypatch):
     torque = np.concatenate([np.ones((2, 2)), RNG.normal(size=(50, 2))])
     test = SimpleNamespace(tau=torque, motion=slice(2, None))
-    recording = object()
-
-    def run(asked, number):
-        assert asked is recording and number == 5
-        return test
-
+    recording = {5: test}
     moved = torque[2:]
     wrong = np.stack([moved + np.array([f, 9.0]) * moved.std(0) for f in (0.1, 0.3, 0.2)])
     monkeypatch.setattr(committed, "recording", lambda: recording)
     monkeypatch.setattr(committed, "networks", lambda width, *_: "networks")
-    monkeypatch.setattr(filters, "run", run)
     monkeypatch.setattr(filters, "predict", lambda model, asked: wrong)
     assert filters.shoulder_profile(21).value == pytest.approx(0.2)
 
@@ -175,7 +169,7 @@ def test_units_held_at_their_mean(monkeypatch):
         ])  # fmt: skip
         for activity, out in ((hidden, whole), (np.tile(hidden.mean(0), (7, 1)), still)):
             for n, x in enumerate(windows):
-                direct = [np.sum(w.skip_weights[j] * x) for j in range(2)]
+                direct = [np.sum(w.direct_weights[j] * x) for j in range(2)]
                 net = w.output_weights @ activity[n] + direct + w.output_bias
                 out[m, n] = 4 * sigmoid(net) - 1
     found = weights._held_still(21)

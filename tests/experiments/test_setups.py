@@ -12,7 +12,6 @@ from ddlib.experiments import (
     STATE_FEEDBACK,
     errors,
     predict,
-    run,
     split,
     train_windows,
 )
@@ -77,7 +76,7 @@ def test_split_is_by_trajectory(recording):
     training, test = split(recording)
     assert training.q.shape == (5, 400, 2) and test.q.shape == (400, 2)
     numbers = (*paper.TRAINING_TRAJECTORIES, paper.TEST_TRAJECTORY)
-    for part, i in zip((*(run(training, k) for k in range(5)), test), numbers):
+    for part, i in zip((*(training[k] for k in range(5)), test), numbers):
         for name in ("q", "tau", "q_true", "qd_true", "tau_true"):
             np.testing.assert_array_equal(getattr(part, name), getattr(recording, name)[i - 1])
         for field, whole in zip(part.reference, recording.reference):
@@ -89,7 +88,7 @@ def test_split_is_by_trajectory(recording):
 
 
 def test_split_refuses_other_recordings(recording):
-    for other in (run(recording, 0), run(recording, slice(0, 5))):
+    for other in (recording[0], recording[:5]):
         with pytest.raises(ValueError, match="recording must hold the six runs of Appendix I"):
             split(other)
 
@@ -147,7 +146,7 @@ def test_errors_are_what_their_names_say(recording, trained):
     wanted = {
         "training": rmss(model.torque(x), y),
         "test": np.sqrt(((wrong**2).mean(1) / y6.var(0)).mean(-1)),
-        "test, training's deviation": np.sqrt(((wrong**2).mean(1) / y.var(0)).mean(-1)),
+        "test by training deviation": np.sqrt(((wrong**2).mean(1) / y.var(0)).mean(-1)),
         "test shoulder": np.sqrt((wrong[..., 0] ** 2).mean(1) / y6[:, 0].var()),
         "test elbow": np.sqrt((wrong[..., 1] ** 2).mean(1) / y6[:, 1].var()),
         "test, desired positions": rmss(model.torque(desired), y6),
@@ -156,7 +155,7 @@ def test_errors_are_what_their_names_say(recording, trained):
     for name, value in wanted.items():
         assert found[name].shape == (3,)
         np.testing.assert_allclose(found[name], value, rtol=1e-9, err_msg=name)
-    for a, b in (("test", "test shoulder"), ("test", "test, training's deviation")):
+    for a, b in (("test", "test shoulder"), ("test", "test by training deviation")):
         assert not np.allclose(found[a], found[b], rtol=1e-3)
 
 

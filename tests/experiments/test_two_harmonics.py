@@ -12,7 +12,6 @@ from ddlib.experiments import (
     SHARE,
     STATE_FEEDBACK,
     record_two_harmonics,
-    run,
     second_amplitudes,
     true_states,
 )
@@ -104,7 +103,7 @@ def test_true_states_are_position_and_its_derivatives(recordings):
     slope = np.gradient(states[..., 1], LOG_STEP, axis=1)[:, 60:-1]
     wrong = np.abs(slope - states[:, 60:-1, :, 2])  # beyond the jump at the start
     assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
-    late = true_states(run(recording, 2), setup, skip=0.5)
+    late = true_states(recording[2], setup, skip=0.5)
     np.testing.assert_array_equal(late, states[2, 50:])
     with pytest.raises(ValueError, match=r"^skip must"):
         true_states(recording, setup, skip=3.1)

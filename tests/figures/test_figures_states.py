@@ -84,7 +84,13 @@ def test_sound_and_accessible(made, name):
 def one_weight(field, index, value) -> Weights:
     """A network with one weight of 1 that is seen nowhere else, and one of `value`."""
     weights = Weights.random(1, 3)[0]
-    for name in ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias"):
+    for name in (
+        "hidden_weights",
+        "hidden_bias",
+        "output_weights",
+        "direct_weights",
+        "output_bias",
+    ):
         getattr(weights, name)[...] = 0.0
     getattr(weights, field)[index] = value
     return weights
@@ -97,7 +103,7 @@ def one_weight(field, index, value) -> Weights:
         ("hidden_weights", (0, 1, 2), 1, 0),
         ("hidden_weights", (3, 0, 1), 2, 1),
         ("hidden_bias", (9,), 5, 1),
-        ("skip_weights", (1, 1, 0), 0, 1),
+        ("direct_weights", (1, 1, 0), 0, 1),
         ("output_bias", (0,), 0, 0),
     ],
 )
@@ -137,7 +143,13 @@ def test_a_weight_between_units_is_seen_at_both_ends_and_area_is_size():
 @pytest.mark.parametrize("hidden", [1, 5, 10])
 def test_squares_do_not_overlap(hidden):
     weights = Weights.random(1, 3, hidden)[0]
-    for name in ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias"):
+    for name in (
+        "hidden_weights",
+        "hidden_bias",
+        "output_weights",
+        "direct_weights",
+        "output_bias",
+    ):
         getattr(weights, name)[...] = 1.0
     marks = boxes(figures_states.hinton_states(weights), "#ffffff")
     assert len(marks) == 2 * (1 + hidden + 6) + hidden * (1 + 2 + 6)

@@ -298,7 +298,7 @@ def test_windows_run_to_the_right_with_the_shoulder_above(unit, place):
 def test_direct_weights_lie_in_the_output_units():
     skip = np.zeros((2, 2, 11))
     skip[0, 0, 0], skip[1, 1, 10] = 1.0, -1.0
-    (first, second), boxes = visible(only(skip_weights=skip))
+    (first, second), boxes = visible(only(direct_weights=skip))
     assert (unit_of(first, boxes), unit_of(second, boxes)) == (0, 1)
     assert first[3] == 1 and second[3] == 0
     assert first[0] < boxes[0, :2].mean() and second[0] > boxes[1, :2].mean()

@@ -381,6 +381,6 @@ def test_a_saturated_network_does_not_pass_for_an_optimum(data, start):
 
 
 def test_weights_too_large_to_add_up_are_refused(data, start):
-    weights = replace(start, skip_weights=np.full_like(start.skip_weights, 1e308))
+    weights = replace(start, direct_weights=np.full_like(start.direct_weights, 1e308))
     with pytest.raises(ValueError, match="weights must be small enough to add up"):
         solve(weights, data, progress=False)

@@ -36,7 +36,7 @@ def test_a_tiny_network_by_hand():
         hidden_weights=[[[1.0, 0.0, -2.0]], [[0.5, 1.0, 0.0]]],
         hidden_bias=[0.5, -1.0],
         output_weights=[[2.0, -3.0]],
-        skip_weights=[[[0.0, 1.0, 4.0]]],
+        direct_weights=[[[0.0, 1.0, 4.0]]],
         output_bias=[0.25],
     )
     x = [[[0.2, 0.6, 0.9]], [[1.0, 0.0, 0.0]]]
@@ -100,7 +100,7 @@ def test_order_and_sign_of_hidden_units_do_not_show_outside(order, flip):
         (flip[:, None, None] * weights.hidden_weights)[order],
         (flip * weights.hidden_bias)[order],
         (flip * out)[:, order],
-        weights.skip_weights,
+        weights.direct_weights,
         weights.output_bias + (out * (flip < 0)).sum(-1),
     )
     x = np.random.default_rng(0).uniform(size=(30, 2, 5))
@@ -344,4 +344,4 @@ def test_stacked_networks_keep_their_places():
     parts = [Weights.random(3, 5, seed=k) for k in (0, 10)]
     stacked = Weights.stack(parts)
     assert stacked.hidden_weights.shape == (2, 3, 10, 2, 5)
-    np.testing.assert_array_equal(stacked[1].skip_weights, parts[1].skip_weights)
+    np.testing.assert_array_equal(stacked[1].direct_weights, parts[1].direct_weights)

@@ -139,7 +139,7 @@ def test_members_are_the_same_in_any_company():
     both, alone = (
         parity_networks.learn(2, 1, members=m, seed=s, epochs=50) for m, s in ((2, 3), (1, 4))
     )
-    np.testing.assert_allclose(both[0].skip_weights[1], alone[0].skip_weights[0], atol=1e-6)
+    np.testing.assert_allclose(both[0].direct_weights[1], alone[0].direct_weights[0], atol=1e-6)
 
 
 def test_cases_in_both_codings():

@@ -405,12 +405,12 @@ def test_velocity_from_encoder_readings():
     assert np.abs(speed - recording.qd_true).max() > 0.1
 
 
-def test_tracking_error_is_true_position_minus_reference():
+def test_tracking_error_is_reference_minus_true_position():
     recording = run(effects=SENSORS)
     np.testing.assert_array_equal(
-        recording.tracking_error, recording.q_true - recording.reference.q
+        recording.tracking_error, recording.reference.q - recording.q_true
     )
-    assert recording.tracking_error.max() > 0  # the arm lags behind a falling reference
+    assert recording.tracking_error.min() < 0  # the arm lags behind a falling reference
 
 
 def test_the_reference_is_not_touched():
@@ -512,3 +512,16 @@ def test_follow_refuses_wrong_kinds(change, words):
     good = dict(controller=PD, reference=Trajectory(*np.zeros((3, 3, 2))), t=[0.0, 0.1, 0.2])
     with pytest.raises(TypeError, match=words):
         follow(ARM, **{**good, **change})
+
+
+def test_runs_are_indexed_and_sliced():
+    recording = record(ARM, proportional(KP), APPENDIX_I[:3])
+    one, two = recording[1], recording[:2]
+    assert one.q.shape == recording.q.shape[1:] and two.q.shape == (2, *one.q.shape)
+    np.testing.assert_array_equal(two[1].tau, one.tau)
+    np.testing.assert_array_equal(one.reference.qdd, recording.reference.qdd[1])
+    assert one.motion == recording.motion and one.control_step == recording.control_step
+    with pytest.raises(IndexError, match=r"recording must have an axis of runs, got q of shape"):
+        one[0]
+    with pytest.raises(IndexError):
+        recording[3]

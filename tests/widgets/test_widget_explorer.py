@@ -38,7 +38,7 @@ def weights_of(models, width, seed, unit, joint) -> np.ndarray:
     kind, name = unit.split()
     if kind == "hidden":
         return weights.hidden_weights[seed, int(name), j]
-    return weights.skip_weights[seed, ("shoulder", "elbow").index(kind), j]
+    return weights.direct_weights[seed, ("shoulder", "elbow").index(kind), j]
 
 
 def decibels(f) -> np.ndarray:
@@ -100,7 +100,7 @@ def test_gains_are_scipys(explorer, models):
 def test_diagram_holds_every_weight_once(models):
     weights = models[11].weights[6]
     cells = diagram(weights, 8).reshape(-1)
-    fields = ("hidden_weights", "hidden_bias", "skip_weights", "output_bias")
+    fields = ("hidden_weights", "hidden_bias", "direct_weights", "output_bias")
     counted = np.concatenate([getattr(weights, name).ravel() for name in fields])
     # the weights between hidden and output units are drawn at both ends
     both = np.repeat(weights.output_weights.ravel(), 2)
@@ -122,7 +122,7 @@ def test_chosen_filter_is_a_trait_away(explorer, models):
     explorer.width, explorer.seed, explorer.unit, explorer.joint = 41, 6, "hidden 9", "elbow"
     np.testing.assert_array_equal(explorer.filter, models[41].weights.hidden_weights[6, 9, 1])
     explorer.unit = "elbow torque"
-    np.testing.assert_array_equal(explorer.filter, models[41].weights.skip_weights[6, 1, 1])
+    np.testing.assert_array_equal(explorer.filter, models[41].weights.direct_weights[6, 1, 1])
     explorer.width = 21
 
 

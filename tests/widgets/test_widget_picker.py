@@ -10,7 +10,7 @@ from axe import violations
 from traitlets import TraitError
 from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings, shown_values
 
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, errors, predict, results, run
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, errors, predict, results
 from ddlib.metrics import rmss
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
@@ -137,7 +137,7 @@ def test_networks_see_what_the_simulator_records(full, networks):
     setup = type(STATE_FEEDBACK)(STATE_FEEDBACK.name, STATE_FEEDBACK.controller, effects=quiet)
     batch = setup.record(APPENDIX_I)
     deviation = batch.tau[:5, batch.motion].reshape(-1, 2).std(0)
-    recording, curves = run(batch, 5), full.curves
+    recording, curves = batch[5], full.curves
     torque = recording.tau[recording.motion]
     np.testing.assert_allclose(curves["elbow torque, recorded"][:-1], torque[::4, 1])
     for name, network in networks.items():
@@ -150,7 +150,7 @@ def test_networks_see_what_the_simulator_records(full, networks):
 def test_without_sensors_errors_are_much_the_same(full, networks):
     recording = STATE_FEEDBACK.record()
     for name, network in networks.items():
-        noisy = errors(network, recording)["test, training's deviation"]
+        noisy = errors(network, recording)["test by training deviation"]
         assert full.curves[f"RMSS, {name}"][0] == pytest.approx(noisy, rel=0.02)
 
 

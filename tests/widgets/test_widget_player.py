@@ -62,7 +62,7 @@ def test_curves_are_the_recorded_ones(player, model, rmss):
         weights, shown = model.weights[k, 1], player.interpolate(**values)
         kind, name = values["unit"].split()
         number = int(name) if kind == "hidden" else ("shoulder", "elbow").index(kind)
-        part = "hidden_weights" if kind == "hidden" else "skip_weights"
+        part = "hidden_weights" if kind == "hidden" else "direct_weights"
         f = getattr(weights, part)[number]
         np.testing.assert_allclose(shown["shoulder weights"], f[0], atol=2e-4)
         np.testing.assert_allclose(shown["elbow weights"], f[1], atol=2e-4)

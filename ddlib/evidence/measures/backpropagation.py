@@ -21,7 +21,7 @@ from ddlib.learning import (
     parity_networks,
     train_ensemble,
 )
-from ddlib.tables import number, scientific, spread
+from ddlib.tables import scientific, significant, spread
 
 SEEDS = 8
 """Networks of a training run."""
@@ -119,7 +119,7 @@ def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
         return median(pair[0]) / median(pair[1])
 
     value, replicates = over_members(lambda here, there: faster(here) / faster(there), *cells)
-    here, there = (number(np.median(a) / np.median(b), 2) for a, b in cells)
+    here, there = (significant(np.median(a) / np.median(b), 2) for a, b in cells)
     text = f"{here} times faster here, {there} times on parity of {bits} bits"
     return Measured(value, text, replicates)
 
@@ -154,7 +154,7 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
     best = np.mean(
         parity_networks.parity(corner) == parity_networks.parity(np.repeat(x[:, 0], 250, axis=0))
     )
-    text = f"{spread(100 * share, 3)} % right, at best {number(100 * best, 3)} %"
+    text = f"{spread(100 * share, 3)} % right, at best {significant(100 * best, 3)} %"
     value, replicates = over_members(median, share / best)
     return Measured(value, text, replicates)
 
@@ -219,7 +219,7 @@ def stable(widths=WINDOWS) -> Measured:
     found = {width: _late_change(width) for width in widths}
     half, last, _ = found[widths[0]]
     value = max(change for *_, change in found.values())
-    text = ", ".join(f"{number(100 * c, 2)} % at {w}" for w, (*_, c) in found.items())
+    text = ", ".join(f"{significant(100 * c, 2)} % at {w}" for w, (*_, c) in found.items())
     return Measured(value, f"{text}, from epoch {half:,} to {last:,}")
 
 
@@ -228,7 +228,7 @@ def _late_change(width: int) -> tuple[int, int, float]:
     epochs, model = results.course(width)
     half = int(np.argmin(np.abs(epochs - paper.EPOCHS / 2)))
     last = int(np.flatnonzero(epochs == paper.EPOCHS)[0])
-    names = ("hidden_weights", "hidden_bias", "output_weights", "skip_weights", "output_bias")
+    names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     parts = [getattr(model.weights, name) for name in names]
     weights = np.concatenate([p.reshape(*p.shape[:2], -1) for p in parts], -1)
     change = np.linalg.norm(weights[last] - weights[half], axis=-1)

@@ -22,7 +22,7 @@ from ddlib.simulation import (
     run_system,
     smooth_pick_and_place,
 )
-from ddlib.tables import number, scientific
+from ddlib.tables import scientific, significant
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 ARM = CMU_DD_ARM_II
@@ -85,7 +85,7 @@ def feedback() -> Measured:
     """How many times smaller feedback makes the error that a model 20 % off leaves."""
     with_, without = _real(1.0)[2:].reshape(2, 2)
     text = "model 20 % off, all effects: " + ", ".join(
-        f"{number(a, 2)}° for {number(b, 2)}° without" for a, b in zip(with_, without)
+        f"{significant(a, 2)}° for {significant(b, 2)}° without" for a, b in zip(with_, without)
     )
     return Measured(float((without / with_).min()), text)
 
@@ -100,7 +100,8 @@ def disturbances(load: float = 5.0) -> Measured:
     """
     effects = Effects(actuator=(Load((load, 0.0)),))
     with_, without = _rms(_errors([1, 1], [1, 0], effects))
-    text = f"{load:g} N m on the shoulder: {number(with_, 2)}° for {number(without, 2)}° without"
+    text = f"{load:g} N m on the shoulder: {significant(with_, 2)}° for "
+    text += f"{significant(without, 2)}° without"
     return Measured(float(without / with_), text)
 
 
@@ -113,8 +114,8 @@ def coupling() -> Measured:
 
     law = Feedforward(model, PID(KP, np.array(KP) / 2, KD))
     alone, own, coupled = _rms(np.rad2deg(follow(ARM, law, motion, TIMES).tracking_error))
-    text = f"independent PID {number(alone, 2)}°, with models of single joints {number(own, 2)}°, "
-    text += f"of second order with coupling {number(coupled, 2)}°"
+    text = f"independent PID {significant(alone, 2)}°, with models of single joints "
+    text += f"{significant(own, 2)}°, of second order with coupling {significant(coupled, 2)}°"
     return Measured(float(own / coupled), text)
 
 
@@ -124,7 +125,8 @@ def off_line() -> Measured:
     law = ComputedTorque(ARM, tuple(KP / OWN), tuple(KD / OWN)).start(motion, CONTROL_STEP)
     on_line = np.array([law(k, motion.q[k], motion.qd[k]) for k in range(TIMES.size)])
     gap = np.abs(on_line - ARM.inverse_dynamics(*motion)).max()
-    text = f"the same torque wherever the arm is on its reference (difference {number(gap, 1)} N m)"
+    text = "the same torque wherever the arm is on its reference "
+    text += f"(difference {significant(gap, 1)} N m)"
     return Measured(bool(gap < 1e-9), text)
 
 
@@ -135,7 +137,7 @@ def figure_2_1() -> Measured:
     law = Feedforward(ARM, pd(KP, KD))
     built = follow(ARM, law, smooth_pick_and_place(EXTENTS, TIMES), TIMES, log_every=5)
     gap = float(np.rad2deg(np.abs(drawn.q - built.q_true).max()))
-    text = f"drawn and run: {number(gap, 2)}° at most from the sampled simulation"
+    text = f"drawn and run: {significant(gap, 2)}° at most from the sampled simulation"
     return Measured(gap, text)
 
 
@@ -193,7 +195,7 @@ def track(rotors, frozen, model, gains, speed: float = 1.0, extents=EXTENTS) -> 
         third = rate(k + 1, *(x + LOG_STEP / 2 * second))
         fourth = rate(k + 2, *(x + LOG_STEP * third))
         x = x + LOG_STEP / 6 * (first + 2 * second + 2 * third + fourth)
-        errors.append(x[0] - motion.q[:, k + 2])
+        errors.append(motion.q[:, k + 2] - x[0])
     return np.rad2deg(np.moveaxis(errors, 0, 1))
 
 
@@ -218,8 +220,8 @@ def linearised(speed: float = 2.0) -> Measured:
 
     errors = track(np.zeros((4, 2)), frozen, model, np.ones((4, 2)), speed)
     alone, ahead = _rms(errors[0] - errors[1]), _rms(errors[2] - errors[3])
-    text = f"what a linear arm does not explain falls from {number(alone, 2)}° to "
-    text += f"{number(ahead, 2)}° (model 20 % off, {speed:g} times the speed)"
+    text = f"what a linear arm does not explain falls from {significant(alone, 2)}° to "
+    text += f"{significant(ahead, 2)}° (model 20 % off, {speed:g} times the speed)"
     return Measured(float(alone / ahead), text)
 
 
@@ -232,8 +234,9 @@ def faster(speed: float = 2.0) -> Measured:
         How many times faster than in three seconds.
     """
     slow, fast = _real(1.0), _real(speed)
-    text = f"{number(fast[1], 2)}° with a model, {number(fast[0], 2)}° without at {speed:g} times "
-    text += f"the speed; {number(slow[1], 2)}° and {number(slow[0], 2)}° at the paper's"
+    text = f"{significant(fast[1], 2)}° with a model, {significant(fast[0], 2)}° without "
+    text += f"at {speed:g} times the speed; "
+    text += f"{significant(slow[1], 2)}° and {significant(slow[0], 2)}° at the paper's"
     return Measured(float(fast[0] / fast[1]), text)
 
 

@@ -22,10 +22,10 @@ from ddlib.analysis import (
 from ddlib.analysis.following import responses
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, run, true_states
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, true_states
 from ddlib.learning.training import cases
 from ddlib.metrics import rmss
-from ddlib.tables import number, scientific, spread
+from ddlib.tables import scientific, significant, spread
 
 
 def _more(trained, untrained):
@@ -50,7 +50,7 @@ def of_class(
         Window size.
     name : str
         One of `ddlib.analysis.filters.CLASSES`.
-    layer : {"hidden", "skip"}
+    layer : {"hidden", "direct"}
         To the hidden units, or directly to the outputs.
     setup : str
         Which reading of the controller.
@@ -111,7 +111,7 @@ def rougher(wide: int = 41, narrow: int = 21) -> Measured:
     """Ratio of the median roughness of hidden filters at two window sizes."""
     cells = [roughness(committed.filters(w, "hidden")) for w in (wide, narrow)]
     before = [roughness(_pair(w, "hidden")[1]) for w in (wide, narrow)]
-    wide_, narrow_, *null = (number(np.median(x), 2) for x in (*cells, *before))
+    wide_, narrow_, *null = (significant(np.median(x), 2) for x in (*cells, *before))
     text = f"roughness {wide_} at {wide}, {narrow_} at {narrow}; before training {null[0]} and "
     value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
     return Measured(value, text + null[1], replicates)
@@ -119,13 +119,13 @@ def rougher(wide: int = 41, narrow: int = 21) -> Measured:
 
 def direct_smoothness() -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
-    cells, before = zip(*(map(roughness, _pair(w, "skip")) for w in WINDOWS))
+    cells, before = zip(*(map(roughness, _pair(w, "direct")) for w in WINDOWS))
 
     def largest(*cells):
         return np.max([median(cell) for cell in cells], axis=0)
 
     value, replicates = over_members(largest, *cells)
-    now, then = (", ".join(number(np.median(x), 2) for x in xs) for xs in (cells, before))
+    now, then = (", ".join(significant(np.median(x), 2) for x in xs) for xs in (cells, before))
     return Measured(value, f"roughness {now}; before training {then}", replicates)
 
 
@@ -198,7 +198,8 @@ def transition(width: int) -> Measured:
         for model in (committed.networks, committed.untrained)
     )
     value, replicates = over_members(median, found)
-    text = f"{number(value, 2)} standard deviations, {number(np.median(before), 2)} before training"
+    text = f"{significant(value, 2)} standard deviations, "
+    text += f"{significant(np.median(before), 2)} before training"
     return Measured(value, text, replicates)
 
 
@@ -254,7 +255,7 @@ def structured(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
 
 def shoulder_profile(width: int) -> Measured:
     """Error of the shoulder's torque alone on trajectory 6 (Figure 4-1), median of networks."""
-    test = run(committed.recording(), 5)
+    test = committed.recording()[5]
     predicted = predict(committed.networks(width), test)
     wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
     value, replicates = over_members(median, wrong)

@@ -19,7 +19,7 @@ from ddlib.experiments import (
 )
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
-from ddlib.tables import number, spread
+from ddlib.tables import significant, spread
 
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
@@ -32,7 +32,7 @@ def _errors(column: str, setup: str = STATE_FEEDBACK.name) -> dict[int, np.ndarr
 
 
 def _medians(errors: dict) -> str:
-    return ", ".join(number(np.median(e), 2) for e in errors.values())
+    return ", ".join(significant(np.median(e), 2) for e in errors.values())
 
 
 def table_4_1(width: int, column: str, setup: str = STATE_FEEDBACK.name) -> Measured:
@@ -75,7 +75,7 @@ def worse_on_test(setup: str = STATE_FEEDBACK.name) -> Measured:
     def least(*cells):
         return np.min([median(test) / median(training) for training, test in cells], axis=0)
 
-    ratios = [number(np.median(test) / np.median(training), 2) for training, test in cells]
+    ratios = [significant(np.median(test) / np.median(training), 2) for training, test in cells]
     value, replicates = over_members(least, *cells)
     return Measured(value, "test / training " + ", ".join(ratios), replicates)
 
@@ -111,7 +111,7 @@ def largest_weight(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
 def slope() -> Measured:
     """Largest median steepness of the error at the end of training, over the windows."""
     slopes = [np.abs(cell["slope"]) for cell in _cells().values()]
-    text = ", ".join(number(np.median(s), 2) for s in slopes)
+    text = ", ".join(significant(np.median(s), 2) for s in slopes)
     value, replicates = over_members(_largest_median, *slopes)
     return Measured(value, f"d ln(error) / d ln(epoch) {text}", replicates)
 
@@ -135,7 +135,7 @@ def best_window() -> Measured:
         return widths[np.argmin([median(cell) for cell in cells], axis=0)]
 
     value, replicates = over_members(best, *sizes.values())
-    least = number(np.median(sizes[int(value)]), 2)
+    least = significant(np.median(sizes[int(value)]), 2)
     return Measured(value, f"{value:.0f} samples ({least})", replicates)
 
 

@@ -22,7 +22,7 @@ from ddlib.experiments import STATE_FEEDBACK
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, record, residual_torque, rms
 from ddlib.simulation.simulate import Recording
-from ddlib.tables import number
+from ddlib.tables import significant
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 
 SETUP = STATE_FEEDBACK
@@ -79,7 +79,7 @@ def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
     left = residual_torque(SETUP.arm, run)[:, run.motion]
     share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
     turn = turns_at(factors, share.min(-1), SIGNIFICANT)
-    text = f"{_shares(left[0])[1]}; {100 * SIGNIFICANT:g} % from {number(turn, 2)} times the "
+    text = f"{_shares(left[0])[1]}; {100 * SIGNIFICANT:g} % from {significant(turn, 2)} times the "
     return Measured(turn, f"{text}assumed friction on")
 
 
@@ -100,7 +100,7 @@ def differencing(width: int = 19) -> Measured:
         SETUP.controller.kd[0] * np.std(sliding_window_view(rounding, len(w)) @ w)
         for w in (difference(1, CONTROL_STEP), end_slope(width, 2, CONTROL_STEP))
     ]
-    simple, fitted = (f"{number(n, 2)} N m" for n in noise)
+    simple, fitted = (f"{significant(n, 2)} N m" for n in noise)
     text = f"{simple} at the shoulder, {fitted} by a parabola over {width} readings"
     return Measured(float(noise[0] / noise[1]), text)
 
@@ -135,8 +135,8 @@ def snap() -> Measured:
     turn = float(modes[0] * np.sqrt(left / noise))
     text = (
         f"{1e3 * left:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
-        f"{number(noise / left, 2)} times below the torque noise; as large with a mode at "
-        f"{number(turn, 2)} Hz"
+        f"{significant(noise / left, 2)} times below the torque noise; as large with a mode at "
+        f"{significant(turn, 2)} Hz"
     )
     return Measured(turn, text)
 
@@ -195,8 +195,9 @@ def dead_zone(width: float = 0.1) -> Measured:
     lost = DeadZone((width, width)).inverse(tau) - tau
     share, text = _shares(lost)
     turn = float(width * SIGNIFICANT / share.max())
-    text = f"dead zone of {width:g} N m: {text}; {100 * SIGNIFICANT:g} % from {number(turn, 2)} N m"
-    return Measured(turn, f"{text} on")
+    text = f"dead zone of {width:g} N m: {text}; "
+    text += f"{100 * SIGNIFICANT:g} % from {significant(turn, 2)} N m on"
+    return Measured(turn, text)
 
 
 def saturation() -> Measured:
@@ -228,9 +229,10 @@ def sampling(late: float = 1.2e-3) -> Measured:
 
     turn = brentq(growth, 0.1, 10.0, args=(late,))
     held, delayed = (growth(1.0, delay) for delay in (0.0, late))
-    text = f"position feedback: swings grow at {number(delayed, 2)} 1/s if the torque is "
-    text += f"{1e3 * late:g} ms late, {number(held, 2)} 1/s if it is only held; stable from "
-    return Measured(float(turn), f"{text}{number(turn, 2)} times the assumed viscous friction on")
+    text = f"position feedback: swings grow at {significant(delayed, 2)} 1/s if the torque is "
+    text += f"{1e3 * late:g} ms late, {significant(held, 2)} 1/s if it is only held; stable from "
+    text += f"{significant(turn, 2)} times the assumed viscous friction on"
+    return Measured(float(turn), text)
 
 
 def sensor_noise(bits=(14, 15, 16, 17, 18, 19, 20)) -> Measured:

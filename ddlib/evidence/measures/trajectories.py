@@ -10,7 +10,7 @@ from scipy.spatial import Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
-from ddlib.analysis import cells_reached, reachable_share, used_dimensions
+from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
 from ddlib.evidence.verdicts import Measured, turns_at
 from ddlib.experiments import KP, POSITION_FEEDBACK, RADIUS, SETUPS, STATE_FEEDBACK, WINDOWS
@@ -18,7 +18,7 @@ from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.simulation import LOG_STEP
 from ddlib.simulation.simulate import Recording
-from ddlib.tables import number, scientific
+from ddlib.tables import scientific, significant
 from ddlib.trajectories import (
     APPENDIX_I,
     MAX_EXTENT_DEG,
@@ -135,10 +135,9 @@ def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
     position, state = (_missed(_recorded(s.name)) for s in (POSITION_FEEDBACK, STATE_FEEDBACK))
     turn = turns_at(factors, [position, *map(missed, factors[1:])], close)
     text = f"RMS error {100 * position:.0f} % of the angle by position feedback, "
-    text += (
-        f"{100 * state:.0f} % by state feedback; {100 * close:g} % from {number(turn, 2)} times "
-    )
-    return Measured(float(turn), f"{text}the assumed gains on")
+    text += f"{100 * state:.0f} % by state feedback; {100 * close:g} % from "
+    text += f"{significant(turn, 2)} times the assumed gains on"
+    return Measured(float(turn), text)
 
 
 def _size(x) -> float:
@@ -153,7 +152,7 @@ def unreachable(width: int = 21) -> Measured:
     width : int
         Window size.
     """
-    power = 2 * reachable_share(width, RADIUS * LOG_STEP / np.pi)
+    power = 2 * log10_reachable_share(width, RADIUS * LOG_STEP / np.pi)
     recording = _recorded()
     windows = sliding_windows(recording.q[:TRAINING], width, recording.motion)
     step = STATE_FEEDBACK.effects.encoder[0].step

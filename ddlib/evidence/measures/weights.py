@@ -13,18 +13,18 @@ from ddlib.learning import TrainingSet, Weights, train_ensemble
 from ddlib.learning.training import cases
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import number, scientific
+from ddlib.tables import scientific, significant
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")
 """Classes of filters that control theory uses."""
 
 
-def explained(layer: str = "skip") -> Measured:
+def explained(layer: str = "direct") -> Measured:
     """Median share of position, velocity and acceleration in filters, the least of three windows.
 
     Parameters
     ----------
-    layer : {"skip", "hidden"}
+    layer : {"direct", "hidden"}
         Direct weights, or those of hidden units.
     """
     cells = [shares(committed.filters(w, layer))[..., :3].sum(-1) for w in WINDOWS]
@@ -64,8 +64,8 @@ def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
     shift : float
         Off the centre: by this many samples or more.
     """
-    two, off = _crossings(committed.filters(width, "skip"), shift)
-    before = _crossings(committed.filters(width, "skip", committed.untrained), shift)[0]
+    two, off = _crossings(committed.filters(width, "direct"), shift)
+    before = _crossings(committed.filters(width, "direct", committed.untrained), shift)[0]
 
     def share(pair):
         return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)
@@ -96,7 +96,7 @@ def adjacency(width: int = 11, epochs: int = 100) -> Measured:
         mixed = TrainingSet(data.x[..., places], data.y, data.inputs, data.outputs)
         weights = Weights(
             start.hidden_weights[..., places], start.hidden_bias, start.output_weights,
-            start.skip_weights[..., places], start.output_bias,
+            start.direct_weights[..., places], start.output_bias,
         )  # fmt: skip
         model, *_ = train_ensemble(weights, mixed, momentum=0.9, epochs=epochs, progress=False)
         trained.append(model.weights)
@@ -104,7 +104,7 @@ def adjacency(width: int = 11, epochs: int = 100) -> Measured:
     back = np.argsort(order)
     gap = max(
         float(np.abs(getattr(shuffled, name)[..., back] - getattr(plain, name)).max())
-        for name in ("hidden_weights", "skip_weights")
+        for name in ("hidden_weights", "direct_weights")
     )
     relative = gap / float(plain.largest.max())
     return Measured(relative, f"the weights differ by {scientific(relative)} after {epochs} epochs")
@@ -156,13 +156,13 @@ def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured
     found, before = (
         {
             layer: np.isin(classify(committed.filters(width, layer, model, setup)), NAMED)
-            for layer in ("hidden", "skip")
+            for layer in ("hidden", "direct")
         }
         for model in (committed.networks, committed.untrained)
     )
     text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
-    text += f"{found['skip'].sum()} of {found['skip'].size} direct filters; before training "
-    text += f"{before['hidden'].sum()} and {before['skip'].sum()}"
+    text += f"{found['direct'].sum()} of {found['direct'].size} direct filters; before training "
+    text += f"{before['hidden'].sum()} and {before['direct'].sum()}"
     both = tuple(np.concatenate(list(named.values()), -1) for named in (found, before))
     value, replicates = over_members(lambda pair: mean(pair[0]) - mean(pair[1]), both)
     return Measured(value, text, replicates)
@@ -191,7 +191,7 @@ def without_hidden_units(width: int = 21) -> Measured:
     whole, still, torque = _held_still(width)
     ratio = rmss(still, torque) / rmss(whole, torque)
     value, replicates = over_members(median, ratio)
-    return Measured(value, f"error {number(value, 2)} times as large without them", replicates)
+    return Measured(value, f"error {significant(value, 2)} times as large without them", replicates)
 
 
 def compensate_friction(width: int = 21) -> Measured:

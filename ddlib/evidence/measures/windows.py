@@ -14,7 +14,7 @@ from ddlib.learning import TrainingSet, Weights, default_rate, train_ensemble
 from ddlib.learning.training import cases
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import number, scientific
+from ddlib.tables import scientific, significant
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -43,7 +43,7 @@ def estimates(orders: list, widths: list) -> Measured:
         errors[order] = min(
             float(np.sqrt(((f - exact) ** 2).mean() / exact.var(0).mean())) for f in found.values()
         )
-    shown = ", ".join(f"{names[k]} {number(errors[k], 2)}" for k in orders)
+    shown = ", ".join(f"{names[k]} {significant(errors[k], 2)}" for k in orders)
     return Measured(max(errors[k] for k in orders), f"relative error {shown}")
 
 
@@ -58,7 +58,7 @@ def without_noise() -> Measured:
         perfect = np.array(clean["windows"][str(width)]["largest weight"])
         noisy = np.array(table[str(width)]["largest weight"])[: perfect.size]
         ratios[width] = perfect / noisy
-    text = ", ".join(f"{number(np.median(r), 2)} at {w}" for w, r in ratios.items())
+    text = ", ".join(f"{significant(np.median(r), 2)} at {w}" for w, r in ratios.items())
 
     def change(*cells):
         return np.max([np.abs(median(cell) - 1) for cell in cells], axis=0)
@@ -71,12 +71,13 @@ def paths(width: int = 11) -> Measured:
     """Whether inputs reach the outputs through hidden units and directly, and no other way."""
     network = Weights.random(1, width)[0]
     hidden, output = network.hidden_weights.size, network.output_weights.size
-    direct = network.skip_weights.size
+    direct = network.direct_weights.size
     text = f"{hidden} weights into hidden units, {output} from them, {direct} direct ones"
     joined = hidden + output + direct == network.count() and min(hidden, output, direct) > 0
     x = np.random.default_rng(0).uniform(0, 1, (2, 2, width))
     blind = Weights(*(0 * w for w in (network.hidden_weights, network.hidden_bias)),
-                    network.output_weights, network.skip_weights, network.output_bias)  # fmt: skip
+                    network.output_weights, network.direct_weights,
+                    network.output_bias)  # fmt: skip
     differs = np.ptp(blind.activity(x)[1], axis=0).min() > 0
     return Measured(bool(joined and differs), text + f" at window {width}")
 
@@ -141,7 +142,7 @@ def more_hidden_units(column: str = "test") -> Measured:
         return _furthest([median(cell) / median(ten) for cell in more])
 
     value, replicates = over_members(furthest, *cells)
-    text = ", ".join(f"{number(np.median(rows[u]), 2)} with {u}" for u in (10, 20, 40))
+    text = ", ".join(f"{significant(np.median(rows[u]), 2)} with {u}" for u in (10, 20, 40))
     return Measured(value, f"{column}: {text}", replicates)
 
 
@@ -180,7 +181,7 @@ def acceleration(epochs: int = 2000, members: int = 8, factors=(0.5, 1, 1.5)) ->
         return np.median(drawn, axis=1).min(-1)
 
     value, replicates = over_members(lambda pair: best(pair[0]) / best(pair[1]), errors)
-    without, with_it = (number(np.median(e, axis=0).min(), 2) for e in errors)
+    without, with_it = (significant(np.median(e, axis=0).min(), 2) for e in errors)
     text = f"{without} without, {with_it} with it after {epochs:,} epochs"
     return Measured(value, text, replicates)
 
@@ -216,8 +217,8 @@ def training_is_monotone(other: int = 2) -> Measured:
     value, replicates = over_members(_mean_of_cells, *falls)
     text = ", ".join(f"{100 * f.mean():.0f} %" for f in falls)
     wider = float(np.mean([f.mean() for f in apart]))
-    text = f"falls at {text} of the records: {number(value, 3)} of all, "
-    return Measured(value, f"{text}{number(wider, 3)} at 1 record in {other}", replicates)
+    text = f"falls at {text} of the records: {significant(value, 3)} of all, "
+    return Measured(value, f"{text}{significant(wider, 3)} at 1 record in {other}", replicates)
 
 
 def rises_again(factor: float = 1.05) -> Measured:
@@ -258,8 +259,9 @@ def accurate(level: float = 0.1) -> Measured:
 
     value, replicates = over_members(largest, *cells.values())
     medians = {key: float(np.median(cell)) for key, cell in cells.items()}
-    fail = [f"{name} {w}: {number(m, 2)}" for (name, w), m in medians.items() if m > level]
-    text = f"RMSS {number(min(medians.values()), 2)} to {number(value, 2)}; above {level:g} are "
+    fail = [f"{name} {w}: {significant(m, 2)}" for (name, w), m in medians.items() if m > level]
+    smallest = significant(min(medians.values()), 2)
+    text = f"RMSS {smallest} to {significant(value, 2)}; above {level:g} are "
     return Measured(
         value, f"{text}{len(fail)} of {len(cells)} cells: {', '.join(fail)}", replicates
     )
@@ -274,7 +276,7 @@ def short_window(short: int = 11, long: int = 21) -> Measured:
         Window sizes.
     """
     rows = {row["width"]: row["acceleration error"] for row in results.read("window-sizes")["rows"]}
-    text = f"{number(rows[short], 2)} at {short}, {number(rows[long], 2)} at {long}"
+    text = f"{significant(rows[short], 2)} at {short}, {significant(rows[long], 2)} at {long}"
     return Measured(rows[short] / rows[long], text)
 
 
@@ -293,5 +295,5 @@ def magnitudes(narrow: int = 21, wide: int = 41) -> Measured:
     taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
     fall = taps[0] / taps[1]
     value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
-    text = f"{number(value, 2)} of the weight at {narrow}, the filter {number(fall, 2)}"
+    text = f"{significant(value, 2)} of the weight at {narrow}, the filter {significant(fall, 2)}"
     return Measured(value, text, replicates)

@@ -47,7 +47,7 @@ def window_sizes(members=6) -> dict:
         row = _cell(model, history, recording)
         if width >= 5:
             row["roughness, hidden"] = np.median(roughness(weights.hidden_weights), (-2, -1))
-            row["roughness, direct"] = np.median(roughness(weights.skip_weights), (-2, -1))
+            row["roughness, direct"] = np.median(roughness(weights.direct_weights), (-2, -1))
         row["acceleration error"] = _acceleration_error(split(recording)[0], width)
         rows.append({"width": width, **row})
     return {"members": members, "rows": rows}
