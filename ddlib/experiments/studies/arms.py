@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib.experiments.random_arms import RANGES, distance, draw, setup
+from ddlib.experiments.results import code_hash
 from ddlib.experiments.setups import WINDOWS, errors, train_windows
 from ddlib.experiments.sweeps import sweep
 
@@ -35,7 +36,8 @@ def arms(count=32, members=8) -> dict:
     The arm whose training errors come closest to the printed ones is trained again with
     `members` other networks: chosen by the training column, it may be judged by the test column.
     """
-    rows = sweep(_arm, [{"arm": arm, "members": 1} for arm in draw(count)], label="arms")
+    settings = [{"arm": arm, "members": 1} for arm in draw(count)]
+    rows = sweep(_arm, settings, code=code_hash("arms"), backend="sequential", label="arms")
     closest = min(rows, key=distance)
     chosen = {name: closest[name] for name in RANGES}
     again = _arm(chosen, members, seed=1)
