@@ -9,9 +9,9 @@ import directions
 import prose
 import pytest
 import yaml
-from book_pages import PAGES, source
+from book_pages import API, PAGES, source
 
-ELSEWHERE = {"book/api", "book/bibliography"}
+ELSEWHERE = {*API, "book/bibliography"}
 READ = [page for page in PAGES if page not in ELSEWHERE]
 BOUND = yaml.safe_load(directions.BOUND.read_text(encoding="utf-8")) or {}
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import prose
 import pytest
 import yaml
-from book_pages import PAGES, ROOT, source
+from book_pages import API, PAGES, ROOT, source
 
-ELSEWHERE = {"book/provenance", "book/api"}  # pages of parameters and of signatures
+ELSEWHERE = {"book/provenance", *API}  # pages of parameters and of signatures
 ALLOWED = yaml.safe_load(
     (ROOT / "tests" / "support" / "allowed_numbers.yml").read_text(encoding="utf-8")
 )

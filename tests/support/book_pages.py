@@ -14,8 +14,13 @@ CHAPTERS = [
     page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
 ]
 BACK_MATTER = [
-    page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
+    one["file"]
+    for part in TOC["parts"]
+    if not part.get("numbered")
+    for page in part["chapters"]
+    for one in (page, *page.get("sections", ()))
 ]
+API = [page for page in BACK_MATTER if page.startswith("book/api")]
 PAGES = [TOC["root"], *CHAPTERS, *BACK_MATTER]
 
 

@@ -48,7 +48,7 @@ class Baked:
         Samples of each curve.
     low, high : ndarray, shape (curves,)
         Range of each curve over the grid.
-    tables : list of Table
+    tables : list of ddlib.widgets.baking.compress.Table
         One per set of parameters; see `groups`.
 
     Raises

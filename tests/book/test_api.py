@@ -1,0 +1,48 @@
+"""The API pages: every module of ddlib is documented, once, on the page of its package."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import pytest
+from book_pages import API, ROOT, source
+
+PACKAGE = ROOT / "ddlib"
+
+
+def documented(page: str) -> list[str]:
+    """Modules that a page documents."""
+    return re.findall(r"automodule:: ([\w.]+)", source(page).read_text(encoding="utf-8"))
+
+
+def name_of(path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def page_of(module: str) -> str:
+    """Where a module belongs: a module beside the packages is one of the basics."""
+    _, *inside = module.split(".")
+    if not inside:
+        return "book/api"
+    is_package = (PACKAGE / inside[0]).is_dir()
+    return f"book/api/{inside[0] if is_package else 'basics'}"
+
+
+MODULES = [name_of(path) for path in sorted(PACKAGE.rglob("*.py")) if path.stem != "_check"]
+
+
+def test_every_module_is_documented_once():
+    assert Counter(name for page in API for name in documented(page)) == Counter(MODULES)
+
+
+@pytest.mark.parametrize("page", API)
+def test_a_page_documents_its_own_package(page):
+    assert documented(page)
+    assert {page_of(module) for module in documented(page)} == {page}
+
+
+def test_the_index_leads_to_every_page():
+    text = source("book/api").read_text(encoding="utf-8")
+    assert re.findall(r"\{doc\}`(api/\w+)`", text) == [page[5:] for page in API[1:]]
