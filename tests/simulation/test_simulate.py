@@ -515,7 +515,7 @@ def test_follow_refuses_wrong_kinds(change, words):
 
 
 def test_runs_are_indexed_and_sliced():
-    recording = record(ARM, proportional(KP), APPENDIX_I[:3])
+    recording = record(ARM, proportional((60.0, 30.0)), APPENDIX_I[:3])
     one, two = recording[1], recording[:2]
     assert one.q.shape == recording.q.shape[1:] and two.q.shape == (2, *one.q.shape)
     np.testing.assert_array_equal(two[1].tau, one.tau)
