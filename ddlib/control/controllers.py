@@ -2,7 +2,8 @@
 
 A controller is a frozen description. ``start(reference, step)`` gives the control
 law for one run (or a batch of runs): a function ``law(k, q, qd)`` called once a
-control period with the sample number and the *measured* state.
+control period with the sample number and the *measured* state. Where a controller is expected,
+a plain function will do, too: see `as_controller`.
 """
 
 from __future__ import annotations
@@ -28,6 +29,42 @@ class Controller(Protocol):
 
 
 @dataclass(frozen=True)
+class _Function:
+    function: Callable
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        def law(k, q, qd):
+            wanted = Trajectory(*(x[..., k, :] for x in reference))
+            return np.asarray(self.function(wanted, q, qd), dtype=float)
+
+        return law
+
+
+def as_controller(controller: Controller | Callable) -> Controller:
+    """A controller as it is, or one made of a plain function.
+
+    Parameters
+    ----------
+    controller : Controller or callable
+        A function ``f(wanted, q, qd) -> tau`` gets the sample of the reference (a `Trajectory`
+        of position, velocity and acceleration) and the measured state, each of shape (..., 2)
+        in rad and rad/s, and returns torques in N m.
+
+    Raises
+    ------
+    TypeError
+        If it is neither.
+    """
+    if callable(getattr(controller, "start", None)):
+        return controller
+    if callable(controller):
+        return _Function(controller)
+    raise TypeError(
+        f"controller must have a start method or be a function f(wanted, q, qd), got {controller!r}"
+    )
+
+
+@dataclass(frozen=True, repr=False)
 class PID:
     """Independent PID control of each joint.
 
@@ -60,6 +97,12 @@ class PID:
         for name in ("kp", "ki", "kd"):
             non_negative(name, getattr(self, name), 2)
         number("integral_limit", self.integral_limit, 0.0)
+
+    def __repr__(self):
+        terms = {name: getattr(self, name) for name in ("kp", "ki", "kd")}
+        text = ", ".join(f"{k}={v}" for k, v in terms.items() if k == "kp" or np.any(v))
+        limit = f", integral_limit={self.integral_limit:g}" if np.any(self.ki) else ""
+        return f"PID({text}{limit})"
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
@@ -106,7 +149,7 @@ class Feedforward:
     model : callable
         ``model(q, qd, qdd) -> tau`` over arrays ``(..., 2)``: the box marked "inverse
         arm". An `Arm` is accepted too; its `inverse_dynamics` is used.
-    feedback : Controller
+    feedback : Controller or callable
         Corrects what the model gets wrong.
     """
 
@@ -122,7 +165,7 @@ class Feedforward:
             raise ValueError(
                 f"model(q, qd, qdd) must return shape (..., {samples}, 2), got {torque.shape}"
             )
-        feedback = self.feedback.start(reference, step)
+        feedback = as_controller(self.feedback).start(reference, step)
 
         def law(k, q, qd):
             return torque[..., k, :] + feedback(k, q, qd)

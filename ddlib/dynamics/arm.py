@@ -71,7 +71,9 @@ class Arm:
     d: float
     lengths: tuple[float, float]
     gravity_moments: tuple[float, float] = (0.0, 0.0)
-    provenance: Mapping[str, str] = field(default_factory=dict, compare=False, hash=False)
+    provenance: Mapping[str, str] = field(
+        default_factory=dict, compare=False, hash=False, repr=False
+    )
 
     def __post_init__(self):
         for name in ("a", "b", "d"):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -128,7 +128,7 @@ _METHODS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Effects:
     """Everything between the rigid-body equations and what is written to the log.
 
@@ -154,6 +154,10 @@ class Effects:
     torque_sensor: tuple = ()
     motor: tuple = ()
     transmission: tuple = ()
+
+    def __repr__(self):
+        found = {field.name: getattr(self, field.name) for field in fields(self)}
+        return f"Effects({', '.join(f'{k}={v}' for k, v in found.items() if v) or 'none'})"
 
     def __post_init__(self):
         for part, methods in _METHODS.items():

@@ -31,7 +31,7 @@ def _sigmoid(x):
     return 0.5 * (1 + np.tanh(0.5 * x))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Weights:
     """Weights of one network, or of many with leading axes.
 
@@ -67,6 +67,11 @@ class Weights:
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
                 raise ValueError(f"{name} must have shape {shape}, got {getattr(self, name).shape}")
+
+    def __repr__(self):
+        *lead, hidden, joints, width = self.hidden_weights.shape
+        members = " x ".join(map(str, lead)) + " networks" if lead else "one network"
+        return f"Weights({members}, {hidden} hidden units, {joints} joints, window {width})"
 
     @classmethod
     def random(cls, members, width, hidden=10, joints=2, outputs=2, initial=0.3, seed=0):

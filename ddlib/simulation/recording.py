@@ -29,7 +29,7 @@ def equal_steps(t) -> float:
     return step
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Recording:
     """What the log holds. Leading axes, if any, are runs.
 
@@ -73,6 +73,11 @@ class Recording:
         if self.control_step is not None:
             number("control_step", self.control_step, 0.0)
         number("computing_time", self.computing_time, 0.0)
+
+    def __repr__(self):
+        *runs, samples, joints = self.q.shape
+        what = " x ".join([*(f"{n} runs" for n in runs), f"{samples} samples", f"{joints} joints"])
+        return f"Recording({what}, {self.t[0]:g} to {self.t[-1]:g} s)"
 
     @property
     def step(self) -> float:

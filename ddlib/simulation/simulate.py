@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, one_of
-from ddlib.control import Controller
+from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, started
 from ddlib.simulation.plant import Plant, substeps
@@ -140,7 +140,8 @@ def follow(
     Parameters
     ----------
     arm, controller, effects
-        Plant, control law and everything the rigid-body equations leave out.
+        Plant, control law (a controller, or a function as in `ddlib.control.as_controller`) and
+        everything the rigid-body equations leave out.
     reference : Trajectory
         Sampled at the control period, shape ``(..., time, joint)``; leading axes are runs.
     t : array_like, shape (time,)
@@ -182,8 +183,7 @@ def follow(
                 f"reference.{name} must have the shape of reference.q {reference.q.shape}, "
                 f"got {x.shape}"
             )
-    if not callable(getattr(controller, "start", None)):
-        raise TypeError(f"controller must have a start method, got {controller!r}")
+    controller = as_controller(controller)
     step = equal_steps(t)
     integer("log_every", log_every, 1)
     one_of("velocity", velocity, ("tachometer", "difference"))

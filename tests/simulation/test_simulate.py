@@ -525,3 +525,29 @@ def test_runs_are_indexed_and_sliced():
         one[0]
     with pytest.raises(IndexError):
         recording[3]
+
+
+def test_a_controller_may_be_a_plain_function():
+    kp, kd = np.array([60.0, 30.0]), np.array([9.0, 4.0])
+
+    def spring_and_damper(wanted, q, qd):
+        assert wanted.q.shape == q.shape == qd.shape == (2, 2)
+        return kp * (wanted.q - q) + kd * (wanted.qd - qd)
+
+    own = record(ARM, spring_and_damper, APPENDIX_I[:2])
+    built_in = record(ARM, pd(kp, kd), APPENDIX_I[:2])
+    np.testing.assert_allclose(own.tau, built_in.tau, atol=1e-12)
+    with pytest.raises(TypeError, match="controller must have a start method or be a function"):
+        record(ARM, 3.0, APPENDIX_I[:2])
+
+
+def test_what_is_simulated_prints_itself():
+    made = record(ARM, pd((60.0, 30.0), (9.0, 4.0)), APPENDIX_I[:3], rest=0.1)
+    assert repr(made) == "Recording(3 runs x 320 samples x 2 joints, -0.1 to 3.09 s)"
+    assert repr(made[0]) == "Recording(320 samples x 2 joints, -0.1 to 3.09 s)"
+    assert repr(pd((60.0, 30.0), (9.0, 4.0))) == "PID(kp=(60.0, 30.0), kd=(9.0, 4.0))"
+    assert repr(IDEAL) == "Effects(none)"
+    assert repr(Effects(actuator=(Saturation((9.0, 4.0)),))) == (
+        "Effects(actuator=(Saturation(limit=(9.0, 4.0)),))"
+    )
+    assert "provenance" not in repr(CMU_DD_ARM_II) and "a=5.291" in repr(CMU_DD_ARM_II)
