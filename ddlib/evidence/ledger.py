@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from string import Template
+
 import numpy as np
+import yaml
 
 from ddlib import paper
 from ddlib.evidence.measures.filters import parts_sum_up
@@ -11,6 +15,12 @@ from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, significant, spread, typeset
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
+
+FILE = Path(__file__).parents[2] / "book" / "errata.yml"
+"""Where the errata are kept."""
+
+FIELDS = ("where", "printed", "wrong", "here")
+"""Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does."""
 
 FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
 """Unit named inside a figure, window by the text of section 5.1, window by the caption."""
@@ -33,162 +43,68 @@ def unit_fits(unit: int, width: int) -> bool:
     return inputs < unit <= inputs + others
 
 
-def errata() -> Table:
+def errata(path: Path = FILE) -> Table:
     """Where the paper contradicts itself, a formula or arithmetic; what is computable is computed.
+
+    Parameters
+    ----------
+    path : path
+        The errata: a list of entries with the `FIELDS`.
 
     Returns
     -------
     Table
         Place, what is printed, what is wrong or unclear, what this book does.
+
+    Raises
+    ------
+    ValueError
+        If an entry has unknown or missing fields, one that is no text, or an unknown ``$name``.
     """
+    rows, values = [], computed()
+    for count, entry in enumerate(yaml.safe_load(Path(path).read_text(encoding="utf-8")), 1):
+        if not isinstance(entry, dict) or set(entry) != set(FIELDS):
+            raise ValueError(f"erratum {count} must have the fields {FIELDS}, got {entry!r}")
+        if not all(isinstance(text, str) and text.strip() for text in entry.values()):
+            raise ValueError(f"erratum {count} must be of texts that are not empty, got {entry!r}")
+        try:
+            cells = [Template(entry[field]).substitute(values) for field in FIELDS]
+        except (KeyError, ValueError) as error:
+            known = ", ".join(f"${name}" for name in values)
+            raise ValueError(
+                f"erratum {count} ({entry['where']}) must name computed values, {known}: {error}"
+            ) from None
+        rows.append(tuple(map(typeset, cells)))
+    return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
+
+
+def computed() -> dict[str, str]:
+    """What the errata name and code can tell, from the paper's formulas and tables."""
     reference = pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP))
-    speed = np.abs(reference.qd[0]).max()
-    lowest = np.rad2deg(reference.q.min())
-    period = 2 * np.pi / (np.pi / MOTION_SECONDS)
     extents = np.array(APPENDIX_I)
-    at_limits = int(np.isin(extents, (0.0, MAX_EXTENT_DEG)).sum())
     cases = len(paper.TRAINING_TRAJECTORIES) * paper.SAMPLES_PER_TRAJECTORY
-    products = "; ".join(f"{Weights.random(1, w)[0].count() * cases:,} at {w}" for w in WINDOWS)
-    halves = ", ".join(f"{w // 2} for {w}" for w in WINDOWS)
-    units = "; ".join(
+    products = (f"{Weights.random(1, w)[0].count() * cases:,} at {w}" for w in WINDOWS)
+    units = (
         f"unit {unit} of Figure {figure} is "
         f"{'no input' if unit_fits(unit, text) else 'an input'} at {text} and "
         f"{'no input' if unit_fits(unit, caption) else 'an input'} at {caption}"
         for figure, (unit, text, caption) in FIGURE_UNITS.items()
     )
-    rows = [
-        (
-            "section 1.1",
-            "PID is “Position Integral Derivative”",
-            "The P is for proportional.",
-            "“proportional”",
-        ),
-        (
-            "section 1.1",
-            "1.2 ms (830 Hz)",
-            f"1/1.2 ms is {1 / 1.2e-3:.0f} Hz; the frequency is rounded.",
-            "The period counts.",
-        ),
-        (
-            "section 1.1",
-            "parity requires O(2^n) coefficients as a polynomial",
-            "It does for inputs 0 and 1; for inputs −1 and 1 it is one product of all of them.",
-            "Both are counted: {doc}`backpropagation`.",
-        ),
-        (
-            "sections 1.1 to 5.1",
-            "n and w",
-            "n is bits of a string, then the window, half a window and the number of joints; "
-            "w is the window in section 3.2 and half of it in section 5.1.",
-            "w is the window in samples, n its half; {doc}`notation`.",
-        ),
-        (
-            "section 2",
-            "joint 0 and joint 1",
-            "Joint 1 is the shoulder in section 4, and figures have a joint 2.",
-            "Joints 1 and 2 in prose, index 0 and 1 in code.",
-        ),
-        (
-            "section 2",
-            "the period of the trajectory is 3 seconds",
-            f"The sine of Appendix I has a period of {period:.0f} s; the motion is half of it.",
-            "The formula holds.",
-        ),
-        (
-            "section 2",
-            "“pick-and-place”, initial and final position",
-            f"The reference passes both at full speed, {speed:.2f} rad/s for {MAX_EXTENT_DEG:g}°.",
-            "The formula holds; the arm starts from rest.",
-        ),
-        (
-            "section 2",
-            "a hypercube of size π",
-            f"The angles of the family fill {MAX_EXTENT_DEG:g}°; section 6 has a radius of π.",
-            "Not used.",
-        ),
-        (
-            "section 3",
-            "a window of desired positions",
-            "Section 4 trains on measured ones.",
-            "Trained on measured positions, tested on both.",
-        ),
-        (
-            "section 4",
-            "better than on “the new trajectories”",
-            f"One new trajectory was tested, number {paper.TEST_TRAJECTORY}.",
-            f"Trajectory {paper.TEST_TRAJECTORY}.",
-        ),
-        (
-            "section 5.1",
-            "odd(x) = (f(x) − f(−x))/2 − const",
-            f"The constant belongs to the even part. {parts_sum_up().text.capitalize()}.",
-            "`decompose` takes it from the even part.",
-        ),
-        (
-            "Figures 5-4 to 5-8",
-            "windows of 41 and 81 in captions, of 21 and 41 in the text",
-            "The units named inside the figures fit the text alone, if inputs are numbered "
-            f"first: {units}.",
-            "The text holds.",
-        ),
-        (
-            "sections 5.2, 5.3",
-            "weights “quite large”, then “surprisingly low”",
-            "The second is said of window 41; the first then leaves it out.",
-            "Measured for each window.",
-        ),
-        (
-            "section 5.3",
-            "windows of five, ten and twenty",
-            f"They are half widths: {halves}.",
-            "The sizes of Table 4-1.",
-        ),
-        (
-            "section 6",
-            "a hypercube of radius π",
-            "Half its edge is meant, in rad, rad/s and rad/s² alike.",
-            "Uniform from −π to π.",
-        ),
-        (
-            "section 6",
-            "298 points of a trajectory",
-            f"A trajectory has {paper.SAMPLES_PER_TRAJECTORY} samples; second differences would "
-            "lose two [I].",
-            "298 points.",
-        ),
-        (
-            "Table 6-1",
-            "“testing data”",
-            "Its first row, random set A, is the training set.",
-            "Listed as a training error.",
-        ),
-        (
-            "section 7",
-            "“generating accurate feedforward torques … on a physical robot arm”",
-            "They were compared with recorded torques, not applied: section 7.1 plans that.",
-            "Judged as a prediction.",
-        ),
-        (
-            "Appendix I",
-            "“maximum extent” and a minus sign",
-            f"Extents are positive, angles negative: down to {lowest:.0f}°.",
-            "The formula holds.",
-        ),
-        (
-            "Appendix I",
-            "random extents",
-            f"{at_limits} of {extents.size} lie on a limit of the family exactly.",
-            "Kept as printed.",
-        ),
-        (
-            "Appendix I",
-            "over 700,000 multiplications for the largest network",
-            f"By window: {products}.",
-            "Taken to mean window 21.",
-        ),
-    ]
-    header = ("where", "printed", "wrong or unclear", "in this book")
-    return Table(header, [tuple(map(typeset, row)) for row in rows])
+    return {
+        "rate": f"{1 / 1.2e-3:.0f}",
+        "period": f"{2 * np.pi / (np.pi / MOTION_SECONDS):.0f}",
+        "speed": f"{np.abs(reference.qd[0]).max():.2f}",
+        "extent": f"{MAX_EXTENT_DEG:g}",
+        "test": str(paper.TEST_TRAJECTORY),
+        "parts": parts_sum_up().text.capitalize(),
+        "units": "; ".join(units),
+        "halves": ", ".join(f"{w // 2} for {w}" for w in WINDOWS),
+        "samples": str(paper.SAMPLES_PER_TRAJECTORY),
+        "lowest": f"{np.rad2deg(reference.q.min()):.0f}",
+        "limits": str(np.isin(extents, (0.0, MAX_EXTENT_DEG)).sum()),
+        "extents": str(extents.size),
+        "products": "; ".join(products),
+    }
 
 
 def open_questions() -> Table:

@@ -60,6 +60,32 @@ def test_errata_are_computed(errata):
     assert text.count("is no input at") == text.count("and an input at") == 3
 
 
+def test_every_computed_value_is_used():
+    text = ledger.FILE.read_text(encoding="utf-8")
+    assert not [name for name in ledger.computed() if not re.search(rf"\${name}\b", text)]
+
+
+@pytest.mark.parametrize(
+    ("damage", "complaint"),
+    [
+        ("- {where: section 1, printed: a, wrong: b}", "erratum 2 must have the fields"),
+        ("- {where: section 1, printed: a, wrong: b, here: c, why: d}", "must have the fields"),
+        ("- only a text", "erratum 2 must have the fields"),
+        ("- {where: section 1, printed: 830, wrong: b, here: c}", "must be of texts"),
+        ("- {where: section 1, printed: a, wrong: ' ', here: c}", "must be of texts"),
+        ("- {where: section 1, printed: a, wrong: $nothing, here: c}", r"section 1.*'nothing'"),
+        ("- {where: section 1, printed: a, wrong: 3 $ b, here: c}", r"\$rate, .*placeholder"),
+    ],
+)
+def test_a_damaged_erratum_is_named(tmp_path, damage, complaint):
+    path = tmp_path / "errata.yml"
+    path.write_text("- {where: Table 4-1, printed: a, wrong: $rate Hz, here: b}\n" + damage)
+    with pytest.raises(ValueError, match=complaint):
+        ledger.errata(path)
+    path.write_text(path.read_text().removesuffix(damage))
+    assert ledger.errata(path).rows == [("Table 4-1", "a", "833 Hz", "b")]
+
+
 def test_errata_name_places_of_the_paper(errata):
     sections = re.compile(r"(sections? \d(\.\d)?|Figures? \d-\d|Table \d-\d|Appendix I\b)")
     assert not [row[0] for row in errata if not sections.match(row[0])]
