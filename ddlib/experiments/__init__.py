@@ -28,7 +28,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
             "split",
             "train_windows",
         ],
-        "states": [
+        "exact_states": [
             "EPOCHS",
             "RADIUS",
             "RATE",

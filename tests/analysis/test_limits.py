@@ -23,7 +23,7 @@ from ddlib.control import PID, delays, linear, pd, velocity  # fmt: skip
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import Arm, Link, derivation, serial  # fmt: skip
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  # fmt: skip
-from ddlib.experiments import random_arms, setups, states, two_harmonics  # fmt: skip
+from ddlib.experiments import exact_states, random_arms, setups, two_harmonics  # fmt: skip
 from ddlib.identification import equations, regression  # fmt: skip
 from ddlib.learning import (  # fmt: skip
     levenberg_marquardt,
@@ -188,7 +188,7 @@ ROWS = [
     ("damping", lambda x: solve(damping=x), [0.0, 0.5], [JUST_BELOW]),
     ("decay", lambda x: solve(decay=x), [0.0, 0.5], [JUST_BELOW]),
     ("smoothness", lambda x: solve(smoothness=x), [0.0, 0.5], [JUST_BELOW]),
-    ("radius", lambda x: states.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
+    ("radius", lambda x: exact_states.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
     ("steepest", COURSE.settled, [0.0, 0.5], [JUST_BELOW]),
     ("rate", lambda x: train(rate=x), [1e-6, training.MAX_RATE], [0.0, training.MAX_RATE * OVER]),
     ("momentum", lambda x: train(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),

@@ -6,7 +6,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 - ``table``, ``arms``: Table 4-1, longer, with clean sensors, on arms drawn at random
 - ``windows``, ``inputs``: window sizes, hidden units, states in place of windows
 - ``nulls``, ``harmonics``: other starts and ends, other motions
-- ``state_space``, ``state_space_sizes``: section 6
+- ``states``, ``states_sizes``: section 6
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from ddlib.experiments.studies import (
     harmonics,
     inputs,
     nulls,
-    state_space,
-    state_space_sizes,
+    states,
+    states_sizes,
     table,
     windows,
 )
@@ -35,8 +35,8 @@ PARTS: dict[str, Callable[[], dict]] = {
     "state-inputs": inputs.state_inputs,
     "null-controls": nulls.null_controls,
     "harmonics": harmonics.harmonics,
-    "table-6-1": state_space.table_6_1,
-    "state-space-choices": state_space.state_space_choices,
-    "state-space-sizes": state_space_sizes.state_space_sizes,
+    "table-6-1": states.table_6_1,
+    "state-space-choices": states.state_space_choices,
+    "state-space-sizes": states_sizes.state_space_sizes,
 }
 """The studies by the name of their result."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ddlib import paper
 from ddlib.experiments import results
-from ddlib.experiments.states import (
+from ddlib.experiments.exact_states import (
     EPOCHS,
     INITIAL,
     MOMENTUM,

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 from ddlib import paper
-from ddlib.experiments.states import (
+from ddlib.experiments.exact_states import (
     EPOCHS,
     INITIAL,
     MOMENTUM,

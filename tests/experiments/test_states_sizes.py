@@ -5,7 +5,7 @@ import pytest
 
 from ddlib import paper
 from ddlib.experiments import EPOCHS, SAMPLES, results
-from ddlib.experiments.studies import state_space_sizes as study
+from ddlib.experiments.studies import states_sizes as study
 
 
 @pytest.fixture(scope="module")
