@@ -1,7 +1,7 @@
 """The paper's experiments, as this book repeats them: set-ups, studies, committed results.
 
 - ``setups``: the experiment of section 4, every choice in one place; its errors
-- ``states``: the same for section 6; ``two_harmonics``, ``random_arms``: other motions, other arms
+- ``exact_states``: the same for section 6; ``two_harmonics``, ``random_arms``: other motions, arms
 - ``studies``: what is too slow for a chapter, a function for each result
 - ``reproduce``: runs studies, ``make reproduce``; an outcome lies in ``book/results/NAME.json``
 - ``results``: reads these files, and tells which code made them

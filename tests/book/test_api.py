@@ -46,3 +46,11 @@ def test_a_page_documents_its_own_package(page):
 def test_the_index_leads_to_every_page():
     text = source("book/api").read_text(encoding="utf-8")
     assert re.findall(r"\{doc\}`(api/\w+)`", text) == [page[5:] for page in API[1:]]
+
+
+@pytest.mark.parametrize("page", API)
+def test_a_heading_names_the_module_below_it(page):
+    text = source(page).read_text(encoding="utf-8")
+    pairs = re.findall(r"^#+ ([\w.]+)\n\n```\{eval-rst\}\n\.\. automodule:: (\S+)", text, re.M)
+    assert len(pairs) >= len(documented(page)) - 1
+    assert not [pair for pair in pairs if not pair[1].endswith(pair[0])]
