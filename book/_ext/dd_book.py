@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 import sys
 from importlib.metadata import files
 from pathlib import Path
+
+import joblib
 
 from slim import slim
 
@@ -20,20 +21,14 @@ PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "
 
 
 def digest(root: Path, patterns: tuple[str, ...]) -> str:
-    """Hash of the names and contents of all files that the patterns name, folders included."""
-    found = {path for pattern in patterns for top in root.glob(pattern) for path in walk(top)}
-    total = hashlib.sha256(f"python {sys.version_info[:2]}".encode())
-    for path in sorted(found):
-        content = hashlib.sha256(path.read_bytes()).hexdigest()
-        total.update(f"\n{path.relative_to(root).as_posix()} {content}".encode())
-    return total.hexdigest()[:16]
+    """Hash of all files that the patterns name, folders included: see `ddlib.experiments.results`.
 
-
-def walk(top: Path):
-    """Every file at or below a path, without what Python and Jupyter leave behind."""
-    for path in [top, *top.rglob("*")]:
-        if path.is_file() and not SKIP & set(path.parts):
-            yield path
+    What Python and Jupyter leave behind does not count.
+    """
+    tops = [top for pattern in patterns for top in root.glob(pattern)]
+    found = {path for top in tops for path in (top, *top.rglob("*")) if path.is_file()}
+    read = {p.relative_to(root).as_posix(): p.read_bytes() for p in found if not SKIP & {*p.parts}}
+    return joblib.hash((sys.version_info[:2], read), hash_name="sha1")[:16]
 
 
 def cache_path(root: Path, build: Path) -> Path:

@@ -5,14 +5,15 @@
 - ``studies``: what is too slow for a chapter, a function for each result
 - ``reproduce``: runs studies, ``make reproduce``; an outcome lies in ``book/results/NAME.json``
 - ``results``: reads these files, and tells which code made them
-- ``sweeps``: one experiment over a table of settings, kept and resumed
+- ``sweeps``: one experiment over many settings, kept and resumed
+- ``status``: tables of the page *Status*
 """
 
 import lazy_loader
 
 __getattr__, __dir__, __all__ = lazy_loader.attach(
     __name__,
-    submodules=["reproduce", "results", "studies", "sweeps"],
+    submodules=["reproduce", "results", "status", "studies", "sweeps"],
     submod_attrs={
         "setups": [
             "COURSE",

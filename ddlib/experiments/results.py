@@ -1,4 +1,16 @@
-"""Committed results: where they are, which code made them, and whether it still does."""
+"""Committed results: where they are, which code made them, and whether it still does.
+
+What is kept from one run to the next is used again under two conditions, and no others:
+
+- A result of a study, and a setting that a sweep has finished, while `code_hash` is the same: a
+  hash of what the code means, so that words and layout do not count. A result is committed, and
+  a test compares the hash in it.
+- What the build keeps in ``_build``, while the files are the same, byte for byte: ``digest`` in
+  ``book/_ext/dd_book.py``. Of ddlib, results, ``book/*.yml`` and requirements it names the folder
+  of executed notebooks, in which a notebook is known by its cells and in which claims that one of
+  them has measured (`ddlib.evidence.claims`) lie for the others; of everything, it says whether
+  the pages are up to date.
+"""
 
 from __future__ import annotations
 

@@ -234,9 +234,9 @@ def test_tracebacks_of_the_machinery_are_no_messages():
 
 CRASH = """
 Exception occurred:
-  File "/book/_ext/dd_status.py", line 121, in made_results
-    made = json.loads(path.read_text(encoding="utf-8"))["made by"]
-KeyError: 'made by'
+  File "/book/_ext/dd_runtime.py", line 33, in chapter_times
+    seconds = times["runtime"]
+KeyError: 'runtime'
 The full traceback has been saved in /tmp/sphinx-err-4os053ah.log, if you want to report it.
 Traceback (most recent call last):
 RuntimeError:
@@ -248,5 +248,5 @@ def test_a_crash_of_the_machinery_is_told_in_a_line(tmp_path, capsys):
     (tmp_path / "_build" / "failures.json").write_text("[]")
     report(tmp_path, messages(CRASH.splitlines(keepends=True)), strict=False)
     assert capsys.readouterr().err.strip() == (
-        "==> FAILED: not all pages could be written: KeyError: 'made by'"
+        "==> FAILED: not all pages could be written: KeyError: 'runtime'"
     )

@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from book_pages import CHAPTERS, PAGES, ROOT, source
 from bs4 import BeautifulSoup
-from docutils import nodes
+
+from ddlib.experiments import results, status
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_status
+import dd_runtime
 
 PAIR = {
     "group": "Training",
@@ -28,9 +29,19 @@ LIMIT = {"group": "Time", "what": "book", "value": 130.0, "unit": "s", "at most"
 MISSING = {"group": "Training", "what": "MuJoCo", "not measured": "pip install .[bench]"}
 
 
-def cells(table) -> list[list[str]]:
-    found = [[entry.astext() for entry in row] for row in table.findall(nodes.row)]
-    return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in found]
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder of results; ``folder(name, content)`` writes one."""
+    monkeypatch.setattr(results, "FOLDER", tmp_path)
+
+    def write(name, content):
+        (tmp_path / f"{name}.json").write_text(json.dumps(content))
+
+    return write
+
+
+def plain(rows) -> list[list[str]]:
+    return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
 
 
 @pytest.mark.parametrize(
@@ -44,7 +55,7 @@ def cells(table) -> list[list[str]]:
     ],
 )
 def test_durations_have_the_unit_that_suits_them(seconds, shown):
-    assert dd_status.duration(seconds).split() == shown.split()
+    assert status.duration(seconds).split() == shown.split()
 
 
 @pytest.mark.parametrize(
@@ -59,55 +70,46 @@ def test_durations_have_the_unit_that_suits_them(seconds, shown):
     ],
 )
 def test_a_missed_target_is_said_to_be_missed(row, shown):
-    assert dd_status.outcome(row).replace("\N{NO-BREAK SPACE}", " ") == shown
+    assert status.outcome(row).replace("\N{NO-BREAK SPACE}", " ") == shown
 
 
-def test_pairs_have_both_times_and_what_is_not_measured_stays():
-    table, *beside = dd_status.benchmark_table([PAIR, MISSING])
-    assert cells(table) == [
-        ["what", "ensemble", "loop", "ratio", "share of the rate", "target"],
-        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "≥ 8.0: met"],
-        ["MuJoCo", "–", "–", "–", "–", "not measured: pip install .[bench]"],
+def test_pairs_have_both_times_and_what_is_not_measured_stays(folder):
+    folder("benchmarks", {"rows": [PAIR, MISSING]})
+    table = status.benchmarks()["Training"]
+    assert table.header == (
+        "what", "ensemble", "loop", "ratio", "share of the rate", "largest error, rad", "target",
+    )  # fmt: skip
+    assert plain(table.rows) == [
+        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "2.00 · 10⁻⁷", "≥ 8.0: met"],
+        ["MuJoCo", "–", "–", "–", "–", "–", "not measured: pip install .[bench]"],
     ]
-    assert [node.astext() for node in beside] == ["window 21: largest error, rad: 2.00 · 10⁻⁷."]
 
 
-def test_every_group_has_its_table(tmp_path):
+def test_every_group_has_its_table(folder):
     made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}
     made |= {"python": "3.11", "versions": {"numpy": "2.4"}, "seconds": 9.0}
-    content = {"made by": made, "rows": [PAIR, LIMIT, MISSING]}
-    (tmp_path / "benchmarks.json").write_text(json.dumps(content))
-    where, *rest = dd_status.benchmarks(tmp_path)
-    assert "2026-01-31: X, 2 cores" in where.astext()
-    titles = [node.astext() for node in rest if isinstance(node, nodes.rubric)]
-    assert titles == ["Training", "Time"]
-    shown = sum(len(cells(node)) - 1 for node in rest if isinstance(node, nodes.table))
-    assert shown == 3
-
-
-def test_without_measurements_the_page_says_so(tmp_path):
-    (only,) = dd_status.benchmarks(tmp_path)
-    assert "make bench" in only.astext()
+    folder("benchmarks", {"made by": made, "rows": [PAIR, LIMIT, MISSING]})
+    assert "2026-01-31: X, 2 cores, Python 3.11, numpy 2.4; 9 s" in status.benchmark_machine()
+    tables = status.benchmarks()
+    assert {group: len(table.rows) for group, table in tables.items()} == {"Training": 2, "Time": 1}
+    assert plain(tables["Time"].rows) == [["book", "130 s", "≤ 120: missed"]]
 
 
 @pytest.mark.parametrize(("seconds", "verdict"), [(600.0, "met"), (600.1, "missed")])
-def test_times_of_the_results_and_of_all_together(tmp_path, seconds, verdict):
+def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, verdict):
     for name, made in {
         "a": {"code": "1", "seconds": 100.0},
         "b": {"code": "2", "seconds": 750.0},
         "benchmarks": {"seconds": 900.0},  # not of make reproduce
         "reproduce": {"seconds": seconds, "jobs": 2},
     }.items():
-        (tmp_path / f"{name}.json").write_text(json.dumps({"made by": made}))
-    (tmp_path / "verdicts.json").write_text("{}")  # of other results
-    (table,) = dd_status.made_results(tmp_path)
-    assert [row[0] for row in cells(table)] == [
-        "result", "a", "b", "sum", "make reproduce, 2 at a time",
-    ]  # fmt: skip
-    assert cells(table)[-2][1] == "850 s" and cells(table)[-1][1].endswith(verdict)
+        folder(name, {"made by": made})
+    folder("verdicts", {})  # of other results
+    rows = status.made_results().rows
+    assert [row[0] for row in rows] == ["a", "b", "sum", "make reproduce, 2 at a time"]
+    assert rows[-2][1] == "850 s" and rows[-1][1].endswith(verdict)
     (tmp_path / "reproduce.json").unlink()
-    (table,) = dd_status.made_results(tmp_path)
-    assert cells(table)[-1][0] == "sum"
+    assert status.made_results().rows[-1][0] == "sum"
 
 
 @pytest.mark.parametrize(
@@ -121,7 +123,7 @@ def test_times_of_the_results_and_of_all_together(tmp_path, seconds, verdict):
     ],
 )
 def test_times_in_words(seconds, shown):
-    assert dd_status.spoken_time(seconds) == shown
+    assert dd_runtime.spoken_time(seconds) == shown
 
 
 @pytest.mark.built
@@ -132,8 +134,8 @@ def test_a_chapter_tells_the_time_that_was_measured(name, built):
     times = {row.a["href"]: row.find_all("td")[1].get_text() for row in rows if row.a}
     measured = float(times[f"{Path(name).name}.html"].split()[0])
     page = BeautifulSoup((built / f"{name}.html").read_text("utf-8"), "html.parser").article
-    told = re.search(rf"Time to run\s+(.*?) {dd_status.MEASURED}", page.get_text())
-    assert told[1] == dd_status.spoken_time(measured)
+    told = re.search(rf"Time to run\s+(.*?) {dd_runtime.MEASURED}", page.get_text())
+    assert told[1] == dd_runtime.spoken_time(measured)
 
 
 @pytest.mark.built
