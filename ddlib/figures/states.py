@@ -11,7 +11,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
 from ddlib._check import finite_array
-from ddlib.figures.style import COLOURS, DASHES, INK, Illustration, illustrate
+from ddlib.figures.style import COLOURS, DASHES, INK, JOINTS, Illustration, illustrate
 from ddlib.learning import Weights
 from ddlib.tables import significant
 
@@ -21,7 +21,6 @@ SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")
 UNITS = ("rad", "rad/s", "rad/s²") * 2
 """Their units."""
 
-JOINTS = ("shoulder", "elbow")
 MARKERS = "osD^v"
 _WIDTH, _BLOB = 12.0, "#8c8c8c"
 

@@ -26,6 +26,9 @@ COLOURS = ("#2f7fd1", "#d4680b", "#219a6c", "#c2559d", "#8c7ae6", "#a08100")
 DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 """Line styles that go with the colours, so that colour is never the only difference."""
 
+JOINTS = ("shoulder", "elbow")
+"""Names of joint 0 and joint 1."""
+
 UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
 """What may follow the comma in an axis label, and never stands alone."""
 

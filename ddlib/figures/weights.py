@@ -15,13 +15,11 @@ from ddlib.figures.style import (
     COLOURS,
     FAINT,
     INK,
+    JOINTS,
     Illustration,
     illustrate,
 )
 from ddlib.learning import Weights
-
-JOINTS = ("shoulder", "elbow")
-"""Names of joint 0 and joint 1."""
 
 
 def network_diagram(weights: Weights) -> Illustration:

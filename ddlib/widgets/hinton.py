@@ -8,11 +8,11 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import one_of
+from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.parameters import Choice
 
-JOINTS = ("shoulder", "elbow")
 """Names of the joints: of the input windows and of the torques."""
 
 EXACT = 1e-4

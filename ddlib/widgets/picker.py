@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array, number
 from ddlib.experiments import STATE_FEEDBACK, Setup
+from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
@@ -19,7 +20,6 @@ from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 
-JOINTS = ("shoulder", "elbow")
 RIGID = "Lagrange-Euler"
 RECORDED = "recorded"
 
