@@ -47,7 +47,7 @@ import joblib
 import numpy as np
 import yaml
 
-from ddlib._check import one_of
+from ddlib._check import book_file, one_of
 from ddlib.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
 from ddlib.tables import Table
 
@@ -256,7 +256,7 @@ def load(path: Path = FILE) -> list[Claim]:
     ValueError
         If an entry has unknown or missing fields, or an id twice.
     """
-    entries = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    entries = yaml.safe_load(book_file(Path(path)).read_text(encoding="utf-8"))
     claims, seen = [], set()
     for entry in entries:
         entry = dict(entry)

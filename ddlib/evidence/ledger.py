@@ -9,6 +9,7 @@ import numpy as np
 import yaml
 
 from ddlib import paper
+from ddlib._check import book_file
 from ddlib.evidence.measures.filters import parts_sum_up
 from ddlib.experiments import KD, KP, WINDOWS, results
 from ddlib.learning import Weights
@@ -61,8 +62,9 @@ def errata(path: Path = FILE) -> Table:
     ValueError
         If an entry has unknown or missing fields, one that is no text, or an unknown ``$name``.
     """
+    text = book_file(Path(path)).read_text(encoding="utf-8")
     rows, values = [], computed()
-    for count, entry in enumerate(yaml.safe_load(Path(path).read_text(encoding="utf-8")), 1):
+    for count, entry in enumerate(yaml.safe_load(text), 1):
         if not isinstance(entry, dict) or set(entry) != set(FIELDS):
             raise ValueError(f"erratum {count} must have the fields {FIELDS}, got {entry!r}")
         if not all(isinstance(text, str) and text.strip() for text in entry.values()):

@@ -16,6 +16,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from tqdm.auto import tqdm
 
 from ddlib import figures
+from ddlib._check import book_file
 from ddlib.analysis import purest, upright
 from ddlib.experiments import results
 from ddlib.experiments.studies import PARTS
@@ -90,7 +91,7 @@ def main(arguments=None) -> None:
             parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
     if options.jobs < 1:
         parser.error(f"jobs must be 1 or more, got {options.jobs}")
-    results.FOLDER.mkdir(parents=True, exist_ok=True)
+    book_file(results.FOLDER).mkdir(parents=True, exist_ok=True)
     codes = {name: results.code_hash(name) for name in PARTS}  # now: files may change meanwhile
     stale = []
     for name in options.parts or PARTS:

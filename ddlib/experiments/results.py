@@ -25,6 +25,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ddlib._check import book_file
 from ddlib.experiments.setups import COURSE, STATE_FEEDBACK
 from ddlib.learning import TorqueModel, kernels
 
@@ -221,12 +222,12 @@ def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
 
 def networks_path(setup: str, width: int) -> Path:
     """File of the trained networks of one cell of Table 4-1."""
-    return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
+    return book_file(FOLDER) / f"networks-{setup.replace(' ', '-')}-{width}.npz"
 
 
 def course_path(width: int) -> Path:
     """File of the first two networks of a window size on their way through training."""
-    return FOLDER / f"course-{width}.npz"
+    return book_file(FOLDER) / f"course-{width}.npz"
 
 
 def course(width: int) -> tuple[np.ndarray, TorqueModel]:
@@ -267,7 +268,7 @@ def read(name: str) -> dict:
     ValueError
         If the file is damaged.
     """
-    path = FOLDER / f"{name}.json"
+    path = book_file(FOLDER) / f"{name}.json"
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
