@@ -8,63 +8,20 @@
 - ``simplified``: what simpler models of the arm lose
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "filters": [
-            "CLASSES",
-            "DERIVATIVES",
-            "Decomposition",
-            "basis",
-            "classify",
-            "content",
-            "decompose",
-            "frequency_response",
-            "purest",
-            "roughness",
-            "savitzky_golay",
-            "shares",
-            "upright",
-        ],
-        "following": [
-            "LAYERS",
-            "QUANTITIES",
-            "Responses",
-            "explained",
-            "gains",
-            "mean_gradient",
-            "summary",
-        ],
-        "hidden_units": [
-            "ablation",
-            "cancellation",
-            "match",
-            "net_inputs",
-            "saturated",
-            "transition_width",
-        ],
-        "sensitivity": [
-            "INPUTS",
-            "input_shares",
-            "shuffled",
-            "transition_centre",
-            "transition_range",
-        ],
-        "coverage": [
-            "cells_reached",
-            "principal_deviations",
-            "log10_reachable_share",
-            "used_dimensions",
-        ],
-        "noise": ["acceleration_noise_gain", "noise_floor"],
-        "simplified": [
-            "OTHER_JOINT",
-            "VELOCITY_TERMS",
-            "linear_residual",
-            "share_of_other_joint",
-            "share_of_velocity_terms",
-        ],
-    },
+    filters=(
+        "CLASSES DERIVATIVES Decomposition basis classify content decompose frequency_response "
+        "purest roughness savitzky_golay shares upright"
+    ),
+    following="LAYERS QUANTITIES Responses explained gains mean_gradient summary",
+    hidden_units="ablation cancellation match net_inputs saturated transition_width",
+    sensitivity="INPUTS input_shares shuffled transition_centre transition_range",
+    coverage="cells_reached principal_deviations log10_reachable_share used_dimensions",
+    noise="acceleration_noise_gain noise_floor",
+    simplified=(
+        "OTHER_JOINT VELOCITY_TERMS linear_residual share_of_other_joint share_of_velocity_terms"
+    ),
 )

@@ -6,38 +6,14 @@
 - ``velocity``: velocity from position readings, noise against lag
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "controllers": [
-            "ComputedTorque",
-            "ControlLaw",
-            "Controller",
-            "Feedforward",
-            "PID",
-            "as_controller",
-            "pd",
-            "proportional",
-        ],
-        "linear": [
-            "Margins",
-            "closed_loop",
-            "loop_gain",
-            "margins",
-            "opened_loop",
-            "plant",
-            "proportional_limit",
-        ],
-        "delays": ["late_poles"],
-        "velocity": [
-            "EstimatedVelocity",
-            "difference",
-            "end_slope",
-            "lag",
-            "noise_gain",
-            "stacked",
-        ],
-    },
+    controllers=(
+        "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
+    ),
+    linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
+    delays="late_poles",
+    velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",
 )

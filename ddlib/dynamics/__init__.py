@@ -7,30 +7,14 @@
 - ``counting``, ``costs``: multiplications and additions counted by running a formulation
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "arm": ["Arm", "CMU_DD_ARM_II", "IMI_ARM", "Link", "REYES_KELLY_ARM", "STANDARD_GRAVITY"],
-        "serial": ["PUMA_560", "PUMA_560_GEARS", "PUMA_560_ROTORS", "SerialArm", "SpatialLink"],
-        "formulations": [
-            "Constants",
-            "LinkConstants",
-            "lagrange_euler",
-            "newton_euler",
-            "recursive_lagrange",
-        ],
-        "derivation": ["Derivation", "MAX_LINKS", "derive"],
-        "counting": ["Counted", "Operations", "Tape"],
-        "costs": [
-            "KNOWLEDGE",
-            "PUBLISHED",
-            "PUBLISHED_CUSTOMISED",
-            "Published",
-            "count",
-            "count_closed_form",
-            "table",
-        ],
-    },
+    arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY",
+    serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
+    formulations="Constants LinkConstants lagrange_euler newton_euler recursive_lagrange",
+    derivation="Derivation MAX_LINKS derive",
+    counting="Counted Operations Tape",
+    costs="KNOWLEDGE PUBLISHED PUBLISHED_CUSTOMISED Published count count_closed_form table",
 )

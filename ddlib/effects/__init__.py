@@ -6,22 +6,11 @@
   part, where an encoder is rounded (`Quantisation`), noise, delay, backlash; the book's real arm
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "real_arm": [
-            "Backlash",
-            "CMU_DD_ARM_II_EFFECTS",
-            "Delay",
-            "Effects",
-            "IDEAL",
-            "Noise",
-            "Quantisation",
-            "started",
-        ],
-        "friction": ["CoulombFriction", "StickSlipFriction", "StribeckFriction", "ViscousFriction"],
-        "actuators": ["ComputingTime", "DeadZone", "FlexibleJoint", "Ripple", "Saturation"],
-    },
+    real_arm="Backlash CMU_DD_ARM_II_EFFECTS Delay Effects IDEAL Noise Quantisation started",
+    friction="CoulombFriction StickSlipFriction StribeckFriction ViscousFriction",
+    actuators="ComputingTime DeadZone FlexibleJoint Ripple Saturation",
 )

@@ -9,29 +9,20 @@
   the page of all claims
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submodules=["committed", "chart", "claims", "judging", "ledger", "ledger_tables", "measures"],
-    submod_attrs={
-        "verdicts": [
-            "CONTRADICTS",
-            "DECIDED",
-            "DRAWS",
-            "FEWEST",
-            "Measured",
-            "STANDS",
-            "VERDICTS",
-            "bootstrap",
-            "fresh",
-            "mean",
-            "median",
-            "over_members",
-            "shares",
-            "stands",
-            "turns_at",
-        ],
-        "statements": ["SURE", "resampled", "stated"],
-    },
+    "chart",
+    "claims",
+    "committed",
+    "judging",
+    "ledger",
+    "ledger_tables",
+    "measures",
+    verdicts=(
+        "CONTRADICTS DECIDED DRAWS FEWEST Measured STANDS VERDICTS bootstrap fresh mean median "
+        "over_members shares stands turns_at"
+    ),
+    statements="SURE resampled stated",
 )

@@ -9,42 +9,20 @@
 - ``status``: tables of the page *Status*
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submodules=["reproduce", "results", "status", "studies", "sweeps"],
-    submod_attrs={
-        "setups": [
-            "COURSE",
-            "KD",
-            "KP",
-            "POSITION_FEEDBACK",
-            "SETUPS",
-            "STATE_FEEDBACK",
-            "Setup",
-            "WINDOWS",
-            "errors",
-            "predict",
-            "split",
-            "train_windows",
-        ],
-        "exact_states": [
-            "EPOCHS",
-            "RADIUS",
-            "RATE",
-            "SAMPLES",
-            "random_states",
-            "states_along",
-            "torque",
-        ],
-        "random_arms": ["RANGES", "distance", "draw", "setup"],
-        "two_harmonics": [
-            "ORDER",
-            "SHARE",
-            "record_two_harmonics",
-            "second_amplitudes",
-            "true_states",
-        ],
-    },
+    "reproduce",
+    "results",
+    "status",
+    "studies",
+    "sweeps",
+    setups=(
+        "COURSE KD KP POSITION_FEEDBACK SETUPS STATE_FEEDBACK Setup WINDOWS errors predict split "
+        "train_windows"
+    ),
+    exact_states="EPOCHS RADIUS RATE SAMPLES random_states states_along torque",
+    random_arms="RANGES distance draw setup",
+    two_harmonics="ORDER SHARE record_two_harmonics second_amplitudes true_states",
 )

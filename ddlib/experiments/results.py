@@ -107,10 +107,10 @@ def _home(package: str, name: str) -> str:
     inside = f"{package}.{name}".lstrip(".")
     if _path(inside).is_dir() or _path(inside).with_suffix(".py").is_file():
         return inside
-    for node in ast.walk(_tree(package)):
-        if isinstance(node, ast.keyword) and node.arg == "submod_attrs":
-            homes = ast.literal_eval(node.value)
-            return next(f"{package}.{module}" for module in homes if name in homes[module])
+    handed_on = (node for node in ast.walk(_tree(package)) if isinstance(node, ast.keyword))
+    for node in handed_on:
+        if name in ast.literal_eval(node.value).split():
+            return f"{package}.{node.arg}"
     return package
 
 

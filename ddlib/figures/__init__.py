@@ -6,31 +6,20 @@
 - ``dynamics``, ``effects``, ``control``, ``recording``, ``states``: figures of one chapter each
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "style": [
-            "COLOURS",
-            "DASHES",
-            "FAINT",
-            "INK",
-            "Illustration",
-            "JOINTS",
-            "RC",
-            "check_label",
-            "illustrate",
-            "legend_above",
-            "plain_ticks",
-        ],
-        "lines": ["clusters", "curves", "families", "overlay", "rmss_by_window"],
-        "weights": ["decomposition", "hinton", "network_diagram", "share_map"],
-        "dynamics": ["CENTRED", "arm_sketch", "estimates", "hand_paths", "operations"],
-        "effects": ["by_case", "ranking", "side_by_side"],
-        "recording": ["extents_square", "reached", "rounding", "tied"],
-        "maps": ["COLOUR_MAP", "plane", "scatter"],
-        "states": ["SYMBOLS", "error_by_size", "hinton_states", "responses", "torque_along"],
-        "control": ["feedforward_loop", "root_loci"],
-    },
+    style=(
+        "COLOURS DASHES FAINT INK Illustration JOINTS RC check_label illustrate legend_above "
+        "plain_ticks"
+    ),
+    lines="clusters curves families overlay rmss_by_window",
+    weights="decomposition hinton network_diagram share_map",
+    dynamics="CENTRED arm_sketch estimates hand_paths operations",
+    effects="by_case ranking side_by_side",
+    recording="extents_square reached rounding tied",
+    maps="COLOUR_MAP plane scatter",
+    states="SYMBOLS error_by_size hinton_states responses torque_along",
+    control="feedforward_loop root_loci",
 )

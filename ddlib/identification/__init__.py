@@ -4,24 +4,13 @@
 - ``regression``: weighted least squares on them, `Estimate`, and the true parameters
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "regression": [
-            "Equations",
-            "Estimate",
-            "FRICTION",
-            "GRAVITY",
-            "RIGID",
-            "SIGN_SPEED",
-            "columns",
-            "excitation",
-            "from_states",
-            "least_squares",
-            "true_parameters",
-        ],
-        "equations": ["SLOW", "by_differences", "by_modulation", "by_smoothing", "repeat"],
-    },
+    regression=(
+        "Equations Estimate FRICTION GRAVITY RIGID SIGN_SPEED columns excitation from_states "
+        "least_squares true_parameters"
+    ),
+    equations="SLOW by_differences by_modulation by_smoothing repeat",
 )

@@ -7,44 +7,21 @@
 - ``parity_networks``: the parity example of section 1.1
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "windows": ["Scaler", "check_width", "sliding_windows"],
-        "network": ["TorqueModel", "Weights", "WindowNetwork", "kernels"],
-        "descent": ["Descent", "prepare"],
-        "training": [
-            "BLOCK",
-            "History",
-            "MAX_RATE",
-            "TARGET_RANGE",
-            "TrainingDiverged",
-            "TrainingSet",
-            "WARM_UP_MOMENTUM",
-            "WORKERS",
-            "check_points",
-            "default_rate",
-            "train",
-            "train_ensemble",
-        ],
-        "gauss_newton": ["Objective", "penalty"],
-        "levenberg_marquardt": ["NotConverged", "Solution", "solve"],
-        "parity_networks": [
-            "CODINGS",
-            "MOST_BITS",
-            "NETWORKS",
-            "UnitNetwork",
-            "counter",
-            "direct",
-            "learn",
-            "monomials",
-            "one_layer",
-            "parity",
-            "patterns",
-            "right",
-            "tree",
-        ],
-    },
+    windows="Scaler check_width sliding_windows",
+    network="TorqueModel Weights WindowNetwork kernels",
+    descent="Descent prepare",
+    training=(
+        "BLOCK History MAX_RATE TARGET_RANGE TrainingDiverged TrainingSet WARM_UP_MOMENTUM WORKERS "
+        "check_points default_rate train train_ensemble"
+    ),
+    gauss_newton="Objective penalty",
+    levenberg_marquardt="NotConverged Solution solve",
+    parity_networks=(
+        "CODINGS MOST_BITS NETWORKS UnitNetwork counter direct learn monomials one_layer parity "
+        "patterns right tree"
+    ),
 )

@@ -7,26 +7,16 @@
 - ``loops``: responses of a loop, predicted and simulated; Figure 2-1; scores of a recording
 """
 
-import lazy_loader
+from ddlib._names import hand_on
 
-__getattr__, __dir__, __all__ = lazy_loader.attach(
+__getattr__, __dir__, __all__ = hand_on(
     __name__,
-    submod_attrs={
-        "recording": ["Recording", "equal_steps"],
-        "plant": ["PHASE", "Plant", "substeps"],
-        "simulate": ["CONTROL_STEP", "LOG_STEP", "REST", "follow", "free_motion", "record"],
-        "loops": [
-            "Load",
-            "Response",
-            "SecondOrderModel",
-            "fast_pick_and_place",
-            "feedforward_system",
-            "predicted_response",
-            "run_system",
-            "score",
-            "simulated_response",
-            "smooth_pick_and_place",
-        ],
-        "residual": ["residual_torque", "rms"],
-    },
+    recording="Recording equal_steps",
+    plant="PHASE Plant substeps",
+    simulate="CONTROL_STEP LOG_STEP REST follow free_motion record",
+    loops=(
+        "Load Response SecondOrderModel fast_pick_and_place feedforward_system predicted_response "
+        "run_system score simulated_response smooth_pick_and_place"
+    ),
+    residual="residual_torque rms",
 )

@@ -14,7 +14,7 @@ import ddlib
 ROOT = Path(ddlib.__file__).parent
 
 ORDER = (
-    *("_check", "paper", "metrics", "tables", "trajectories"),
+    *("_check", "_names", "paper", "metrics", "tables", "trajectories"),
     *("dynamics", "effects", "control", "simulation", "identification", "learning"),
     *("analysis", "figures", "experiments", "evidence", "widgets"),
 )
