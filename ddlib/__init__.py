@@ -3,6 +3,7 @@
 Packages stand in the order in which data flows. Each may import those above it, none below it::
 
     _check            argument checks: errors name the argument, its value and its range
+    _names            how a package hands on the names of its modules
     paper             the paper's printed numbers
     metrics           the paper's error measure, RMSS
     tables            tables, numbers as text, and `quote` for the prose of a page
