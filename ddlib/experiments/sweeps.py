@@ -52,7 +52,7 @@ def sweep(
     Parameters
     ----------
     experiment : callable
-        A function of a module. Its random numbers come from a seed that is an argument.
+        A function. Its random numbers come from a seed that is an argument.
     settings : iterable of mapping
         The arguments of each call.
     code : str
@@ -60,7 +60,7 @@ def sweep(
         the same code made is read back.
     backend : {"loky", "threading", "sequential", "dask"}
         joblib's backend. "loky": processes with one thread each. "dask": the cluster of the
-        ``dask.distributed.Client`` that is open; its workers write into `folder`.
+        ``dask.distributed.Client`` that is open; its workers need not see `folder`.
     jobs : int, optional
         Calls at a time, default one for each core. A Dask cluster decides by itself.
     label : str
@@ -83,15 +83,27 @@ def sweep(
     for setting in settings:
         if not isinstance(setting, Mapping):
             raise TypeError(f"settings must be mappings of arguments to values, got {setting!r}")
-    kept = joblib.Memory(Path(folder, code), verbose=0).cache(experiment)
-    tasks = (joblib.delayed(_attempt)(kept, *task) for task in enumerate(settings))
-    threads = {"inner_max_num_threads": 1} if backend == "loky" else {}
-    results, failures = {}, {}
-    with joblib.parallel_config(backend, n_jobs=jobs, **threads):
-        attempts = joblib.Parallel(return_as="generator_unordered", batch_size=1)(tasks)
+    kept = joblib.Memory(Path(folder, code), verbose=0).cache(_kept, ignore=["result"])
+    name = f"{experiment.__module__}.{experiment.__qualname__}"
+    results, failures, tasks = {}, {}, []
+    for place, setting in enumerate(settings):
         try:
-            for place, result, error in tqdm(attempts, total=len(settings), desc=label):
-                (results if error is None else failures)[place] = result if error is None else error
+            (results[place],) = kept(name, setting)
+        except LookupError:
+            tasks.append(joblib.delayed(_attempt)(experiment, place, setting))
+    threads = {"inner_max_num_threads": 1} if backend == "loky" else {}
+    with (
+        tqdm(total=len(settings), initial=len(results), desc=label) as bar,
+        joblib.parallel_config(backend, n_jobs=jobs, **threads),
+    ):
+        try:
+            parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)
+            for place, result, error in parallel(tasks):
+                if error is None:
+                    (results[place],) = kept(name, settings[place], (result,))
+                else:
+                    failures[place] = error
+                bar.update()
         except Exception as error:
             done = f"{len(results)} of {len(settings)} settings are finished and kept"
             message = f"{label} broke off: {type(error).__name__}; {done}"
@@ -103,9 +115,16 @@ def sweep(
     return [results[place] for place in range(len(settings))]
 
 
-def _attempt(kept, place, setting):
+def _kept(name, setting, result=None):
+    """What joblib keeps: a result under its experiment and setting; without one, it looks."""
+    if result is None:
+        raise LookupError(f"{name} has no result for {setting!r:.200}")
+    return result
+
+
+def _attempt(experiment, place, setting):
     """One setting in a worker: its place, its result, its traceback."""
     try:
-        return place, kept(**setting), None
+        return place, experiment(**setting), None
     except Exception:
         return place, None, traceback.format_exc()
