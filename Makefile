@@ -87,5 +87,5 @@ strip: $(READY)  ## remove outputs from the notebooks before a commit
 	$(STRIP) $(NOTEBOOKS)
 
 clean:  ## remove what was built; .venv stays
-	rm -rf _build .pytest_cache .ruff_cache .hypothesis
+	rm -rf _build build dist .pytest_cache .ruff_cache .hypothesis
 	find book ddlib tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +
