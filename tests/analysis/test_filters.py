@@ -277,6 +277,14 @@ def test_roughness_of_lines_noise_and_zigzag():
     assert roughness(x**2) < 0.01 < roughness(np.sin(x)) < 1
 
 
+@pytest.mark.parametrize("count", [1, 7, 50, 120])
+@pytest.mark.parametrize("level", [0.0, 1.0, -4.0])  # their mean is exact, so the variance is 0
+def test_constants_have_no_roughness_whatever_memory_holds(level, count):
+    waste = [np.full(count, np.nan) for _ in range(50)]
+    del waste  # numpy hands small arrays out again as they were
+    assert (roughness(np.full((count, 21), level)) == 0).all()
+
+
 @settings(max_examples=50)
 @given(f=functions.filter(lambda f: np.ptp(f) > 1e-3), a=st.floats(0.1, 9), b=st.floats(-9, 9))
 def test_roughness_does_not_depend_on_scale_and_offset(f, a, b):

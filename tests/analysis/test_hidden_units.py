@@ -27,6 +27,9 @@ def test_saturated_counts_both_ends():
     np.testing.assert_allclose(saturated(activity), [0.5, 0.25])
     np.testing.assert_allclose(saturated(activity, 0.25), [0.75, 0.5])
     assert saturated(np.stack([activity] * 3)).shape == (3, 2)
+    # below the margin or above its counterpart, not at them
+    edges = np.array([[0.25, 0.75], [0.24, 0.76], [0.26, 0.74], [0.75, 0.25]])
+    np.testing.assert_array_equal(saturated(edges, 0.25), [0.25, 0.25])
 
 
 def test_net_inputs_are_the_logits_of_the_activities(model, cases):

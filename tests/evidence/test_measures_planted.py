@@ -17,6 +17,7 @@ from ddlib.evidence.measures import (
 from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
 from ddlib.simulation import LOG_STEP
+from ddlib.tables import number
 
 STATE, POSITION = "state feedback", "position feedback"
 
@@ -248,6 +249,16 @@ def test_weights_fall_as_filters_do(plant):
     assert of_windows.magnitudes(11, 21).value == pytest.approx(largest(21) / largest(11), rel=1e-6)
 
 
+def test_the_largest_tap_may_be_a_negative_one(plant):
+    """Three samples have the taps 1, -2, 1 over the step squared; 41 their largest at the ends."""
+    cells = {str(w): {"largest weight": [1.0, 1.0]} for w in (3, 41)}
+    plant("table-4-1", {"setups": {STATE: cells}})
+    x = np.arange(-20, 21)
+    parabola = x**2 - (x**2).mean()
+    ends = 2 * parabola[0] / (parabola**2).sum()
+    assert of_windows.magnitudes(3, 41).text.endswith(f"the filter {number(ends / 2, 2)}")
+
+
 def test_scaling_leaves_the_error():
     assert of_windows.scaling().value < 1e-12
 
@@ -273,6 +284,7 @@ def test_cells_that_are_not_accurate(plant):
         "position feedback 11: 0.20, position feedback 41: 2.0, state feedback 41: 0.20"
     )
     assert "above 0.01 are 5 of 6 cells" in of_windows.accurate(0.01).text
+    assert of_windows.accurate(0.2).text.endswith("above 0.2 are 1 of 6 cells: position feedback 41: 2.0")
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -346,7 +358,7 @@ def test_filters_that_control_theory_uses(plant_filters):
     trained = {"hidden": {21: hidden}, "direct": {21: pure(21, 3, 3, 2, 3)}}
     before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "direct": {21: pure(21, 3, 3, 3, 3)}}
     plant_filters(trained, before)
-    found = weights.interpretable(21)
+    found = weights.interpretable()  # of window 21, if none is asked for
     assert found.value == pytest.approx(4 / 8 - 1 / 8)
     assert found.text == "3 of 4 hidden, 1 of 4 direct filters; before training 1 and 0"
 
@@ -510,7 +522,7 @@ def test_rows_of_table_6_1(plant):
 
 
 def test_the_best_number_of_units(plant):
-    rows = [(10, [0.3, 0.2, 0.9]), (20, [0.1, 0.2, 0.15]), (40, [0.4, 0.4, 0.01])]
+    rows = [(10, [0.3, 0.2, 0.9]), (20, [0.1, 0.3, 0.15]), (40, [0.4, 0.4, 0.01])]
     units = [{"units": n, "solver": {"test": e}} for n, e in rows] + [{"units": 80, "solver": None}]
     plant("state-space-sizes", {"units": units, "solver's samples in units": 12_000})
     found = networks.best_of_sizes()

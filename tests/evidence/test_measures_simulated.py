@@ -1,6 +1,7 @@
 """Measures that simulate: what they ask of the simulator, and what they make of its answers."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from ddlib.control import PID, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import PUMA_560_ROTORS
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, ViscousFriction
 from ddlib.evidence.measures import control, dynamics, real_arm
 from ddlib.experiments import KD, KP
 from ddlib.simulation import follow, smooth_pick_and_place
@@ -130,6 +131,13 @@ def test_perfect_models(monkeypatch):
     assert found.text.endswith("2 · 10⁻⁶° with a continuous torque (5.0° by PD alone)")
 
 
+def test_errors_are_shares_of_the_larger_extent(monkeypatch):
+    monkeypatch.setattr(control, "EXTENTS", np.array([10.0, 40.0]))
+    monkeypatch.setattr(control, "_errors", lambda *_: np.full((2, 3, 2), [[[2.0, -1.0]]]))
+    monkeypatch.setattr(control, "track", lambda *_: np.zeros((1, 1, 2)))
+    assert control.perfect_model().value == pytest.approx(2.0 / 40.0)
+
+
 def answers(monkeypatch, errors_deg):
     """`follow` is asked, notes the question and gives these errors, degrees."""
     asked = SimpleNamespace()
@@ -194,7 +202,8 @@ def test_the_drawn_system_against_the_simulator(monkeypatch):
     np.testing.assert_allclose(seen["t"], np.arange(300) * 0.01)
 
 
-def test_computed_torque_on_the_reference(monkeypatch):
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_computed_torque_on_the_reference(monkeypatch, sign):
     assert control.off_line().value is True
 
     class Off:
@@ -207,7 +216,7 @@ def test_computed_torque_on_the_reference(monkeypatch):
             assert step == 0.002
             np.testing.assert_allclose(motion.q.shape, (1500, 2))
             torque = self.arm.inverse_dynamics(*motion)
-            torque[700, 1] += 2e-3
+            torque[700, 1] += sign * 2e-3
             return lambda k, q, qd: torque[k]
 
     monkeypatch.setattr(control, "ComputedTorque", Off)
@@ -327,6 +336,27 @@ def test_velocity_terms_of_trajectory_1():
     np.testing.assert_allclose(numbers(found.text)[:2], share, atol=0.51)
 
 
+def test_velocity_terms_are_told_in_percent(monkeypatch):
+    monkeypatch.setattr(dynamics, "share_of_velocity_terms", lambda *_: np.array([0.9, 0.8]))
+    assert dynamics.terms().text == "velocity terms are 90 % and 80 % of the torque, trajectory 1"
+
+
+@pytest.mark.parametrize("viscous", [(0.0, 0.0), (20.0, 5.0)])
+def test_what_ignoring_velocity_terms_loses(monkeypatch, viscous):
+    """Coriolis and centripetal torque over all torque, friction included, on the closed form."""
+    rough = replace(dynamics.STATE_FEEDBACK, effects=Effects(friction=(ViscousFriction(viscous),)))
+    monkeypatch.setattr(dynamics, "STATE_FEEDBACK", rough)
+    t = np.arange(300)[:, None] * 0.01
+    e, w = np.deg2rad(dynamics.APPENDIX_I[[0, 1, 2, 5]])[:, None], np.pi / 3
+    q, qd, qdd = (-f * e for f in (np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)))
+    bend, v1, v2 = ARM.b * np.sin(q[..., 1]), qd[..., 0], qd[..., 1]
+    lost = np.stack([-bend * (2 * v1 + v2) * v2, bend * v1**2], -1)
+    whole = ARM.inverse_dynamics(q, qd, qdd) + viscous * qd
+    share = 100 * np.sqrt((lost**2).mean((0, 1)) / (whole**2).mean((0, 1)))
+    told = [float(x) for x in re.findall(r"(\d+) %", dynamics.ignoring_terms().text)]
+    np.testing.assert_allclose(told, share, atol=0.51)
+
+
 def test_the_whole_arm_may_turn():
     assert dynamics.shoulder_position().value < 1e-12
 
@@ -437,6 +467,37 @@ def test_second_differences_of_rounded_positions():
     assert found.value == min(slight)
     told = [int(word) for word in found.text.split() if word.isdigit()]
     np.testing.assert_allclose(told[2:4], 100 * steps[16] * share, rtol=0.1)
+
+
+@pytest.mark.parametrize("bits", range(14, 21))
+def test_any_encoder_may_be_the_first_that_is_slight(monkeypatch, bits):
+    """The noise halves with each bit: a level between two encoders tells them apart."""
+    share_of_16 = max(
+        int(x) for x in re.findall(r"(\d+) % (?:of the torque )?at the", real_arm.sensor_noise().text)
+    )
+    monkeypatch.setattr(real_arm, "SIGNIFICANT", 1.4 * share_of_16 / 100 * 2.0 ** (16 - bits))
+    assert real_arm.sensor_noise().value == bits
+
+
+def test_the_springy_shafts_reference_is_a_motion(monkeypatch):
+    """Velocity and acceleration are the slopes; from 0 s on it is trajectory 6."""
+
+    class Enough(Exception):
+        pass
+
+    def follow(arm, controller, reference, t, **options):
+        raise Enough(reference, t)
+
+    monkeypatch.setattr(real_arm, "follow", follow)
+    with pytest.raises(Enough) as caught:
+        real_arm.snap()
+    (q, qd, qdd), t = caught.value.args
+    np.testing.assert_allclose(np.gradient(q, t, axis=0)[1:-1], qd[1:-1], atol=1e-5)
+    np.testing.assert_allclose(np.gradient(qd, t, axis=0)[1:-1], qdd[1:-1], atol=1e-5)
+    motion = (t >= 0) & (t < 3)
+    wanted = real_arm.pick_and_place(real_arm.APPENDIX_I[5], t[motion])
+    np.testing.assert_allclose(q[motion], wanted.q, atol=1e-12)
+    assert np.abs(qd[motion]).max() > 0.1
 
 
 def test_where_late_position_feedback_turns():

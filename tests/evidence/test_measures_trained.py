@@ -1,5 +1,6 @@
 """Measures that train, record or count: their calls planted, their arithmetic by hand."""
 
+import re
 from math import erf, log2
 from types import SimpleNamespace
 
@@ -11,6 +12,7 @@ from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.experiments.setups import INITIAL
 from ddlib.learning import History, default_rate
+from ddlib.trajectories import pick_and_place
 
 SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
 
@@ -138,6 +140,22 @@ def test_the_sine_in_closed_form():
     assert found.value == 1.0
     assert found.text.startswith(f"starts at {SPEED:.2f} rad/s for an extent of 45°")
     assert trajectories.ends_and_middle().value is True
+
+
+@pytest.mark.parametrize("away", [-0.1, 0.1])
+@pytest.mark.parametrize("place", [0, 1])
+def test_a_motion_that_ends_elsewhere_is_noticed(monkeypatch, away, place):
+    def moved(extents, t):
+        motion = pick_and_place(extents, t)
+        motion.q[2, place * (t[1] > 2), 1] += away
+        return motion
+
+    monkeypatch.setattr(trajectories, "pick_and_place", moved)
+    assert trajectories.ends_and_middle().value is False
+
+
+def test_used_dimensions_are_of_both_joints():
+    assert re.search(r"use \d+ of 42 dimensions$", trajectories.unreachable(21).text)
 
 
 def test_samples_and_windows_of_the_recordings():

@@ -84,6 +84,23 @@ def test_no_window_makes_smoothing_honest(surrogate, width, smooth_torque):
     assert found.covers(truth)[:, :3].mean(0).min() < 0.5
 
 
+def test_only_the_torque_that_is_to_be_smoothed_is():
+    """As measured, or the middle of the parabola through a window of the measured one."""
+    width, half = 11, 5
+    run = repeat(*PLANTS["surrogate, PD"], repetitions=1, seed=3)
+    inside = np.arange(run.motion.start + half, run.motion.stop - half)
+    plain, smooth = (by_smoothing(run, width, RIGID, flag).torque for flag in (False, True))
+    x = np.arange(-half, half + 1)
+    for joint in range(2):
+        tau = run.tau[0, :, :, joint]
+        np.testing.assert_array_equal(plain[joint][0], tau[:, inside].ravel())
+        middle = [[np.polyfit(x, one[k + x], 2)[-1] for k in inside] for one in tau]
+        np.testing.assert_allclose(smooth[joint][0], np.ravel(middle), rtol=1e-9, atol=1e-9)
+    assert np.abs(smooth[0] - plain[0]).max() > 0.01
+    default = by_smoothing(run, width, RIGID).torque
+    np.testing.assert_array_equal(default[1], plain[1])
+
+
 def test_a_torque_is_held_after_its_sample():
     """Forgetting the 1 ms to the middle of the control period shows as less viscous friction."""
     many = repeat(*PLANTS["surrogate, P"], repetitions=20, seed=16)

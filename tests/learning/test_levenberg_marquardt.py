@@ -3,6 +3,7 @@
 import re
 import warnings
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     gauss_newton,
+    levenberg_marquardt,
     penalty,
     sliding_windows,
     solve,
@@ -213,6 +215,35 @@ def test_a_linear_problem_takes_one_step(data):
     assert solution.steps[0] == 1
     np.testing.assert_allclose(solution.model.weights.activity(data.x)[1], best, atol=1e-9)
     assert solution.history.training[1, 0] == pytest.approx(float(rmss(best, y)), rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "ratio, factor",
+    [(4.0, 1 / 3), (1.0, 1 / 3), (0.9, 0.488), (0.75, 7 / 8), (0.5, 1.0), (0.25, 9 / 8), (1e-3, 2.0)],
+)
+@pytest.mark.parametrize("failures, growth", [(0, 1), (1, 2), (3, 2 * 4 * 8)])
+def test_damping_follows_the_rule_of_nielsen(ratio, factor, failures, growth):
+    """Nielsen's rule, some values by hand: ``max(1/3, 1 - (2 ratio - 1)^3)`` after a step that
+    is taken, factors of 2, 4, 8 after steps that are not.
+
+    The ratio is that of the fall to what ``value + g s + h s^2 / 2`` promises.
+    """
+    value, g, h, mu = 7.0, -3.0, 2.0, 0.5
+    trials = []
+
+    def planted(vector):
+        trials.append(s := float(vector[0]) - 1.0)
+        promised = -(g * s + h * s**2 / 2)
+        return value - (ratio if len(trials) > failures else -1.0) * promised, 0.1
+
+    one = torch.ones(1, dtype=torch.float64)
+    found = levenberg_marquardt._step(
+        SimpleNamespace(value=planted), one, value, h * one[:, None], g * one, mu, False
+    )
+    dampings = mu * np.array([1, 2, 8, 64])[: failures + 1]
+    np.testing.assert_allclose(trials, -g / (h + dampings))
+    assert float(found[0][0]) == pytest.approx(1.0 + trials[-1])
+    assert found[3] == pytest.approx(mu * growth * factor, rel=0.01 if ratio < 0.01 else 1e-9)
 
 
 def test_near_a_perfect_fit_each_step_squares_the_error(data, start):

@@ -142,6 +142,14 @@ def test_members_are_the_same_in_any_company():
     np.testing.assert_allclose(both[0].direct_weights[1], alone[0].direct_weights[0], atol=1e-6)
 
 
+def test_learning_starts_from_the_first_seeds():
+    """Steps that are next to nothing leave what is drawn."""
+    drawn = Weights.random(3, 2, 2, 1, 1, 1.0, seed=0)
+    left, _ = parity_networks.learn(2, 2, members=3, rate=1e-9, epochs=1, every=1)
+    np.testing.assert_allclose(left.hidden_weights, drawn.hidden_weights, atol=1e-6)
+    np.testing.assert_allclose(left.output_bias, drawn.output_bias, atol=1e-6)
+
+
 def test_cases_in_both_codings():
     (bits, y), (signs, same) = (
         parity_networks.cases(3, coding) for coding in parity_networks.CODINGS

@@ -513,6 +513,15 @@ def test_targets_that_cannot_be_learnt_are_refused(data, y):
         train(WindowNetwork(WIDTH), data.x, y, rate=1.0, progress=False)
 
 
+def test_every_column_of_the_targets_must_vary_and_no_row(data):
+    same = np.repeat(data.y[:, :1], 2, axis=1)
+    history = train(WindowNetwork(WIDTH), data.x, same, rate=1.0, epochs=2, progress=False)
+    assert np.isfinite(history.training).all()
+    still = np.column_stack([data.y[:, 0], np.full(len(data.y), 0.5)])
+    with pytest.raises(ValueError, match="vary in each column"):
+        train(WindowNetwork(WIDTH), data.x, still, rate=1.0, epochs=2, progress=False)
+
+
 def test_another_window_than_the_data_has_is_refused(data):
     with pytest.raises(ValueError, match="width"):
         train_ensemble(Weights.random(2, WIDTH + 2), data, epochs=2, progress=False)

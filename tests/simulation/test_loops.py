@@ -6,7 +6,7 @@ import pytest
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.effects import Effects
-from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.effects.real_arm import CoulombFriction, StickSlipFriction, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.simulation import (
     Load,
@@ -92,6 +92,23 @@ def test_agreement_has_its_limits():
     assert tiny.overshoot < 0.1 * predicted.overshoot
 
 
+def test_the_load_is_what_would_displace_the_spring_by_the_step():
+    """A joint that sticks is held back by up to its breakaway torque, and no weaker load moves it.
+
+    So the size of the load shows, though the compliance is per torque.
+    """
+    sticky = Effects(friction=(StickSlipFriction((0.5, 0.15), (0.65, 0.2)),))
+    push = KP[0] * np.deg2rad(1.0)
+    found = simulated_response(ARM, PD, viscous=VISCOUS, seconds=4.0, effects=sticky)
+    assert 0.01 < abs(found.compliance * KP[0] - 1) < 0.65 / push < 0.15
+    less = np.rad2deg(0.9 * 0.65 / KP[0])
+    with np.errstate(divide="ignore"):  # of what does not move at all
+        held = simulated_response(
+            ARM, PD, viscous=VISCOUS, seconds=4.0, effects=sticky, step_deg=less
+        )
+    assert held.compliance == 0
+
+
 def test_gain_raises_bandwidth_and_lowers_compliance():
     soft, hard = (
         predicted_response(ARM, pd(n * np.array(KP), KD), viscous=VISCOUS) for n in (1, 2)
@@ -166,6 +183,10 @@ def test_interconnected_system_has_the_figures_blocks():
     np.testing.assert_allclose(system.output(0.0, x, reference), [*x, *tau])
     rate = system.dynamics(0.0, x, reference)
     np.testing.assert_allclose(rate[2:], ARM.forward_dynamics(x[:2], x[2:], tau))
+    # friction of each joint by its own velocity
+    rate = feedforward_system(ARM, ARM, KP, KD, VISCOUS).dynamics(0.0, x, reference)
+    left = tau - [VISCOUS[0] * -0.3, VISCOUS[1] * 0.2]
+    np.testing.assert_allclose(rate, [-0.3, 0.2, *ARM.forward_dynamics(x[:2], x[2:], left)])
 
 
 def test_gravity_belongs_to_the_system_too():
