@@ -98,6 +98,15 @@ def test_values_are_those_of_plain_arithmetic(x, y, c):
     assert all(n <= e for n, e in zip(needed, executed))
 
 
+def test_sums_and_products_do_not_depend_on_the_order():
+    tape, x, y = made(x=3.0, y=4.0)
+    assert tape.needed([x + y, y + x]) == Operations(0, 1)
+    assert tape.needed([x - y, -y + x]) == Operations(0, 1)
+    assert tape.needed([-(x + y), -y - x]) == Operations(0, 1)
+    assert tape.needed([x * y, y * x]) == Operations(1, 0)
+    assert [s.value for s in (y + x, -y + x, -y - x)] == [7.0, -1.0, -7.0]
+
+
 def test_numpy_numbers_keep_the_tally():
     _, x = made(x=3.0)
     for result in (np.float64(2.0) * x, x * np.float64(2.0), np.float64(4.0) + x + 2.0 - 3.0):

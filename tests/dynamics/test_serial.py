@@ -131,6 +131,16 @@ def test_states_broadcast():
     np.testing.assert_allclose(together[2, 1], single, atol=1e-12)
 
 
+def test_states_in_a_block_are_states_by_themselves():
+    arm = random_arm(3, seed=4)
+    block = [x.reshape(5, 4, 3) for x in states(3, n=20)]
+    for way in (arm.newton_euler, arm.lagrange_euler, arm.recursive_lagrange):
+        tau = way(*block)
+        assert tau.shape == (5, 4, 3)
+        for k in np.ndindex(5, 4):
+            np.testing.assert_allclose(tau[k], way(*(x[k] for x in block)), rtol=1e-9, atol=1e-9)
+
+
 def test_an_arm_cut_off_is_the_arm_with_fewer_links():
     arm = random_arm(5, seed=2)
     assert arm.first(3) == SerialArm(arm.links[:3], arm.gravity) and arm.first(5) == arm

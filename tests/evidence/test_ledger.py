@@ -127,6 +127,18 @@ def test_a_changed_result_changes_the_table(monkeypatch, questions):
     assert "test 12" not in questions[question][2]
 
 
+def test_one_network_of_many_is_the_median(monkeypatch):
+    content = results.read("table-4-1")
+    errors = content["setups"]["state feedback"]["21"]["errors"]
+    count = len(errors["test"])
+    errors["test"] = [0.2] * (count - 2) + [7.0, 0.1]
+    changed(monkeypatch, "table-4-1", lambda: content)
+    (row,) = [row for row in ledger.open_questions().rows if "one network worth" in row[0]]
+    assert row[1:] == (
+        f"the median of {count} counts", "test 0.20", f"one of the {count}: test 0.10 to 7.0"
+    )  # fmt: skip
+
+
 def test_arms_at_random(monkeypatch):
     rows = [
         {str(w): {"training": [0.1 * k], "test": [abs(w - best)]} for w in (11, 21, 41)}

@@ -245,6 +245,11 @@ def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     with pytest.raises(SystemExit):
         reproduce.main(["table-9-9"])
     assert "parts must be among longer, clean, got 'table-9-9'" in capsys.readouterr().err
+    for jobs in ("0", "-1"):
+        with pytest.raises(SystemExit):
+            reproduce.main(["--jobs", jobs])
+        assert f"jobs must be 1 or more, got {jobs}" in capsys.readouterr().err
+    assert len(parts) == 4
 
 
 def test_studies_hide_their_helpers():

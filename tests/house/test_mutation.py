@@ -141,6 +141,16 @@ def test_which_tests_run(monkeypatch):
     ]  # fmt: skip
 
 
+def test_constants_are_tried_by_the_tests_of_their_module():
+    """A module of constants runs when it is imported, and no line of it in any test."""
+    (mutant, *_) = mutants_of("arm", "MASS = 3.0\n")
+    files = {
+        "t/test_x.py": known({"t/test_x.py::a": 1.0}, {}),
+        "t/test_arm.py": known({"t/test_arm.py::a": 1.0}, {}),
+    }
+    assert mutation.tests_for(mutant, files) == ["t/test_arm.py::a"]
+
+
 def test_scores_count_the_equivalent_apart():
     mutants = mutation.draw(1, 4, "library")
     outcomes = ["killed", "killed", "survived", "survived"]

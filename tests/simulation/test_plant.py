@@ -161,6 +161,18 @@ def test_a_hanging_arm_rests_where_it_is_held():
     assert np.abs(creeping[-1] - q).max() > 1e-3
 
 
+@pytest.mark.parametrize("step", [0.002, 0.01])
+def test_a_joint_that_stops_neither_turns_round_nor_starts_again(step):
+    """Each joint holds far more than the other one's braking can put on it."""
+    friction = StickSlipFriction((2.0, 0.6), (50.0, 20.0), speed=1e-4)
+    q, qd = np.random.default_rng(0).uniform(-2, 2, (2, 60, 2))
+    plant = Plant(ARM, stick(friction))
+    _, v = march(plant, q, qd, np.zeros(2), step, round(1.2 / step))
+    assert (v[1:] * v[:-1] >= 0).all()
+    assert not v[1:][v[:-1] == 0].any()
+    assert 20 < np.count_nonzero(v[-1] == 0)  # that many have come to rest
+
+
 def test_sliding_distance_in_closed_form():
     """One joint against constant friction stops after J v^2 / (2 F) and J v / F seconds."""
     level = np.array([2.0, 1e6])  # the elbow cannot move

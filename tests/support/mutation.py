@@ -261,6 +261,8 @@ def tests_for(mutant: Mutant, known: dict) -> list[str]:
         direct = {test for line in body for test in lines.get(str(line), ())}
         if mutant.at_import and not direct:  # a constant: whoever uses its module
             direct = {test for tests in lines.values() for test in tests}
+            if Path(name).name == own:  # which may hold nothing but constants
+                direct = set(found["seconds"])
         for test, seconds in found["seconds"].items():
             if direct and test not in found["failed"] and STALENESS not in test:
                 chosen.append((test not in direct, Path(name).name != own, seconds, test))
