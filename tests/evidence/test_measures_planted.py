@@ -284,7 +284,9 @@ def test_cells_that_are_not_accurate(plant):
         "position feedback 11: 0.20, position feedback 41: 2.0, state feedback 41: 0.20"
     )
     assert "above 0.01 are 5 of 6 cells" in of_windows.accurate(0.01).text
-    assert of_windows.accurate(0.2).text.endswith("above 0.2 are 1 of 6 cells: position feedback 41: 2.0")
+    assert of_windows.accurate(0.2).text.endswith(
+        "above 0.2 are 1 of 6 cells: position feedback 41: 2.0"
+    )
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])

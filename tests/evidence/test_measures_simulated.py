@@ -472,10 +472,9 @@ def test_second_differences_of_rounded_positions():
 @pytest.mark.parametrize("bits", range(14, 21))
 def test_any_encoder_may_be_the_first_that_is_slight(monkeypatch, bits):
     """The noise halves with each bit: a level between two encoders tells them apart."""
-    share_of_16 = max(
-        int(x) for x in re.findall(r"(\d+) % (?:of the torque )?at the", real_arm.sensor_noise().text)
-    )
-    monkeypatch.setattr(real_arm, "SIGNIFICANT", 1.4 * share_of_16 / 100 * 2.0 ** (16 - bits))
+    text = real_arm.sensor_noise().text
+    of_16 = max(int(x) / 100 for x in re.findall(r"(\d+) % (?:of the torque )?at the", text))
+    monkeypatch.setattr(real_arm, "SIGNIFICANT", 1.4 * of_16 * 2.0 ** (16 - bits))
     assert real_arm.sensor_noise().value == bits
 
 

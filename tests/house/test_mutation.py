@@ -167,3 +167,6 @@ def test_judgements_have_reasons():
     assert all(set(entry) == {"id", "where", "change", "why"} for entry in entries)
     assert all(len(entry["why"].split()) >= 4 for entry in entries)
     assert len({entry["id"] for entry in entries}) == len(entries)
+    modules = {mutant.id: mutant.module for mutant in mutation.every_mutant()}
+    for entry in entries:  # an identifier lives as long as its line and its module's name
+        assert modules.get(entry["id"]) == entry["where"].split(",")[0], entry

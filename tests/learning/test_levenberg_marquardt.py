@@ -219,7 +219,7 @@ def test_a_linear_problem_takes_one_step(data):
 
 @pytest.mark.parametrize(
     "ratio, factor",
-    [(4.0, 1 / 3), (1.0, 1 / 3), (0.9, 0.488), (0.75, 7 / 8), (0.5, 1.0), (0.25, 9 / 8), (1e-3, 2.0)],
+    [(4, 1 / 3), (1, 1 / 3), (0.9, 0.488), (0.75, 7 / 8), (0.5, 1), (0.25, 9 / 8), (1e-3, 2)],
 )
 @pytest.mark.parametrize("failures, growth", [(0, 1), (1, 2), (3, 2 * 4 * 8)])
 def test_damping_follows_the_rule_of_nielsen(ratio, factor, failures, growth):
