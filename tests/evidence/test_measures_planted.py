@@ -17,7 +17,7 @@ from ddlib.evidence.measures import (
 from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import number
+from ddlib.tables import significant
 
 STATE, POSITION = "state feedback", "position feedback"
 
@@ -256,7 +256,7 @@ def test_the_largest_tap_may_be_a_negative_one(plant):
     x = np.arange(-20, 21)
     parabola = x**2 - (x**2).mean()
     ends = 2 * parabola[0] / (parabola**2).sum()
-    assert of_windows.magnitudes(3, 41).text.endswith(f"the filter {number(ends / 2, 2)}")
+    assert of_windows.magnitudes(3, 41).text.endswith(f"the filter {significant(ends / 2, 2)}")
 
 
 def test_scaling_leaves_the_error():
