@@ -220,13 +220,9 @@ def _rotation(link, angle, zero):
 
 def _frame(link, angle, zero, one):
     """Orientation and origin of a link's frame in the one before, 4 x 4."""
-    c, s, ct, st = np.cos(angle), np.sin(angle), link.cos_twist, link.sin_twist
-    return [
-        [c, -s * ct, s * st, link.length * c],
-        [s, c * ct, -c * st, link.length * s],
-        [zero, st, ct, link.offset],
-        [zero, zero, zero, one],
-    ]
+    turn = _rotation(link, angle, zero)
+    origin = (link.length * turn[0][0], link.length * turn[1][0], link.offset)
+    return [*([*row, x] for row, x in zip(turn, origin)), [zero, zero, zero, one]]
 
 
 def _quarter_turn(frame, zero):

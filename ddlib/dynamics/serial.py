@@ -14,13 +14,7 @@ import numpy as np
 
 from ddlib._check import finite_array, integer, number
 from ddlib.dynamics.arm import STANDARD_GRAVITY, Link
-from ddlib.dynamics.formulations import (
-    Constants,
-    LinkConstants,
-    lagrange_euler,
-    newton_euler,
-    recursive_lagrange,
-)
+from ddlib.dynamics.formulations import Constants, LinkConstants, newton_euler
 
 
 @dataclass(frozen=True)
@@ -130,59 +124,22 @@ class SerialArm:
         integer("joints", joints, 1, self.joints)
         return SerialArm(self.links[:joints], self.gravity)
 
-    def newton_euler(self, q, qd, qdd) -> np.ndarray:
-        """Joint torques by recursive Newton-Euler.
+    def inverse_dynamics(self, q, qd, qdd, formulation: Callable = newton_euler) -> np.ndarray:
+        """Torque that produces acceleration `qdd` in state `q`, `qd`.
 
         Parameters
         ----------
         q, qd, qdd : array_like, shape (..., joints)
             Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+        formulation : callable
+            `newton_euler`, `lagrange_euler` or `recursive_lagrange` of
+            `ddlib.dynamics.formulations`: they agree, at different cost.
 
         Returns
         -------
         ndarray, shape (..., joints)
             Torques, N m.
-
-        Source: Luh, Walker & Paul 1980.
         """
-        return self._run(newton_euler, q, qd, qdd)
-
-    def lagrange_euler(self, q, qd, qdd) -> np.ndarray:
-        """Joint torques by the closed Lagrange-Euler form with 4 x 4 matrices.
-
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., joints)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-
-        Returns
-        -------
-        ndarray, shape (..., joints)
-            Torques, N m.
-
-        Source: Uicker 1965 and Kahn 1969, as Hollerbach 1980 counts them.
-        """
-        return self._run(lagrange_euler, q, qd, qdd)
-
-    def recursive_lagrange(self, q, qd, qdd) -> np.ndarray:
-        """Joint torques by the recursive Lagrangian form with 3 x 3 matrices.
-
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., joints)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-
-        Returns
-        -------
-        ndarray, shape (..., joints)
-            Torques, N m.
-
-        Source: Hollerbach 1980.
-        """
-        return self._run(recursive_lagrange, q, qd, qdd)
-
-    def _run(self, formulation, q, qd, qdd):
-        """The torques of a formulation on arrays of states."""
         state = (finite_array(n, x, self.joints) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
         state = np.broadcast_arrays(*state)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))

@@ -21,7 +21,7 @@ def test_code_agrees_with_the_recursion(n, gravity):
     derivation, arm = derive(n, bool(gravity)), links(n)
     q, qd, qdd = states(n)
     numbers = (*q.T, *qd.T, *qdd.T, *derivation.base_values(arm, gravity))
-    wanted = SerialArm.planar(arm, gravity).newton_euler(q, qd, qdd)
+    wanted = SerialArm.planar(arm, gravity).inverse_dynamics(q, qd, qdd)
     for function in (derivation.function, derivation.printed_function):
         tau = np.stack(np.broadcast_arrays(*function(*numbers)), -1)
         np.testing.assert_allclose(tau, wanted, atol=1e-11 * np.abs(wanted).max())

@@ -13,6 +13,8 @@ from ddlib.dynamics import (
     Link,
     SerialArm,
     SpatialLink,
+    lagrange_euler,
+    recursive_lagrange,
 )
 
 CMU = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
@@ -42,10 +44,11 @@ def random_arm(joints, seed) -> SerialArm:
 @pytest.mark.parametrize("joints", range(1, 7))
 def test_newton_and_lagrange_agree_on_general_arms(joints):
     arm, motion = random_arm(joints, seed=joints), states(joints, n=20)
-    newton = arm.newton_euler(*motion)
+    newton = arm.inverse_dynamics(*motion)
     assert newton.shape == (20, joints)
-    for lagrange in (arm.lagrange_euler, arm.recursive_lagrange):
-        np.testing.assert_allclose(lagrange(*motion), newton, atol=1e-10 * np.abs(newton).max())
+    for lagrange in (lagrange_euler, recursive_lagrange):
+        found = arm.inverse_dynamics(*motion, lagrange)
+        np.testing.assert_allclose(found, newton, atol=1e-10 * np.abs(newton).max())
 
 
 @pytest.mark.parametrize(
@@ -57,11 +60,11 @@ def test_planar_arms_agree_with_the_two_link_equations(links, plane, gravity):
     motion = states(2, n=1000)
     tau = plane.inverse_dynamics(*motion)
     arm = SerialArm.planar(links, gravity)
-    np.testing.assert_allclose(arm.newton_euler(*motion), tau, atol=1e-10)
-    np.testing.assert_allclose(arm.lagrange_euler(*motion), tau, atol=1e-10)
+    np.testing.assert_allclose(arm.inverse_dynamics(*motion), tau, atol=1e-10)
+    np.testing.assert_allclose(arm.inverse_dynamics(*motion, lagrange_euler), tau, atol=1e-10)
     made = Arm.from_links("same", *links, gravity=gravity)
     np.testing.assert_allclose(
-        arm.newton_euler(*motion), made.inverse_dynamics(*motion), atol=1e-10
+        arm.inverse_dynamics(*motion), made.inverse_dynamics(*motion), atol=1e-10
     )
 
 
@@ -72,13 +75,13 @@ def test_power_at_the_joints_is_the_rate_of_kinetic_energy(joints):
     q, qd, qdd = (x[:5] for x in states(joints, seed=3))
 
     def energy(q, qd):
-        columns = [arm.newton_euler(q, 0 * q, np.eye(joints)[j] + 0 * q) for j in range(joints)]
+        columns = [arm.inverse_dynamics(q, 0 * q, np.eye(joints)[j] + 0 * q) for j in range(joints)]
         return 0.5 * np.einsum("ni,jni,nj->n", qd, np.array(columns), qd)
 
     h = 1e-5
     after = energy(q + h * qd + h**2 / 2 * qdd, qd + h * qdd)
     before = energy(q - h * qd + h**2 / 2 * qdd, qd - h * qdd)
-    power = (qd * arm.newton_euler(q, qd, qdd)).sum(-1)
+    power = (qd * arm.inverse_dynamics(q, qd, qdd)).sum(-1)
     np.testing.assert_allclose((after - before) / (2 * h), power, rtol=1e-6)
 
 
@@ -87,12 +90,12 @@ def test_power_at_the_joints_is_the_rate_of_kinetic_energy(joints):
 
 def test_weight_of_the_puma():
     known = [0.0, 31.6399, 6.0351, 0.0, 0.0283, 0.0]
-    np.testing.assert_allclose(PUMA_560.newton_euler(READY, REST, REST), known, atol=6e-5)
+    np.testing.assert_allclose(PUMA_560.inverse_dynamics(READY, REST, REST), known, atol=6e-5)
 
 
 def test_inertia_of_the_puma_with_its_rotors():
-    weight = PUMA_560.newton_euler(READY, REST, REST)
-    links = PUMA_560.newton_euler(READY, REST, np.eye(6)) - weight
+    weight = PUMA_560.inverse_dynamics(READY, REST, REST)
+    links = PUMA_560.inverse_dynamics(READY, REST, np.eye(6)) - weight
     rotors = np.array(PUMA_560_ROTORS) * np.array(PUMA_560_GEARS) ** 2
     known = [
         [3.6594, -0.4044, 0.1006, -0.0025, 0.0, 0.0],
@@ -115,8 +118,8 @@ def test_velocity_torques_of_the_puma():
         [-0.0002, 0.0028, 0.0046, -0.0002, 0.0, 0.0],
         [0.0001, 0.0, 0.0, 0.0, 0.0, 0.0],
     ]
-    weight = PUMA_560.newton_euler(READY, REST, REST)
-    moving = PUMA_560.newton_euler(READY, qd, REST) - weight
+    weight = PUMA_560.inverse_dynamics(READY, REST, REST)
+    moving = PUMA_560.inverse_dynamics(READY, qd, REST) - weight
     np.testing.assert_allclose(moving, np.array(known) @ qd, atol=6e-5 * np.abs(qd).sum())
 
 
@@ -125,9 +128,9 @@ def test_velocity_torques_of_the_puma():
 
 def test_states_broadcast():
     arm, (q, qd, qdd) = random_arm(3, seed=1), states(3, n=4)
-    together = arm.newton_euler(q[:, None], qd[None], 0.0 * qdd[0])
+    together = arm.inverse_dynamics(q[:, None], qd[None], 0.0 * qdd[0])
     assert together.shape == (4, 4, 3)
-    single = arm.newton_euler(q[2], qd[1], 0 * qdd[0])
+    single = arm.inverse_dynamics(q[2], qd[1], 0 * qdd[0])
     np.testing.assert_allclose(together[2, 1], single, atol=1e-12)
 
 
@@ -178,6 +181,6 @@ def test_arms_refuse_what_is_no_arm():
     with pytest.raises(ValueError, match="gravity must have"):
         SerialArm([link], (0.0, -9.81))
     with pytest.raises(ValueError, match="qd must be finite"):
-        SerialArm([link]).newton_euler([0.0], [np.inf], [0.0])
+        SerialArm([link]).inverse_dynamics([0.0], [np.inf], [0.0])
     with pytest.raises(ValueError, match="q must have a last axis"):
-        SerialArm([link]).lagrange_euler([0.0, 1.0], [0.0], [0.0])
+        SerialArm([link]).inverse_dynamics([0.0, 1.0], [0.0], [0.0])

@@ -104,7 +104,7 @@ def extra_links(samples: int = 4000) -> Measured:
 
     def torque(*moving):
         held = np.isin(np.arange(4), moving)
-        return arm.newton_euler(q, *(held * part for part in motion)) - arm.newton_euler(
+        return arm.inverse_dynamics(q, *(held * part for part in motion)) - arm.inverse_dynamics(
             q, *(0 * motion)
         )
 
