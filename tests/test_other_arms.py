@@ -14,8 +14,7 @@ from scipy.interpolate import make_interp_spline
 from ddlib.analysis import decompose
 from ddlib.control import pd
 from ddlib.dynamics import Arm
-from ddlib.effects import Effects, Noise, Quantisation
-from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
 from ddlib.experiments import predict
 from ddlib.identification import (
     FRICTION,
@@ -28,8 +27,7 @@ from ddlib.identification import (
     repeat,
     true_parameters,
 )
-from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 

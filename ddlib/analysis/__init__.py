@@ -16,9 +16,9 @@ __getattr__, __dir__, __all__ = hand_on(
         "CLASSES DERIVATIVES Decomposition basis classify content decompose frequency_response "
         "purest roughness savitzky_golay shares upright"
     ),
-    following="LAYERS QUANTITIES Responses explained gains mean_gradient summary",
+    following="followed LAYERS QUANTITIES Responses explained gains mean_gradient summary",
     hidden_units="ablation cancellation match net_inputs saturated transition_width",
-    sensitivity="INPUTS input_shares shuffled transition_centre transition_range",
+    sensitivity="responses INPUTS input_shares shuffled transition_centre transition_range",
     coverage="cells_reached principal_deviations log10_reachable_share used_dimensions",
     noise="acceleration_noise_gain noise_floor",
     simplified=(

@@ -82,7 +82,7 @@ class Responses(NamedTuple):
         return self.alone.argmax(-1)
 
 
-def responses(f, windows, states) -> Responses:
+def followed(f, windows, states) -> Responses:
     """What the filters of units follow, each joint's filter by itself.
 
     Parameters
@@ -191,7 +191,7 @@ def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict
     model : TorqueModel
         An ensemble.
     windows, states
-        As in `responses`.
+        As in `followed`.
     step : float
         Sampling period of the windows, s.
 
@@ -208,7 +208,7 @@ def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict
         f = getattr(model.weights, attribute)
         if f.ndim != 4:
             raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
-        names, heard = classify(f), responses(f, windows, states)
+        names, heard = classify(f), followed(f, windows, states)
         found[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},

@@ -1,7 +1,7 @@
 """Controllers of the joints, and the linear analysis of their loops.
 
 - ``controllers``: proportional, PD and PID control, feedforward, computed torque
-- ``linear``: loops as python-control systems: poles, margins, limits of the gain
+- ``linear``: loops as python-control systems: poles, `margins` of gain and phase
 - ``delays``: poles of a sampled loop whose torque comes late
 - ``velocity``: velocity from position readings, noise against lag
 """

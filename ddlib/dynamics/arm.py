@@ -3,7 +3,7 @@
 The equations of motion are ``M(q) qdd + C(q, qd) qd + g(q) = tau``. For two
 links they need only five constants: the base inertial parameters `a`, `b`, `d`
 and, in a vertical plane, two gravity moments. Everything that is not rigid-body
-mechanics (friction, quantisation, ...) lives in `ddlib.effects.real_arm`.
+mechanics (friction, quantisation, ...) lives in `ddlib.effects`.
 
 Arrays are ``(..., joint)`` with joint 0 the shoulder and joint 1 the elbow;
 angles are in rad and, for arms with gravity, counted from hanging straight down.

@@ -14,19 +14,11 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ddlib._check import integer, non_negative, number
-from ddlib.effects.actuators import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation
+from ddlib.effects.actuators import ComputingTime, Saturation
 from ddlib.effects.friction import (
     CoulombFriction,
-    StickSlipFriction,
-    StribeckFriction,
     ViscousFriction,
 )
-
-__all__ = [
-    "CMU_DD_ARM_II_EFFECTS", "IDEAL", "Backlash", "ComputingTime", "CoulombFriction", "DeadZone",
-    "Delay", "Effects", "FlexibleJoint", "Noise", "Quantisation", "Ripple", "Saturation",
-    "StickSlipFriction", "StribeckFriction", "ViscousFriction", "started",
-]  # fmt: skip
 
 
 @dataclass(frozen=True)

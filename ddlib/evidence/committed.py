@@ -9,7 +9,7 @@ import numpy as np
 
 from ddlib.experiments import SETUPS, STATE_FEEDBACK, results, split
 from ddlib.learning import TorqueModel, Weights
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import Recording
 
 
 @cache

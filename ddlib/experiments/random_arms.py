@@ -11,8 +11,13 @@ from scipy.stats import qmc
 from ddlib import paper
 from ddlib._check import integer, number, one_of
 from ddlib.control import pd
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Noise, Quantisation
-from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    CoulombFriction,
+    Noise,
+    Quantisation,
+    ViscousFriction,
+)
 from ddlib.experiments.setups import KD, KP, STATE_FEEDBACK, Setup
 
 RANGES = {

@@ -16,10 +16,10 @@ from ddlib.learning import (
     TorqueModel,
     TrainingSet,
     Weights,
+    cases,
     sliding_windows,
     train_ensemble,
 )
-from ddlib.learning.training import cases
 from ddlib.metrics import rmss
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I

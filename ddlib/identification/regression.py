@@ -16,8 +16,7 @@ from scipy.stats import t as student
 
 from ddlib._check import finite_array, integer, number
 from ddlib.dynamics import Arm
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
 
 RIGID = ("a", "b", "d")

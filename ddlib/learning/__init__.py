@@ -16,12 +16,12 @@ __getattr__, __dir__, __all__ = hand_on(
     descent="Descent prepare",
     training=(
         "BLOCK History MAX_RATE TARGET_RANGE TrainingDiverged TrainingSet WARM_UP_MOMENTUM WORKERS "
-        "check_points default_rate train train_ensemble"
+        "cases check_points default_rate train train_ensemble"
     ),
     gauss_newton="Objective penalty",
     levenberg_marquardt="NotConverged Solution solve",
     parity_networks=(
         "CODINGS MOST_BITS NETWORKS UnitNetwork counter direct learn monomials one_layer parity "
-        "patterns right tree"
+        "parity_cases patterns right tree"
     ),
 )

@@ -263,7 +263,7 @@ NETWORKS = {
 """Networks that compute parity, by name: functions of the number of bits."""
 
 
-def cases(bits: int, coding: str = "bits") -> tuple[np.ndarray, np.ndarray]:
+def parity_cases(bits: int, coding: str = "bits") -> tuple[np.ndarray, np.ndarray]:
     """All inputs and their parity as cases for training.
 
     Returns
@@ -336,7 +336,7 @@ def learn(
     number("rate", rate, 0.0, open_low=True)
     number("momentum", momentum, 0.0, 0.999)
     integer("epochs", epochs, integer("every", every, 1))
-    x, y = cases(bits, coding)
+    x, y = parity_cases(bits, coding)
     start = Weights.random(members, bits, hidden, 1, 1, initial, seed)
     descent = Descent(start, x, y, rate / len(x), momentum)
     learned = np.full(members, np.inf)

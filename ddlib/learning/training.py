@@ -19,7 +19,7 @@ from ddlib._check import finite_array, integer, number
 from ddlib.learning.descent import Descent, prepare
 from ddlib.learning.network import TorqueModel, Weights, WindowNetwork
 from ddlib.learning.windows import Scaler, sliding_windows
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import Recording
 
 TARGET_RANGE = (0.2, 0.8)
 """Range of the output units that the torques are scaled to (Lang 1988)."""

@@ -15,8 +15,7 @@ import numpy as np
 from ddlib._check import finite_array, integer, non_negative, number
 from ddlib.control import PID, closed_loop, plant
 from ddlib.dynamics import Arm
-from ddlib.effects import IDEAL, Effects
-from ddlib.effects.real_arm import ViscousFriction
+from ddlib.effects import IDEAL, Effects, ViscousFriction
 from ddlib.simulation.recording import Recording
 from ddlib.simulation.simulate import CONTROL_STEP, follow
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place

@@ -4,7 +4,8 @@
   after what the reader handles; ``hinton``: the diagram that two of them share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
 - ``parts``: parameters, panels, pads; ``baking``: values and a still for pages without a kernel
-- ``static``: the page's half, a script for each: ``picker.js`` draws the picker
+- ``static``: the page's half: scripts that all widgets share (``curves.js``, ...), and one more for
+  each that draws something of its own (``picker.js``)
 """
 
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module

@@ -7,8 +7,7 @@ import numpy as np
 from ddlib._check import finite_array, integer
 from ddlib.experiments import errors
 from ddlib.learning import TorqueModel
-from ddlib.simulation import LOG_STEP
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
     EXACT,

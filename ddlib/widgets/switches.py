@@ -10,12 +10,19 @@ import numpy as np
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import Delay, Effects, Quantisation, started
-from ddlib.effects.real_arm import CoulombFriction, DeadZone, Saturation, ViscousFriction
+from ddlib.effects import (
+    CoulombFriction,
+    DeadZone,
+    Delay,
+    Effects,
+    Quantisation,
+    Saturation,
+    ViscousFriction,
+    started,
+)
 from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.simulation import CONTROL_STEP, follow
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel, Scalar

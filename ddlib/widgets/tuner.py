@@ -6,8 +6,7 @@ import numpy as np
 
 from ddlib.control import PID, Feedforward, margins, opened_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import ViscousFriction
+from ddlib.effects import Effects, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, follow

@@ -8,8 +8,7 @@ import numpy as np
 
 from ddlib._check import finite_array
 from ddlib.learning import TorqueModel, sliding_windows
-from ddlib.simulation import LOG_STEP
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice

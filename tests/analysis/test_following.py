@@ -3,8 +3,15 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import LAYERS, explained, gains, mean_gradient, savitzky_golay, summary
-from ddlib.analysis.following import responses
+from ddlib.analysis import (
+    LAYERS,
+    explained,
+    followed,
+    gains,
+    mean_gradient,
+    savitzky_golay,
+    summary,
+)
 from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)
@@ -34,7 +41,7 @@ def test_explained_is_the_squared_correlation():
 
 def test_textbook_filters_follow_what_they_measure():
     f = np.stack([TAPS, TAPS], 1)  # (3 filters, joint, width)
-    found = responses(f, WINDOWS, STATES)
+    found = followed(f, WINDOWS, STATES)
     assert found.alone.shape == (3, 2, 3) and found.together.shape == (3, 2)
     np.testing.assert_array_equal(found.strongest, [[0, 0], [1, 1], [2, 2]])
     np.testing.assert_allclose(found.together, 1, atol=1e-9)
@@ -53,7 +60,7 @@ def test_shares_of_a_known_mixture():
     f = np.array([[[1.0, 2.0, 4.0]]])
     gain = np.array([[1, 1, 1], X[:3], X[:3] ** 2 / 2]) @ f[0, 0]
     part = (gain * (0.3, 0.5, 4.0)) ** 2
-    found = responses(f, windows, states)
+    found = followed(f, windows, states)
     np.testing.assert_allclose(found.alone[0, 0], part / part.sum(), atol=5e-3)
     np.testing.assert_allclose(found.unique[0, 0], part / part.sum(), atol=5e-3)
 
@@ -64,7 +71,7 @@ def test_what_two_share_belongs_to_neither():
     states[..., 2] = -2 * states[..., 0]
     windows = states[..., :1] + states[..., 1:2] * X + states[..., 2:] * X**2 / 2
     f = np.stack([np.stack([t, t]) for t in TAPS])
-    found = responses(f, windows, states)
+    found = followed(f, windows, states)
     np.testing.assert_allclose(found.alone[..., 0], found.alone[..., 2], atol=1e-9)
     np.testing.assert_allclose(found.unique[:, :, [0, 2]], 0, atol=1e-9)
     assert (found.alone[[0, 2], :, 0] > 0.999).all()
@@ -73,7 +80,7 @@ def test_what_two_share_belongs_to_neither():
 def test_joints_are_kept_apart():
     f = np.zeros((1, 2, WIDTH))
     f[0, 0], f[0, 1] = TAPS[2], TAPS[1]
-    np.testing.assert_array_equal(responses(f, WINDOWS, STATES).strongest, [[2, 1]])
+    np.testing.assert_array_equal(followed(f, WINDOWS, STATES).strongest, [[2, 1]])
 
 
 def ensemble(members=3):
@@ -130,8 +137,8 @@ ONE = np.ones((1, 2, WIDTH))
         (lambda: explained([1.0, 2.0]), "by"),
         (lambda: explained([1.0, 1.0], [1.0, 2.0]), "target"),
         (lambda: explained([1.0, np.nan], [1.0, 2.0]), "target"),
-        (lambda: responses(ONE[..., :5], WINDOWS, STATES), "windows"),
-        (lambda: responses(ONE, WINDOWS, STATES[:5]), "states"),
+        (lambda: followed(ONE[..., :5], WINDOWS, STATES), "windows"),
+        (lambda: followed(ONE, WINDOWS, STATES[:5]), "states"),
         (lambda: gains(np.ones(4)), "f"),
         (lambda: gains(np.ones(5), 0.0), "step"),
         (lambda: summary(ensemble()[0], WINDOWS, STATES), "model"),

@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ddlib.analysis import INPUTS, input_shares, shuffled, transition_centre, transition_range
-from ddlib.analysis.sensitivity import responses
+from ddlib.analysis import (
+    INPUTS,
+    input_shares,
+    responses,
+    shuffled,
+    transition_centre,
+    transition_range,
+)
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.experiments import random_states, torque
 from ddlib.learning import TorqueModel, TrainingSet, Weights

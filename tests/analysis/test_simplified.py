@@ -5,8 +5,7 @@ import pytest
 
 from ddlib.analysis import linear_residual, share_of_other_joint, share_of_velocity_terms
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
-from ddlib.effects import IDEAL, Effects
-from ddlib.effects.real_arm import CoulombFriction
+from ddlib.effects import IDEAL, CoulombFriction, Effects
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
 MOTION = pick_and_place(APPENDIX_I[:3], np.arange(300) * 0.01)

@@ -11,8 +11,7 @@ from scipy.integrate import solve_ivp
 
 from ddlib.control import PID, ComputedTorque, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import ViscousFriction
+from ddlib.effects import Effects, ViscousFriction
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place, time_grid
 

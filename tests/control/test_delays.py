@@ -6,8 +6,7 @@ import pytest
 
 from ddlib.control import late_poles, linear, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.effects import Delay, Effects
-from ddlib.effects.real_arm import ComputingTime, ViscousFriction
+from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import Trajectory

@@ -16,8 +16,7 @@ from ddlib.control import (
     proportional_limit,
 )
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import Delay, Effects
-from ddlib.effects.real_arm import ViscousFriction
+from ddlib.effects import Delay, Effects, ViscousFriction
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
 

@@ -11,19 +11,17 @@ from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
     Backlash,
-    Delay,
-    Effects,
-    Noise,
-    Quantisation,
-    started,
-)
-from ddlib.effects.real_arm import (
     ComputingTime,
     CoulombFriction,
+    Delay,
+    Effects,
     FlexibleJoint,
+    Noise,
+    Quantisation,
     Ripple,
     Saturation,
     ViscousFriction,
+    started,
 )
 
 

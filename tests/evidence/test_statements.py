@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.evidence import resampled, stated
-from ddlib.evidence.statements import DRAWS
+from ddlib.evidence import DRAWS, resampled, stated
 
 
 def test_what_is_so_passes_and_shows_nothing():

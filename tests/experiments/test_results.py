@@ -26,8 +26,7 @@ from ddlib.experiments import (
 )
 from ddlib.experiments.studies import PARTS
 from ddlib.experiments.studies.harmonics import NAME
-from ddlib.learning import TorqueModel, Weights
-from ddlib.learning.training import cases
+from ddlib.learning import TorqueModel, Weights, cases
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
 

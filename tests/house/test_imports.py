@@ -111,6 +111,18 @@ def test_a_package_hands_on_names_that_exist_and_once(package):
 
 
 @each_file
+def test_other_packages_are_reached_by_the_names_that_they_hand_on(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.ImportFrom) or not (node.module or "").startswith("ddlib."):
+            continue
+        package, _, inside = node.module.removeprefix("ddlib.").partition(".")
+        handed_on = getattr(importlib.import_module(f"ddlib.{package}"), "__all__", ())
+        if inside and package != room_of(path):
+            names = {alias.name for alias in node.names} & set(handed_on)
+            assert not names, f"import {', '.join(sorted(names))} from ddlib.{package}"
+
+
+@each_file
 def test_modules_are_short(path):
     assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST
 

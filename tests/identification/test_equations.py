@@ -7,8 +7,16 @@ import pytest
 
 from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, Noise, Quantisation
-from ddlib.effects.real_arm import ComputingTime, CoulombFriction, ViscousFriction
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    IDEAL,
+    ComputingTime,
+    CoulombFriction,
+    Effects,
+    Noise,
+    Quantisation,
+    ViscousFriction,
+)
 from ddlib.identification import (
     FRICTION,
     GRAVITY,

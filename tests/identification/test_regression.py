@@ -5,8 +5,7 @@ import pytest
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
-from ddlib.effects import IDEAL, Effects
-from ddlib.effects.real_arm import CoulombFriction, ViscousFriction
+from ddlib.effects import IDEAL, CoulombFriction, Effects, ViscousFriction
 from ddlib.identification import (
     FRICTION,
     GRAVITY,

@@ -129,7 +129,7 @@ def test_learning_finds_exclusive_or_and_says_when():
     weights, epochs = parity_networks.learn(2, 2, members=4, epochs=600, every=10)
     assert isinstance(weights, Weights) and len(weights) == 4
     assert np.isfinite(epochs).all() and (epochs % 10 == 0).all()
-    x, y = parity_networks.cases(2)
+    x, y = parity_networks.parity_cases(2)
     assert (parity_networks.right(weights, x, y) == 1).all()
     early, none = parity_networks.learn(2, 2, members=4, epochs=10, every=10)
     assert np.isinf(none).all() and (parity_networks.right(early, x, y) < 1).all()
@@ -152,7 +152,7 @@ def test_learning_starts_from_the_first_seeds():
 
 def test_cases_in_both_codings():
     (bits, y), (signs, same) = (
-        parity_networks.cases(3, coding) for coding in parity_networks.CODINGS
+        parity_networks.parity_cases(3, coding) for coding in parity_networks.CODINGS
     )
     assert bits.shape == signs.shape == (8, 1, 3) and set(np.unique(signs)) == {-1, 1}
     np.testing.assert_array_equal(signs, 1 - 2 * bits)
@@ -182,7 +182,7 @@ def test_cases_in_both_codings():
         (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
         (lambda: parity_networks.learn(2, 0), "hidden must be an integer from 1"),
-        (lambda: parity_networks.cases(2, "words"), "coding must be one of"),
+        (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),
     ],
 )
 def test_refusals(call, words):

@@ -18,6 +18,7 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     WindowNetwork,
+    cases,
     check_points,
     default_rate,
     prepare,
@@ -26,7 +27,6 @@ from ddlib.learning import (
     train_ensemble,
     training,
 )
-from ddlib.learning.training import cases
 from ddlib.metrics import rmss
 
 NAMES = tuple(field.name for field in fields(Weights))

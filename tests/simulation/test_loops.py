@@ -5,11 +5,11 @@ import pytest
 
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import CoulombFriction, StickSlipFriction, ViscousFriction
+from ddlib.effects import CoulombFriction, Effects, StickSlipFriction, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.simulation import (
     Load,
+    Recording,
     SecondOrderModel,
     fast_pick_and_place,
     feedforward_system,
@@ -22,7 +22,6 @@ from ddlib.simulation import (
     simulated_response,
     smooth_pick_and_place,
 )
-from ddlib.simulation.simulate import Recording
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)

@@ -7,10 +7,10 @@ import pytest
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import (
+from ddlib.effects import (
     ComputingTime,
     CoulombFriction,
+    Effects,
     FlexibleJoint,
     Ripple,
     StickSlipFriction,

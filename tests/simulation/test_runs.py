@@ -6,12 +6,16 @@ import pytest
 
 from ddlib.control import PID, ComputedTorque, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
-from ddlib.effects import Backlash, Delay, Effects, Noise, Quantisation
-from ddlib.effects.real_arm import (
+from ddlib.effects import (
+    Backlash,
     ComputingTime,
     CoulombFriction,
     DeadZone,
+    Delay,
+    Effects,
     FlexibleJoint,
+    Noise,
+    Quantisation,
     Ripple,
     Saturation,
     StickSlipFriction,

@@ -11,11 +11,18 @@ from scipy.integrate import simpson, solve_ivp
 
 from ddlib.control import ComputedTorque, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm, Link
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, Noise, Quantisation
-from ddlib.effects.real_arm import CoulombFriction, Saturation, ViscousFriction
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    IDEAL,
+    CoulombFriction,
+    Effects,
+    Noise,
+    Quantisation,
+    Saturation,
+    ViscousFriction,
+)
 from ddlib.experiments import STATE_FEEDBACK
-from ddlib.simulation import follow, free_motion, record
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import Recording, follow, free_motion, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
 ARM = CMU_DD_ARM_II

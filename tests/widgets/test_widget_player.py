@@ -8,8 +8,7 @@ from traitlets import TraitError
 from widget_pages import NEXT_FRAME, READ, page_of, settings
 
 from ddlib.experiments import STATE_FEEDBACK, split
-from ddlib.learning import TorqueModel, TrainingSet, Weights
-from ddlib.learning.training import cases
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
 from ddlib.widgets.hinton import diagram
 from ddlib.widgets.player import TrainingPlayer
 

@@ -12,8 +12,7 @@ from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 
 from ddlib.control import PID, Feedforward, closed_loop, opened_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.effects import Effects
-from ddlib.effects.real_arm import ViscousFriction
+from ddlib.effects import Effects, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I

@@ -9,7 +9,7 @@ from widget_pages import NEXT_FRAME, READ, page_of, settings
 
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results, split
 from ddlib.learning import sliding_windows
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import Recording
 from ddlib.widgets.window import SlidingWindow
 
 MEMBER = 1

@@ -9,8 +9,7 @@ import numpy as np
 from ddlib import paper
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, median, over_members
-from ddlib.experiments import WINDOWS, results
-from ddlib.experiments.setups import INITIAL
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
 from ddlib.learning import (
     Descent,
     History,
@@ -37,7 +36,7 @@ def _data(width: int = 21) -> TrainingSet:
 
 def unit() -> Measured:
     """Largest difference between the networks' hidden activities and the printed formula."""
-    data, weights = _data(), Weights.random(1, 21, initial=INITIAL)[0]
+    data, weights = _data(), Weights.random(1, 21, initial=STATE_FEEDBACK.initial)[0]
     x = data.x.reshape(len(data.x), -1)
     net = x @ weights.hidden_weights.reshape(-1, x.shape[1]).T + weights.hidden_bias
     gap = np.abs(weights.activity(data.x)[0] - (1 + np.exp(-net)) ** -1).max()
@@ -103,7 +102,7 @@ def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
     bits : int
         Inputs and hidden units of the parity networks.
     """
-    start = Weights.random(SEEDS, 21, initial=INITIAL)
+    start = Weights.random(SEEDS, 21, initial=STATE_FEEDBACK.initial)
     windows, other = {}, {}
     for alpha, epochs in ((0.0, 2200), (momentum, 500)):
         options = dict(rate=default_rate(21), momentum=alpha, epochs=epochs, progress=False)
@@ -137,7 +136,7 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
     noise : float
         Standard deviation; the corners are 1 apart.
     """
-    x, y = parity_networks.cases(bits)
+    x, y = parity_networks.parity_cases(bits)
     rng = np.random.default_rng(0)
 
     def draw(copies):

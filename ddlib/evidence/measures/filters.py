@@ -13,17 +13,17 @@ from ddlib.analysis import (
     cancellation,
     classify,
     decompose,
+    followed,
     net_inputs,
     roughness,
     saturated,
     shares,
     transition_width,
 )
-from ddlib.analysis.following import responses
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, true_states
-from ddlib.learning.training import cases
+from ddlib.learning import cases
 from ddlib.metrics import rmss
 from ddlib.tables import scientific, significant, spread
 
@@ -100,7 +100,7 @@ def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -
     training = committed.training()
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
     f = getattr(committed.networks(width).weights, LAYERS[layer])
-    strongest = responses(f, cases(training, width)[0], states).strongest
+    strongest = followed(f, cases(training, width)[0], states).strongest
     each = (strongest == QUANTITIES.index(name)).mean((1, 2))
     share, draws = over_members(lambda x: x.mean(-1), each)
     counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))

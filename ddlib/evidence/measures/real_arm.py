@@ -20,8 +20,7 @@ from ddlib.effects import DeadZone, Effects, FlexibleJoint, Quantisation
 from ddlib.evidence.verdicts import Measured, turns_at
 from ddlib.experiments import STATE_FEEDBACK
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, record, residual_torque, rms
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow, record, residual_torque, rms
 from ddlib.tables import significant
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 

@@ -16,8 +16,7 @@ from ddlib.evidence.verdicts import Measured, turns_at
 from ddlib.experiments import KP, POSITION_FEEDBACK, RADIUS, SETUPS, STATE_FEEDBACK, WINDOWS
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
-from ddlib.simulation import LOG_STEP
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import LOG_STEP, Recording
 from ddlib.tables import scientific, significant
 from ddlib.trajectories import (
     APPENDIX_I,

@@ -9,8 +9,7 @@ from ddlib.analysis import classify, saturated, shares
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS
-from ddlib.learning import TrainingSet, Weights, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant

@@ -10,8 +10,7 @@ from ddlib.analysis import savitzky_golay
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
 from ddlib.experiments import SETUPS, STATE_FEEDBACK, WINDOWS, results
-from ddlib.learning import TrainingSet, Weights, default_rate, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant

@@ -8,7 +8,7 @@ from ddlib.analysis import summary
 from ddlib.experiments import results
 from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
 from ddlib.experiments.two_harmonics import ORDER, record_two_harmonics, true_states
-from ddlib.learning.training import cases
+from ddlib.learning import cases
 
 NAME = "two harmonics"
 """Name of the setup, under which its networks are kept."""

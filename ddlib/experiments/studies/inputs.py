@@ -6,11 +6,9 @@ import numpy as np
 
 from ddlib.analysis import savitzky_golay
 from ddlib.experiments.setups import STATE_FEEDBACK, split
-from ddlib.learning import TrainingSet, Weights, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
 from ddlib.metrics import rmss
-from ddlib.simulation import LOG_STEP
-from ddlib.simulation.simulate import Recording
+from ddlib.simulation import LOG_STEP, Recording
 
 
 def _states(recording: Recording, kind: str) -> np.ndarray:

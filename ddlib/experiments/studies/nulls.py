@@ -8,8 +8,7 @@ import numpy as np
 
 from ddlib.analysis import CLASSES, classify, roughness
 from ddlib.experiments.setups import STATE_FEEDBACK, split
-from ddlib.learning import NotConverged, TrainingSet, Weights, solve, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import NotConverged, TrainingSet, Weights, cases, solve, train_ensemble
 
 WIDTH = 21
 

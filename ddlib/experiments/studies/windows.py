@@ -8,8 +8,7 @@ import numpy as np
 
 from ddlib.analysis import CLASSES, classify, roughness, savitzky_golay
 from ddlib.experiments.setups import STATE_FEEDBACK, errors, split, train_windows
-from ddlib.learning import TrainingSet, Weights, train_ensemble
-from ddlib.learning.training import cases
+from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
 from ddlib.simulation import LOG_STEP
 
 SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
