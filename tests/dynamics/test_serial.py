@@ -14,6 +14,7 @@ from ddlib.dynamics import (
     SerialArm,
     SpatialLink,
     lagrange_euler,
+    newton_euler,
     recursive_lagrange,
 )
 
@@ -137,11 +138,12 @@ def test_states_broadcast():
 def test_states_in_a_block_are_states_by_themselves():
     arm = random_arm(3, seed=4)
     block = [x.reshape(5, 4, 3) for x in states(3, n=20)]
-    for way in (arm.newton_euler, arm.lagrange_euler, arm.recursive_lagrange):
-        tau = way(*block)
+    for formulation in (newton_euler, lagrange_euler, recursive_lagrange):
+        tau = arm.inverse_dynamics(*block, formulation)
         assert tau.shape == (5, 4, 3)
         for k in np.ndindex(5, 4):
-            np.testing.assert_allclose(tau[k], way(*(x[k] for x in block)), rtol=1e-9, atol=1e-9)
+            alone = arm.inverse_dynamics(*(x[k] for x in block), formulation)
+            np.testing.assert_allclose(tau[k], alone, rtol=1e-9, atol=1e-9)
 
 
 def test_an_arm_cut_off_is_the_arm_with_fewer_links():

@@ -98,11 +98,14 @@ def test_mobility_is_the_inverse_of_the_mass_matrix(flexible):
 
 # --- joints that stick ------------------------------------------------------------------
 
+SHORT_OF_ONE = st.floats(-1 + 1e-9, 1 - 1e-9)
+"""Share of the breakaway torque; of all of it, rounding decides whether it holds."""
+
 
 @settings(deadline=None, max_examples=50)
-@given(q=PAIR, share=st.tuples(st.floats(-1, 1), st.floats(-1, 1)).map(np.array))
+@given(q=PAIR, share=st.tuples(SHORT_OF_ONE, SHORT_OF_ONE).map(np.array))
 def test_a_stuck_arm_does_not_move_at_all(q, share):
-    """Up to the breakaway torque friction equals the applied torque, and does no work."""
+    """Below the breakaway torque friction equals the applied torque, and does no work."""
     x, v = march(Plant(ARM, stick()), q, np.zeros(2), share * STICKY.breakaway, 0.002, 20)
     assert (x == q).all() and not v.any()
 
