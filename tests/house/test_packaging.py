@@ -7,7 +7,6 @@ import tomllib
 from fnmatch import fnmatch
 
 import pytest
-from setuptools import find_packages
 from test_imports import PACKAGES, ROOT
 
 SETTINGS = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))
@@ -20,9 +19,11 @@ DATA = [
 
 
 def test_every_package_is_found():
-    found = set(find_packages(ROOT.parent, **TOOL["packages"]["find"]))
-    wanted = {".".join(p.relative_to(ROOT.parent).parts) for p in PACKAGES}
-    assert found == wanted | {"ddlib"}
+    (pattern,) = TOOL["packages"]["find"]["include"]
+    names = {".".join(p.relative_to(ROOT.parent).parts) for p in PACKAGES} | {"ddlib"}
+    assert all(fnmatch(name, pattern) for name in names) and not fnmatch("book", pattern)
+    folders = {path.parent for path in ROOT.rglob("*.py")}
+    assert folders == {ROOT, *PACKAGES}, "a folder without __init__.py is no package"
 
 
 @pytest.mark.parametrize("path", DATA)
