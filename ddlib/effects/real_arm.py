@@ -15,10 +15,7 @@ import numpy as np
 
 from ddlib._check import integer, non_negative, number
 from ddlib.effects.actuators import ComputingTime, Saturation
-from ddlib.effects.friction import (
-    CoulombFriction,
-    ViscousFriction,
-)
+from ddlib.effects.friction import CoulombFriction, ViscousFriction
 
 
 @dataclass(frozen=True)

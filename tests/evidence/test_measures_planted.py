@@ -247,6 +247,9 @@ def test_weights_fall_as_filters_do(plant):
     assert found.value == pytest.approx(fall / 2, rel=1e-6)
     assert found.text == f"{fall / 2:.2g} of the weight at 21, the filter {fall:.2g}"
     assert of_windows.magnitudes(11, 21).value == pytest.approx(largest(21) / largest(11), rel=1e-6)
+    beside = of_windows.magnitudes(beside_filters=True)
+    assert beside.value == pytest.approx(0.5, rel=1e-6)
+    assert beside.text == f"0.50 times the filter's ratio, as printed {4.2 / 11.7 / fall:.2g} times"
 
 
 def test_the_largest_tap_may_be_a_negative_one(plant):
@@ -463,10 +466,10 @@ def test_what_is_left_at_the_wide_window(plant_filters):
         return [*noise[:rough, :width], *[clean] * (4 - rough)]
 
     before = {"hidden": {w: noise[:, :w] for w in (21, 41)}}
-    for wide, ratio in ((3, 3.0), (1, 1.0), (0, 0.0)):
+    for wide, share in ((3, 0.75), (1, 0.25), (0, 0.0)):
         plant_filters({"hidden": {21: some(21, 1), 41: some(41, wide)}}, before)
         found = filters.not_analysable()
-        assert found.value == pytest.approx(ratio)
+        assert found.value == pytest.approx(share)
         assert found.text == f"{wide} of 4 at 41, 1 of 4 at 21; before training 100 %"
 
 

@@ -6,6 +6,7 @@ import random
 import re
 import shutil
 import subprocess
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -437,13 +438,7 @@ def test_courses_begin_at_the_seed_and_end_at_the_networks(width):
     assert model.weights.hidden_bias.shape[:2] == (len(epochs), 2)
     seeded = Weights.random(2, width, initial=STATE_FEEDBACK.initial)
     networks = results.networks(width).weights
-    for name in (
-        "hidden_weights",
-        "hidden_bias",
-        "output_weights",
-        "direct_weights",
-        "output_bias",
-    ):
+    for name in (field.name for field in fields(Weights)):
         own, wanted = getattr(model.weights, name), getattr(seeded, name)
         np.testing.assert_allclose(own[0], wanted, rtol=1e-6, atol=1e-9, err_msg=STALE)
         np.testing.assert_array_equal(own[-1], getattr(networks[:2], name))

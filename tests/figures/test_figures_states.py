@@ -3,6 +3,7 @@
 import inspect
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -84,13 +85,7 @@ def test_sound_and_accessible(made, name):
 def one_weight(field, index, value) -> Weights:
     """A network with one weight of 1 that is seen nowhere else, and one of `value`."""
     weights = Weights.random(1, 3)[0]
-    for name in (
-        "hidden_weights",
-        "hidden_bias",
-        "output_weights",
-        "direct_weights",
-        "output_bias",
-    ):
+    for name in (field.name for field in fields(Weights)):
         getattr(weights, name)[...] = 0.0
     getattr(weights, field)[index] = value
     return weights
@@ -143,13 +138,7 @@ def test_a_weight_between_units_is_seen_at_both_ends_and_area_is_size():
 @pytest.mark.parametrize("hidden", [1, 5, 10])
 def test_squares_do_not_overlap(hidden):
     weights = Weights.random(1, 3, hidden)[0]
-    for name in (
-        "hidden_weights",
-        "hidden_bias",
-        "output_weights",
-        "direct_weights",
-        "output_bias",
-    ):
+    for name in (field.name for field in fields(Weights)):
         getattr(weights, name)[...] = 1.0
     marks = boxes(figures_states.hinton_states(weights), "#ffffff")
     assert len(marks) == 2 * (1 + hidden + 6) + hidden * (1 + 2 + 6)

@@ -14,11 +14,7 @@ CHAPTERS = [
     page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
 ]
 BACK_MATTER = [
-    one["file"]
-    for part in TOC["parts"]
-    if not part.get("numbered")
-    for page in part["chapters"]
-    for one in (page, *page.get("sections", ()))
+    page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
 ]
 API = [page for page in BACK_MATTER if page.startswith("book/api")]
 PAGES = [TOC["root"], *CHAPTERS, *BACK_MATTER]

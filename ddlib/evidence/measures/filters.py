@@ -62,9 +62,9 @@ def of_class(
 
 
 def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
-    """Share of hidden filters that are not analysable after training, over a narrower window's.
+    """Share of hidden filters that are not analysable after training; a narrower window's beside.
 
-    Before training all are, at every window: what is judged is where more are left.
+    Before training all are, at every window: that some are left says little.
 
     Parameters
     ----------
@@ -72,11 +72,7 @@ def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
         Window sizes.
     """
     cells = [classify(committed.filters(w, "hidden")) == "not analysable" for w in (wide, narrow)]
-
-    def ratio(a, b):
-        return mean(a) / np.maximum(mean(b), 1 / cells[1].size)
-
-    value, replicates = over_members(ratio, *cells)
+    value, replicates = over_members(mean, cells[0])
     text = ", ".join(f"{c.sum()} of {c.size} at {w}" for c, w in zip(cells, (wide, narrow)))
     before = [(classify(_pair(w, "hidden")[1]) == "not analysable").mean() for w in (wide, narrow)]
     return Measured(value, f"{text}; before training {100 * min(before):.0f} %", replicates)

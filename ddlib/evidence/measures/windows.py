@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from ddlib import paper
 from ddlib.analysis import savitzky_golay
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
@@ -279,7 +280,7 @@ def short_window(short: int = 11, long: int = 21) -> Measured:
     return Measured(rows[short] / rows[long], text)
 
 
-def magnitudes(narrow: int = 21, wide: int = 41) -> Measured:
+def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -> Measured:
     """Largest weight of a wide window over that of a narrow one, medians over networks.
 
     Beside it the same for the taps of least-squares acceleration filters.
@@ -288,11 +289,20 @@ def magnitudes(narrow: int = 21, wide: int = 41) -> Measured:
     ----------
     narrow, wide : int
         Window sizes.
+    beside_filters : bool
+        Judge the ratio as a multiple of the filters'.
     """
     table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
     cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
     taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
     fall = taps[0] / taps[1]
-    value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
-    text = f"{significant(value, 2)} of the weight at {narrow}, the filter {significant(fall, 2)}"
+    unit = fall if beside_filters else 1.0
+    value, replicates = over_members(lambda a, b: median(a) / median(b) / unit, *cells)
+    if beside_filters:
+        printed = paper.LARGEST_WEIGHT[wide] / paper.LARGEST_WEIGHT[narrow]
+        text = f"{significant(value, 2)} times the filter's ratio, as printed "
+        text += f"{significant(printed / fall, 2)} times"
+    else:
+        text = f"{significant(value, 2)} of the weight at {narrow}, "
+        text += f"the filter {significant(fall, 2)}"
     return Measured(value, text, replicates)
