@@ -44,6 +44,21 @@ class _Checked(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
+class TooCoarse(ValueError):
+    """A grid misses the tolerance of a widget.
+
+    Parameters
+    ----------
+    message : str
+    error : float
+        Largest deviation found, relative to the range of the curve.
+    """
+
+    def __init__(self, message: str, error: float):
+        super().__init__(message)
+        self.error = error
+
+
 class CurveWidget(anywidget.AnyWidget):
     """Curves of a function of a few parameters, with a control for each.
 
@@ -87,8 +102,9 @@ class CurveWidget(anywidget.AnyWidget):
     Raises
     ------
     ValueError
-        If arguments do not fit together, if the grid needs more than 400 kB, or if it is too
-        coarse for the tolerance.
+        If arguments do not fit together, or if the grid needs more than 400 kB.
+    TooCoarse
+        If the grid is too coarse for the tolerance; a ValueError.
     """
 
     _esm = module(*SCRIPT)
@@ -138,9 +154,10 @@ class CurveWidget(anywidget.AnyWidget):
         self._check_names(scalars)
         error = self._baked.error(checks)
         if error > tolerance:
-            raise ValueError(
+            raise TooCoarse(
                 f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
-                "take more grid points or a larger tolerance"
+                "take more grid points or a larger tolerance",
+                error,
             )
         start = evaluate(function, {p.name: p.value for p in parameters})
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})

@@ -16,7 +16,7 @@ from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, TooCoarse, module
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 
@@ -38,6 +38,13 @@ some networks change their torque within a few degrees. The motion alone needs f
 
 CROWD = 1.15
 """Near zero they change it within less (see `Parameter`)."""
+
+STEEP = (
+    "These networks change their torque faster than the finest grid that fits into a page can "
+    "follow: the error told below is larger than in the other figures."
+)
+"""Said where the finest grid misses the tolerance: which networks are shown is not chosen by how
+easy they are to show."""
 
 NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
@@ -84,7 +91,8 @@ class TrajectoryPicker(CurveWidget):
         Called with the extents when the reader records; default ``setup.record``, sensors
         included. Its result is kept in `recording`.
     **options
-        Passed on to `CurveWidget`: ``checks``, ``tolerance``, ``interpolation``.
+        Passed on to `CurveWidget`: ``checks``, ``tolerance``, ``interpolation``. Without a
+        tolerance of the caller, networks that no grid follows are shown with the error stated.
 
     Attributes
     ----------
@@ -136,15 +144,18 @@ class TrajectoryPicker(CurveWidget):
             "many": many,
         }
         panels = _panels([RIGID, RECORDED, *models] if models else [RIGID])
-        *coarser, last = [{"grid": n, "crowd": CROWD} for n in GRIDS] if models else [{}]
-        for grid in coarser:
+        grids = [{"grid": n, "crowd": CROWD} for n in GRIDS] if models else [{}]
+        for grid in grids:
             try:
                 super().__init__(many.one, _parameters(**grid), panels, **options)
                 break
-            except ValueError:  # too coarse for these networks
-                continue
+            except TooCoarse as coarse:
+                missed = coarse
         else:
-            super().__init__(many.one, _parameters(**last), panels, **options)
+            if not models or "tolerance" in options:
+                raise missed
+            options |= {"note": f"{NOTE} {STEEP}", "tolerance": 2 * missed.error}
+            super().__init__(many.one, _parameters(**grids[-1]), panels, **options)
         angles = [f"{joint} angle" for joint in JOINTS]
         lengths = list(setup.arm.lengths)
         self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from ddlib.metrics import rmss
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
 from ddlib.widgets.baking.baked import MAX_BYTES
-from ddlib.widgets.picker import inside_hull
+from ddlib.widgets.picker import STEEP, inside_hull
 
 
 @pytest.fixture(scope="module")
@@ -166,6 +167,24 @@ def test_a_finer_grid_where_the_first_is_too_coarse(networks, monkeypatch):
     monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (2, 3))
     with pytest.raises(ValueError, match=r"grid must interpolate to 0.15 of each curve's range"):
         TrajectoryPicker(networks, **options)
+
+
+def test_networks_that_no_grid_follows_are_shown_with_their_error(networks, monkeypatch):
+    """Results made on another machine have other networks; the page tells how well it shows them."""
+    monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (8, 12))
+    model = networks["window 11"]
+    steep = replace(model.weights, hidden_weights=30 * model.weights.hidden_weights)
+    picker = TrajectoryPicker({"steep": replace(model, weights=steep)}, checks=40)
+    told = picker.spec["error"]
+    assert told > 0.01 and picker.spec["note"].endswith(STEEP)
+    assert picker.interpolation_error(40) == pytest.approx(told)
+    monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (400,))
+    with pytest.raises(ValueError, match="grid must give at most"):  # size is not negotiable
+        TrajectoryPicker({"steep": model}, checks=40)
+
+
+def test_networks_of_the_book_need_no_excuse(full):
+    assert STEEP not in full.spec["note"] and full.spec["error"] <= 0.01
 
 
 @pytest.mark.parametrize("bad", [lambda e: 0, 3, "ensemble"])
