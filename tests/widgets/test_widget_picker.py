@@ -170,7 +170,7 @@ def test_a_finer_grid_where_the_first_is_too_coarse(networks, monkeypatch):
 
 
 def test_networks_that_no_grid_follows_are_shown_with_their_error(networks, monkeypatch):
-    """Results made on another machine have other networks; the page tells how well it shows them."""
+    """Results of another machine have other networks; the page tells how well it shows them."""
     monkeypatch.setattr("ddlib.widgets.picker.GRIDS", (8, 12))
     model = networks["window 11"]
     steep = replace(model.weights, hidden_weights=30 * model.weights.hidden_weights)
