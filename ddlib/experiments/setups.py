@@ -62,6 +62,10 @@ class Setup:
     effects : Effects
     epochs, warm_up : int
     momentum, initial : float
+    rate : float
+        Step size per case times the width of the window (`ddlib.learning.training.default_rate`).
+    scaling : tuple of float
+        Range that the network's inputs are scaled to.
     hidden : int
         Number of hidden units.
     seed : int
@@ -76,6 +80,8 @@ class Setup:
     momentum: float = MOMENTUM
     warm_up: int = WARM_UP
     initial: float = INITIAL
+    rate: float = 33.0
+    scaling: tuple[float, float] = (0.0, 1.0)
     hidden: int = paper.HIDDEN_UNITS
     seed: int = 0
 
@@ -142,12 +148,13 @@ def train_windows(
     """
     integer("members", members, 1)
     training, test = split(recording)
-    data = TrainingSet.from_recording(training, width)
+    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
     weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
     return train_ensemble(
         weights,
         data,
         test=data.transform(*cases(test, width)),
+        rate=setup.rate / width,
         momentum=setup.momentum,
         epochs=setup.epochs,
         warm_up=setup.warm_up,

@@ -26,7 +26,6 @@ TARGET_RANGE = (0.2, 0.8)
 
 WORKERS = min(2, torch.get_num_threads())
 """Threads that `train_ensemble` uses: as many as torch may (OMP_NUM_THREADS), two at most."""
-
 BLOCK = 8
 """Most members that a thread trains side by side: what fits into a core's cache."""
 
@@ -38,7 +37,7 @@ class TrainingSet:
     Attributes
     ----------
     x : ndarray, shape (cases, joint, width)
-        Windows scaled to 0..1 over the training cases.
+        Windows scaled to a range, 0..1 by default, over the training cases.
     y : ndarray, shape (cases, joint)
         Torques scaled to the output units' range.
     inputs, outputs : Scaler
@@ -54,21 +53,22 @@ class TrainingSet:
     step: float | None = None
 
     @classmethod
-    def from_arrays(cls, windows, torque, target=TARGET_RANGE) -> TrainingSet:
-        """Scale windows ``(cases, joint, width)`` in rad and torques ``(cases, joint)`` in N m."""
+    def from_arrays(cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0)) -> TrainingSet:
+        """Scale windows ``(cases, joint, width)``, rad, to `scaling`, torques, N m, to `target`."""
         windows, torque = finite_array("windows", windows), finite_array("torque", torque)
         if windows.ndim != 3 or torque.ndim != 2 or len(windows) != len(torque):
             raise ValueError(
                 "windows and torque must have shapes (cases, joint, width) and (cases, joint), "
                 f"got {windows.shape} and {torque.shape}"
             )
-        inputs, outputs = Scaler.fit(windows, joint_axis=-2), Scaler.fit(torque, target)
+        inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
         return cls(inputs.scale(windows, -2), outputs.scale(torque), inputs, outputs)
 
     @classmethod
-    def from_recording(cls, recording: Recording, width: int, target=TARGET_RANGE) -> TrainingSet:
-        """All windows of the motions of a recording, runs joined into one list of cases."""
-        return replace(cls.from_arrays(*cases(recording, width), target), step=recording.step)
+    def from_recording(cls, recording: Recording, width: int, *options, **named) -> TrainingSet:
+        """All windows of the motions of a recording, runs joined; options of `from_arrays`."""
+        made = cls.from_arrays(*cases(recording, width), *options, **named)
+        return replace(made, step=recording.step)
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
@@ -212,7 +212,7 @@ def train(
     momentum : float
         The factor alpha of the previous step, 0 to 0.999.
     epochs : int
-        Passes over all cases, one step each.
+        Passes over all cases, a step each.
     progress : bool
         Show a progress bar.
 
