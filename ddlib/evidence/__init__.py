@@ -21,8 +21,8 @@ __getattr__, __dir__, __all__ = hand_on(
     "ledger_tables",
     "measures",
     verdicts=(
-        "CONTRADICTS DECIDED DRAWS FEWEST Measured STANDS VERDICTS bootstrap fresh mean median "
-        "over_members shares stands turns_at"
+        "CONTRADICTS DECIDED DRAWS FEWEST Measured STANDS VERDICTS bootstrap fresh judged "
+        "largest_median mean median over_members shares stands turns_at"
     ),
     statements="SURE resampled stated",
 )

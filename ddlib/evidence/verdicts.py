@@ -166,6 +166,31 @@ def over_members(statistic: Callable, *cells) -> tuple[float, np.ndarray]:
     return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells)
 
 
+def judged(statistic: Callable, *cells, text: str | Callable[[float], str]) -> Measured:
+    """A statistic of all members with its replicates, and a text or a function of the value.
+
+    Parameters
+    ----------
+    statistic, *cells
+        As in `bootstrap`.
+    text : str or callable
+        What the tables show, or ``text(value)`` that returns it.
+    """
+    value, replicates = over_members(statistic, *cells)
+    return Measured(value, text(value) if callable(text) else text, replicates)
+
+
+def largest_median(*cells) -> np.ndarray:
+    """The largest of the medians of some cells, one for each draw.
+
+    Parameters
+    ----------
+    *cells : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets them.
+    """
+    return np.max([median(cell) for cell in cells], axis=0)
+
+
 def shares(verdicts: Iterable[str]) -> dict[str, float]:
     """Share of the draws in which each verdict comes out, the most frequent first.
 

@@ -12,7 +12,6 @@ from ddlib.evidence.measures import (
     backpropagation,
     filters,
     networks,
-    weights,
 )
 from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
@@ -333,7 +332,7 @@ def test_explained_energy_is_the_least_of_the_medians(plant_filters):
     }
     before = {w: [mix(w, 0.1, 0.1, s, 0.8 - s)] for w, s in ((11, 0.1), (21, 0.3), (41, 0.2))}
     plant_filters({"direct": trained}, {"direct": before})
-    found = weights.explained("direct")
+    found = networks.explained("direct")
     assert found.value == pytest.approx(0.8)
     assert found.text == (
         "90 % at 11, 80 % at 21, 100 % at 41 of the energy; before training at most 50 %"
@@ -345,13 +344,13 @@ def test_middle_between_two_crossings(plant_filters):
     parabolas = [(x - s) ** 2 - 9.3 for s in (0.0, 0.4, 0.6, -0.7)]  # crossings at s ± 3.05
     trained = [*parabolas, x - 0.5, x**3 - 20 * x + 3]
     plant_filters({"direct": {21: trained}}, {"direct": {21: [x - 0.3, *parabolas[:2]]}})
-    found = weights.asymmetric(21)
+    found = networks.asymmetric(21)
     assert found.value == pytest.approx(0.5)
     assert found.text == "2 of 4 filters with two crossings; before training 2 have two"
-    assert weights.asymmetric(21, 0.3).value == pytest.approx(0.75)
+    assert networks.asymmetric(21, 0.3).value == pytest.approx(0.75)
     # the crossings are between samples: a parabola has its middle where it has
     plant_filters({"direct": {21: [(x - 0.5) ** 2 - 9.3]}})
-    assert weights.asymmetric(21, 0.499).value == 1 and weights.asymmetric(21, 0.501).value == 0
+    assert networks.asymmetric(21, 0.499).value == 1 and networks.asymmetric(21, 0.501).value == 0
 
 
 def pure(width, *derivatives):
@@ -363,7 +362,7 @@ def test_filters_that_control_theory_uses(plant_filters):
     trained = {"hidden": {21: hidden}, "direct": {21: pure(21, 3, 3, 2, 3)}}
     before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "direct": {21: pure(21, 3, 3, 3, 3)}}
     plant_filters(trained, before)
-    found = weights.interpretable()  # of window 21, if none is asked for
+    found = networks.interpretable()  # of window 21, if none is asked for
     assert found.value == pytest.approx(4 / 8 - 1 / 8)
     assert found.text == "3 of 4 hidden, 1 of 4 direct filters; before training 1 and 0"
 
@@ -501,9 +500,9 @@ def test_structure_beyond_chance(plant_filters):
 
 def test_random_filters_are_not_analysable():
     """White noise puts 4 of 41 parts into a cubic, of which 3 vary: far below 80 %."""
-    found = weights.untrained(41)
+    found = networks.untrained(41)
     assert found.value == 1.0 and found.text == "500 of 500 random functions"
-    short = weights.untrained(5)  # three of four varying parts: often enough
+    short = networks.untrained(5)  # three of four varying parts: often enough
     assert 0.1 < short.value < 0.9 and short.text.endswith("of 500 random functions")
 
 

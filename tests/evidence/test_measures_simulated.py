@@ -11,7 +11,7 @@ from ddlib.control import PID, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import PUMA_560_ROTORS
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, ViscousFriction
-from ddlib.evidence.measures import control, dynamics, real_arm
+from ddlib.evidence.measures import control, dynamics
 from ddlib.experiments import KD, KP
 from ddlib.simulation import follow, smooth_pick_and_place
 from ddlib.trajectories import random_extents
@@ -344,8 +344,8 @@ def test_velocity_terms_are_told_in_percent(monkeypatch):
 @pytest.mark.parametrize("viscous", [(0.0, 0.0), (20.0, 5.0)])
 def test_what_ignoring_velocity_terms_loses(monkeypatch, viscous):
     """Coriolis and centripetal torque over all torque, friction included, on the closed form."""
-    rough = replace(dynamics.STATE_FEEDBACK, effects=Effects(friction=(ViscousFriction(viscous),)))
-    monkeypatch.setattr(dynamics, "STATE_FEEDBACK", rough)
+    rough = replace(dynamics.SETUP, effects=Effects(friction=(ViscousFriction(viscous),)))
+    monkeypatch.setattr(dynamics, "SETUP", rough)
     t = np.arange(300)[:, None] * 0.01
     e, w = np.deg2rad(dynamics.APPENDIX_I[[0, 1, 2, 5]])[:, None], np.pi / 3
     q, qd, qdd = (-f * e for f in (np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)))
@@ -419,14 +419,14 @@ def test_looking_ahead_in_closed_form():
     covariance = np.linalg.inv(np.vander(x, 3).T @ np.vander(x, 3))
     at = np.array([2 * 10.0, 1.0, 0.0]), np.array([0.0, 1.0, 0.0])
     ends, middle = (np.sqrt(row @ covariance @ row) for row in at)
-    assert real_arm.looking_ahead(21).value == pytest.approx(ends / middle, rel=1e-6)
+    assert dynamics.looking_ahead(21).value == pytest.approx(ends / middle, rel=1e-6)
 
 
 def test_rounding_in_differences():
     """Rounding is uniform: the difference of two readings has a sixth of a step squared."""
-    step = real_arm.SETUP.effects.encoder[0].step
-    found = real_arm.differencing()
-    torque = real_arm.SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
+    step = dynamics.SETUP.effects.encoder[0].step
+    found = dynamics.differencing()
+    torque = dynamics.SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
     assert float(found.text.split()[0]) == pytest.approx(torque, rel=0.1)
     x = np.arange(-18, 1)
     covariance = np.linalg.inv(np.vander(x, 3).T @ np.vander(x, 3))
@@ -436,18 +436,18 @@ def test_rounding_in_differences():
 
 def test_a_dead_zone_swallows_its_width():
     """RMS of a constant loss over that of the torque: from which width is it a fifth?"""
-    run = real_arm._ideal()
+    run = dynamics._ideal()
     rms = np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
-    found = real_arm.dead_zone(0.2)
-    assert found.value == pytest.approx(real_arm.SIGNIFICANT * rms.min(), rel=0.02)
+    found = dynamics.dead_zone(0.2)
+    assert found.value == pytest.approx(dynamics.SIGNIFICANT * rms.min(), rel=0.02)
     assert found.text.startswith("dead zone of 0.2 N m: ")
 
 
 def test_the_share_of_the_limit(monkeypatch):
-    limit = np.array(real_arm.SETUP.effects.actuator[0].limit)
+    limit = np.array(dynamics.SETUP.effects.actuator[0].limit)
     tau = np.array([[1.0, -0.5], [-0.25, 0.1]]) * limit
-    monkeypatch.setattr(real_arm, "_ideal", lambda: SimpleNamespace(tau_true=tau * [0.3, 0.8]))
-    found = real_arm.saturation()
+    monkeypatch.setattr(dynamics, "_ideal", lambda: SimpleNamespace(tau_true=tau * [0.3, 0.8]))
+    found = dynamics.saturation()
     assert found.value == pytest.approx(0.4)
     low, high = np.round(limit * [0.3, 0.4])
     assert found.text == (
@@ -458,12 +458,12 @@ def test_the_share_of_the_limit(monkeypatch):
 
 def test_second_differences_of_rounded_positions():
     """Rounding errors e, uniform: (e1 - 2 e0 + e-1) / T^2 has sqrt(6/12) steps over T^2."""
-    run = real_arm._ideal()
+    run = dynamics._ideal()
     gain = np.sqrt((ARM.mass_matrix(run.q_true) ** 2).sum(-1).mean(0)) * np.sqrt(6 / 12) / 0.01**2
     share = gain / np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
     steps = {bits: 2 * np.pi / 2**bits for bits in range(14, 21)}
-    slight = [bits for bits, step in steps.items() if (step * share).max() < real_arm.SIGNIFICANT]
-    found = real_arm.sensor_noise()
+    slight = [bits for bits, step in steps.items() if (step * share).max() < dynamics.SIGNIFICANT]
+    found = dynamics.sensor_noise()
     assert found.value == min(slight)
     told = [int(word) for word in found.text.split() if word.isdigit()]
     np.testing.assert_allclose(told[2:4], 100 * steps[16] * share, rtol=0.1)
@@ -472,10 +472,10 @@ def test_second_differences_of_rounded_positions():
 @pytest.mark.parametrize("bits", range(14, 21))
 def test_any_encoder_may_be_the_first_that_is_slight(monkeypatch, bits):
     """The noise halves with each bit: a level between two encoders tells them apart."""
-    text = real_arm.sensor_noise().text
+    text = dynamics.sensor_noise().text
     of_16 = max(int(x) / 100 for x in re.findall(r"(\d+) % (?:of the torque )?at the", text))
-    monkeypatch.setattr(real_arm, "SIGNIFICANT", 1.4 * of_16 * 2.0 ** (16 - bits))
-    assert real_arm.sensor_noise().value == bits
+    monkeypatch.setattr(dynamics, "SIGNIFICANT", 1.4 * of_16 * 2.0 ** (16 - bits))
+    assert dynamics.sensor_noise().value == bits
 
 
 def test_the_springy_shafts_reference_is_a_motion(monkeypatch):
@@ -487,31 +487,31 @@ def test_the_springy_shafts_reference_is_a_motion(monkeypatch):
     def follow(arm, controller, reference, t, **options):
         raise Enough(reference, t)
 
-    monkeypatch.setattr(real_arm, "follow", follow)
+    monkeypatch.setattr(dynamics, "follow", follow)
     with pytest.raises(Enough) as caught:
-        real_arm.snap()
+        dynamics.snap()
     (q, qd, qdd), t = caught.value.args
     np.testing.assert_allclose(np.gradient(q, t, axis=0)[1:-1], qd[1:-1], atol=1e-5)
     np.testing.assert_allclose(np.gradient(qd, t, axis=0)[1:-1], qdd[1:-1], atol=1e-5)
     motion = (t >= 0) & (t < 3)
-    wanted = real_arm.pick_and_place(real_arm.APPENDIX_I[5], t[motion])
+    wanted = dynamics.pick_and_place(dynamics.APPENDIX_I[5], t[motion])
     np.testing.assert_allclose(q[motion], wanted.q, atol=1e-12)
     assert np.abs(qd[motion]).max() > 0.1
 
 
 def test_where_late_position_feedback_turns():
     """With that much viscous friction the slowest pole lies on the unit circle."""
-    found = real_arm.sampling()
-    viscous = found.value * np.array(real_arm.SETUP.effects.friction[0].coefficient)
-    joints = real_arm.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
+    found = dynamics.sampling()
+    viscous = found.value * np.array(dynamics.SETUP.effects.friction[0].coefficient)
+    joints = dynamics.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
     gain = np.hstack([np.diag(KP), np.zeros((2, 2))])
-    poles = np.abs(real_arm.late_poles(joints, gain, 0.002, 0.0012))
+    poles = np.abs(dynamics.late_poles(joints, gain, 0.002, 0.0012))
     assert poles.max() == pytest.approx(1.0, abs=1e-6)
     assert "1.2 ms late" in found.text
     # the text's growth: from the logarithm of the default's largest pole
-    joints = real_arm.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous / found.value)
+    joints = dynamics.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous / found.value)
     late, held = (
-        np.log(np.abs(real_arm.late_poles(joints, gain, 0.002, delay)).max()) / 0.002
+        np.log(np.abs(dynamics.late_poles(joints, gain, 0.002, delay)).max()) / 0.002
         for delay in (0.0012, 0.0)
     )
     told = [float(x) for x in re.findall(r"(-?[\d.]+) 1/s", found.text.replace("−", "-"))]

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ddlib.evidence.measures import backpropagation, networks, real_arm, trajectories
+from ddlib.evidence.measures import backpropagation, dynamics, networks, trajectories
 from ddlib.evidence.measures import windows as of_windows
 from ddlib.experiments import POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.experiments.setups import INITIAL
@@ -237,12 +237,12 @@ def test_shares_of_two_torques(monkeypatch):
     t = np.arange(3000) * 1e-3
     driven = np.ones((3000, 2)) * [4.0, -2.0]
     run = SimpleNamespace(t=t, motion=slice(None), tau_true=driven)
-    monkeypatch.setattr(real_arm, "_ideal", lambda: run)
+    monkeypatch.setattr(dynamics, "_ideal", lambda: run)
     left = np.ones((3000, 2)) * [1.0, -1.0]
-    share, text = real_arm._shares(left)
+    share, text = dynamics._shares(left)
     np.testing.assert_allclose(share, [0.25, 0.5])
-    motion = real_arm.pick_and_place(real_arm.APPENDIX_I[5], t)
-    asked = 100 / np.sqrt((real_arm.SETUP.arm.inverse_dynamics(*motion) ** 2).mean(0))
+    motion = dynamics.pick_and_place(dynamics.APPENDIX_I[5], t)
+    asked = 100 / np.sqrt((dynamics.SETUP.arm.inverse_dynamics(*motion) ** 2).mean(0))
     assert text == (
         "25 % of the torque at the shoulder, 50 % at the elbow; "
         f"of what the reference asks for {asked[0]:.0f} and {asked[1]:.0f} %"
@@ -258,22 +258,22 @@ def planted_runs(monkeypatch, left):
         return SimpleNamespace(motion=slice(None))
 
     ideal = SimpleNamespace(motion=slice(None), tau_true=np.full((9, 2), 10.0))
-    monkeypatch.setattr(real_arm, "_drive", drive)
-    monkeypatch.setattr(real_arm, "_ideal", lambda: ideal)
+    monkeypatch.setattr(dynamics, "_drive", drive)
+    monkeypatch.setattr(dynamics, "_ideal", lambda: ideal)
     monkeypatch.setattr(
-        real_arm, "residual_torque", lambda arm, run: np.ones((len(left), 9, 1)) * left[:, None]
+        dynamics, "residual_torque", lambda arm, run: np.ones((len(left), 9, 1)) * left[:, None]
     )
-    monkeypatch.setattr(real_arm, "_shares", lambda torque: (None, "words"))
+    monkeypatch.setattr(dynamics, "_shares", lambda torque: (None, "words"))
     return asked
 
 
 def test_friction_that_is_significant(monkeypatch):
     """Shares in proportion to the multiple, the smaller one 10 %: a fifth at twice as much."""
     asked = planted_runs(monkeypatch, np.outer([1, 4], [1.0, 3.0]))
-    found = real_arm.friction((1, 4))
+    found = dynamics.friction((1, 4))
     assert found.value == pytest.approx(2.0)
     assert found.text == "words; 20 % from 2.0 times the assumed friction on"
-    viscous, coulomb = real_arm.SETUP.effects.friction
+    viscous, coulomb = dynamics.SETUP.effects.friction
     own = asked["friction"]
     assert asked["runs"] == 2
     np.testing.assert_allclose(own[0].coefficient, np.outer([1, 4], viscous.coefficient))
@@ -283,9 +283,9 @@ def test_friction_that_is_significant(monkeypatch):
 def test_play_that_is_significant(monkeypatch):
     """The run without play leaves torque too, which does not count."""
     asked = planted_runs(monkeypatch, 5.0 + np.outer([0, 1, 4], [0.5, 1.0]))
-    real_arm._rattle.cache_clear()
-    found = real_arm.backlash((1e-3, 4e-3))
-    real_arm._rattle.cache_clear()
+    dynamics._rattle.cache_clear()
+    found = dynamics.backlash((1e-3, 4e-3))
+    dynamics._rattle.cache_clear()
     assert found.value == pytest.approx(2e-3)
     assert found.text == (
         f"if it had gears, play of {np.rad2deg(1e-3):.2f}°: words; "
@@ -298,10 +298,10 @@ def test_play_that_is_significant(monkeypatch):
 
 def test_softer_shafts(monkeypatch):
     asked = planted_runs(monkeypatch, np.array([[0.5, 1.0], [2.0, 1.0], [3.0, 9.0]]))
-    found = real_arm.high_frequency()
+    found = dynamics.high_frequency()
     assert found.value == pytest.approx(0.1)
     assert found.text == (
         "springy shaft: words; the larger share is 20 % at 0.3, 90 % at 0.1 of the stiffness"
     )
     (shaft,) = asked["transmission"]
-    np.testing.assert_allclose(shaft.stiffness, np.outer([1, 0.3, 0.1], real_arm.SHAFT.stiffness))
+    np.testing.assert_allclose(shaft.stiffness, np.outer([1, 0.3, 0.1], dynamics.SHAFT.stiffness))

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import spearmanr
 
 from ddlib.evidence import committed
-from ddlib.evidence.measures import filters, weights
+from ddlib.evidence.measures import filters, networks
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS
 from ddlib.learning import Scaler, TorqueModel, Weights
 
@@ -127,13 +127,13 @@ def test_large_weights_and_saturation(monkeypatch):
         activity = RNG.uniform(size=(3, 20, 4)) ** (1 + np.abs(hidden).max((2, 3)))[:, None]
         planted[width] = hidden, activity
 
-    def networks(width):
+    def planted_networks(width):
         hidden, activity = planted[width]
         own = SimpleNamespace(hidden_weights=hidden, activity=lambda x: (activity, None))
         return SimpleNamespace(weights=own, scaled=lambda windows: windows)
 
-    monkeypatch.setattr(committed, "networks", networks)
-    monkeypatch.setattr(weights, "cases", lambda run, width: (None, None))
+    monkeypatch.setattr(committed, "networks", planted_networks)
+    monkeypatch.setattr(networks, "cases", lambda run, width: (None, None))
     sizes, shares = [], []
     for hidden, activity in planted.values():
         for network in range(3):
@@ -142,7 +142,7 @@ def test_large_weights_and_saturation(monkeypatch):
                 sizes.append(max(abs(w) for w in hidden[network, unit].ravel()))
                 shares.append(sum(x < 0.1 or x > 0.9 for x in on) / 20)
     wanted = spearmanr(sizes, shares).statistic
-    found = weights.weights_and_saturation()
+    found = networks.weights_and_saturation()
     assert found.value == pytest.approx(wanted) and wanted > 0.2
     assert found.text == f"rank correlation {wanted:.2f} over 36 units"
 
@@ -155,7 +155,7 @@ def test_units_held_at_their_mean(monkeypatch):
     )
     windows, torque = RNG.uniform(size=(7, 2, 5)), RNG.normal(size=(7, 2))
     monkeypatch.setattr(committed, "networks", lambda width, *_: model)
-    monkeypatch.setattr(weights, "cases", lambda run, width: (windows, torque))
+    monkeypatch.setattr(networks, "cases", lambda run, width: (windows, torque))
 
     def sigmoid(x):
         return 1 / (1 + np.exp(-x))
@@ -172,7 +172,7 @@ def test_units_held_at_their_mean(monkeypatch):
                 direct = [np.sum(w.direct_weights[j] * x) for j in range(2)]
                 net = w.output_weights @ activity[n] + direct + w.output_bias
                 out[m, n] = 4 * sigmoid(net) - 1
-    found = weights._held_still(21)
+    found = networks._held_still(21)
     np.testing.assert_allclose(found[0], whole, rtol=1e-5)
     np.testing.assert_allclose(found[1], still, rtol=1e-5)
     assert found[2] is torque
@@ -183,8 +183,8 @@ def test_errors_without_hidden_units(monkeypatch):
     steps = torque.std(0)
     whole = np.stack([torque + f * steps for f in (0.1, 0.1, 0.2)])
     still = np.stack([torque + f * steps for f in (0.2, 0.5, 0.6)])
-    monkeypatch.setattr(weights, "_held_still", lambda width, *_: (whole, still, torque))
-    found = weights.without_hidden_units()
+    monkeypatch.setattr(networks, "_held_still", lambda width, *_: (whole, still, torque))
+    found = networks.without_hidden_units()
     assert found.value == pytest.approx(3.0)  # of 2, 5 and 3
     assert found.text == "error 3.0 times as large without them"
 
@@ -210,8 +210,8 @@ def test_friction_in_the_hidden_units(monkeypatch, noise, explained):
     model = SimpleNamespace(weights=own, scaled=lambda x: x)
     monkeypatch.setattr(committed, "networks", lambda width, *_: model)
     monkeypatch.setattr(committed, "training", lambda: run)
-    monkeypatch.setattr(weights, "cases", lambda run, width: (windows, None))
-    found = weights.compensate_friction(5)
+    monkeypatch.setattr(networks, "cases", lambda run, width: (windows, None))
+    found = networks.compensate_friction(5)
     assert found.value == pytest.approx(explained, abs=0.06)
     first, second = found.text.split("; ")
     assert first.startswith("friction: R² ") and second.startswith("rigid body: R² ")
@@ -226,6 +226,6 @@ def test_friction_in_the_hidden_units(monkeypatch, noise, explained):
 
 
 def test_the_order_of_samples_does_not_matter():
-    found = weights.adjacency(epochs=20)
+    found = networks.adjacency(epochs=20)
     assert 0 <= found.value < 1e-4
     assert found.text.endswith("after 20 epochs")

@@ -113,7 +113,7 @@ def test_samples_are_drawn_anew_with_each_seed():
 
 def test_pages_and_pictures_are_left_out():
     found = mutation.modules()
-    assert {"dynamics/arm", "evidence/measures/weights", "learning/training", "_check"} <= set(
+    assert {"dynamics/arm", "evidence/measures/networks", "learning/training", "_check"} <= set(
         found
     )
     assert not [name for name in found if "figures" in name or "widgets" in name]

@@ -3,8 +3,8 @@
 Each returns a `ddlib.evidence.verdicts.Measured`: the value that is judged and the text that is
 shown. A claim names its function in ``book/claims.yml`` as "module.function".
 
-- ``dynamics``, ``backpropagation``, ``control``, ``real_arm``: sections 1 and 2, the arm
+- ``dynamics``, ``backpropagation``, ``control``: sections 1 to 3, the arm and the method
 - ``trajectories``, ``windows``: sections 2 to 4, motions and what windows hold
-- ``networks``: Tables 4-1 and 6-1, what networks reach
-- ``filters``, ``weights``: sections 5 and 7, what weights show
+- ``networks``: Tables 4-1 and 6-1, what networks reach and what their weights show
+- ``filters``: sections 5 and 7, what filters show
 """

@@ -1,14 +1,18 @@
-"""Tables 4-1 and 6-1 (sections 4 and 6): what networks reach, from ``book/results``."""
+"""Tables 4-1 and 6-1, sections 5 to 7: what networks reach, and what their weights show."""
 
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
+from scipy.special import expit, logit
+from scipy.stats import rankdata
 
 from ddlib import paper
-from ddlib.analysis import shuffled, transition_range
-from ddlib.evidence.verdicts import Measured, mean, median, over_members
+from ddlib.analysis import classify, saturated, shares, shuffled, transition_range
+from ddlib.evidence import committed
+from ddlib.evidence.verdicts import Measured, judged, largest_median, mean, median, over_members
 from ddlib.experiments import (
     STATE_FEEDBACK,
     WINDOWS,
@@ -17,9 +21,13 @@ from ddlib.experiments import (
     states_along,
     torque,
 )
-from ddlib.learning import TorqueModel, Weights
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
 from ddlib.metrics import rmss
-from ddlib.tables import significant, spread
+from ddlib.simulation import LOG_STEP
+from ddlib.tables import scientific, significant, spread
+
+NAMED = ("velocity", "acceleration", "velocity + acceleration")
+"""Classes of filters that control theory uses."""
 
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
@@ -38,8 +46,7 @@ def _medians(errors: dict) -> str:
 def table_4_1(width: int, column: str, setup: str = STATE_FEEDBACK.name) -> Measured:
     """A cell of Table 4-1, median over all networks: `width`, `column` of the errors, `setup`."""
     cell = _errors(column, setup)[width]
-    value, replicates = over_members(median, cell)
-    return Measured(value, spread(cell), replicates)
+    return judged(median, cell, text=spread(cell))
 
 
 def in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Measured:
@@ -76,8 +83,7 @@ def worse_on_test(setup: str = STATE_FEEDBACK.name) -> Measured:
         return np.min([median(test) / median(training) for training, test in cells], axis=0)
 
     ratios = [significant(np.median(test) / np.median(training), 2) for training, test in cells]
-    value, replicates = over_members(least, *cells)
-    return Measured(value, "test / training " + ", ".join(ratios), replicates)
+    return judged(least, *cells, text="test / training " + ", ".join(ratios))
 
 
 def multiplications(width: int = 21) -> Measured:
@@ -88,13 +94,7 @@ def multiplications(width: int = 21) -> Measured:
 
 
 def weights_against_nwh(widths=WINDOWS) -> Measured:
-    """Weights of a network over ``n w h``, two joints and ten hidden units; furthest from 1.
-
-    Parameters
-    ----------
-    widths : sequence of int
-        Window sizes.
-    """
+    """Weights of a network over ``n w h``, two joints and ten hidden units; furthest from 1."""
     counts = {w: (Weights.random(1, w)[0].count(), 2 * w * paper.HIDDEN_UNITS) for w in widths}
     ratios = [count / product for count, product in counts.values()]
     text = ", ".join(f"{count} for {product} at {w}" for w, (count, product) in counts.items())
@@ -104,20 +104,14 @@ def weights_against_nwh(widths=WINDOWS) -> Measured:
 def largest_weight(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Magnitude of the largest weight, the median over all networks."""
     largest = _cells(setup)[width]["largest weight"]
-    value, replicates = over_members(median, largest)
-    return Measured(value, spread(largest, 3), replicates)
+    return judged(median, largest, text=spread(largest, 3))
 
 
 def slope() -> Measured:
     """Largest median steepness of the error at the end of training, over the windows."""
     slopes = [np.abs(cell["slope"]) for cell in _cells().values()]
     text = ", ".join(significant(np.median(s), 2) for s in slopes)
-    value, replicates = over_members(_largest_median, *slopes)
-    return Measured(value, f"d ln(error) / d ln(epoch) {text}", replicates)
-
-
-def _largest_median(*cells) -> np.ndarray:
-    return np.max([median(cell) for cell in cells], axis=0)
+    return judged(largest_median, *slopes, text=f"d ln(error) / d ln(epoch) {text}")
 
 
 def _sizes(column: str) -> dict[int, np.ndarray]:
@@ -154,50 +148,43 @@ def training_error_falls() -> Measured:
 
 def memory(width: int) -> Measured:
     """Training error on shuffled torques: what falls below 1 was memorised."""
-    rows = {row["width"]: row for row in results.read("memory")["rows"]}
-    errors = rows[width]["training"]
-    value, replicates = over_members(median, errors)
-    return Measured(value, spread(errors, 3), replicates)
+    errors = {row["width"]: row["training"] for row in results.read("memory")["rows"]}[width]
+    return judged(median, errors, text=spread(errors, 3))
 
 
 # --- section 6: networks of exact states
 
 
-def _median(values, text: str) -> Measured:
-    value, replicates = over_members(median, values)
-    return Measured(value, text, replicates)
-
-
 def table_6_1(set_name: str, deviation: str = "own deviation") -> Measured:
     """A row of Table 6-1: the median over all networks."""
     errors = results.read("table-6-1")["errors"][set_name][deviation]
-    return _median(errors, spread(errors))
+    return judged(median, errors, text=spread(errors))
 
 
 def largest_state_weight() -> Measured:
     """Magnitude of the largest weight (Figure 6-1), the median over all networks."""
     largest = results.read("table-6-1")["largest weight"]
-    return _median(largest, spread(largest, 3))
+    return judged(median, largest, text=spread(largest, 3))
 
 
 def state_slope() -> Measured:
     """Median steepness of the error at the end of training."""
     slopes = np.abs(results.read("table-6-1")["slope"])
-    return _median(slopes, f"d ln(error) / d ln(epoch) {spread(slopes)}")
+    return judged(median, slopes, text=f"d ln(error) / d ln(epoch) {spread(slopes)}")
 
 
 def generalisation() -> Measured:
     """Error on random set B over that on random set A, network by network: the median."""
     errors = results.read("table-6-1")["errors"]
     a, b = (np.array(errors[f"random set {name}"]["own deviation"]) for name in "AB")
-    return _median(b / a, f"B / A {spread(b / a)}")
+    return judged(median, b / a, text=f"B / A {spread(b / a)}")
 
 
 def trajectory_shoulder() -> Measured:
     """Error of the shoulder's torque on trajectory 6, by its own deviation: the median."""
     states = states_along(paper.APPENDIX_I_EXTENTS_DEG[paper.TEST_TRAJECTORY - 1])
     errors = rmss(_networks().torque(states), torque(states), pooled=False)[:, 0]
-    return _median(errors, f"RMSS {spread(errors)}")
+    return judged(median, errors, text=f"RMSS {spread(errors)}")
 
 
 def shoulder_position() -> Measured:
@@ -207,16 +194,15 @@ def shoulder_position() -> Measured:
     changes = shuffled(_networks().torque, states, scale).reshape(6, -1)
     ratio = changes[0] / changes[1:].mean(0)
     text = f"RMSS of the change {spread(changes[0])}, other inputs {spread(changes[1:].mean(0))}"
-    return _median(ratio, text)
+    return judged(median, ratio, text=text)
 
 
 def velocity_ranges() -> Measured:
     """Share of hidden units with a transition region within the range of shoulder velocity."""
     along = transition_range(_networks().weights)
     within = {name: along[..., j, k] < 1 for name, j, k in (("v1", 0, 1), ("q2", 1, 0))}
-    value, replicates = over_members(mean, within["v1"])
-    text = f"{100 * value:.0f} % of the units; of elbow position {100 * within['q2'].mean():.0f} %"
-    return Measured(value, text, replicates)
+    found, elbow = (f"{100 * share.mean():.0f} %" for share in within.values())
+    return judged(mean, within["v1"], text=f"{found} of the units; of elbow position {elbow}")
 
 
 def best_of_sizes() -> Measured:
@@ -234,3 +220,167 @@ def best_of_sizes() -> Measured:
 
 def _networks() -> TorqueModel:
     return TorqueModel.load(results.FOLDER / "networks-state-space.npz")
+
+
+# --- sections 5 and 7: weights and hidden units of the committed networks
+
+
+def explained(layer: str = "direct") -> Measured:
+    """Median share of position, velocity and acceleration in filters, the least of three windows.
+
+    Parameters
+    ----------
+    layer : {"direct", "hidden"}
+        Direct weights, or those of hidden units.
+    """
+    cells, before = (
+        [shares(committed.filters(w, layer, model))[..., :3].sum(-1) for w in WINDOWS]
+        for model in (committed.networks, committed.untrained)
+    )
+    text = ", ".join(f"{100 * np.median(c):.0f} % at {w}" for c, w in zip(cells, WINDOWS))
+    text += f" of the energy; before training at most {100 * max(map(np.median, before)):.0f} %"
+
+    return judged(lambda *cells: np.min(list(map(median, cells)), axis=0), *cells, text=text)
+
+
+def _crossings(filters, shift: float) -> tuple[np.ndarray, np.ndarray]:
+    """Which filters have two zero crossings, and whose middle then is off the centre."""
+    two, off = (np.zeros(filters.shape[:-1], bool) for _ in range(2))
+    for at in np.ndindex(two.shape):
+        f = filters[at]
+        k = np.flatnonzero(np.diff(np.sign(f)))
+        if k.size == 2:
+            crossings = k + f[k] / (f[k] - f[k + 1]) - f.size // 2
+            two[at], off[at] = True, abs(crossings.mean()) >= shift
+    return two, off
+
+
+def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
+    """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
+    two, off = _crossings(committed.filters(width, "direct"), shift)
+    before = _crossings(committed.filters(width, "direct", committed.untrained), shift)[0]
+
+    def share(pair):
+        return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)
+
+    text = f"{off.sum()} of {two.sum()} filters with two crossings; before training {before.sum()} "
+    return judged(share, (off, two), text=f"{text}have two")
+
+
+def adjacency(width: int = 11, epochs: int = 100) -> Measured:
+    """Change of the trained weights when the samples of all windows are shuffled alike.
+
+    Initial weights are shuffled in the same way and the trained ones put back in order;
+    the largest difference relative to the largest weight.
+    """
+    data = TrainingSet.from_recording(committed.training(), width)
+    order = np.random.default_rng(0).permutation(width)
+    start = Weights.random(1, width, initial=STATE_FEEDBACK.initial)
+
+    def trained(places):
+        weights = replace(start, **{name: getattr(start, name)[..., places] for name in along})
+        mixed = replace(data, x=data.x[..., places])
+        return train_ensemble(weights, mixed, momentum=0.9, epochs=epochs, progress=False)[
+            0
+        ].weights
+
+    along = ("hidden_weights", "direct_weights")
+    plain, mixed, back = trained(np.arange(width)), trained(order), np.argsort(order)
+    gaps = (np.abs(getattr(mixed, n)[..., back] - getattr(plain, n)).max() for n in along)
+    relative = float(max(gaps) / plain.largest.max())
+    return Measured(relative, f"the weights differ by {scientific(relative)} after {epochs} epochs")
+
+
+def untrained(width: int = 41) -> Measured:
+    """Share of random weight functions that the rule calls not analysable."""
+    found = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
+    rough = found == "not analysable"
+    return Measured(float(rough.mean()), f"{rough.sum()} of {rough.size} random functions")
+
+
+def weights_and_saturation() -> Measured:
+    """Rank correlation of a unit's largest weight and the time it is saturated, all windows."""
+    cells = []
+    for width in WINDOWS:
+        model, (windows, _) = committed.networks(width), cases(committed.training(), width)
+        activity = model.weights.activity(model.scaled(windows))[0]
+        largest = np.abs(model.weights.hidden_weights).max((-2, -1))
+        cells.append((largest, saturated(activity)))
+
+    def correlation(*drawn):
+        x, y = (np.concatenate([c[k].reshape(len(c[k]), -1) for c in drawn], -1) for k in (0, 1))
+        ranks = [rankdata(values, axis=-1) for values in (x, y)]
+        x, y = (r - r.mean(-1, keepdims=True) for r in ranks)
+        return (x * y).sum(-1) / np.sqrt((x**2).sum(-1) * (y**2).sum(-1))
+
+    value, replicates = over_members(correlation, *cells)
+    units = sum(largest.size for largest, _ in cells)
+    return Measured(value, f"rank correlation {value:.2f} over {units} units", replicates)
+
+
+def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
+    """Share of filters that are velocity, acceleration or a sum of both, less the untrained's."""
+    found, before = (
+        {
+            layer: np.isin(classify(committed.filters(width, layer, model, setup)), NAMED)
+            for layer in ("hidden", "direct")
+        }
+        for model in (committed.networks, committed.untrained)
+    )
+    text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
+    text += f"{found['direct'].sum()} of {found['direct'].size} direct filters; before training "
+    text += f"{before['hidden'].sum()} and {before['direct'].sum()}"
+    both = tuple(np.concatenate(list(named.values()), -1) for named in (found, before))
+    return judged(lambda pair: mean(pair[0]) - mean(pair[1]), both, text=text)
+
+
+def _held_still(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Torque of the networks, torque with all hidden units at their mean, measured torque."""
+    model, (windows, wanted) = committed.networks(width), cases(committed.training(), width)
+    hidden, output = model.weights.activity(model.scaled(windows))
+    to_output = np.swapaxes(model.weights.output_weights, -1, -2)
+    net = logit(output) + (hidden.mean(-2, keepdims=True) - hidden) @ to_output
+    return model.outputs.unscale(output), model.outputs.unscale(expit(net)), wanted
+
+
+def without_hidden_units(width: int = 21) -> Measured:
+    """Training error with all hidden units held at their mean over that of the whole network."""
+    whole, still, wanted = _held_still(width)
+    ratio = rmss(still, wanted) / rmss(whole, wanted)
+    text = f"error {significant(np.median(ratio), 2)} times as large without them"
+    return judged(median, ratio, text=text)
+
+
+def compensate_friction(width: int = 21) -> Measured:
+    """Share of the hidden units' non-linear part that friction explains, better of two joints.
+
+    The direct weights add a linear function of the window to the net input of an output unit;
+    whatever is not linear in it comes from the hidden units. Least squares takes the linear
+    part out of the hidden units' sum, of the true friction torque and of the rigid body's
+    torque; R² is the squared correlation of what is left, its median over networks.
+    """
+    model, run = committed.networks(width), committed.training()
+    windows = cases(run, width)[0]
+    hidden = model.weights.activity(model.scaled(windows))[0]
+    sums = np.einsum("mnh,moh->mno", hidden, model.weights.output_weights)
+    speed = run.qd_true[..., run.motion, :]
+    acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
+    rigid = STATE_FEEDBACK.arm.inverse_dynamics(run.q_true[..., run.motion, :], speed, acceleration)
+    torques = {"friction": STATE_FEEDBACK.effects.friction_torque(speed), "rigid body": rigid}
+    linear = np.column_stack([windows.reshape(len(windows), -1), np.ones(len(windows))])
+
+    def curved(y):
+        return y - linear @ np.linalg.lstsq(linear, y, rcond=None)[0]
+
+    parts = [curved(y) for y in sums]
+    fits, words = {}, []
+    for name, known in torques.items():
+        left = curved(known.reshape(-1, 2))
+        each = [[np.corrcoef(p[:, j], left[:, j])[0, 1] ** 2 for j in (0, 1)] for p in parts]
+        fits[name] = np.array(each)
+        words.append("{}: R² {:.2f} and {:.2f}".format(name, *np.median(each, axis=0)))
+
+    def better(each):
+        return np.median(each, axis=1).max(-1)
+
+    return judged(better, fits["friction"], text=f"{'; '.join(words)}, shoulder and elbow")
