@@ -100,6 +100,25 @@ def content(f) -> np.ndarray:
     return f @ basis(f.shape[-1]).T
 
 
+def pure_part(f, degree: int = 2) -> np.ndarray:
+    """Projection of weight functions onto polynomials: what they hold of low derivatives.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions, 5 samples or more.
+    degree : int
+        2 keeps position, velocity and acceleration; at most 3.
+
+    Returns
+    -------
+    ndarray, shape (..., width)
+    """
+    kept = integer("degree", degree, 0, len(DERIVATIVES) - 1) + 1
+    parts = content(f)
+    return parts[..., :kept] @ basis(np.shape(f)[-1])[:kept]
+
+
 def shares(f) -> np.ndarray:
     """Share of each derivative in the energy of weight functions.
 

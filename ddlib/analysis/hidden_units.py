@@ -7,6 +7,7 @@ as `ddlib.learning.network.Weights.activity` gives them; leading axes are networ
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -102,6 +103,48 @@ def ablation(model: TorqueModel, windows, torque, group: int = 1) -> tuple[list,
         held = logit + shift[:, chosen] @ weights.output_weights[:, chosen].T
         errors.append(rmss(model.outputs.unscale(1 / (1 + np.exp(-held))), torque))
     return groups, np.array(errors)
+
+
+def refitted(features, torque, held_out, answer) -> np.ndarray:
+    """Errors of a linear output layer that is fitted anew to given features, with a constant.
+
+    With hidden activities and windows as features this is what the hidden units are worth when
+    the output layer has done its best with them; with windows alone, what a linear filter is.
+
+    Parameters
+    ----------
+    features, held_out : array_like, shapes (cases, features) and (others, features)
+        On the training runs, and on cases that the layer is not fitted to.
+    torque, answer : array_like, shapes (cases, joint) and (others, joint)
+        Measured torques, N m.
+
+    Returns
+    -------
+    ndarray, shape (2,)
+        Pooled RMSS in training and on the other cases.
+    """
+    features, held_out = finite_array("features", features), finite_array("held_out", held_out)
+    torque, answer = finite_array("torque", torque), finite_array("answer", answer)
+    if features.ndim != 2 or len(features) != len(torque) or len(held_out) != len(answer):
+        raise ValueError(
+            "features and held_out must have a row for each torque, got shapes "
+            f"{features.shape}, {torque.shape}, {held_out.shape} and {answer.shape}"
+        )
+    x, new = (np.column_stack([a, np.ones(len(a))]) for a in (features, held_out))
+    factors = np.linalg.lstsq(x, torque, rcond=None)[0]
+    return np.array([rmss(x @ factors, torque), rmss(new @ factors, answer)])
+
+
+def with_filters(model: TorqueModel, hidden_weights) -> TorqueModel:
+    """Networks whose hidden units have other weights from the window, all else as it was.
+
+    Parameters
+    ----------
+    model : TorqueModel
+    hidden_weights : array_like, shape (..., hidden, joint, width)
+        In the place of its own, of the same shape.
+    """
+    return replace(model, weights=replace(model.weights, hidden_weights=hidden_weights))
 
 
 def cancellation(model: TorqueModel, windows) -> np.ndarray:

@@ -3,6 +3,7 @@
 - ``windows``: windows of positions, cut from a recording, and their scaling
 - ``network``: `Weights` as arrays, the same network in PyTorch, `TorqueModel` from rad to N m
 - ``training``, ``descent``: training sets, and descent with momentum, of one network or many
+- ``surrogates``: targets that look like torques and have nothing to do with the motion
 - ``levenberg_marquardt``, ``gauss_newton``: the optimum by second-order steps
 - ``parity_networks``: the parity example of section 1.1
 """
@@ -12,6 +13,7 @@ from ddlib._names import hand_on
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
     windows="Scaler check_width sliding_windows",
+    surrogates="KINDS LEAST_SHIFT MATCHED related surrogate surrogates",
     network="TorqueModel Weights WindowNetwork kernels",
     descent="Descent prepare",
     training=(

@@ -16,6 +16,7 @@ from ddlib.analysis import (
     content,
     decompose,
     frequency_response,
+    pure_part,
     purest,
     roughness,
     savitzky_golay,
@@ -410,3 +411,16 @@ def test_a_filter_is_turned_so_that_its_strongest_derivative_counts_positive(sig
     np.testing.assert_array_equal(turned[2], 20 * x - x**2)
     np.testing.assert_array_equal(turned[3], x**3)
     np.testing.assert_array_equal(upright(sign * x), x)
+
+
+def test_pure_part_keeps_polynomials_and_nothing_else():
+    x = np.linspace(-1, 1, 21)
+    rng = np.random.default_rng(1)
+    for degree in range(4):
+        poly = np.polynomial.Polynomial(rng.normal(size=degree + 1))(x)
+        assert np.allclose(pure_part(poly, degree), poly)
+        f = rng.normal(size=(3, 21))
+        fitted = [np.polynomial.Polynomial.fit(x, one, degree)(x) for one in f]
+        assert np.allclose(pure_part(f, degree), fitted)
+    with pytest.raises(ValueError, match="degree"):
+        pure_part(f, 4)

@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import ablation, cancellation, match, net_inputs, saturated, transition_width
-from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.analysis import (
+    ablation,
+    cancellation,
+    match,
+    net_inputs,
+    refitted,
+    saturated,
+    transition_width,
+    with_filters,
+)
+from ddlib.learning import Scaler, TorqueModel, TrainingSet, Weights
 from ddlib.metrics import rmss
 
 RNG = np.random.default_rng(5)
@@ -117,3 +126,32 @@ def test_matching_finds_a_permutation_with_mirrors():
 def test_refusals(call):
     with pytest.raises(ValueError, match=r"must"):
         call()
+
+
+def test_refitted_layer_is_least_squares_with_a_constant():
+    rng = np.random.default_rng(5)
+    x, new = rng.normal(size=(80, 3)), rng.normal(size=(40, 3))
+    factors, noise = rng.normal(size=(3, 2)), rng.normal(size=(80, 2))
+    exact = refitted(x, 7 + x @ factors, new, 7 + new @ factors)
+    assert exact == pytest.approx([0, 0], abs=1e-9)
+    torque = 7 + x @ factors + noise
+    found = refitted(x, torque, new, 7 + new @ factors)
+    fit = [np.polynomial.Polynomial.fit(x[:, 0], torque[:, j], 1)(x[:, 0]) for j in (0, 1)]
+    one = refitted(x[:, :1], torque, new[:, :1], 7 + new @ factors)
+    assert one[0] == pytest.approx(rmss(np.stack(fit, -1), torque))
+    assert found[0] < one[0] and found[1] < one[1]
+    best = refitted(x[:, :0], torque, new[:, :0], torque[:40])
+    assert best[0] == pytest.approx(1)  # a constant guess
+    with pytest.raises(ValueError, match="a row for each torque"):
+        refitted(x[1:], torque, new, torque[:40])
+
+
+def test_other_filters_in_the_place_of_a_networks_own():
+    scaler = Scaler(np.zeros(2), np.ones(2))
+    model = TorqueModel(Weights.random(2, 5), scaler, scaler)
+    f = 0 * model.weights.hidden_weights
+    changed = with_filters(model, f)
+    assert not changed.weights.hidden_weights.any() and model.weights.hidden_weights.any()
+    assert changed.weights.direct_weights is model.weights.direct_weights
+    with pytest.raises(ValueError, match="hidden"):
+        with_filters(model, f[:, :3])

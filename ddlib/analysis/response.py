@@ -1,0 +1,207 @@
+"""What units and networks respond to along a motion, in signals and in physical units.
+
+The shape of a filter says what it could see; its response says what it does see
+(`ddlib.analysis.following` looks at each joint's filter by itself). Here a unit is taken as a
+whole, with both windows, and a network by its gains: the inertia and the damping that its torque
+shows, through the direct weights alone and through all of it.
+
+A gain is the factor of an acceleration filter in the least-squares fit of the network's filter by
+a position, a velocity and an acceleration filter. With the least-squares filters of a parabola
+(`ddlib.analysis.savitzky_golay`) as templates that is a moment of the filter,
+`ddlib.analysis.gains`, since they are the dual basis of 1, x and x²/2.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, number
+from ddlib.analysis.following import Responses, gains, mean_gradient
+from ddlib.analysis.hidden_units import net_inputs
+from ddlib.learning import TorqueModel
+from ddlib.simulation import LOG_STEP
+
+
+def with_jerk(states, step: float = LOG_STEP) -> np.ndarray:
+    """States with the derivative of the acceleration as a fourth quantity.
+
+    Parameters
+    ----------
+    states : array_like, shape (..., time, joint, 3)
+        True position, velocity, acceleration, run by run.
+    step : float
+        Sampling period, s.
+
+    Returns
+    -------
+    ndarray, shape (..., time, joint, 4)
+        As `ddlib.analysis.filters.DERIVATIVES` names them; jerk by central differences, rad/s^3.
+    """
+    states = finite_array("states", states, 3)
+    number("step", step, 0.0, open_low=True)
+    if states.ndim < 3 or states.shape[-3] < 2:
+        raise ValueError(f"states must have shape (..., time, joint, 3), got {states.shape}")
+    jerk = np.gradient(states[..., 2], step, axis=-2)
+    return np.concatenate([states, jerk[..., None]], -1)
+
+
+def heard(outputs, states) -> Responses:
+    """What signals of units follow, each quantity by both joints together.
+
+    Parameters
+    ----------
+    outputs : array_like, shape (..., cases, units)
+        Net inputs, activities or sums of direct weights.
+    states : array_like, shape (cases, joint, quantities)
+        True motion, for instance from `with_jerk`.
+
+    Returns
+    -------
+    Responses
+        Shapes ``(..., units, quantities)`` and ``(..., units)``. ``alone``: R² on a quantity of
+        both joints; ``unique``: by how much R² on all falls without it (semi-partial).
+    """
+    outputs, states = finite_array("outputs", outputs), finite_array("states", states)
+    if states.ndim != 3 or outputs.ndim < 2 or outputs.shape[-2] != len(states):
+        raise ValueError(
+            "outputs and states must have shapes (..., cases, units) and (cases, joint, "
+            f"quantities), got {outputs.shape} and {states.shape}"
+        )
+    y = np.moveaxis(outputs, -2, 0)
+    y = (y - y.mean(0)).reshape(len(states), -1)
+    power = (y**2).sum(0)
+    if (power < 1e-20 * len(y)).any():
+        raise ValueError("outputs must vary over the cases")
+
+    def share(quantities):
+        x = states[:, :, quantities].reshape(len(states), -1)
+        axes = np.linalg.qr((x - x.mean(0)) / x.std(0))[0]
+        return ((axes.T @ y) ** 2).sum(0) / power
+
+    count = states.shape[-1]
+    alone = np.stack([share([k]) for k in range(count)], -1)
+    together = share(list(range(count)))
+    less = np.stack([share([i for i in range(count) if i != k]) for k in range(count)], -1)
+    unique = np.clip(together[:, None] - less, 0, 1)
+    shape = np.moveaxis(outputs, -2, 0).shape[1:]
+    return Responses(
+        alone.reshape(*shape, count), unique.reshape(*shape, count), together.reshape(shape)
+    )
+
+
+def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
+    """What comes in at units: sums of the windows by the layer whose weights they pass.
+
+    Parameters
+    ----------
+    model : TorqueModel
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad.
+
+    Returns
+    -------
+    dict of ndarray, shape (..., cases, units)
+        "hidden": net inputs of the hidden units; "direct": what the direct weights give to the
+        outputs.
+    """
+    x = model.scaled(windows)
+    direct = np.einsum("...ojw,njw->...no", model.weights.direct_weights, x)
+    return {"hidden": net_inputs(model, windows), "direct": direct}
+
+
+class Calibrated(NamedTuple):
+    """Gains of torques on position, velocity and acceleration, along the last axis.
+
+    Attributes
+    ----------
+    direct, whole : ndarray, shape (..., output, joint, 3)
+        Through the direct weights alone, and through all of the network, averaged over cases:
+        stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2).
+    """
+
+    direct: np.ndarray
+    whole: np.ndarray
+
+
+def calibrated(model: TorqueModel, windows, step: float = LOG_STEP) -> Calibrated:
+    """Gains of networks in physical units, from their torques' mean gradient.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        One network or an ensemble.
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad, over which the gradient is averaged.
+    step : float
+        Sampling period of the windows, s.
+    """
+    weights = model.weights
+    output = weights.activity(model.scaled(windows))[1]
+    slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
+    scale = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
+    direct = slope[..., None, None] * weights.direct_weights * scale
+    return Calibrated(gains(direct, step), gains(mean_gradient(model, windows), step))
+
+
+def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
+    """How well a linear probe reads quantities from features that it was not fitted on.
+
+    Parameters
+    ----------
+    features, held_out : array_like, shapes (cases, features) and (others, features)
+        For instance hidden activities on the training runs and on another one.
+    target, answer : array_like, shapes (cases, quantities) and (others, quantities)
+        What is to be read.
+    ridge : float
+        Penalty on the squared factors of standardised features, as a share of the cases.
+
+    Returns
+    -------
+    ndarray, shape (quantities,)
+        R² on the held-out cases; negative where their mean would have been a better guess.
+    """
+    target, answer = finite_array("target", target), finite_array("answer", answer)
+    read = _probe(features, target, held_out, ridge)
+    return 1 - ((answer - read) ** 2).sum(0) / ((answer - answer.mean(0)) ** 2).sum(0)
+
+
+def decoded_sign(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
+    """How often a linear probe tells the sign of quantities (balanced accuracy, chance 0.5).
+
+    The probe is the least-squares classifier, fitted to +1 and -1.
+
+    Parameters
+    ----------
+    features, target, held_out, answer, ridge
+        As in `decoded`.
+
+    Returns
+    -------
+    ndarray, shape (quantities,)
+        Mean of the shares of positive and of negative cases that are told rightly.
+    """
+    target, answer = finite_array("target", target), finite_array("answer", answer)
+    if ((answer > 0).all(0) | (answer <= 0).all(0)).any():
+        raise ValueError("answer must have both signs in each quantity")
+    read = _probe(features, np.where(target > 0, 1.0, -1.0), held_out, ridge) > 0
+    up = answer > 0
+    return 0.5 * ((read & up).sum(0) / up.sum(0) + (~read & ~up).sum(0) / (~up).sum(0))
+
+
+def _probe(features, target, held_out, ridge):
+    features, held_out = (
+        finite_array(name, x) for name, x in (("features", features), ("held_out", held_out))
+    )
+    number("ridge", ridge, 0.0)
+    if features.ndim != 2 or target.ndim != 2 or len(features) != len(target):
+        raise ValueError(
+            "features and target must have shapes (cases, features) and (cases, quantities), "
+            f"got {features.shape} and {target.shape}"
+        )
+    centre, size = features.mean(0), features.std(0)
+    size = np.where(size > 0, size, 1)
+    x, new = (features - centre) / size, (held_out - centre) / size
+    square = x.T @ x + ridge * len(x) * np.eye(x.shape[1])
+    return target.mean(0) + new @ np.linalg.solve(square, x.T @ (target - target.mean(0)))

@@ -1,0 +1,152 @@
+"""Targets that look like the torques of a recording and have nothing to do with its motion.
+
+What a network learns from such targets it would learn from any target of their kind: they are
+null controls of the filters (section 5.1). Three kinds are as smooth as the torques themselves,
+one is white:
+
+- ``"shifted"``: each run's torques moved in time by a random amount, around the run's ends
+- ``"other run"``: the torques of another run
+- ``"phases"``: each run's torques with random phases. The spectra stay, and with one draw of
+  phases for both joints their cross-spectrum, too (Prichard & Theiler 1994, after Theiler et al.
+  1992): the correlations of the torques, and no more of them
+- ``"shuffled"``: each run's torques in random order, which makes them white
+
+What is preserved is what the null is about. Runs keep their means in all kinds but "other run";
+along the paper's family all runs have one shape, so that another run's torques are not unrelated
+to the motion, and a shift leaves a part of the relation, too (`related` measures it).
+
+References
+----------
+- J. Theiler, S. Eubank, A. Longtin, B. Galdrikian, J. D. Farmer, "Testing for nonlinearity in
+  time series: the method of surrogate data", Physica D 58 (1992), 77-94.
+- D. Prichard, J. Theiler, "Generating surrogate data for time series with several simultaneously
+  measured variables", Physical Review Letters 73 (1994), 951-954.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, number, one_of
+
+MATCHED = ("shifted", "other run", "phases")
+"""Kinds of surrogates that are as smooth as the torques."""
+
+KINDS = (*MATCHED, "shuffled")
+"""Kinds of surrogates."""
+
+LEAST_SHIFT = 0.1
+"""Least circular shift, as a share of a run: 0.3 s of the paper's 3 s, in either direction."""
+
+
+def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
+    """One draw of surrogate torques.
+
+    Parameters
+    ----------
+    kind : str
+        One of `KINDS`.
+    torque : array_like, shape (runs, time, joint)
+        Torques of the motion, run by run; any unit.
+    seed : int
+        Of the draw.
+
+    Returns
+    -------
+    ndarray, shape (runs, time, joint)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If `kind` is not known, or `torque` is not finite, not three-dimensional, too short, or
+        of a single run where another one is wanted.
+    """
+    one_of("kind", kind, KINDS)
+    torque = finite_array("torque", torque)
+    if torque.ndim != 3 or torque.shape[1] < 4:
+        raise ValueError(
+            f"torque must have shape (runs, time, joint) with 4 samples or more, got {torque.shape}"
+        )
+    rng = np.random.default_rng(integer("seed", seed, 0))
+    return _DRAWS[kind](torque, rng)
+
+
+def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
+    """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only.
+
+    Parameters
+    ----------
+    kind, torque, seed
+        As in `surrogate`.
+    draws : int
+        1 or more.
+    """
+    return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
+
+
+def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
+    """Share of the variance of targets that a linear filter of the windows explains.
+
+    Parameters
+    ----------
+    target : array_like, shape (cases, joint)
+    windows : array_like, shape (cases, joint, width)
+        Positions.
+    ridge : float
+        Of the normal equations, relative to their mean diagonal.
+
+    Returns
+    -------
+    ndarray, shape (joint,)
+        Of the recorded torques nearly 1. Of surrogates it is what they still share with the
+        motion, and what this many taps fit to anything that is smooth.
+    """
+    target, windows = finite_array("target", target), finite_array("windows", windows)
+    number("ridge", ridge, 0.0)
+    if target.ndim != 2 or windows.ndim != 3 or len(target) != len(windows):
+        raise ValueError(
+            "target and windows must have shapes (cases, joint) and (cases, joint, width), "
+            f"got {target.shape} and {windows.shape}"
+        )
+    x = windows.reshape(len(windows), -1)
+    x, y = x - x.mean(0), target - target.mean(0)
+    square = x.T @ x
+    square[np.diag_indices_from(square)] += ridge * np.trace(square) / len(square)
+    left = y - x @ np.linalg.solve(square, x.T @ y)
+    return 1 - (left**2).sum(0) / (y**2).sum(0)
+
+
+def _shifted(torque, rng):
+    time = torque.shape[1]
+    least = int(np.ceil(LEAST_SHIFT * time))
+    by = rng.integers(least, time - least + 1, len(torque))
+    return np.stack([np.roll(run, k, 0) for run, k in zip(torque, by)])
+
+
+def _other_run(torque, rng):
+    if len(torque) < 2:
+        raise ValueError("torque must have two runs or more for the torques of another, got 1")
+    own = np.arange(len(torque))
+    while True:  # a permutation without fixed points, all equally likely
+        order = rng.permutation(own)
+        if (order != own).all():
+            return torque[order]
+
+
+def _phases(torque, rng):
+    runs, time, _ = torque.shape
+    spectrum = np.fft.rfft(torque, axis=1)
+    turn = np.exp(2j * np.pi * rng.random((runs, spectrum.shape[1], 1)))
+    turn[:, 0] = 1  # the mean
+    if time % 2 == 0:
+        turn[:, -1] = 1  # real, like the mean
+    return np.fft.irfft(spectrum * turn, time, axis=1)
+
+
+def _shuffled(torque, rng):
+    return np.stack([run[rng.permutation(len(run))] for run in torque])
+
+
+_DRAWS = {
+    "shifted": _shifted, "other run": _other_run, "phases": _phases, "shuffled": _shuffled,
+}  # fmt: skip

@@ -1,0 +1,165 @@
+"""Responses, gains and probes against signals and networks whose answer is known."""
+
+import numpy as np
+import pytest
+from scipy.stats import ortho_group
+
+from ddlib.analysis import (
+    calibrated,
+    decoded,
+    decoded_sign,
+    gains,
+    heard,
+    savitzky_golay,
+    unit_inputs,
+    with_jerk,
+)
+from ddlib.learning import Scaler, TorqueModel, Weights, sliding_windows
+from ddlib.simulation import LOG_STEP
+
+RNG = np.random.default_rng(0)
+STATES = RNG.normal(size=(400, 2, 4))
+
+
+def test_jerk_is_the_slope_of_the_acceleration():
+    t = np.arange(200) * LOG_STEP
+    states = np.stack([t**3 / 6 * k for k in (1.0, 0, 0)], -1)[:, None].repeat(2, 1)
+    states[..., 2] = np.stack([np.sin(3 * t), t**2], -1)
+    jerk = with_jerk(states)[1:-1, :, 3]
+    assert np.allclose(jerk[:, 0], 3 * np.cos(3 * t[1:-1]), atol=1e-3)
+    assert np.allclose(jerk[:, 1], 2 * t[1:-1], atol=1e-9)
+    assert np.array_equal(with_jerk(states)[..., :3], states)
+    with pytest.raises(ValueError, match="last axis"):
+        with_jerk(states[..., :2])
+
+
+def test_shares_of_independent_quantities_add_up():
+    """With signals at right angles, R² of each is its squared part, alone and unique alike."""
+    q = np.linalg.qr(np.column_stack([np.ones(400), RNG.normal(size=(400, 9))]))[0][:, 1:]
+    states, noise = q[:, :8].reshape(400, 2, 4), q[:, 8]
+    parts = np.array([[0.1, 0.3, 0.5, 0.2], [0.2, 0.1, 0.4, 0.6]])
+    y = (states * parts).sum((1, 2)) + 0.3 * noise
+    found = heard(np.stack([y, 5 + 2 * y, states[:, 1, 1]], -1)[None], states)
+    power = (parts**2).sum() + 0.09
+    assert found.alone.shape == (1, 3, 4) and found.together.shape == (1, 3)
+    for unit in (0, 1):
+        assert np.allclose(found.alone[0, unit], (parts**2).sum(0) / power)
+        assert np.allclose(found.unique[0, unit], (parts**2).sum(0) / power)
+        assert found.together[0, unit] == pytest.approx((parts**2).sum() / power)
+    assert np.allclose(found.alone[0, 2], [0, 1, 0, 0])
+    assert list(found.strongest[0]) == [2, 2, 1]
+
+
+def test_what_two_quantities_share_is_nobodys_own():
+    """Position and acceleration proportional: each explains all, neither anything of its own."""
+    states = RNG.normal(size=(300, 2, 4))
+    states[..., 2] = -4 * states[..., 0] + 1e-3 * RNG.normal(size=(300, 2))
+    found = heard(states[:, :1, 0], states)
+    assert found.alone[0, [0, 2]] == pytest.approx(1, abs=1e-4)
+    assert found.unique[0].max() < 1e-4
+
+
+def test_unit_inputs_by_loops():
+    model = _network(RNG)
+    windows = RNG.normal(size=(6, 2, 7))
+    found = unit_inputs(model, windows)
+    w, x = model.weights, model.scaled(windows)
+    for n in range(6):
+        for u in range(10):
+            total = w.hidden_bias[u] + (w.hidden_weights[u] * x[n]).sum()
+            assert found["hidden"][n, u] == pytest.approx(total)
+        for o in range(2):
+            assert found["direct"][n, o] == pytest.approx((w.direct_weights[o] * x[n]).sum())
+
+
+def _network(rng, width=7):
+    weights = Weights.random(1, width, seed=3)[0]
+    inputs = Scaler(np.array([-1.0, -2.0]), np.array([1.0, 0.5]), (-1.0, 1.0))
+    return TorqueModel(
+        weights, inputs, Scaler(np.array([-20.0, -5]), np.array([30.0, 9]), (0.2, 0.8))
+    )
+
+
+def test_gains_of_a_linear_network_are_the_planted_inertia_and_friction():
+    """Direct weights made of an inertia, a damping and a stiffness; hidden units that are off."""
+    inertia = np.array([[2.3, 0.4], [0.4, 0.35]])
+    damping = np.array([[4.0, 0.0], [0.0, 1.2]])
+    stiffness = np.array([[0.7, -0.1], [0.2, 0.0]])
+    templates = [savitzky_golay(21, k, LOG_STEP, degree=2) for k in (0, 1, 2)]
+    wanted = np.stack([stiffness, damping, inertia], -1)
+    filters = np.einsum("ojk,kw->ojw", wanted, templates)  # N m/rad
+    model = _network(RNG, 21)
+    small = 1e-6  # where the sigmoid outputs are straight
+    weights = model.weights
+    weights.output_weights[:] = 0
+    weights.output_bias[:] = 0
+    gain = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
+    weights.direct_weights[:] = 4 * filters / gain  # the slope of a sigmoid at 0 is a quarter
+    centre = model.inputs.unscale(np.zeros((1, 2, 1)), -2)
+    windows = centre + small * RNG.normal(size=(50, 2, 21))
+    found = calibrated(model, windows)
+    assert np.allclose(found.direct, wanted, rtol=1e-6, atol=1e-9)
+    assert np.allclose(found.whole, wanted, rtol=1e-6, atol=1e-9)
+    # the same by moving the arm: positions along parabolas, torques by differences
+    x = np.arange(-10, 11) * LOG_STEP
+    still = np.repeat(centre, 21, -1)
+    for j in (0, 1):
+        for k, shape in enumerate((1 + 0 * x, x, x**2 / 2)):
+            moved = still.copy()
+            moved[0, j] += small * shape
+            change = model.torque(moved) - model.torque(still)
+            assert np.allclose(change[0] / small, wanted[:, j, k], rtol=1e-3, atol=1e-3)
+
+
+def test_hidden_units_add_to_the_whole_but_not_to_the_direct_gain():
+    model = _network(RNG, 9)
+    windows = RNG.normal(size=(30, 2, 9))
+    found, gap = calibrated(model, windows), 1e-5
+    x = np.arange(-4, 5) * LOG_STEP
+    for j in (0, 1):
+        moved = windows.copy()
+        moved[:, j] += gap * x**2 / 2
+        slope = (model.torque(moved) - model.torque(windows)).mean(0) / gap
+        assert np.allclose(found.whole[:, j, 2], slope, rtol=1e-2, atol=1e-5)
+    assert not np.allclose(found.whole, found.direct, rtol=0.05)
+
+
+def test_a_moment_is_the_factor_of_a_least_squares_fit_by_templates():
+    f = RNG.normal(size=(5, 21))
+    templates = np.stack([savitzky_golay(21, k, LOG_STEP, degree=2) for k in (0, 1, 2)], -1)
+    fitted = np.linalg.lstsq(templates, f.T, rcond=None)[0].T
+    assert np.allclose(gains(f), fitted, rtol=1e-8)
+
+
+def test_probes_read_what_is_there_and_only_on_held_out_cases():
+    mix = ortho_group.rvs(6, random_state=1)
+    x, new = RNG.normal(size=(200, 6)), RNG.normal(size=(100, 6))
+    read = decoded(x @ mix, x[:, :2], new @ mix, new[:, :2])
+    assert read == pytest.approx([1, 1], abs=1e-8)
+    halves = x[:, :1] + RNG.normal(size=(200, 1)), new[:, :1] + RNG.normal(size=(100, 1))
+    assert decoded(x, halves[0], new, halves[1])[0] == pytest.approx(0.5, abs=0.15)
+    nothing = decoded(x, RNG.normal(size=(200, 1)), new, RNG.normal(size=(100, 1)))
+    assert -0.3 < nothing[0] < 0.05
+    assert decoded(x, x[:, :1], new, new[:, :1], ridge=1e6)[0] < 0.05  # shrunk to the mean
+    still = np.column_stack([x, np.ones(200)]), np.column_stack([new, np.ones(100)])
+    assert decoded(still[0], x[:, :1], still[1], new[:, :1])[0] == pytest.approx(1, abs=1e-8)
+    with pytest.raises(ValueError, match="features and target"):
+        decoded(x[1:], x[:, :1], new, new[:, :1])
+
+
+def test_signs_are_judged_by_both_classes_alike():
+    x, new = RNG.normal(size=(300, 3)), RNG.normal(size=(200, 3))
+    assert decoded_sign(x, x[:, :1], new, new[:, :1])[0] > 0.9
+    coin = decoded_sign(x, RNG.normal(size=(300, 1)), new, RNG.normal(size=(200, 1)))[0]
+    assert 0.35 < coin < 0.65
+    rare = np.where(np.arange(200) < 10, 1.0, -1.0)[:, None]  # always "no" would be right in 95 %
+    assert decoded_sign(0 * x + 1.0, x[:, :1], 0 * new + 1.0, rare)[0] == pytest.approx(0.5)
+    with pytest.raises(ValueError, match="both signs"):
+        decoded_sign(x, x[:, :1], new, np.ones((200, 1)))
+
+
+def test_refusals():
+    with pytest.raises(ValueError, match="outputs must vary"):
+        heard(np.ones((400, 2)), STATES)
+    with pytest.raises(ValueError, match="outputs and states"):
+        heard(np.ones((399, 2)), STATES)

@@ -1,0 +1,139 @@
+"""Surrogate torques: what they keep, what they destroy."""
+
+import numpy as np
+import pytest
+
+from ddlib.learning import KINDS, LEAST_SHIFT, MATCHED, related, surrogate, surrogates
+from ddlib.learning.windows import sliding_windows
+
+
+def smooth(runs=4, time=300, seed=0):
+    """Two correlated joints: sums of slow sines with a mean of their own in each run."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(time) / time
+    waves = sum(
+        rng.normal(size=(runs, 1, 1)) * np.sin(2 * np.pi * (k * t + rng.random()))[None, :, None]
+        for k in (1, 2, 5)
+    )
+    other = rng.normal(size=(runs, 1, 1)) * np.cos(2 * np.pi * 3 * t)[None, :, None]
+    return np.concatenate([waves, 0.6 * waves + other], -1) + rng.normal(size=(runs, 1, 2))
+
+
+TORQUE = smooth()
+
+
+@pytest.mark.parametrize("time", [300, 301])
+def test_phases_keep_spectra_and_cross_spectra_of_each_run(time):
+    torque = smooth(time=time)
+    drawn = surrogate("phases", torque, 3)
+    before, after = (np.fft.fft(x, axis=1) for x in (torque, drawn))
+    size = np.abs(before).max()
+    assert np.abs(np.abs(after) - np.abs(before)).max() < 1e-12 * size
+    cross = [x[..., 0] * x[..., 1].conj() for x in (before, after)]
+    assert np.abs(cross[1] - cross[0]).max() < 1e-12 * size**2
+    assert drawn.shape == torque.shape and drawn.dtype == float
+    assert np.allclose(drawn.mean(1), torque.mean(1), atol=1e-12)
+    assert np.allclose(drawn.var(1), torque.var(1), atol=1e-12)
+    assert np.abs(drawn - torque).max() > 0.5  # and yet another signal
+
+
+def test_phases_keep_the_correlations_at_all_lags():
+    """By Wiener and Khinchin; computed here by sums over circular shifts."""
+    drawn = surrogate("phases", TORQUE, 0)
+    for lag in (0, 1, 7, 150):
+        pairs = [(x[0] * np.roll(x[0], lag, 0)[:, ::-1]).sum(0) for x in (TORQUE, drawn)]
+        assert np.allclose(*pairs, atol=1e-9)
+
+
+def test_shifts_go_around_each_run_by_itself():
+    drawn = surrogate("shifted", TORQUE, 1)
+    by = []
+    for run, moved in zip(TORQUE, drawn):
+        fits = [k for k in range(len(run)) if np.array_equal(np.roll(run, k, 0), moved)]
+        assert len(fits) == 1
+        by += fits
+    assert len(set(by)) > 1
+    far = [min(k, 300 - k) for s in range(40) for k in _shifts(surrogate("shifted", TORQUE, s))]
+    assert LEAST_SHIFT * 300 <= min(far) <= LEAST_SHIFT * 300 + 5
+
+
+def _shifts(drawn):
+    return [
+        next(k for k in range(300) if np.array_equal(np.roll(run, k, 0), moved))
+        for run, moved in zip(TORQUE, drawn)
+    ]
+
+
+def test_other_runs_are_others_each_once():
+    orders = set()
+    for seed in range(60):
+        drawn = surrogate("other run", TORQUE, seed)
+        order = tuple(int(np.abs(TORQUE - run).max((1, 2)).argmin()) for run in drawn)
+        assert sorted(order) == [0, 1, 2, 3] and all(k != i for i, k in enumerate(order))
+        assert np.array_equal(drawn, TORQUE[list(order)])
+        orders.add(order)
+    assert len(orders) == 9  # all permutations of four without a fixed point
+
+
+def test_shuffled_torques_are_white_and_the_same_samples():
+    drawn = surrogate("shuffled", TORQUE, 0)
+    assert not np.array_equal(drawn, TORQUE)
+    for run, mixed in zip(TORQUE, drawn):
+        order = [int(np.abs(run - row).sum(1).argmin()) for row in mixed]
+        assert sorted(order) == list(range(300))  # both joints together
+    lagged = [
+        np.mean([np.corrcoef(run[1:, 0], run[:-1, 0])[0, 1] for run in x]) for x in (TORQUE, drawn)
+    ]
+    assert lagged[0] > 0.95 and abs(lagged[1]) < 0.15
+
+
+def test_seeds_decide_and_draws_follow_one_another():
+    for kind in KINDS:
+        one, again, other = (surrogate(kind, TORQUE, s) for s in (4, 4, 5))
+        assert np.array_equal(one, again) and not np.array_equal(one, other)
+        assert np.array_equal(surrogates(kind, TORQUE, 3, seed=3)[1:], [one, other])
+    assert set(MATCHED) < set(KINDS)
+
+
+def test_correlation_with_what_caused_them_is_gone():
+    """White inputs make the torques; over draws the mean correlation with them vanishes."""
+    rng = np.random.default_rng(2)
+    cause = rng.normal(size=(5, 300, 1))
+    torque = np.concatenate([cause, cause**3 + rng.normal(size=cause.shape)], -1)
+    for kind in KINDS:
+        found = [
+            np.corrcoef(cause.ravel(), x[..., 0].ravel())[0, 1]
+            for x in surrogates(kind, torque, 40)
+        ]
+        assert abs(np.mean(found)) < 0.03 and np.std(found) < 0.05
+
+
+def test_related_is_the_share_that_a_filter_explains():
+    rng = np.random.default_rng(0)
+    q = rng.normal(size=(400, 2))
+    windows = sliding_windows(q, 5)
+    taps = rng.normal(size=(2, 5))
+    exact = np.einsum("njw,jw->n", windows, taps)
+    noise = rng.normal(size=len(exact))
+    target = np.stack([3 + exact, exact + noise * exact.std()], -1)
+    share = related(target, windows)
+    assert share[0] == pytest.approx(1, abs=1e-6)
+    assert share[1] == pytest.approx(0.5, abs=0.08)
+    with pytest.raises(ValueError, match="target and windows"):
+        related(target[1:], windows)
+
+
+def test_refusals():
+    with pytest.raises(ValueError, match="kind must be one of 'shifted'"):
+        surrogate("reversed", TORQUE)
+    for bad in (TORQUE[0], TORQUE[:, :3]):
+        with pytest.raises(ValueError, match="torque must have shape"):
+            surrogate("phases", bad)
+    with pytest.raises(ValueError, match="two runs or more"):
+        surrogate("other run", TORQUE[:1])
+    with pytest.raises(ValueError, match="seed"):
+        surrogate("phases", TORQUE, -1)
+    with pytest.raises(ValueError, match="draws"):
+        surrogates("phases", TORQUE, 0)
+    with pytest.raises(ValueError, match="finite"):
+        surrogate("phases", TORQUE * np.nan)
