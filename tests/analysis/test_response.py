@@ -14,7 +14,7 @@ from ddlib.analysis import (
     unit_inputs,
     with_jerk,
 )
-from ddlib.learning import Scaler, TorqueModel, Weights, sliding_windows
+from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 
 RNG = np.random.default_rng(0)
