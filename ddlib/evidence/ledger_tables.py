@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 
 from ddlib.evidence.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
 from ddlib.evidence.verdicts import VERDICTS
-from ddlib.experiments import SETUPS, STATE_FEEDBACK
+from ddlib.experiments import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK
 from ddlib.tables import Table, number_beside, significant, typeset
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
@@ -158,10 +158,10 @@ def summary(claims: Iterable[Claim]) -> Table:
 
 
 def readings(claims: Iterable[Claim]) -> dict[str, tuple[int, dict[str, int]]]:
-    """Claims judged under every reading of the controller, and how many each one reproduces.
+    """Claims judged under both feedbacks, and how many each reading reproduces.
 
     They have the same measure and arguments but for the argument ``setup``; without it the
-    reading is state feedback.
+    reading is state feedback. Joint damping counts where it is judged by all of them, too.
 
     Parameters
     ----------
@@ -183,9 +183,11 @@ def readings(claims: Iterable[Claim]) -> dict[str, tuple[int, dict[str, int]]]:
             verdicts[kind].setdefault(key, {})[setup] = claim.verdict
     found = {}
     for kind, cells in verdicts.items():
-        both = [cell for cell in cells.values() if set(cell) == set(SETUPS)]
+        two = {POSITION_FEEDBACK.name, STATE_FEEDBACK.name}
+        both = [cell for cell in cells.values() if two <= set(cell)]
+        names = [name for name in SETUPS if all(name in cell for cell in both)]
         found[kind] = (
             len(both),
-            {name: sum(cell[name] == "reproduced" for cell in both) for name in SETUPS},
+            {name: sum(cell[name] == "reproduced" for cell in both) for name in names},
         )
     return found

@@ -19,8 +19,8 @@ __getattr__, __dir__, __all__ = hand_on(
     "studies",
     "sweeps",
     setups=(
-        "COURSE KD KP POSITION_FEEDBACK SETUPS STATE_FEEDBACK Setup WINDOWS errors predict split "
-        "train_windows"
+        "COURSE Errors JOINT_DAMPING KD KP LITERATURE POSITION_FEEDBACK SETUPS STATE_FEEDBACK "
+        "Setup WINDOWS errors predict solve_windows split train_windows"
     ),
     exact_states="EPOCHS RADIUS RATE SAMPLES random_states states_along torque",
     random_arms="RANGES distance draw setup",

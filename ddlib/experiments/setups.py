@@ -2,22 +2,30 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from ddlib import paper
-from ddlib._check import finite_array, integer
+from ddlib._check import finite_array, integer, number
 from ddlib.control import Controller, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    CoulombFriction,
+    Effects,
+    Quantisation,
+    ViscousFriction,
+)
 from ddlib.learning import (
     History,
+    Solution,
     TorqueModel,
     TrainingSet,
     Weights,
     cases,
     sliding_windows,
+    solve,
     train_ensemble,
 )
 from ddlib.metrics import rmss
@@ -50,6 +58,17 @@ INITIAL = 0.3
 
 
 @dataclass(frozen=True)
+class EncoderZero:
+    """A shift of the readings by `angle` (rad, per joint): where an encoder's zero lies."""
+
+    angle: tuple[float, float]
+
+    def apply(self, x, rng=None):
+        """The reading `x`, shifted."""
+        return x + np.asarray(self.angle)
+
+
+@dataclass(frozen=True)
 class Setup:
     """Arm, effects, controller and training: everything that decides Table 4-1.
 
@@ -70,6 +89,11 @@ class Setup:
         Number of hidden units.
     seed : int
         Seed of the sensor noise of the recording.
+    steps : int
+        Steps of Levenberg-Marquardt in place of descent; 0: descent, as in 1988. Training ends
+        after them, converged or not.
+    decay : float
+        Weight decay of Levenberg-Marquardt (`ddlib.learning.levenberg_marquardt.solve`).
     """
 
     name: str
@@ -84,6 +108,14 @@ class Setup:
     scaling: tuple[float, float] = (0.0, 1.0)
     hidden: int = paper.HIDDEN_UNITS
     seed: int = 0
+    steps: int = 0
+    decay: float = 0.0
+
+    def __post_init__(self):
+        integer("steps", self.steps, 0)
+        number("decay", self.decay, 0.0)
+        if self.decay and not self.steps:
+            raise ValueError(f"decay must be 0 for descent (steps = 0), got {self.decay:g}")
 
     def record(self, extents_deg=APPENDIX_I, **options) -> Recording:
         """The recording of all runs, noise included; default: the six of Appendix I.
@@ -98,6 +130,23 @@ class Setup:
         options = {"effects": self.effects, "seed": self.seed, **options}
         return record(self.arm, self.controller, extents_deg, **options)
 
+    def repeated(self, seed: int) -> Setup:
+        """The same experiment on another day: other torque noise, another zero of the encoders.
+
+        Rounding is no noise: without another zero every recording would round alike.
+
+        Parameters
+        ----------
+        seed : int
+            Of both; 0 or more.
+        """
+        integer("seed", seed, 0)
+        steps = [effect.step for effect in self.effects.encoder if hasattr(effect, "step")]
+        zero = np.random.default_rng((seed, len(steps))).uniform(0.0, max(steps, default=0.0), 2)
+        shifted = (EncoderZero(tuple(zero)), *self.effects.encoder, EncoderZero(tuple(-zero)))
+        effects = replace(self.effects, encoder=shifted if steps else self.effects.encoder)
+        return replace(self, effects=effects, seed=seed)
+
 
 POSITION_FEEDBACK = Setup("position feedback", proportional(KP))
 """First reading of "a proportional controller": torque proportional to the position error."""
@@ -106,8 +155,53 @@ STATE_FEEDBACK = Setup("state feedback", pd(KP, KD))
 """Second reading: the reference is "position and velocity" (section 2), so the torque is
 proportional to the errors in both. The arm follows without ringing."""
 
-SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK)}
-"""The two readings by name."""
+JOINT_DAMPING_KP = (750.0, 225.0)
+"""Gains of `JOINT_DAMPING`, N m/rad: 2.5 times `KP`. Tuned to Table 4-1."""
+
+JOINT_DAMPING_VISCOUS = (5.3, 1.1)
+"""Viscous friction of `JOINT_DAMPING`, N m s/rad: what public code gives for the IMI arm, another
+planar direct-drive arm. Not tuned."""
+
+JOINT_DAMPING_COULOMB = (1.5, 0.45)
+"""Coulomb friction of `JOINT_DAMPING`, N m: three times the default. Tuned to Table 4-1."""
+
+JOINT_DAMPING_BITS = 12.5
+"""Encoder of `JOINT_DAMPING`, bits: the 16 that are remembered cannot make the training error at
+window 11. Tuned to Table 4-1."""
+
+JOINT_DAMPING_STEPS = 60
+"""Levenberg-Marquardt steps of `JOINT_DAMPING`: it is stopped there, not converged. Tuned."""
+
+JOINT_DAMPING_DECAY = 1e-6
+"""Weight decay of `JOINT_DAMPING`. Tuned; it decides the size of the largest weights."""
+
+JOINT_DAMPING = Setup(
+    "joint damping",
+    proportional(JOINT_DAMPING_KP),
+    effects=replace(
+        CMU_DD_ARM_II_EFFECTS,
+        friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB)),
+        encoder=(Quantisation(2 * np.pi / 2**JOINT_DAMPING_BITS),),
+    ),
+    steps=JOINT_DAMPING_STEPS,
+    decay=JOINT_DAMPING_DECAY,
+)
+"""Third reading: torque proportional to the position error alone, and joints that are damped by
+themselves. Arm and torque noise are the default ones."""
+
+LITERATURE = replace(
+    POSITION_FEEDBACK,
+    name="joint damping, nothing tuned",
+    effects=replace(
+        CMU_DD_ARM_II_EFFECTS,
+        friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), *CMU_DD_ARM_II_EFFECTS.friction[1:]),
+    ),
+)
+"""The same idea with nothing tuned to the table: `POSITION_FEEDBACK` with the IMI arm's viscous
+friction; gains, Coulomb friction, 16 bits and training are the default ones."""
+
+SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK, JOINT_DAMPING)}
+"""The three readings of "a proportional controller" by name."""
 
 
 def split(recording: Recording) -> tuple[Recording, Recording]:
@@ -144,16 +238,17 @@ def train_windows(
     Returns
     -------
     model, history, snapshots
-        As from `ddlib.learning.training.train_ensemble`.
+        As from `ddlib.learning.training.train_ensemble`; of `Setup.steps` steps of
+        Levenberg-Marquardt there are no snapshots.
     """
-    integer("members", members, 1)
-    training, test = split(recording)
-    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
-    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
+    if setup.steps:
+        solution = solve_windows(setup, recording, width, members, seed=seed, progress=progress)
+        return solution.model, solution.history, {}
+    weights, data, test = _start(setup, recording, width, members, seed)
     return train_ensemble(
         weights,
         data,
-        test=data.transform(*cases(test, width)),
+        test=test,
         rate=setup.rate / width,
         momentum=setup.momentum,
         epochs=setup.epochs,
@@ -164,31 +259,91 @@ def train_windows(
     )
 
 
-def errors(model: TorqueModel, recording: Recording) -> dict[str, np.ndarray]:
-    """RMSS of a model on an Appendix I recording, in each way the paper may have meant.
+def solve_windows(
+    setup: Setup, recording: Recording, width: int, members: int, *, seed=0, progress=True
+) -> Solution:
+    """`train_windows` of a set-up with Levenberg-Marquardt, with all that the solver tells.
 
-    Returns
-    -------
-    dict
-        ``training`` and ``test`` (pooled, own standard deviation), ``test by training
-        deviation``, ``test shoulder``, ``test elbow`` and ``test, desired positions`` (the
-        network sees the reference in place of the measured positions); one value per
-        member each.
+    It stops after ``setup.steps`` steps and warns of members that have not converged by then;
+    `Solution.gradient` says how far they are.
     """
+    integer("setup.steps", setup.steps, 1)
+    weights, data, test = _start(setup, recording, width, members, seed)
+    return solve(
+        weights,
+        data,
+        test=test,
+        decay=setup.decay,
+        steps=setup.steps,
+        progress=progress,
+        label=f"{setup.name}, window {width}",
+    )
+
+
+def _start(setup, recording, width, members, seed) -> tuple:
+    """Initial weights, the training set, and the scaled test set."""
+    integer("members", members, 1)
+    training, test = split(recording)
+    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
+    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
+    return weights, data, data.transform(*cases(test, width))
+
+
+@dataclass(frozen=True)
+class Errors:
+    """RMSS on an Appendix I recording, in each way the paper may have meant.
+
+    Attributes
+    ----------
+    training, test : ndarray, shape (members,)
+        Pooled over the joints, each set divided by its own standard deviation.
+    by_training_deviation : ndarray, shape (members,)
+        Of trajectory 6, divided by the training set's standard deviation.
+    shoulder, elbow : ndarray, shape (members,)
+        Of trajectory 6, one joint.
+    desired : ndarray, shape (members,)
+        Of trajectory 6 when the network sees the reference in place of measured positions.
+    """
+
+    training: np.ndarray
+    test: np.ndarray
+    by_training_deviation: np.ndarray
+    shoulder: np.ndarray
+    elbow: np.ndarray
+    desired: np.ndarray
+
+    def named(self) -> dict[str, np.ndarray]:
+        """The same under the names that results and tables use."""
+        return {NAMES[field.name]: getattr(self, field.name) for field in fields(self)}
+
+
+NAMES = {
+    "training": "training",
+    "test": "test",
+    "by_training_deviation": "test by training deviation",
+    "shoulder": "test shoulder",
+    "elbow": "test elbow",
+    "desired": "test, desired positions",
+}
+"""What results and tables call the fields of `Errors`."""
+
+
+def errors(model: TorqueModel, recording: Recording) -> Errors:
+    """RMSS of a model on an Appendix I recording, one value per member each."""
     width = model.weights.width
     training, test = split(recording)
     (x, y), (x6, y6) = cases(training, width), cases(test, width)
     desired = sliding_windows(test.reference.q, width, test.motion)
     predicted = model.torque(x6)
     by_joint = rmss(predicted, y6, pooled=False)
-    return {
-        "training": rmss(model.torque(x), y),
-        "test": rmss(predicted, y6),
-        "test by training deviation": rmss(predicted, y6, scale=y.std(0)),
-        "test shoulder": by_joint[..., 0],
-        "test elbow": by_joint[..., 1],
-        "test, desired positions": rmss(model.torque(desired), y6),
-    }
+    return Errors(
+        training=rmss(model.torque(x), y),
+        test=rmss(predicted, y6),
+        by_training_deviation=rmss(predicted, y6, scale=y.std(0)),
+        shoulder=by_joint[..., 0],
+        elbow=by_joint[..., 1],
+        desired=rmss(model.torque(desired), y6),
+    )
 
 
 def predict(model: TorqueModel, recording: Recording) -> np.ndarray:

@@ -66,7 +66,7 @@ class TrainingPlayer(HintonWidget):
         integer("member", member, 0, shape[1] - 1)
         self._index = {epoch: k for k, epoch in enumerate(epochs.tolist())}
         self._weights = model.weights[:, member]
-        every = errors(model[:, member], recording)
+        every = errors(model[:, member], recording).named()
         self._errors = {name: every[name] for name in ERRORS}
         self._names = unit_names(self._weights[0])
         self._reach = self._weights.width // 2

@@ -283,7 +283,7 @@ def test_cells_that_are_not_accurate(plant):
     assert found.value == pytest.approx(2.0)
     assert found.text == (
         "RMSS 0.0050 to 2.0; above 0.1 are 3 of 6 cells: "
-        "position feedback 11: 0.20, position feedback 41: 2.0, state feedback 41: 0.20"
+        "state feedback 41: 0.20, position feedback 11: 0.20, position feedback 41: 2.0"
     )
     assert "above 0.01 are 5 of 6 cells" in of_windows.accurate(0.01).text
     assert of_windows.accurate(0.2).text.endswith(

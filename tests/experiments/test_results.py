@@ -379,7 +379,9 @@ def test_table_4_1_has_every_cell(table):
         for name in ("best test", "largest weight", "slope", "derailed"):
             assert len(cell[name]) == members, (setup, width, name)
         history = cell["history"]
-        assert history["epochs"][0] == 1 and history["epochs"][-1] == paper.EPOCHS
+        steps = SETUPS[setup].steps
+        wanted = (0, steps) if steps else (1, paper.EPOCHS)
+        assert (history["epochs"][0], history["epochs"][-1]) == wanted
         for name in ("training", "test"):
             assert np.shape(history[name]) == (members, len(history["epochs"]))
             np.testing.assert_allclose(
@@ -401,7 +403,7 @@ def test_committed_networks_measure_what_the_table_says(table, setup, width):
     path = results.networks_path(setup, width)
     assert path.is_file(), STALE
     model = TorqueModel.load(path)
-    measured = errors(model, SETUPS[setup].record())
+    measured = errors(model, SETUPS[setup].record()).named()
     assert set(measured) == set(cell["errors"])
     for name, values in measured.items():
         np.testing.assert_allclose(
@@ -415,9 +417,9 @@ def test_committed_networks_of_two_harmonics_measure_what_is_written(width):
     cell = results.read("harmonics")["windows"][str(width)]
     model, recording = results.networks(width, NAME), record_two_harmonics()
     for own, name in (("training", "training"), ("test", "test")):
-        measured = errors(model, recording)[name]
+        measured = getattr(errors(model, recording), name)
         np.testing.assert_allclose(measured, cell[own], rtol=0.02, err_msg=STALE)
-    other = errors(model, STATE_FEEDBACK.record())["test"]
+    other = errors(model, STATE_FEEDBACK.record()).test
     np.testing.assert_allclose(other, cell["one sine"]["trajectory 6"], rtol=0.02, err_msg=STALE)
     training = split(recording)[0]
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)

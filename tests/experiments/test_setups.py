@@ -7,15 +7,19 @@ import pytest
 
 from ddlib import paper
 from ddlib.experiments import (
+    JOINT_DAMPING,
+    KP,
+    LITERATURE,
     POSITION_FEEDBACK,
     SETUPS,
     STATE_FEEDBACK,
     errors,
     predict,
+    solve_windows,
     split,
     train_windows,
 )
-from ddlib.learning import Scaler, TorqueModel, Weights, check_points
+from ddlib.learning import NotConverged, Scaler, TorqueModel, Weights, check_points
 from ddlib.metrics import rmss
 from ddlib.trajectories import pick_and_place
 
@@ -47,12 +51,69 @@ def by_loop(recording, numbers, width):
 
 
 def test_setups_say_what_the_paper_says():
-    assert set(SETUPS) == {"position feedback", "state feedback"}
+    assert set(SETUPS) == {"position feedback", "state feedback", "joint damping"}
     for setup in SETUPS.values():
-        assert setup.epochs == 20_000 and setup.hidden == 10
+        assert setup.epochs == 20_000 and setup.hidden == 10 and setup.scaling == (0, 1)
     assert POSITION_FEEDBACK.arm == STATE_FEEDBACK.arm
     assert POSITION_FEEDBACK.effects == STATE_FEEDBACK.effects  # only the controller differs
     assert POSITION_FEEDBACK.controller != STATE_FEEDBACK.controller
+
+
+def test_joint_damping_is_what_provenance_says():
+    """Tuned: gains, Coulomb friction, encoder, steps, decay. The rest is default or IMI."""
+    viscous, coulomb = JOINT_DAMPING.effects.friction
+    default = STATE_FEEDBACK.effects
+    assert viscous.coefficient == (5.3, 1.1)
+    np.testing.assert_allclose(coulomb.level, 3 * np.array(default.friction[1].level))
+    np.testing.assert_allclose(JOINT_DAMPING.controller.kp, 2.5 * np.array(KP))
+    assert not any((*JOINT_DAMPING.controller.kd, *JOINT_DAMPING.controller.ki))  # proportional
+    turn = 2 * np.pi / JOINT_DAMPING.effects.encoder[0].step
+    assert np.log2(turn) == pytest.approx(12.5)
+    for part in ("actuator", "torque_sensor", "motor", "transmission"):
+        assert getattr(JOINT_DAMPING.effects, part) == getattr(default, part)
+    assert (JOINT_DAMPING.steps, JOINT_DAMPING.decay) == (60, 1e-6)
+    untuned = replace(default, friction=(viscous, default.friction[1]))
+    assert LITERATURE == replace(POSITION_FEEDBACK, name=LITERATURE.name, effects=untuned)
+    assert replace(STATE_FEEDBACK, steps=1, decay=0.1).decay == 0.1
+    with pytest.raises(ValueError, match="decay must be 0 for descent"):
+        replace(STATE_FEEDBACK, decay=0.1)
+
+
+def test_another_day_rounds_otherwise():
+    """Another zero of the encoders: the same motion on another grid of readings."""
+    step = JOINT_DAMPING.effects.encoder[0].step
+    first, other, again = (JOINT_DAMPING.repeated(k).record() for k in (1, 2, 1))
+    np.testing.assert_array_equal(first.q, again.q)
+    np.testing.assert_array_equal(first.tau, again.tau)
+    zeros = [(r.q / step) % 1 for r in (first, other)]
+    for zero in zeros:  # all readings of a joint lie on one grid
+        np.testing.assert_allclose(np.ptp((zero - zero[0, 0] + 0.5) % 1, axis=(0, 1)), 0, atol=1e-6)
+    assert (np.abs(zeros[0][0, 0] - zeros[1][0, 0]) > 0.01).all()
+    for made in (first, other):
+        miss = made.q - made.q_true
+        assert np.abs(miss).max() <= 0.5001 * step and np.abs(miss).max() > 0.45 * step
+    assert not np.array_equal(first.tau - first.tau_true, other.tau - other.tau_true)
+    perfect = replace(STATE_FEEDBACK, effects=STATE_FEEDBACK.effects.without("encoder"))
+    assert perfect.repeated(3) == replace(perfect, seed=3)  # nothing to shift
+
+
+def test_solved_windows_stop_after_their_steps():
+    """On five coarse runs; what it minimises is the solver's own business."""
+    quick = replace(JOINT_DAMPING, steps=3)
+    recording = quick.record()
+    with pytest.warns(NotConverged):
+        solution = solve_windows(quick, recording, 5, 2, seed=3, progress=False)
+    assert (solution.steps == 3).all() and (solution.ended == "steps").all()
+    with pytest.warns(NotConverged):
+        model, history, kept = train_windows(quick, recording, 5, 2, seed=3, progress=False)
+    assert kept == {} and list(history.epochs) == [0, 1, 2, 3]
+    np.testing.assert_allclose(errors(model, recording).training, history.training[-1], rtol=1e-6)
+    np.testing.assert_allclose(errors(model, recording).test, history.test[-1], rtol=1e-6)
+    np.testing.assert_array_equal(
+        model.weights.hidden_weights, solution.model.weights.hidden_weights
+    )
+    with pytest.raises(ValueError, match=r"setup\.steps must"):
+        solve_windows(STATE_FEEDBACK, recording, 5, 2)
 
 
 def test_the_recording_is_of_appendix_i_with_noise(recording):
@@ -130,14 +191,14 @@ def test_a_quick_training(recording, trained):
     np.testing.assert_array_equal(kept[0].output_weights, wanted.output_weights)
     assert (history.training.min(0) < 0.9 * history.training[0]).all()  # it does learn
     measured = errors(model, recording)
-    np.testing.assert_allclose(measured["training"], history.training[-1], rtol=1e-4)
-    np.testing.assert_allclose(measured["test"], history.test[-1], rtol=1e-4)
+    np.testing.assert_allclose(measured.training, history.training[-1], rtol=1e-4)
+    np.testing.assert_allclose(measured.test, history.test[-1], rtol=1e-4)
 
 
 def test_errors_are_what_their_names_say(recording, trained):
     """Each recomputed from windows made by a loop."""
     model = trained[0]
-    found = errors(model, recording)
+    found = errors(model, recording).named()
     (x, y), (x6, y6) = by_loop(recording, range(5), 11), by_loop(recording, [5], 11)
     reference = pick_and_place(paper.APPENDIX_I_EXTENTS_DEG[5], recording.t).q
     desired = np.array([reference[k - 5 : k + 6].T for k in range(50, 350)])
@@ -168,7 +229,7 @@ def test_errors_of_a_constant_guess_are_one(recording):
         np.zeros((1, 1, 2, 3)), np.zeros((1, 1)), np.zeros((1, 2, 1)), np.zeros((1, 2, 2, 3)),
         np.zeros((1, 2)),
     )  # fmt: skip
-    found = errors(TorqueModel(still, inputs, outputs), recording)
+    found = errors(TorqueModel(still, inputs, outputs), recording).named()
     for name in ("test", "test shoulder", "test elbow", "test, desired positions"):
         assert found[name] == pytest.approx(1.0), name
     assert found["training"] > 1.0
@@ -181,7 +242,7 @@ def test_predict_follows_the_motion(recording, trained):
     assert torque.shape == (3, 300, 2)
     x6, y6 = by_loop(recording, [5], 11)
     np.testing.assert_allclose(torque, model.torque(x6), rtol=1e-12)
-    np.testing.assert_allclose(rmss(torque, y6), errors(model, recording)["test"])
+    np.testing.assert_allclose(rmss(torque, y6), errors(model, recording).test)
     assert predict(model[0], test).shape == (300, 2)
 
 

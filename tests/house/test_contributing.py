@@ -12,7 +12,7 @@ from test_imports import ORDER, ROOT
 
 from ddlib.evidence import claims
 from ddlib.evidence.measures import dynamics
-from ddlib.experiments import reproduce, results
+from ddlib.experiments import SETUPS, reproduce, results
 
 HOUSE = ROOT.parent
 TEXT = (HOUSE / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -85,7 +85,7 @@ def test_the_study_is_run_and_read(tmp_path, monkeypatch):
     reproduce.main(["following", "--jobs", "1"])
     found = results.read("following")
     assert found["made by"]["code"] == results.code_hash("following")
-    assert set(found["rms"]) == {"position feedback", "state feedback"}
+    assert set(found["rms"]) == set(SETUPS)
     assert np.shape(found["rms"]["state feedback"]) == (6, 2)
     assert 0 < np.max(found["rms"]["state feedback"]) < 0.2
 

@@ -127,7 +127,7 @@ def test_networks_are_those_of_median_test_error(networks):
     recording = STATE_FEEDBACK.record()
     for width, (name, network) in zip((11, 21, 41), networks.items(), strict=True):
         assert name == f"window {width}" and network.weights.width == width
-        test = errors(network, recording)["test"]
+        test = errors(network, recording).test
         assert test == pytest.approx(np.median(cells[str(width)]["errors"]["test"]), rel=1e-3)
 
 
@@ -151,7 +151,7 @@ def test_networks_see_what_the_simulator_records(full, networks):
 def test_without_sensors_errors_are_much_the_same(full, networks):
     recording = STATE_FEEDBACK.record()
     for name, network in networks.items():
-        noisy = errors(network, recording)["test by training deviation"]
+        noisy = errors(network, recording).by_training_deviation
         assert full.curves[f"RMSS, {name}"][0] == pytest.approx(noisy, rel=0.02)
 
 

@@ -13,7 +13,7 @@ from ddlib import paper
 from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
 from ddlib.evidence.verdicts import Measured, turns_at
-from ddlib.experiments import KP, POSITION_FEEDBACK, RADIUS, SETUPS, STATE_FEEDBACK, WINDOWS
+from ddlib.experiments import KP, POSITION_FEEDBACK, RADIUS, SETUPS, STATE_FEEDBACK, WINDOWS, Setup
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.simulation import LOG_STEP, Recording
@@ -173,7 +173,7 @@ def coverage(cells: int = 10) -> Measured:
     shares = {}
     for name in SETUPS:
         recording = _recorded(name)
-        states = _states(recording)
+        states = _states(recording, SETUPS[name])
         shares[name] = cells_reached(states, RADIUS, cells) / cells**6
     text = f"of {cells**6:,} cells " + ", ".join(
         f"{100 * x:.2g} % ({n})" for n, x in shares.items()
@@ -181,12 +181,12 @@ def coverage(cells: int = 10) -> Measured:
     return Measured(max(shares.values()), text)
 
 
-def _states(recording: Recording) -> np.ndarray:
+def _states(recording: Recording, setup: Setup = STATE_FEEDBACK) -> np.ndarray:
     """True states of the training runs, ``(samples, 6)``: positions, velocities, accelerations."""
-    arm, motion = STATE_FEEDBACK.arm, recording.motion
+    arm, motion = setup.arm, recording.motion
     q, qd, tau = (
         x[:TRAINING, motion] for x in (recording.q_true, recording.qd_true, recording.tau_true)
     )
-    friction = STATE_FEEDBACK.effects.friction_torque(qd)
+    friction = setup.effects.friction_torque(qd)
     qdd = arm.forward_dynamics(q, qd, tau - friction)
     return np.concatenate([q, qd, qdd], axis=-1).reshape(-1, 6)

@@ -10,7 +10,7 @@ from ddlib import paper
 from ddlib.analysis import savitzky_golay
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, mean, median, over_members
-from ddlib.experiments import SETUPS, STATE_FEEDBACK, WINDOWS, results
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
 from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
@@ -250,7 +250,7 @@ def accurate(level: float = 0.1) -> Measured:
     table = results.read("table-4-1")["setups"]
     cells = {
         (name, w): np.array(table[name][str(w)]["errors"]["test"])
-        for name in SETUPS
+        for name in table
         for w in WINDOWS
     }
 

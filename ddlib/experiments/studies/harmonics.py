@@ -26,9 +26,9 @@ def _cell(order, seed, width, members):
     states = true_states(training, setup).reshape(-1, 2, 3)
     own, other = errors(model, recording), errors(model, setup.record())
     cell = {
-        "training": own["training"],
-        "test": own["test"],
-        "one sine": {"runs 1 to 5": other["training"], "trajectory 6": other["test"]},
+        "training": own.training,
+        "test": own.test,
+        "one sine": {"runs 1 to 5": other.training, "trajectory 6": other.test},
         "best test": history.best_test,
         "derailed": history.derailed,
         "largest weight": model.weights.largest,

@@ -12,7 +12,7 @@ from ddlib.learning import TorqueModel, Weights
 def _cell(setup, recording, width, members, snapshots=()):
     model, history, kept = train_windows(setup, recording, width, members, snapshots=snapshots)
     cell = {
-        "errors": errors(model, recording),
+        "errors": errors(model, recording).named(),
         "best test": history.best_test,
         "largest weight": model.weights.largest,
         "slope": history.slope(),
@@ -27,7 +27,7 @@ def _cell(setup, recording, width, members, snapshots=()):
 
 
 def table_4_1(members=25) -> dict:
-    """Table 4-1 for both readings of the controller; the networks go into ``.npz`` files."""
+    """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
     table = {}
     for setup in SETUPS.values():
         recording = setup.record()

@@ -18,8 +18,8 @@ SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
 def _cell(model, history, recording):
     found = errors(model, recording)
     return {
-        "training": found["training"],
-        "test": found["test"],
+        "training": found.training,
+        "test": found.test,
         "best test": history.best_test,
         "largest weight": model.weights.largest,
         "derailed": history.derailed,
