@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import html
 import io
+import itertools
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,6 +14,9 @@ import matplotlib as mpl
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+
+FONT = "'DejaVu Sans',Verdana,sans-serif"
+"""Fonts of text in figures: the one they are laid out with, one as wide, the reader's own."""
 
 INK = "#010203"
 """Colour of text and axes; becomes the page's own text colour in the SVG."""
@@ -46,6 +50,7 @@ RC = {
     "figure.constrained_layout.use": True,
     "figure.facecolor": "none",
     "axes.facecolor": "none",
+    "font.family": ["DejaVu Sans"],
     "font.size": 9.5,
     "grid.alpha": 0.28,
     "grid.color": FAINT,
@@ -54,7 +59,7 @@ RC = {
     "legend.frameon": False,
     "legend.labelcolor": INK,
     "lines.linewidth": 1.5,
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",  # text stays text
     "text.color": INK,
     "xtick.color": INK,
     "xtick.labelsize": 8.5,
@@ -165,21 +170,43 @@ def _inline(svg: str, alt: str) -> str:
     """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name."""
     svg = svg[svg.index("<svg ") :]
     # Matplotlib's style sheet would reach every element of the page
-    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", svg, flags=re.DOTALL)
     prefix = "f" + hashlib.sha256((alt + svg).encode()).hexdigest()[:8]
-    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
+    used = set(re.findall(r'(?:href="|url\()#([^")]*)', svg))
+    svg = re.sub(r' id="([^"]*)"', lambda i: f' id="{prefix}-{i[1]}"' if i[1] in used else "", svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{prefix}-", svg)
     svg = svg.replace(INK, "currentColor")
-    svg = re.sub(r' d="[^"]*"', _rounded, svg)
+    svg = re.sub(r' transform="rotate\(-0 [^"]*"', "", svg)
+    svg = re.sub(r' (d|x|y|transform)="[^"]*"', _rounded, svg)
+    svg = re.sub(r"; font-family: 'DejaVu Sans'", "", svg)  # said once, on the whole picture
+    svg = FORMULA.sub(_in_reading_order, svg)
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
-    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto;"
-    style += "stroke-linejoin:round;stroke-linecap:butt"
+    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto;font-family:{FONT};"
+    style += "text-rendering:geometricPrecision;stroke-linejoin:round;stroke-linecap:butt"
     label = html.escape(alt, quote=True)
-    attributes = f'role="img" aria-label="{label}" style="{style}"'
+    attributes = f'role="figure" aria-label="{label}" style="{style}"'
     svg = svg.replace(size[0], attributes, 1)
     return re.sub(r"\n\s*", "\n", svg)
 
 
-def _rounded(path: re.Match) -> str:
-    """A path's coordinates to hundredths of a point: nobody sees the rest."""
-    return re.sub(r"-?\d+\.\d{3,}", lambda x: f"{float(x[0]):.2f}", path[0])
+FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
+LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')
+
+
+def _in_reading_order(formula: re.Match) -> str:
+    """A formula's letters from left to right; matplotlib sorts them by their fonts.
+
+    Neighbours of one font and height stand together, each at its place.
+    """
+    letters = sorted(LETTER.findall(formula[1]), key=lambda letter: float(letter[0]))
+    text = ""
+    for (y, style), run in itertools.groupby(letters, key=lambda letter: letter[1:3]):
+        run = list(run)
+        x, words = " ".join(letter[0] for letter in run), "".join(letter[3] for letter in run)
+        text += f'<tspan x="{x}" y="{y}" style="{style}">{words}</tspan>'
+    return f"<text>{text}</text>"
+
+
+def _rounded(places: re.Match) -> str:
+    """Coordinates to hundredths of a point: nobody sees the rest."""
+    return re.sub(r"-?\d+\.\d{3,}", lambda x: f"{float(x[0]):.2f}", places[0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import json
 import re
 from functools import lru_cache
@@ -119,14 +120,14 @@ def test_what_the_policy_forbids_is_seen(fault, tmp_path, visit):
 @browser_test
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_chapter_is_light(name, site, visit):
-    """At most 1 MB for a page beside MathJax, as a host without compression sends it."""
+    """At most 300 kB for a page beside MathJax, compressed as hosts send it."""
     opened = visit(f"{site}/{name}.html")
     sizes = {
-        r.url: len(r.body())
+        r.url: len(gzip.compress(r.body(), 6))
         for r in opened.responses
         if r.url.startswith("http") and "/mathjax/" not in r.url
     }
-    assert 50_000 < sum(sizes.values()) <= 1_000_000, sorted(sizes.items(), key=lambda s: -s[1])[:5]
+    assert 50_000 < sum(sizes.values()) <= 300_000, sorted(sizes.items(), key=lambda s: -s[1])[:5]
 
 
 @built_test

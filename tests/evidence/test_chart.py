@@ -1,8 +1,7 @@
 """The ledger's picture says what it shows and refuses what it cannot show."""
 
-import re
-
 import pytest
+from pictures import words
 
 from ddlib.evidence.chart import verdicts
 
@@ -13,12 +12,12 @@ def test_every_number_is_in_the_words_and_in_the_picture():
     figure = verdicts(COUNTS)
     assert "1. One: 3 yes; 2. Two: 1 yes, 2 no." in figure.alt
     assert figure.alt in figure.svg
-    texts = set(re.findall(r"<!-- (.*?) -->", figure.svg))
+    texts = set(words(figure))
     assert {"1. One", "2. Two", "yes", "no", "1", "2", "3"} <= texts
 
 
 @pytest.mark.parametrize(
-    "counts, words",
+    "counts, message",
     [
         ({}, "counts must hold one section or more"),
         ({"1": dict.fromkeys("abcdefg", 1)}, "at most 6 verdicts, got 7"),
@@ -26,8 +25,8 @@ def test_every_number_is_in_the_words_and_in_the_picture():
         ({"1": {"yes": -1}}, "counts of '1' must"),
     ],
 )
-def test_bad_counts(counts, words):
-    with pytest.raises(ValueError, match=words):
+def test_bad_counts(counts, message):
+    with pytest.raises(ValueError, match=message):
         verdicts(counts)
 
 

@@ -1,45 +1,41 @@
 """Figures of learning: every network a curve, the median on top, errors that name the family."""
 
-import re
-import xml.etree.ElementTree as ET
-
 import numpy as np
 import pytest
+from pictures import drawn
 
 from ddlib.figures import COLOURS, Illustration, clusters, families
 
-SVG = "{http://www.w3.org/2000/svg}"
 X = np.linspace(1.0, 10.0, 6)
 FAN = X[:, None] * [1.0, 2.0, 6.0]
 LABELS = ("epoch", "error")
 
 
-def strokes(figure, colour) -> dict[float, list[np.ndarray]]:
-    """Vertices of the curves of a colour, by line width."""
+def by_width(figure, colour) -> dict[float, list[np.ndarray]]:
+    """Points of the curves of a colour, by line width."""
     found = {}
-    for element in ET.fromstring(figure.svg).iter(f"{SVG}path"):
-        style = element.attrib.get("style", "")
-        if f"stroke: {colour}" in style and "clip-path" in element.attrib:
-            width = float(re.search(r"stroke-width: ([\d.]+)", style)[1])
-            numbers = re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", element.attrib["d"])
-            found.setdefault(width, []).append(np.array(numbers, float))
+    for line in (line for axis in figure.axes for line in axis.lines):
+        if line.get_color() == colour and line.get_linestyle() != "None":
+            found.setdefault(line.get_linewidth(), []).append(line.get_xydata())
     return found
 
 
 def test_every_network_and_the_median_are_drawn():
-    figure = families({"": {"slow": (X, FAN)}}, LABELS, "three networks and their median")
-    assert isinstance(figure, Illustration)
-    curves = strokes(figure, COLOURS[0])
-    assert len(curves[0.6]) == 3 and len(curves[2.2]) == 1
-    np.testing.assert_allclose(curves[2.2][0], curves[0.6][1], atol=0.02)
+    picture, figure = drawn(lambda: families({"": {"slow": (X, FAN)}}, LABELS, "three networks"))
+    assert isinstance(picture, Illustration)
+    curves = by_width(figure, COLOURS[0])
+    for curve, values in zip(curves[0.6], FAN.T, strict=True):
+        np.testing.assert_array_equal(curve, np.stack([X, values], -1))
+    (median,) = curves[2.2]
+    np.testing.assert_array_equal(median, np.stack([X, 2 * X], -1))
 
 
 def test_a_family_looks_the_same_in_every_panel():
     panels = {"a": {"one": (X, FAN)}, "b": {"two": (X, FAN), "one": (X, FAN)}}
-    figure = families(panels, LABELS, "two panels", y_log=True)
-    assert len(strokes(figure, COLOURS[0])[2.2]) == 2
-    assert len(strokes(figure, COLOURS[1])[2.2]) == 1
-    assert figure.alt == "two panels" and 'role="img"' in figure.svg
+    picture, figure = drawn(lambda: families(panels, LABELS, "two panels", y_log=True))
+    assert [len(by_width(figure, colour)[2.2]) for colour in COLOURS[:2]] == [2, 1]
+    assert {axis.get_yscale() for axis in figure.axes} == {"log"}
+    assert picture.alt == "two panels"
 
 
 @pytest.mark.parametrize(
@@ -58,14 +54,13 @@ def test_refusals(panels, words):
 
 def test_clusters_draw_medians_and_the_wanted_value():
     groups = {"few, one": np.array([1.0, 2.0, 6.0]), "many": np.array([3.0, 3.0, 5.0, 9.0])}
-    picture = clusters({"left": (groups, 4.0), "right": (groups, 0.0)}, "N m", "Dots.")
-    few, many = (strokes(picture, COLOURS[k])[2.2] for k in (0, 1))
-    assert len(few) == len(many) == 2  # panels
-    assert few[0][0, 1] > many[0][0, 1]  # a median of 2 below one of 4; SVG counts downwards
-    lines = [e.attrib["d"] for e in ET.fromstring(picture.svg).iter(f"{SVG}path")
-             if "stroke-dasharray" in e.attrib.get("style", "")]  # fmt: skip
-    left = np.array(re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", lines[0]), float)
-    assert many[0][0, 1] == pytest.approx(left[0, 1], abs=0.02)
+    picture, figure = drawn(
+        lambda: clusters({"left": (groups, 4.0), "right": (groups, 0.0)}, "N m", "Dots.")
+    )
+    few, many = (by_width(figure, COLOURS[k])[2.2] for k in (0, 1))
+    assert [set(bar[:, 1]) for bar in (*few, *many)] == [{2.0}, {2.0}, {4.0}, {4.0}]  # two panels
+    wanted = [line for axis in figure.axes for line in axis.lines if line.get_linestyle() == "--"]
+    assert [set(line.get_ydata()) for line in wanted] == [{4.0}, {0.0}]
     assert picture.alt == "Dots."
 
 

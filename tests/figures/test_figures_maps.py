@@ -1,10 +1,11 @@
 """Maps: what is drawn is what was given, and bad input is named."""
 
-import re
-from collections import Counter
-
 import numpy as np
 import pytest
+from matplotlib.collections import PathCollection, QuadMesh
+from matplotlib.colors import LogNorm
+from matplotlib.contour import ContourSet
+from pictures import drawn
 
 from ddlib.figures import plane, scatter
 
@@ -14,29 +15,35 @@ LABELS = ("shoulder, °", "elbow, °", "error")
 POINTS = {"gain": (np.array([1.0, 2.0, 4.0]), np.array([0.1, 0.2, 0.3]))}
 
 
-def cells(svg: str) -> Counter:
-    """How many cells have each colour; the colour bar has every colour once."""
-    return Counter(re.findall(r"fill: ?(#[0-9a-f]{6})", svg))
-
-
 def test_a_plane_has_a_cell_for_every_value():
-    svg = plane(X, Y, VALUES, LABELS, "a map").svg
-    flat = plane(X, Y, np.full((3, 4), 0.5) * [1, 1, 1, 1.001], LABELS, "a map").svg
-    assert 'aria-label="a map"' in svg
-    more = cells(svg) - cells(plane(X, Y, VALUES[:, ::-1], LABELS, "a map").svg)
-    assert not more  # the same cells elsewhere
-    (_, most), *_ = cells(svg).most_common(1)
-    (_, nearly_all), *_ = cells(flat).most_common(1)
-    assert most == 3 and nearly_all == 10  # with the one of the bar
+    picture, figure = drawn(lambda: plane(X, Y, VALUES, LABELS, "a map"))
+    assert picture.alt == "a map"
+    (cells,) = (found for found in figure.axes[0].collections if isinstance(found, QuadMesh))
+    np.testing.assert_array_equal(cells.get_array().reshape(VALUES.shape), VALUES)
+    middles = cells.get_coordinates()
+    middles = (middles[1:, 1:] + middles[:-1, :-1]) / 2
+    np.testing.assert_allclose(middles[0, :, 0], X)
+    np.testing.assert_allclose(middles[:, 0, 1], Y)
+    assert isinstance(cells.norm, LogNorm)
 
 
 def test_contours_and_marks_are_drawn():
-    bare = plane(X, Y, VALUES, LABELS, "a map").svg
-    marked = plane(
-        X, Y, VALUES, LABELS, "a map", levels=(0.5, 1.0),
-        training=[(0, 0), (45, 0), (0, 45), (20, 20)], test=[(40, 10)],
-    ).svg  # fmt: skip
-    assert "stroke-dasharray" in marked and "stroke-dasharray" not in bare
+    _, bare = drawn(lambda: plane(X, Y, VALUES, LABELS, "a map"))
+    assert not bare.axes[0].lines and not bare.axes[0].patches
+    training, test = [(0, 0), (45, 0), (0, 45), (20, 20)], [(40, 10)]
+    _, marked = drawn(
+        lambda: plane(
+            X, Y, VALUES, LABELS, "a map", levels=(1.0, 0.5), training=training, test=test
+        )
+    )
+    axis = marked.axes[0]
+    assert [line.get_xydata().tolist() for line in axis.lines] == [
+        [list(map(float, place)) for place in places] for places in (training, test)
+    ]
+    (outline,) = axis.patches
+    assert {tuple(corner) for corner in outline.get_xy()} == set(training[:3])  # no inner point
+    (contours,) = (found for found in axis.collections if isinstance(found, ContourSet))
+    assert list(contours.levels) == [0.5, 1.0]
 
 
 @pytest.mark.parametrize(
@@ -64,11 +71,19 @@ def test_nothing_is_an_embedded_picture():
 
 def test_a_scatter_has_a_panel_for_each_quantity():
     both = {**POINTS, "damping": POINTS["gain"]}
-    one, two = (scatter(p, [1.0, 2.0, 3.0], "error", "distance", "arms") for p in (POINTS, both))
-    panels = [len(re.findall(r'id="[^"]*PathCollection', f.svg)) for f in (one, two)]
-    assert panels == [1, 2]
-    ringed = scatter(POINTS, [1.0, 2.0, 3.0], "error", "distance", "arms", chosen=1)
-    assert ringed.svg != one.svg
+    values = np.array([1.0, 2.0, 3.0])
+    for given in (POINTS, both):
+        _, figure = drawn(lambda given=given: scatter(given, values, "error", "distance", "arms"))
+        found = [[c for c in a.collections if isinstance(c, PathCollection)] for a in figure.axes]
+        panels = [cloud for clouds in found for cloud in clouds]
+        assert len(panels) == len(given)
+        for cloud, points in zip(panels, given.values()):
+            np.testing.assert_array_equal(cloud.get_offsets(), np.transpose(points))
+            np.testing.assert_array_equal(cloud.get_array(), values)
+        assert not any(axis.lines for axis in figure.axes)
+    _, ringed = drawn(lambda: scatter(POINTS, values, "error", "distance", "arms", chosen=1))
+    (ring,) = ringed.axes[0].lines
+    assert ring.get_xydata().tolist() == [[2.0, 0.2]]
 
 
 @pytest.mark.parametrize(

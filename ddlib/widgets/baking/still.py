@@ -6,7 +6,6 @@ import base64
 import binascii
 from collections.abc import Mapping, Sequence
 
-import matplotlib as mpl
 import numpy as np
 import traitlets
 
@@ -66,7 +65,6 @@ def still_picture(
     columns = -(-count // rows)
 
     def draw(figure):
-        mpl.rcParams.update({"svg.fonttype": "none", "font.family": "sans-serif"})
         axes = list(np.ravel(figure.subplots(rows, columns)))
         for ax in axes[count:]:
             ax.set_axis_off()
