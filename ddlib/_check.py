@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +45,28 @@ def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     return array
 
 
+def shaped(name: str, value, shape) -> np.ndarray:
+    """`value` as a finite array of a shape, like (3, 2) or "(..., time, 2)"; ValueError otherwise.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, used in the message.
+    value : array_like
+        The argument.
+    shape : str or tuple
+        A word stands for any length, dots for any number of axes.
+    """
+    array = finite_array(name, value)
+    axes = re.findall(r"\w+|\.{3}", str(shape))
+    pattern = "".join(
+        r"(\d+,)*" if a == "..." else re.sub(r"\D\w*", r"\\d+", a) + "," for a in axes
+    )
+    if not re.fullmatch(pattern, "".join(f"{n}," for n in array.shape)):
+        raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+    return array
+
+
 def number(name: str, value, low=-np.inf, high=np.inf, *, open_low=False) -> float:
     """`value` as a float within `low` to `high` (`open_low` excludes `low` itself).
 
@@ -68,6 +91,14 @@ def non_negative(name: str, value, last: int | None = None) -> np.ndarray:
     array = finite_array(name, value, last)
     if (array < 0).any():
         raise ValueError(f"{name} must not be negative, got {array.min():g}")
+    return array
+
+
+def positive(name: str, value, shape="(..., 2)") -> np.ndarray:
+    """`value` as a finite array of numbers above 0, of a shape as in `shaped`."""
+    array = shaped(name, value, shape)
+    if (array <= 0).any():
+        raise ValueError(f"{name} must be positive, got {value}")
     return array
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
 MOTION_SECONDS = 3.0
@@ -58,10 +58,8 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     Source: Goldberg & Pearlmutter 1988, Appendix I.
     """
     extents_deg = finite_array("extents_deg", extents_deg, 2)
-    t = finite_array("t", t)
+    t = shaped("t", t, "(time,)")
     number("duration", duration, 0.0, open_low=True)
-    if t.ndim != 1:
-        raise ValueError(f"t must have shape (time,), got {t.shape}")
     if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
         warnings.warn(
             f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family",

@@ -1,5 +1,7 @@
 """Argument checks: what passes, what is refused, and what the message says."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -116,3 +118,29 @@ def test_a_file_of_the_book_needs_the_book(tmp_path, monkeypatch):
     assert _check.book_file(tmp_path / "mine.yml") == tmp_path / "mine.yml"
     (tmp_path / "book").mkdir()
     assert _check.book_file(tmp_path / "book" / "claims.yml")
+
+
+@pytest.mark.parametrize(
+    "shape, fits, misses",
+    [
+        ((2, 3), [(2, 3)], [(3, 2), (2,), (2, 3, 1), (12, 3), ()]),
+        ((), [()], [(1,)]),
+        ("(time,)", [(1,), (40,), (0,)], [(), (1, 1)]),
+        ("(..., time, 2)", [(5, 2), (3, 5, 2), (12, 3, 5, 2)], [(2,), (2, 5), (5, 12)]),
+    ],
+)
+def test_shapes(shape, fits, misses):
+    for size in fits:
+        assert _check.shaped("x", np.zeros(size), shape).shape == size
+    for size in misses:
+        with pytest.raises(ValueError, match=re.escape(f"x must have shape {shape}, got {size}")):
+            _check.shaped("x", np.zeros(size), shape)
+    with pytest.raises(ValueError, match="x must be finite"):
+        _check.shaped("x", np.full(fits[0], np.nan), shape)
+
+
+def test_positive_numbers():
+    assert _check.positive("x", [1, 2]).tolist() == [1.0, 2.0]
+    for value, words in (([0.0, 1.0], "x must be positive"), ([1.0], r"x must have shape")):
+        with pytest.raises(ValueError, match=words):
+            _check.positive("x", value)

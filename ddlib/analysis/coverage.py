@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import integer, number, shaped
 
 
 def cells_reached(samples, radius: float, cells: int) -> int:
@@ -19,9 +19,7 @@ def cells_reached(samples, radius: float, cells: int) -> int:
     cells : int
         Cells along each axis.
     """
-    samples = finite_array("samples", samples)
-    if samples.ndim != 2:
-        raise ValueError(f"samples must have shape (n, dimensions), got {samples.shape}")
+    samples = shaped("samples", samples, "(n, dimensions)")
     number("radius", radius, 0.0, open_low=True)
     integer("cells", cells, 1)
     inside = samples[(np.abs(samples) <= radius).all(-1)]
@@ -74,10 +72,7 @@ def principal_deviations(samples) -> np.ndarray:
     samples : array_like, shape (n, dimensions)
         Points, two or more.
     """
-    samples = finite_array("samples", samples)
-    if samples.ndim != 2 or len(samples) < 2:
-        raise ValueError(
-            f"samples must have shape (n, dimensions), n at least 2, got {samples.shape}"
-        )
+    samples = shaped("samples", samples, "(n, dimensions)")
+    integer("samples", len(samples), 2)
     values = np.linalg.svd(samples - samples.mean(0), compute_uv=False)
     return values / np.sqrt(len(samples))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array, number, shaped
 from ddlib.analysis.filters import CLASSES, DERIVATIVES, classify
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
@@ -104,17 +104,10 @@ def followed(f, windows, states) -> Responses:
     ValueError
         If the shapes do not fit.
     """
-    f, windows = finite_array("f", f), finite_array("windows", windows)
-    states = finite_array("states", states, 3)
-    if windows.ndim != 3 or f.shape[-2:] != windows.shape[-2:]:
-        raise ValueError(
-            f"windows must have shape (cases, joint, width) with the last two of f {f.shape}, "
-            f"got {windows.shape}"
-        )
-    if states.shape != (*windows.shape[:2], 3):
-        raise ValueError(
-            f"states must have shape {(*windows.shape[:2], 3)} like windows, got {states.shape}"
-        )
+    f = finite_array("f", f)
+    joints, width = f.shape[-2:]
+    windows = shaped("windows", windows, f"(cases, {joints}, {width})")
+    states = shaped("states", states, (len(windows), joints, 3))
     found = []
     for joint in range(f.shape[-2]):
         taps = f[..., joint, :].reshape(-1, f.shape[-1])

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import integer, number, positive
 from ddlib.analysis.filters import savitzky_golay
 from ddlib.dynamics import Arm
 
@@ -61,9 +61,7 @@ def noise_floor(
     TypeError, ValueError
         If an argument is of the wrong kind or out of range.
     """
-    deviation = finite_array("deviation", deviation, 2)
-    if deviation.shape != (2,) or (deviation <= 0).any():
-        raise ValueError(f"deviation must be two numbers above 0, got {deviation}")
+    deviation = positive("deviation", deviation, (2,))
     number("bits", bits, 1.0, 40.0)
     number("torque_noise", torque_noise, 0.0)
     rounding = 2 * np.pi / 2**bits / np.sqrt(12)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 
@@ -108,14 +108,9 @@ def responses(model: TorqueModel, values, centre=None) -> np.ndarray:
     -------
     ndarray, shape (..., joint, width, points, hidden)
     """
-    values = finite_array("values", values)
+    values = shaped("values", values, "(points,)")
     shape = model.weights.hidden_weights.shape[-2:]
-    centre = np.zeros(shape) if centre is None else finite_array("centre", centre, shape[1])
-    if values.ndim != 1 or centre.shape != shape:
-        raise ValueError(
-            f"values must have shape (points,) and centre {shape}, "
-            f"got {values.shape} and {centre.shape}"
-        )
+    centre = shaped("centre", np.zeros(shape) if centre is None else centre, shape)
     states = np.tile(centre, (*shape, values.size, 1, 1))
     for joint, place in np.ndindex(*shape):
         states[joint, place, :, joint, place] = values
@@ -144,9 +139,7 @@ def shuffled(
     ndarray, shape (joint, width, ...)
         RMSS of the change for each input; 0 if it is ignored.
     """
-    states = finite_array("states", states)
-    if states.ndim != 3:
-        raise ValueError(f"states must have shape (cases, joint, width), got {states.shape}")
+    states = shaped("states", states, "(cases, joint, width)")
     before = predict(states)
     rng = np.random.default_rng(integer("seed", seed, 0))
     order = rng.permutation(len(states))

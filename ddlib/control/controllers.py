@@ -14,7 +14,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number
+from ddlib._check import non_negative, number, shaped
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -159,12 +159,8 @@ class Feedforward:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         model = self.model.inverse_dynamics if isinstance(self.model, Arm) else self.model
-        torque = finite_array("model(q, qd, qdd)", model(*reference), 2)
-        samples = reference.q.shape[-2]
-        if torque.ndim < 2 or torque.shape[-2] != samples:
-            raise ValueError(
-                f"model(q, qd, qdd) must return shape (..., {samples}, 2), got {torque.shape}"
-            )
+        wanted = f"(..., {reference.q.shape[-2]}, 2)"
+        torque = shaped("model(q, qd, qdd)", model(*reference), wanted)
         feedback = as_controller(self.feedback).start(reference, step)
 
         def law(k, q, qd):

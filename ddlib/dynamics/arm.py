@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number
+from ddlib._check import finite_array, non_negative, number, shaped
 
 STANDARD_GRAVITY = 9.81
 """Acceleration of free fall, m/s^2."""
@@ -78,11 +78,9 @@ class Arm:
     def __post_init__(self):
         for name in ("a", "b", "d"):
             number(name, getattr(self, name))
-        for name, check in (("lengths", non_negative), ("gravity_moments", finite_array)):
-            pair = check(name, getattr(self, name), 2)
-            if pair.ndim != 1:
-                raise ValueError(f"{name} must have shape (2,), got {pair.shape}")
-            object.__setattr__(self, name, tuple(pair.tolist()))
+        non_negative("lengths", self.lengths)
+        for name in ("lengths", "gravity_moments"):
+            object.__setattr__(self, name, tuple(shaped(name, getattr(self, name), (2,)).tolist()))
         if not (self.d > 0 and self.a * self.d > self.d**2 + self.b**2):
             raise ValueError(
                 "a, b, d must make the mass matrix positive definite "

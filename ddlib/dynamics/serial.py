@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.dynamics.arm import STANDARD_GRAVITY, Link
 from ddlib.dynamics.formulations import Constants, LinkConstants, newton_euler
 
@@ -51,9 +51,7 @@ class SpatialLink:
         for name in ("twist_deg", "length", "offset"):
             number(name, getattr(self, name))
         number("mass", self.mass, 0.0)
-        com, inertia = finite_array("com", self.com, 3), finite_array("inertia", self.inertia, 3)
-        if com.shape != (3,):
-            raise ValueError(f"com must have shape (3,), got {com.shape}")
+        com, inertia = shaped("com", self.com, (3,)), finite_array("inertia", self.inertia, 3)
         if inertia.shape != (3, 3) or not np.array_equal(inertia, inertia.T):
             raise ValueError(f"inertia must be a symmetric 3 x 3 matrix, got {self.inertia}")
         object.__setattr__(self, "com", tuple(com.tolist()))
@@ -89,11 +87,8 @@ class SerialArm:
         links = tuple(self.links)
         if not links or not all(isinstance(link, SpatialLink) for link in links):
             raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
-        gravity = finite_array("gravity", self.gravity, 3)
-        if gravity.shape != (3,):
-            raise ValueError(f"gravity must have shape (3,), got {gravity.shape}")
         object.__setattr__(self, "links", links)
-        object.__setattr__(self, "gravity", tuple(gravity.tolist()))
+        object.__setattr__(self, "gravity", tuple(shaped("gravity", self.gravity, (3,)).tolist()))
 
     @classmethod
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:

@@ -9,16 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number
-
-
-def _positive(name, value, shape=None) -> np.ndarray:
-    array = finite_array(name, value, 2)
-    if (array <= 0).any():
-        raise ValueError(f"{name} must be positive, got {value}")
-    if shape is not None and array.shape != shape:
-        raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
-    return array
+from ddlib._check import finite_array, non_negative, number, positive
 
 
 @dataclass(frozen=True)
@@ -28,7 +19,7 @@ class Saturation:
     limit: tuple[float, float]
 
     def __post_init__(self):
-        _positive("limit", self.limit)
+        positive("limit", self.limit)
 
     def apply(self, x, rng=None):
         """The torque `x` (N m), clipped."""
@@ -101,7 +92,7 @@ class Ripple:
         non_negative("cogging", self.cogging, 2)
         if (non_negative("share", self.share, 2) > 1).any():
             raise ValueError(f"share must lie in [0, 1], got {self.share}")
-        cycles = _positive("cycles", self.cycles)
+        cycles = positive("cycles", self.cycles)
         if (cycles != np.round(cycles)).any():
             raise ValueError(f"cycles must be whole numbers, got {self.cycles}")
         number("phase", self.phase)
@@ -139,8 +130,8 @@ class FlexibleJoint:
     gap: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self):
-        _positive("stiffness", self.stiffness)
-        _positive("motor_inertia", self.motor_inertia, shape=(2,))
+        positive("stiffness", self.stiffness)
+        positive("motor_inertia", self.motor_inertia, (2,))
         non_negative("damping", self.damping, 2)
         non_negative("gap", self.gap, 2)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import integer, number, shaped
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
@@ -86,7 +86,5 @@ def torque(states, arm: Arm = CMU_DD_ARM_II) -> np.ndarray:
     arm : Arm
         Whose dynamics.
     """
-    states = finite_array("states", states, 3)
-    if states.ndim != 3 or states.shape[1] != 2:
-        raise ValueError(f"states must have shape (samples, 2, 3), got {states.shape}")
+    states = shaped("states", states, "(samples, 2, 3)")
     return arm.inverse_dynamics(*np.moveaxis(states, -1, 0))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import integer, number, shaped
 from ddlib.experiments.setups import STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import (
@@ -55,12 +55,7 @@ def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
         If an argument is not numeric, not finite or of the wrong shape.
     """
     first = pick_and_place(extents_deg, t)
-    rho = np.deg2rad(finite_array("second_deg", second_deg, 2))
-    if rho.shape != np.shape(extents_deg):
-        raise ValueError(
-            f"second_deg must have the shape of extents_deg {np.shape(extents_deg)}, "
-            f"got {rho.shape}"
-        )
+    rho = np.deg2rad(shaped("second_deg", second_deg, np.shape(extents_deg)))
     t = np.asarray(t, dtype=float)
     omega = integer("order", order, 2) * np.pi / MOTION_SECONDS
     moving = (t >= 0) & (t < MOTION_SECONDS)

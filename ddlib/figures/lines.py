@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import integer, number, shaped
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -192,12 +192,8 @@ def families(
     number("height", height, 0.0, open_low=True)
     for named in panels.values():
         for name, (x, y) in named.items():
-            x, y = finite_array(f"x of {name!r}", x), finite_array(f"y of {name!r}", y)
-            if x.ndim != 1 or y.ndim != 2 or len(x) != len(y):
-                raise ValueError(
-                    f"x and y of {name!r} must have shapes (points,) and (points, networks), "
-                    f"got {x.shape} and {y.shape}"
-                )
+            x = shaped(f"x of {name!r}", x, "(points,)")
+            shaped(f"y of {name!r}", y, f"({len(x)}, networks)")
     look = {n: k for k, n in enumerate(dict.fromkeys(n for p in panels.values() for n in p))}
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
@@ -252,9 +248,7 @@ def clusters(
     for groups, wanted in panels.values():
         number("wanted", wanted)
         for name, values in groups.items():
-            shape = finite_array(f"values of {name!r}", values).shape
-            if len(shape) != 1:
-                raise ValueError(f"values of {name!r} must have shape (networks,), got {shape}")
+            shaped(f"values of {name!r}", values, "(networks,)")
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False)[0]

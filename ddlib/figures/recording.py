@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array, number, shaped
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
 
 
@@ -24,10 +24,9 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
         Half the edge of the cube.
     """
     number("radius", radius, 0.0, open_low=True)
-    checked = {name: finite_array(f"states[{name!r}]", x, 6) for name, x in states.items()}
-    if not checked or any(x.ndim != 3 for x in checked.values()):
-        shapes = {name: x.shape for name, x in checked.items()}
-        raise ValueError(f"states must hold arrays (runs, time, 6), got {shapes}")
+    checked = {n: shaped(f"states[{n!r}]", x, "(runs, time, 6)") for n, x in states.items()}
+    if not checked:
+        raise ValueError("states must hold one set or more, got none")
     units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
     edge = 1.15 * radius
 
@@ -72,11 +71,9 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
     estimates : mapping
         ``{name: acceleration (time,)}``, rad/s^2; the first one as dots, the others as curves.
     """
-    t, steps = finite_array("t", t), finite_array("steps", steps)
-    drawn = {name: finite_array(f"estimates[{name!r}]", x) for name, x in estimates.items()}
-    for name, x in {"steps": steps, **{f"estimates[{n!r}]": x for n, x in drawn.items()}}.items():
-        if t.ndim != 1 or x.shape != t.shape:
-            raise ValueError(f"{name} must have the shape (time,) of t {t.shape}, got {x.shape}")
+    t = shaped("t", t, "(time,)")
+    steps = shaped("steps", steps, t.shape)
+    drawn = {name: shaped(f"estimates[{name!r}]", x, t.shape) for name, x in estimates.items()}
 
     def draw(figure: Figure):
         top, bottom = figure.subplots(2, 1, sharex=True)
@@ -110,13 +107,12 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
         others as dots. A name looks the same in every panel.
     """
     checked = {
-        title: {name: finite_array(f"points of {name!r}", x, 2) for name, x in named.items()}
+        title: {n: shaped(f"points of {n!r}", x, "(runs, samples, 2)") for n, x in named.items()}
         for title, named in panels.items()
     }
-    shapes = [x.shape for named in checked.values() for x in named.values()]
-    if not shapes or any(len(shape) != 3 for shape in shapes):
-        raise ValueError(f"panels must hold points of shape (runs, samples, 2), got {shapes}")
     look = {n: k for k, n in enumerate(dict.fromkeys(n for p in checked.values() for n in p))}
+    if not look:
+        raise ValueError("panels must hold points, got none")
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(checked), squeeze=False, sharex=True)[0]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
-from ddlib._check import finite_array
+from ddlib._check import shaped
 from ddlib.figures.style import COLOURS, DASHES, INK, JOINTS, Illustration, illustrate
 from ddlib.learning import Weights
 from ddlib.tables import significant
@@ -123,13 +123,9 @@ def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
     share : float
         Part of the networks inside the shade, above 0, up to 1.
     """
-    exact, predicted = finite_array("exact", exact), finite_array("predicted", predicted)
-    t = finite_array("t", t)
-    if predicted.ndim != 3 or predicted.shape[1:] != exact.shape or t.shape != exact.shape[:1]:
-        raise ValueError(
-            "t, exact and predicted must have shapes (time,), (time, joint) and (networks, time, "
-            f"joint), got {t.shape}, {exact.shape} and {predicted.shape}"
-        )
+    t = shaped("t", t, "(time,)")
+    exact = shaped("exact", exact, f"({t.size}, joint)")
+    predicted = shaped("predicted", predicted, f"(networks, {t.size}, {exact.shape[1]})")
     if not 0 < share <= 1:
         raise ValueError(f"share must lie in (0, 1], got {share:g}")
     square = ((predicted - exact) ** 2).mean(1)
@@ -217,11 +213,8 @@ def responses(values, activity) -> Illustration:
     activity : array_like, shape (2, 3, points, hidden)
         From `ddlib.analysis.sensitivity.responses`, of one network.
     """
-    values, activity = finite_array("values", values), finite_array("activity", activity)
-    if activity.ndim != 4 or activity.shape[:3] != (2, 3, values.size):
-        raise ValueError(
-            f"activity must have shape (2, 3, {values.size}, hidden), got {activity.shape}"
-        )
+    values = shaped("values", values, "(points,)")
+    activity = shaped("activity", activity, f"(2, 3, {values.size}, hidden)")
     swing = np.ptp(activity, axis=2).mean(-1).ravel()
 
     def draw(figure: Figure):

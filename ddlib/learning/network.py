@@ -16,7 +16,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning.windows import Scaler
 
 _FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
@@ -147,12 +147,8 @@ class Weights:
         hidden : ndarray, shape (..., cases, hidden)
         output : ndarray, shape (..., cases, output)
         """
-        x = finite_array("x", x)
-        if x.ndim != 3 or x.shape[-2:] != self.hidden_weights.shape[-2:]:
-            raise ValueError(
-                f"x must have shape (cases, {self.hidden_weights.shape[-2]}, {self.width}), "
-                f"got {x.shape}"
-            )
+        joints, width = self.hidden_weights.shape[-2:]
+        x = shaped("x", x, f"(cases, {joints}, {width})")
         x = x.reshape(len(x), -1)
 
         def dot(weights):  # (..., units, joint, width) -> (..., cases, units)

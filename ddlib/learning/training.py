@@ -15,7 +15,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning.descent import Descent, prepare
 from ddlib.learning.network import TorqueModel, Weights, WindowNetwork
 from ddlib.learning.windows import Scaler, sliding_windows
@@ -55,12 +55,8 @@ class TrainingSet:
     @classmethod
     def from_arrays(cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0)) -> TrainingSet:
         """Scale windows ``(cases, joint, width)``, rad, to `scaling`, torques, N m, to `target`."""
-        windows, torque = finite_array("windows", windows), finite_array("torque", torque)
-        if windows.ndim != 3 or torque.ndim != 2 or len(windows) != len(torque):
-            raise ValueError(
-                "windows and torque must have shapes (cases, joint, width) and (cases, joint), "
-                f"got {windows.shape} and {torque.shape}"
-            )
+        windows = shaped("windows", windows, "(cases, joint, width)")
+        torque = shaped("torque", torque, f"({len(windows)}, joint)")
         inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
         return cls(inputs.scale(windows, -2), outputs.scale(torque), inputs, outputs)
 
@@ -326,11 +322,7 @@ def train_ensemble(
             f"got {weights.hidden_weights.shape[-2:]}"
         )
     if targets is not None:
-        targets = finite_array("targets", targets)
-        if targets.shape != (members, *data.y.shape):
-            raise ValueError(
-                f"targets must have shape {(members, *data.y.shape)}, got {targets.shape}"
-            )
+        targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
     count = WORKERS * math.ceil(members / (WORKERS * BLOCK))

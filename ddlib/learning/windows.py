@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 
 
 def check_width(width) -> int:
@@ -41,9 +41,7 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
         If `width` is even or longer than the recording, or a window would reach
         beyond the recording's ends.
     """
-    q = finite_array("q", q)
-    if q.ndim < 2:
-        raise ValueError(f"q must have shape (..., time, joint), got {q.shape}")
+    q = shaped("q", q, "(..., time, joint)")
     width, time = check_width(width), q.shape[-2]
     if width > time:
         raise ValueError(f"width must not exceed the {time} samples of the recording, got {width}")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number
+from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.control import PID, closed_loop, plant
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, ViscousFriction
@@ -276,17 +276,10 @@ def run_system(
     Recording
         With perfect sensors: measured and true values are the same.
     """
-    t = finite_array("t", t)
-    reference = Trajectory(*(finite_array("reference", x, 2) for x in reference))
-    if t.ndim != 1 or any(x.shape != (t.size, 2) for x in reference):
-        raise ValueError(
-            f"reference must be one run with a sample for each of the {t.size} times, got shape "
-            f"{reference.q.shape}"
-        )
-    start = [reference.q[0], [0.0, 0.0]] if start is None else finite_array("start", start, 2)
-    if np.shape(start) != (2, 2):
-        raise ValueError(f"start must have shape (2, 2), got {np.shape(start)}")
-    start = np.ravel(start)
+    t = shaped("t", t, "(time,)")
+    reference = Trajectory(*(shaped("reference", x, (t.size, 2)) for x in reference))
+    start = np.stack([reference.q[0], [0.0, 0.0]]) if start is None else start
+    start = shaped("start", start, (2, 2)).ravel()
     answer = control.input_output_response(
         system, t, np.concatenate(reference, axis=1).T, start, solve_ivp_kwargs={"rtol": 1e-6}
     )

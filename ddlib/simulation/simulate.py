@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, started
@@ -167,22 +167,11 @@ def follow(
     ValueError
         If shapes or options do not fit, or the loop diverges.
     """
-    t = finite_array("t", t)
-    if t.ndim != 1 or t.size < 2:
-        raise ValueError(f"t must have shape (time,) with two or more samples, got {t.shape}")
-    reference = Trajectory(
-        *(finite_array(f"reference.{n}", x, 2) for n, x in zip(Trajectory._fields, reference))
-    )
-    if reference.q.ndim < 2 or reference.q.shape[-2] != t.size:
-        raise ValueError(
-            f"reference must have {t.size} samples like t, got shape {reference.q.shape}"
-        )
-    for name, x in zip(Trajectory._fields, reference):
-        if x.shape != reference.q.shape:
-            raise ValueError(
-                f"reference.{name} must have the shape of reference.q {reference.q.shape}, "
-                f"got {x.shape}"
-            )
+    t = shaped("t", t, "(time,)")
+    integer("samples of t", t.size, 2)
+    q = shaped("reference.q", reference[0], f"(..., {t.size}, 2)")
+    names = ("reference.qd", "reference.qdd")
+    reference = Trajectory(q, *(shaped(n, x, q.shape) for n, x in zip(names, reference[1:])))
     controller = as_controller(controller)
     step = equal_steps(t)
     integer("log_every", log_every, 1)

@@ -48,7 +48,7 @@ def test_without_rounding_the_torque_noise_is_left():
 @pytest.mark.parametrize(
     "change, words",
     [
-        (dict(deviation=(0.0, 1.0)), "deviation must be two numbers above 0"),
+        (dict(deviation=(0.0, 1.0)), "deviation must be positive"),
         (dict(deviation=(1.0, 1.0, 1.0)), "deviation"),
         (dict(deviation=(np.nan, 1.0)), "deviation"),
         (dict(width=20), "odd"),

@@ -42,8 +42,8 @@ def test_a_family_looks_the_same_in_every_panel():
     "panels, words",
     [
         ({}, "panels must hold one panel or more"),
-        ({"": {"a": (X, X)}}, "x and y of 'a' must have shapes"),
-        ({"": {"a": (X[:3], FAN)}}, "x and y of 'a' must have shapes"),
+        ({"": {"a": (X, X)}}, "y of 'a' must have shape"),
+        ({"": {"a": (X[:3], FAN)}}, "y of 'a' must have shape"),
         ({"": {"a": (X, FAN * np.nan)}}, "y of 'a' must be finite"),
     ],
 )

@@ -18,7 +18,7 @@ def test_the_text_names_the_largest_values():
     "states, radius, name",
     [
         ({}, 1.0, "states"),
-        ({"a": np.zeros((10, 6))}, 1.0, "states"),
+        ({"a": np.zeros((10, 6))}, 1.0, r"states\['a'\]"),
         ({"a": np.zeros((1, 10, 5))}, 1.0, r"states\['a'\]"),
         ({"a": np.full((1, 10, 6), np.nan)}, 1.0, r"states\['a'\]"),
         ({"a": np.zeros((1, 10, 6))}, 0.0, "radius"),
@@ -67,7 +67,7 @@ def test_the_text_tells_how_close_the_points_are_to_a_line():
     [
         ({}, "panels"),
         ({"a": {}}, "panels"),
-        ({"a": {"b": np.zeros((5, 2))}}, "panels"),
+        ({"a": {"b": np.zeros((5, 2))}}, "points of 'b'"),
         ({"a": {"b": np.zeros((1, 5, 3))}}, "points of 'b'"),
         ({"a": {"b": np.full((1, 5, 2), np.nan)}}, "points of 'b'"),
     ],

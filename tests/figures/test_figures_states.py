@@ -170,7 +170,7 @@ def test_one_input_swings_and_the_others_rest(made):
             lambda: figures_states.hinton_states(one_weight("hidden_bias", 0, 0.0)),
             "not all zero",
         ),
-        (lambda: figures_states.torque_along(T, EXACT, EXACT), "t, exact and predicted must"),
+        (lambda: figures_states.torque_along(T, EXACT, EXACT), "predicted must"),
         (lambda: figures_states.torque_along(T, EXACT, PREDICTED, 0.0), "share must lie"),
         (lambda: figures_states.responses(X, ACTIVITY[0]), "activity must have shape"),
     ],
