@@ -20,6 +20,9 @@ from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_
 FILE = Path(__file__).parents[2] / "book" / "errata.yml"
 """Where the errata are kept."""
 
+QUESTIONS = FILE.with_name("questions.yml")
+"""Where the open questions are kept."""
+
 FIELDS = ("where", "printed", "wrong", "here")
 """Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does."""
 
@@ -62,22 +65,27 @@ def errata(path: Path = FILE) -> Table:
     ValueError
         If an entry has unknown or missing fields, one that is no text, or an unknown ``$name``.
     """
-    text = book_file(Path(path)).read_text(encoding="utf-8")
-    rows, values = [], computed()
+    rows = _filled("erratum", FIELDS, path, computed())
+    return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
+
+
+def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> list[tuple]:
+    """The entries of a file, as rows, with values in place of their names."""
+    text, rows = book_file(Path(path)).read_text(encoding="utf-8"), []
     for count, entry in enumerate(yaml.safe_load(text), 1):
-        if not isinstance(entry, dict) or set(entry) != set(FIELDS):
-            raise ValueError(f"erratum {count} must have the fields {FIELDS}, got {entry!r}")
+        if not isinstance(entry, dict) or set(entry) != set(fields):
+            raise ValueError(f"{kind} {count} must have the fields {fields}, got {entry!r}")
         if not all(isinstance(text, str) and text.strip() for text in entry.values()):
-            raise ValueError(f"erratum {count} must be of texts that are not empty, got {entry!r}")
+            raise ValueError(f"{kind} {count} must be of texts that are not empty, got {entry!r}")
         try:
-            cells = [Template(entry[field]).substitute(values) for field in FIELDS]
+            cells = [Template(entry[field]).substitute(values) for field in fields]
         except (KeyError, ValueError) as error:
             known = ", ".join(f"${name}" for name in values)
             raise ValueError(
-                f"erratum {count} ({entry['where']}) must name computed values, {known}: {error}"
+                f"{kind} {count} ({entry[fields[0]]}) must name computed values, {known}: {error}"
             ) from None
         rows.append(tuple(map(typeset, cells)))
-    return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
+    return rows
 
 
 def computed() -> dict[str, str]:
@@ -118,8 +126,10 @@ def open_questions() -> Table:
         Question, decision, errors as decided, errors otherwise. Both sides of a row have
         the same number of networks.
     """
-    rows = [tuple(map(typeset, row)) for row in (*_table_4_1(), *_table_6_1())]
-    return Table(("question", "decision", "as decided", "otherwise"), rows)
+    fields = ("question", "decision", "decided", "otherwise")
+    rows = _filled("question", fields, QUESTIONS, {**_table_4_1(), **_table_6_1()})
+    header = ("question", "decision", "as decided", "otherwise")
+    return Table(header, [row for row in rows if all(row)])
 
 
 def _medians(cells, column, first=None) -> list[float]:
@@ -139,100 +149,58 @@ def _both(cells, first=None) -> str:
     return f"training {training}; test {_triple(test)}, least at {least}"
 
 
-def _table_4_1() -> list[tuple]:
+def _pair(row, columns=("training", "test")) -> str:
+    return ", ".join(f"{name} {significant(np.median(row[name]), 2)}" for name in columns)
+
+
+def _table_4_1() -> dict[str, str]:
     table = results.read("table-4-1")["setups"]
-    state, position = table["state feedback"], table["position feedback"]
+    state, printed = table["state feedback"], paper.HIDDEN_UNITS
     longer, clean = (results.read(name) for name in ("longer", "clean"))
     units = {row["units"]: row for row in results.read("hidden-units")["rows"]}
     sizes = {row["width"]: row for row in results.read("window-sizes")["rows"]}
     one = state["21"]["errors"]["test"]
-
-    def pair(row, columns=("training", "test")):
-        return ", ".join(f"{name} {significant(np.median(row[name]), 2)}" for name in columns)
-
+    others = {
+        "test": "test",
+        "by_training": "test by training deviation",
+        "desired": "test, desired positions",
+    }
     weight = ("training", "test", "largest weight")
-    test = f"test {_triple(_medians(state, 'test'))}"
-    shifted = _triple(_medians(state, "test by training deviation"))
-    return [
-        (
-            "What is “a proportional controller”?",
-            "position and velocity are fed back",
-            _both(state),
-            f"position alone: {_both(position)}",
-        ),
-        *_arms(state),
-        (
-            "When is the asymptote reached?",
-            f"after {paper.EPOCHS:,} epochs",
-            _both(state, longer["members"]),
-            f"after {longer['epochs']:,}: {_both(longer['windows'])}",
-        ),
-        (
-            "Which test error counts?",
-            "the last",
-            test,
-            f"the best: test {_triple([state[str(w)]['best test'] for w in WINDOWS])}",
-        ),
-        (
-            "How much friction and sensor noise?",
-            "little; {doc}`provenance`",
-            _both(state, clean["members"]),
-            f"none: {_both(clean['windows'])}",
-        ),
-        (
-            "How many hidden units (window 21)?",
-            f"{paper.HIDDEN_UNITS}, as printed",
-            pair(units[paper.HIDDEN_UNITS]),
-            "; ".join(f"{k}: {pair(row)}" for k, row in units.items() if k != paper.HIDDEN_UNITS),
-        ),
-        (
-            "Whose standard deviation divides the test error?",
-            "the test set's own",
-            test,
-            f"the training set's: test {shifted}",
-        ),
-        (
-            "Which positions does the test show to a network?",
-            "measured ones",
-            test,
-            f"desired ones: test {_triple(_medians(state, 'test, desired positions'))}",
-        ),
-        (
-            "Is the largest window 41, or 81 as in the captions?",
-            "41",
-            pair(sizes[41], weight),
-            f"81: {pair(sizes[81], weight)}",
-        ),
-        (
-            "What is the error of one network worth (window 21)?",
-            f"the median of {len(one)} counts",
-            f"test {significant(np.median(one), 2)}",
-            f"one of the {len(one)}: test {significant(min(one), 2)} to {significant(max(one), 2)}",
-        ),
-    ]
+    return {
+        "state": _both(state),
+        "position": _both(table["position feedback"]),
+        "gains": f"kp {KP[0]:g} / {KP[1]:g} N m/rad, kd {KD[0]:g} / {KD[1]:g} N m s/rad",
+        "arms": _arms(),
+        "epochs": f"{paper.EPOCHS:,}",
+        "state_beside_longer": _both(state, longer["members"]),
+        "more_epochs": f"{longer['epochs']:,}",
+        "longer": _both(longer["windows"]),
+        "best": _triple([state[str(w)]["best test"] for w in WINDOWS]),
+        "state_beside_clean": _both(state, clean["members"]),
+        "clean": _both(clean["windows"]),
+        "units": str(printed),
+        "with_units": _pair(units[printed]),
+        "other_units": "; ".join(f"{k}: {_pair(r)}" for k, r in units.items() if k != printed),
+        **{name: _triple(_medians(state, column)) for name, column in others.items()},
+        **{f"size_{w}": _pair(sizes[w], weight) for w in (41, 81)},
+        "networks": str(len(one)),
+        **{f.__name__: significant(f(one), 2) for f in (np.median, min, max)},
+    }
 
 
-def _arms(state) -> list[tuple]:
-    """Table 4-1 on arms drawn at random, if that study has been run."""
+def _arms() -> str:
+    """Table 4-1 on arms drawn at random, empty if that study has not been run."""
     try:
         rows = results.read("arms")["rows"]
     except FileNotFoundError:
-        return []
+        return ""
     least = [WINDOWS[int(np.argmin(_medians(row, "test")))] for row in rows]
     times = ", ".join(f"{w} on {least.count(w)}" for w in WINDOWS)
     training = " · ".join(spread(x) for x in zip(*(_medians(row, "training") for row in rows)))
-    return [
-        (
-            "Which gains, friction, noise and momentum?",
-            f"kp {KP[0]:g} / {KP[1]:g} N m/rad, kd {KD[0]:g} / {KD[1]:g} N m s/rad; "
-            "{doc}`provenance`",
-            _both(state),
-            f"{len(rows)} arms at random: training {training}; test least at window {times}",
-        )
-    ]
+    return f"{len(rows)} arms at random: training {training}; test least at window {times}"
 
 
-def _table_6_1() -> list[tuple]:
+def _table_6_1() -> dict[str, str]:
     table = results.read("table-6-1")
     first, *choices = results.read("state-space-choices")["rows"]
 
@@ -243,24 +211,12 @@ def _table_6_1() -> list[tuple]:
         return f"step {row['rate']:g}, momentum {row['momentum']:g}, initial ±{row['initial']:g}"
 
     drawn = [[np.median(d["errors"][s]["own deviation"]) for d in table["draws"]] for s in SETS]
-    ranges = " · ".join(f"{significant(min(x), 2)} to {significant(max(x), 2)}" for x in drawn)
-    return [
-        (
-            "Table 6-1 (set A · set B · trajectory 6): how was it trained?",
-            options(first),
-            sets(first["errors"]),
-            "; ".join(f"{options(row)}: {sets(row['errors'])}" for row in choices),
-        ),
-        (
-            "Table 6-1: whose standard deviation?",
-            "each set's own",
-            sets(table["errors"]),
-            f"set A's: {sets(table['errors'], 'deviation of set A')}",
-        ),
-        (
-            "Table 6-1: which random points?",
-            "one draw of each set",
-            sets(table["errors"]),
-            f"{len(table['draws'])} other draws: {ranges}",
-        ),
-    ]
+    return {
+        "options": options(first),
+        "chosen": sets(first["errors"]),
+        "other_options": "; ".join(f"{options(row)}: {sets(row['errors'])}" for row in choices),
+        "sets": sets(table["errors"]),
+        "sets_by_a": sets(table["errors"], "deviation of set A"),
+        "draws": str(len(table["draws"])),
+        "drawn": " · ".join(f"{significant(min(x), 2)} to {significant(max(x), 2)}" for x in drawn),
+    }

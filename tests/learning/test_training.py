@@ -109,9 +109,9 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
 @pytest.mark.parametrize(
     "windows, torque, words",
     [
-        (np.zeros((5, 2)), np.zeros((5, 2)), "windows and torque must have shapes"),
-        (np.zeros((5, 2, 3)), np.zeros(5), "windows and torque must have shapes"),
-        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "windows and torque must have shapes"),
+        (np.zeros((5, 2)), np.zeros((5, 2)), "(windows|torque) must have shape"),
+        (np.zeros((5, 2, 3)), np.zeros(5), "(windows|torque) must have shape"),
+        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "(windows|torque) must have shape"),
         (np.full((5, 2, 3), np.nan), np.zeros((5, 2)), "windows must be finite"),
         (np.zeros((5, 2, 3)), np.full((5, 2), np.inf), "torque must be finite"),
         (np.zeros((5, 2, 3)), np.zeros((5, 2)), "high must exceed low"),
