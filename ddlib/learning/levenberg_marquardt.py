@@ -21,7 +21,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning.gauss_newton import Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import WORKERS, History, TrainingSet
@@ -162,7 +162,9 @@ def solve(
         torch.set_num_threads(threads)
         bar.close()
     solution = Solution(
-        TorqueModel(found[0] if single else _stack(found), data.inputs, data.outputs, data.step),
+        TorqueModel(
+            found[0] if single else Weights.stack(found), data.inputs, data.outputs, data.step
+        ),
         _history([end.path for end in ends], test is not None),
         np.array([end.objective for end in ends]),
         np.array([end.gradient for end in ends]),
@@ -259,20 +261,10 @@ def _check(weights, data, test) -> None:
     for name, pair in {"data": (data.x, data.y), "test": test}.items():
         if pair is None:
             continue
-        x, y = (finite_array(f"{part} of {name}", array) for part, array in zip("xy", pair))
-        if x.shape[1:] != window or y.shape != (len(x), outputs):
-            raise ValueError(
-                f"{name} must have x of shape (cases, {window[0]}, {window[1]}) and y of "
-                f"shape (cases, {outputs}) like the weights, got {x.shape} and {y.shape}"
-            )
+        x = shaped(f"x of {name}", pair[0], f"(cases, {window[0]}, {window[1]})")
+        y = shaped(f"y of {name}", pair[1], (len(x), outputs))
         if len(y) < 2 or (np.ptp(y, axis=0) == 0).any():
             raise ValueError(f"y of {name} must vary in each column, got {y[:1]} throughout")
-
-
-def _stack(members) -> Weights:
-    """An ensemble of single networks."""
-    names = [field.name for field in fields(Weights)]
-    return Weights(*(np.stack([getattr(m, name) for m in members]) for name in names))
 
 
 def _history(paths, tested: bool) -> History:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.learning.descent import Descent
 from ddlib.learning.network import Weights
 from ddlib.learning.training import TARGET_RANGE
@@ -81,10 +81,7 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
     """
     values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
     bits = values.size.bit_length() - 1
-    if values.ndim != 1 or values.size != 2**bits or not 1 <= bits <= MOST_BITS:
-        raise ValueError(
-            f"values must be one for each of 2 to 2**{MOST_BITS} inputs, got shape {values.shape}"
-        )
+    shaped("values", values, (2 ** integer("bits of values", bits, 1, MOST_BITS),))
     if (values != np.round(values)).any():
         raise ValueError("values must be whole numbers")
     table = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
@@ -115,14 +112,9 @@ class UnitNetwork:
     bias: np.ndarray
 
     def __post_init__(self):
-        weights, bias = finite_array("weights", self.weights), finite_array("bias", self.bias)
-        if bias.ndim != 1 or bias.size == 0 or weights.shape[:-1] != bias.shape:
-            raise ValueError(
-                "weights and bias must have shapes (units, inputs + units) and (units,), "
-                f"got {weights.shape} and {bias.shape}"
-            )
-        if weights.shape[1] <= bias.size:
-            raise ValueError(f"weights must leave room for inputs, got shape {weights.shape}")
+        bias = shaped("bias", self.bias, "(units,)")
+        weights = shaped("weights", self.weights, f"({bias.size}, inputs)")
+        integer("inputs of weights", weights.shape[1] - bias.size, 1)
         if np.triu(weights[:, weights.shape[1] - bias.size :]).any():
             raise ValueError("weights must lead from earlier units to later ones only")
         object.__setattr__(self, "weights", weights)
@@ -187,13 +179,11 @@ class UnitNetwork:
 
 
 def _build(inputs: int, rows) -> UnitNetwork:
-    """A network of ``(weights of the inputs, weights of earlier units by number, bias)``."""
+    """A network from a pair for each unit: weights by place, units after the inputs, and bias."""
     weights = np.zeros((len(rows), inputs + len(rows)))
-    for k, (own, earlier, _) in enumerate(rows):
-        weights[k, :inputs] = own
-        for unit, weight in earlier.items():
-            weights[k, inputs + unit] = weight
-    return UnitNetwork(weights, np.array([bias for *_, bias in rows], float))
+    for k, (links, _) in enumerate(rows):
+        weights[k, list(links)] = list(links.values())
+    return UnitNetwork(weights, np.array([bias for _, bias in rows], float))
 
 
 def one_layer(bits: int) -> UnitNetwork:
@@ -202,8 +192,8 @@ def one_layer(bits: int) -> UnitNetwork:
     The output sees the hidden units with weights -1, +1, -1, ...; about ``bits**2`` weights.
     """
     bits = integer("bits", bits, 1)
-    hidden = [(1, {}, 0.5 - k) for k in range(1, bits + 1)]
-    return _build(bits, [*hidden, (0, {k: -((-1) ** k) for k in range(bits)}, 0.5)])
+    hidden = [(dict.fromkeys(range(bits), 1), 0.5 - k) for k in range(1, bits + 1)]
+    return _build(bits, [*hidden, ({bits + k: -((-1) ** k) for k in range(bits)}, 0.5)])
 
 
 def direct(bits: int) -> UnitNetwork:
@@ -213,8 +203,9 @@ def direct(bits: int) -> UnitNetwork:
     that the output sees directly; about ``bits**2 / 2`` weights.
     """
     bits = integer("bits", bits, 1)
-    hidden = [(1, {}, 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
-    return _build(bits, [*hidden, (-1, {k: 2 for k in range(len(hidden))}, 0.5)])
+    hidden = [(dict.fromkeys(range(bits), 1), 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
+    above = dict.fromkeys(range(bits, bits + len(hidden)), 2)
+    return _build(bits, [*hidden, (dict.fromkeys(range(bits), -1) | above, 0.5)])
 
 
 def counter(bits: int) -> UnitNetwork:
@@ -225,11 +216,11 @@ def counter(bits: int) -> UnitNetwork:
     """
     bits = integer("bits", bits, 1)
     higher = [2**j for j in range(bits.bit_length() - 1, 0, -1)]
-    rows = []
-    for k, value in enumerate(higher):
-        rows.append((1, {i: -higher[i] for i in range(k)}, 0.5 - value))
-    lowest = (-1, dict(enumerate(higher)), 0.5)
-    return _build(bits, [*rows, lowest])
+    places, inputs = range(bits, bits + len(higher)), dict.fromkeys(range(bits), 1)
+    known = dict(zip(places, (-value for value in higher)))
+    rows = [(inputs | {i: known[i] for i in range(bits, p)}, 0.5 + known[p]) for p in places]
+    lowest = {place: -weight for place, weight in (inputs | known).items()}
+    return _build(bits, [*rows, (lowest, 0.5)])
 
 
 def tree(bits: int) -> UnitNetwork:
@@ -248,10 +239,7 @@ def tree(bits: int) -> UnitNetwork:
         rows = [({0: 1}, -0.5)]
     links, bias = rows[-1]
     rows[-1] = ({place: -weight for place, weight in links.items()}, -bias)  # odd to even
-    weights = np.zeros((len(rows), bits + len(rows)))
-    for k, (links, _) in enumerate(rows):
-        weights[k, list(links)] = list(links.values())
-    return UnitNetwork(weights, np.array([bias for _, bias in rows]))
+    return _build(bits, rows)
 
 
 NETWORKS = {

@@ -377,7 +377,11 @@ def test_progress_goes_to_stderr_only_if_asked(data, start, capfd):
         (dict(tolerance=2), ValueError, "tolerance must lie in [0, 1], got 2"),
         (dict(target_rmss=-0.1), ValueError, "target_rmss must lie in [0, inf]"),
         (dict(damping=-1e-3), ValueError, "damping must lie in [0, inf]"),
-        (dict(test=(np.zeros((4, 2, 5)), np.zeros((4, 2)))), ValueError, "test must have x"),
+        (
+            dict(test=(np.zeros((4, 2, 5)), np.zeros((4, 2)))),
+            ValueError,
+            "x of test must have shape",
+        ),
     ],
 )
 def test_options_out_of_range_are_refused(data, start, options, error, message):
@@ -393,11 +397,11 @@ def test_unfit_weights_and_data_are_refused(data, start):
     for weights, cases, message in (
         (nan, data, "weights.hidden_bias must be finite"),
         (deep, data, "one network, or of an ensemble along one axis"),
-        (Weights.random(2, 9, HIDDEN), data, "data must have x of shape (cases, 2, 9)"),
-        (Weights.random(2, WIDTH, outputs=3), data, "y of shape (cases, 3)"),
+        (Weights.random(2, 9, HIDDEN), data, "x of data must have shape (cases, 2, 9)"),
+        (Weights.random(2, WIDTH, outputs=3), data, f"y of data must have shape {len(data.y), 3}"),
         (start, replace(data, x=holes), "x of data must be finite"),
         (start, replace(data, y=flat_y), "y of data must vary in each column"),
-        (start, replace(data, x=data.x[:-1]), "data must have x"),
+        (start, replace(data, x=data.x[:-1]), "y of data must have shape"),
     ):
         with pytest.raises(ValueError, match=re.escape(message)):
             solve(weights, cases, progress=False)
