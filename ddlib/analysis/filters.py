@@ -32,7 +32,8 @@ class Decomposition(NamedTuple):
         return self.constant + self.even + self.odd
 
 
-def _odd_width(f) -> np.ndarray:
+def odd_width(f) -> np.ndarray:
+    """Weight functions with a centre; a ValueError if the last axis has an even length or 1."""
     f = finite_array("f", f)
     if f.ndim == 0 or f.shape[-1] < 3 or f.shape[-1] % 2 == 0:
         raise ValueError(f"f must have an odd last axis of 3 or more samples, got shape {f.shape}")
@@ -60,7 +61,7 @@ def decompose(f, convention: str = "symmetric") -> Decomposition:
     ValueError
         If `f` is not finite or has an even number of samples.
     """
-    f = _odd_width(f)
+    f = odd_width(f)
     one_of("convention", convention, ("symmetric", "paper"))
     mirrored = f[..., ::-1]
     constant = f.mean(-1, keepdims=True)
@@ -94,7 +95,7 @@ def content(f) -> np.ndarray:
     f : array_like, shape (..., width)
         Weight functions, 5 samples or more.
     """
-    f = _odd_width(f)
+    f = odd_width(f)
     if f.shape[-1] < 5:
         raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
     return f @ basis(f.shape[-1]).T
@@ -128,7 +129,7 @@ def shares(f) -> np.ndarray:
         Position, velocity, acceleration, jerk and the rest (what a cubic does not
         explain); the five sum to 1.
     """
-    f = _odd_width(f)
+    f = odd_width(f)
     energy = (f**2).sum(-1, keepdims=True)
     if (energy == 0).any():
         raise ValueError("f must not be zero everywhere")
@@ -175,8 +176,8 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     return np.select(conditions, names, CLASSES[5])
 
 
-def purest(f, name: str, score=None) -> np.ndarray:
-    """The weight function of a class that shows it most clearly.
+def purest(f, name: str) -> np.ndarray:
+    """The weight function of a class with the largest share of the named derivatives.
 
     Parameters
     ----------
@@ -184,9 +185,6 @@ def purest(f, name: str, score=None) -> np.ndarray:
         Weight functions to choose from.
     name : str
         One of `CLASSES`.
-    score : callable, optional
-        ``score(shares)`` with the five shares along the first axis; the largest wins.
-        Default: the share of the named derivative, or the smaller of two named ones.
 
     Returns
     -------
@@ -198,14 +196,11 @@ def purest(f, name: str, score=None) -> np.ndarray:
         If no function is of that class.
     """
     one_of("name", name, CLASSES)
-    f = _odd_width(f)
+    f = odd_width(f)
     f = f.reshape(-1, f.shape[-1])
     share = np.moveaxis(shares(f), -1, 0)
-    if score is None:
-        named = [share[DERIVATIVES.index(n)] for n in name.split(" + ") if n in DERIVATIVES]
-        value = np.min(named, axis=0) if named else share[4]
-    else:
-        value = score(share)
+    named = [share[DERIVATIVES.index(n)] for n in name.split(" + ") if n in DERIVATIVES]
+    value = np.min(named, axis=0) if named else share[4]
     fitting = classify(f) == name
     if not fitting.any():
         raise ValueError(f"f holds no function of class {name!r}")
@@ -228,7 +223,7 @@ def upright(f) -> np.ndarray:
     -------
     ndarray, shape (..., width)
     """
-    f = _odd_width(f)
+    f = odd_width(f)
     parts = content(f)[..., 1:]
     strongest = np.take_along_axis(parts, np.abs(parts).argmax(-1)[..., None], -1)
     return np.where(strongest < 0, -f, f)
@@ -239,7 +234,7 @@ def roughness(f) -> np.ndarray:
 
     0 for a straight line, about 1 for white noise, more for an alternating one.
     """
-    f = _odd_width(f)
+    f = odd_width(f)
     centred = f - f.mean(-1, keepdims=True)
     energy = (centred**2).mean(-1)
     second = (np.diff(f, 2, axis=-1) ** 2).mean(-1)
@@ -287,7 +282,7 @@ def frequency_response(f, frequencies, step: float) -> np.ndarray:
     step : float
         Sampling period, s.
     """
-    f, frequencies = _odd_width(f), finite_array("frequencies", frequencies)
+    f, frequencies = odd_width(f), finite_array("frequencies", frequencies)
     number("step", step, 0.0, open_low=True)
     half = f.shape[-1] // 2
     times = np.arange(-half, half + 1) * step

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import finite_array, number, shaped
-from ddlib.analysis.filters import CLASSES, DERIVATIVES, classify
+from ddlib.analysis.filters import CLASSES, DERIVATIVES, classify, odd_width
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
 
@@ -168,10 +168,8 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
         In the unit of `f`, times s for velocity and s^2 for acceleration. For the gradient of a
         torque they are a stiffness (N m/rad), a damping (N m s/rad) and an inertia (kg m^2).
     """
-    f = finite_array("f", f)
+    f = odd_width(f)
     number("step", step, 0.0, open_low=True)
-    if f.ndim == 0 or f.shape[-1] % 2 == 0:
-        raise ValueError(f"f must have an odd last axis, got shape {f.shape}")
     x = step * (np.arange(f.shape[-1]) - f.shape[-1] // 2)
     return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)
 

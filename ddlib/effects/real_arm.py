@@ -13,7 +13,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from ddlib._check import integer, non_negative, number
+from ddlib._check import integer, non_negative, number, one_of
 from ddlib.effects.actuators import ComputingTime, Saturation
 from ddlib.effects.friction import CoulombFriction, ViscousFriction
 
@@ -180,8 +180,7 @@ class Effects:
             If a part is unknown.
         """
         for part in parts:
-            if part not in _METHODS:
-                raise ValueError(f"parts must be among {tuple(_METHODS)}, got {part!r}")
+            one_of("parts", part, tuple(_METHODS))
         return replace(self, **dict.fromkeys(parts, ()))
 
 

@@ -42,11 +42,7 @@ def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     """
-    step, q = recording.step, recording.q
-    velocity, acceleration = np.zeros_like(q), np.zeros_like(q)
-    velocity[..., 1:-1, :] = (q[..., 2:, :] - q[..., :-2, :]) / (2 * step)
-    acceleration[..., 1:-1, :] = np.diff(q, 2, axis=-2) / step**2
-    return _sampled(recording, velocity, acceleration, names, 1)
+    return by_smoothing(recording, 3, names)  # parabolas through three samples
 
 
 def by_smoothing(
@@ -177,10 +173,8 @@ def repeat(
     mounted = replace(effects, encoder=(shift, *effects.encoder))
     options |= {"effects": mounted, "seed": seed}
     many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
-    reference = type(many.reference)(*(x[:runs] for x in many.reference))
-    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
-    shaped = {f: getattr(many, f).reshape(repetitions, runs, many.t.size, 2) for f in fields}
-    return replace(many, reference=reference, **shaped)
+    many = many.mapped(lambda x: x.reshape(repetitions, runs, -1, 2))
+    return replace(many, reference=type(many.reference)(*(x[0] for x in many.reference)))
 
 
 @dataclass(frozen=True)
@@ -195,12 +189,8 @@ class _Shift:
 
 def _in_runs(recording: Recording) -> Recording:
     """The recording with an axis for runs, even if it is a single one."""
-    if recording.reference.q.ndim > 2:
-        return recording
-    reference = type(recording.reference)(*(x[None] for x in recording.reference))
-    fields = ("q", "tau", "q_true", "qd_true", "tau_true")
-    arrays = {f: getattr(recording, f)[..., None, :, :] for f in fields}
-    return replace(recording, reference=reference, **arrays)
+    single = recording.reference.q.ndim == 2
+    return recording.mapped(lambda x: x[..., None, :, :]) if single else recording
 
 
 def _lateness(recording: Recording) -> float:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, integer, number, one_of
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -166,7 +166,9 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     """
     _known(names)
-    viscous = sum(np.asarray(f.coefficient) for f in effects.friction if _is_viscous(f))
+    viscous = sum(
+        np.asarray(f.coefficient) for f in effects.friction if isinstance(f, ViscousFriction)
+    )
     coulomb = sum(np.asarray(f.level) for f in effects.friction if isinstance(f, CoulombFriction))
     pairs = (*arm.gravity_moments, *np.broadcast_to(viscous, 2), *np.broadcast_to(coulomb, 2))
     known = dict(zip((*RIGID, *GRAVITY, *FRICTION), (arm.a, arm.b, arm.d, *pairs)))
@@ -196,16 +198,10 @@ def _spread(left, basis) -> np.ndarray:
     return np.sqrt(np.sum(left**2, -1) / np.maximum(free, 1e-9))
 
 
-def _is_viscous(friction) -> bool:
-    return isinstance(friction, ViscousFriction)
-
-
 def _known(names) -> None:
     """A ValueError for a name of no parameter."""
-    known = (*RIGID, *GRAVITY, *FRICTION)
     for name in names:
-        if name not in known:
-            raise ValueError(f"names must be among {', '.join(known)}, got {name!r}")
+        one_of("names", name, (*RIGID, *GRAVITY, *FRICTION))
 
 
 def columns(row: dict, names: Sequence[str], like) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -125,6 +126,16 @@ class Recording:
         """
         if self.q.ndim < 3:
             raise IndexError(f"recording must have an axis of runs, got q of shape {self.q.shape}")
-        fields = ("q", "tau", "q_true", "qd_true", "tau_true")
-        pick = {name: getattr(self, name)[runs] for name in fields}
-        return replace(self, reference=Trajectory(*(x[runs] for x in self.reference)), **pick)
+        return self.mapped(lambda x: x[runs])
+
+    def mapped(self, change: Callable) -> Recording:
+        """The recording with all arrays of runs and samples changed, the reference's too.
+
+        Parameters
+        ----------
+        change : callable
+            ``change(x)`` of an array of shape ``(..., time, joint)``.
+        """
+        names = ("q", "tau", "q_true", "qd_true", "tau_true")
+        arrays = {name: change(getattr(self, name)) for name in names}
+        return replace(self, reference=Trajectory(*map(change, self.reference)), **arrays)

@@ -246,14 +246,11 @@ def record(
     controller: Controller,
     extents_deg,
     *,
-    effects: Effects = IDEAL,
-    seed: int | np.ndarray = 0,
     rest: float = REST,
     control_step: float = CONTROL_STEP,
     log_step: float = LOG_STEP,
-    velocity: str = "tachometer",
     duration: float = MOTION_SECONDS,
-    start=None,
+    **options,
 ) -> Recording:
     """Record pick-and-place motions as in section 4 of the paper.
 
@@ -263,14 +260,14 @@ def record(
         Plant and control law.
     extents_deg : array_like, shape (2,) or (runs, 2)
         Extents in degrees; several rows are several runs, simulated together.
-    effects, seed, velocity, start
-        As in `follow`.
     rest : float
         Rest before and after the motion, s.
     control_step, log_step : float
         Periods of control and log, s; the second a multiple of the first.
     duration : float
         Length of the motion, s.
+    **options
+        ``effects``, ``seed``, ``velocity`` and ``start``, as in `follow`.
 
     Returns
     -------
@@ -291,15 +288,5 @@ def record(
     if round(rest / control_step) % round(ratio):
         raise ValueError(f"rest must be a multiple of log_step={log_step:g}, got {rest:g}")
     reference = pick_and_place(extents_deg, t, duration)
-    return follow(
-        arm,
-        controller,
-        reference,
-        t,
-        effects=effects,
-        seed=seed,
-        log_every=round(ratio),
-        velocity=velocity,
-        start=start,
-        duration=duration,
-    )
+    options |= {"log_every": round(ratio), "duration": duration}
+    return follow(arm, controller, reference, t, **options)

@@ -231,7 +231,7 @@ def test_refusals():
             by_modulation(run, width=width)
     with pytest.raises(ValueError, match="hold must lie"):
         by_modulation(run, hold=-0.001)
-    with pytest.raises(ValueError, match="names must be among"):
+    with pytest.raises(ValueError, match="names must be one of"):
         by_modulation(run, ("a", "mass"))
     with pytest.raises(ValueError, match="width must be an odd number"):
         by_smoothing(run, 10)
