@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import number, shaped
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -157,7 +157,6 @@ def families(
     labels: tuple[str, str],
     alt: str,
     *,
-    columns: int = 2,
     height: float = 2.3,
     x_log: bool = False,
     y_log: bool = False,
@@ -174,8 +173,6 @@ def families(
         Labels of the x and y axes.
     alt : str
         Alternative text.
-    columns : int
-        Panels in one row.
     height : float
         Height of a panel, inches.
     x_log, y_log : bool
@@ -188,14 +185,12 @@ def families(
     """
     if not panels:
         raise ValueError("panels must hold one panel or more, got none")
-    integer("columns", columns, 1)
-    number("height", height, 0.0, open_low=True)
     for named in panels.values():
         for name, (x, y) in named.items():
             x = shaped(f"x of {name!r}", x, "(points,)")
             shaped(f"y of {name!r}", y, f"({len(x)}, networks)")
     look = {n: k for k, n in enumerate(dict.fromkeys(n for p in panels.values() for n in p))}
-    columns = min(columns, len(panels))
+    columns = min(2, len(panels))
     rows = -(-len(panels) // columns)
 
     def draw(figure: Figure):

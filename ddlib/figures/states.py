@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 
 from ddlib._check import shaped
-from ddlib.figures.style import COLOURS, DASHES, INK, JOINTS, Illustration, illustrate
+from ddlib.figures.style import (
+    COLOURS,
+    DASHES,
+    INK,
+    JOINTS,
+    Illustration,
+    illustrate,
+    plain_ticks,
+)
+from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import Weights
 from ddlib.tables import significant
 
@@ -49,31 +57,20 @@ def hinton_states(weights: Weights) -> Illustration:
             "weights must be of one network of two joints and three numbers each, "
             f"got hidden weights of shape {weights.hidden_weights.shape}"
         )
-    largest = float(weights.largest)
-    if not 0 < largest < np.inf:
-        raise ValueError(f"weights must be finite and not all zero, got {largest:g} as largest")
+    largest = largest_weight(weights)
     hidden, outputs = len(weights.hidden_bias), len(weights.output_bias)
     rows = -(-hidden // 2)
     tall, low, step = 5.1, 3.6, 4.4
 
-    def squares(axis: Axes, values, x, y, gap):
-        for k, value in enumerate(values):
-            if value == 0:
-                continue
-            side = np.sqrt(abs(value) / largest)
-            place = (x + k * gap - side / 2, y - side / 2)
-            colour = "#ffffff" if value > 0 else "#000000"
-            axis.add_patch(Rectangle(place, side, side, facecolor=colour, lw=0))
-
     def blob(axis, x, y, height, bias, top, inputs):
         axis.add_patch(Rectangle((x, y), _WIDTH, -height, facecolor=_BLOB, lw=0))
-        squares(axis, [bias], x + 1.0, y - 0.9, 1.0)
+        dots(axis, bias, x + 1.0, y - 0.9, 1.0, -1.0, largest)
         if len(top) == 2:
-            squares(axis, top, x + _WIDTH - 2.2, y - 0.9, 1.2)
+            dots(axis, top, x + _WIDTH - 2.2, y - 0.9, 1.2, -1.0, largest)
         else:
             gap = min(1.1, 10.0 / max(len(top) - 1, 1))
-            squares(axis, top, x + 1.05, y - 2.35, gap)
-        squares(axis, inputs.ravel(), x + 1.5, y - height + 0.95, 1.8)
+            dots(axis, top, x + 1.05, y - 2.35, gap, -1.0, largest)
+        dots(axis, inputs.ravel(), x + 1.5, y - height + 0.95, 1.8, -1.0, largest)
 
     def draw(figure: Figure):
         axis = figure.subplots()
@@ -182,14 +179,9 @@ def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) 
                 )  # fmt: skip
             sizes = sorted({size for by_size in named.values() for size in by_size})
             axis.set(xscale="log", yscale="log", xlabel=label)
-            axis.xaxis.set_major_locator(FixedLocator(sizes))
             axis.xaxis.set_minor_locator(NullLocator())
             axis.set_xticks(sizes, [_short(size) for size in sizes])
-            axis.yaxis.set_major_formatter("{x:g}")
-            axis.yaxis.set_minor_formatter(NullFormatter())
-        low, high = axes[0].get_ylim()
-        marks = [m for m in (0.02, 0.03, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0) if low <= m <= high]
-        axes[0].yaxis.set_major_locator(FixedLocator(marks))
+        plain_ticks(axes[0].yaxis)
         axes[0].set_ylabel("RMSS")
         figure.legend(handles.values(), handles, loc="outside upper left", ncols=2)
 

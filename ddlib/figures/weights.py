@@ -69,15 +69,34 @@ def network_diagram(weights: Weights) -> Illustration:
     return illustrate(draw, alt, 7.0, 3.4)
 
 
-def _dots(axis: Axes, values, x0, y0, dx, dy, largest):
-    """Rows of squares, white for positive and black for negative, area proportional to size."""
+def dots(axis: Axes, values, x0, y0, dx, dy, largest):
+    """Rows of squares, white for positive and black for negative, area proportional to size.
+
+    Parameters
+    ----------
+    axis : Axes
+    values : array_like, shape (columns,) or (rows, columns)
+    x0, y0, dx, dy : float
+        Centre of the first square, steps to the next column and row.
+    largest : float
+        Magnitude whose square is as wide as the smaller step.
+    """
     values = np.atleast_2d(values)
-    for (row, column), value in np.ndenumerate(values):
+    for row, column in np.argwhere(values):
+        value = values[row, column]
         side = np.sqrt(min(abs(value) / largest, 1.0)) * min(abs(dx), abs(dy))
         x, y = x0 + column * dx, y0 + row * dy
         colour = "#ffffff" if value > 0 else "#000000"
         square = Rectangle((x - side / 2, y - side / 2), side, side, facecolor=colour, lw=0)
         axis.add_patch(square)
+
+
+def largest_weight(weights: Weights) -> float:
+    """Largest magnitude; a ValueError if not all weights are finite, or all are zero."""
+    largest = float(weights.largest)
+    if not 0 < largest < np.inf:
+        raise ValueError(f"weights must be finite and not all zero, got {largest:g} as largest")
+    return largest
 
 
 def hinton(weights: Weights) -> Illustration:
@@ -95,9 +114,7 @@ def hinton(weights: Weights) -> Illustration:
     """
     if weights.hidden_bias.ndim != 1:
         raise ValueError("weights must be of one network: pick a member of the ensemble")
-    largest = float(weights.largest)
-    if not 0 < largest < np.inf:
-        raise ValueError(f"weights must be finite and not all zero, got {largest:g} as largest")
+    largest = largest_weight(weights)
     hidden, width = len(weights.hidden_bias), weights.width
     columns, unit_width, unit_height = 2, width + 3.0, 7.0
     rows = -(-hidden // columns)
@@ -106,9 +123,9 @@ def hinton(weights: Weights) -> Illustration:
         x, y = column * (unit_width + 1.5), -row * (unit_height + 1.0)
         box = Rectangle((x, y), unit_width, -unit_height, facecolor="#8c8c8c", lw=0)
         axis.add_patch(box)
-        _dots(axis, bias, x + 1.6, y - 1.4, 1, -1, largest)
-        _dots(axis, top, x + unit_width - 0.5 - np.size(top), y - 1.4, 1, -1, largest)
-        _dots(axis, window, x + 2.0, y - 4.4, 1, -1.4, largest)
+        dots(axis, bias, x + 1.6, y - 1.4, 1, -1, largest)
+        dots(axis, top, x + unit_width - 0.5 - np.size(top), y - 1.4, 1, -1, largest)
+        dots(axis, window, x + 2.0, y - 4.4, 1, -1.4, largest)
 
     def draw(figure: Figure):
         axis = figure.subplots()

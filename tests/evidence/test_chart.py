@@ -16,20 +16,6 @@ def test_every_number_is_in_the_words_and_in_the_picture():
     assert {"1. One", "2. Two", "yes", "no", "1", "2", "3"} <= texts
 
 
-@pytest.mark.parametrize(
-    "counts, message",
-    [
-        ({}, "counts must hold one section or more"),
-        ({"1": dict.fromkeys("abcdefg", 1)}, "at most 6 verdicts, got 7"),
-        ({"1": {"yes": 1}, "2": {"no": 1}}, r"must have the verdicts \['yes'\] in '2', got"),
-        ({"1": {"yes": -1}}, "counts of '1' must"),
-    ],
-)
-def test_bad_counts(counts, message):
-    with pytest.raises(ValueError, match=message):
-        verdicts(counts)
-
-
-def test_numbers_must_be_whole():
-    with pytest.raises(TypeError, match="counts of '1' must"):
-        verdicts({"1": {"yes": 1.5}})
+def test_no_counts():
+    with pytest.raises(ValueError, match="counts must hold one section or more"):
+        verdicts({})

@@ -176,7 +176,7 @@ def test_misses_over_angles():
 def test_gains_from_which_the_arm_follows(monkeypatch):
     """Misses that fall with the square of the gain: 40 % at once, a tenth at twice the gain."""
     missed = {"position feedback": 0.4, "state feedback": 0.02}
-    monkeypatch.setattr(trajectories, "_recorded", lambda name: missed[name])
+    monkeypatch.setattr(trajectories.committed, "recording", lambda name: missed[name])
     monkeypatch.setattr(
         trajectories, "_missed", lambda x: x if isinstance(x, float) else 0.4 / x[0] ** 2
     )

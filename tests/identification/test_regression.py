@@ -127,7 +127,7 @@ def test_true_parameters_come_from_the_plant():
 def test_refusals():
     motion = states(3)
     y = torque(CMU_DD_ARM_II, motion)
-    with pytest.raises(ValueError, match="names must be one of .a., .b., .d."):
+    with pytest.raises(ValueError, match="names must be one of 'a', 'b', 'd'"):
         from_states(*motion, y, ("a", "mass"))
     with pytest.raises(ValueError, match="equations must be more than the 9"):
         least_squares(from_states(*motion, y, ALL))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 from scipy.spatial import Delaunay
@@ -12,11 +11,20 @@ from scipy.stats import binom
 from ddlib import paper
 from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
+from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, turns_at
-from ddlib.experiments import KP, POSITION_FEEDBACK, RADIUS, SETUPS, STATE_FEEDBACK, WINDOWS, Setup
+from ddlib.experiments import (
+    KP,
+    POSITION_FEEDBACK,
+    RADIUS,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    true_states,
+)
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
-from ddlib.simulation import LOG_STEP, Recording
+from ddlib.simulation import LOG_STEP, Recording, rms
 from ddlib.tables import scientific, significant
 from ddlib.trajectories import (
     APPENDIX_I,
@@ -28,11 +36,6 @@ from ddlib.trajectories import (
 )
 
 TRAINING = len(TRAINING_TRAJECTORIES)
-
-
-@cache
-def _recorded(setup: str = STATE_FEEDBACK.name) -> Recording:
-    return SETUPS[setup].record()
 
 
 def ends_and_middle() -> Measured:
@@ -74,14 +77,14 @@ def random_draws(resolution: float = 0.1) -> Measured:
 
 def samples() -> Measured:
     """Samples of one motion in the log."""
-    recording = _recorded()
+    recording = committed.recording()
     count = recording.t[recording.motion].size
     return Measured(count, f"{count} at {1 / LOG_STEP:.0f} a second")
 
 
 def cases() -> Measured:
     """Windows of the five training recordings: with the rests, and inside the motions."""
-    recording = _recorded()
+    recording = committed.recording()
     found = [
         sliding_windows(recording.q[:TRAINING], w, recording.motion)[..., 0, 0].size
         for w in WINDOWS
@@ -113,7 +116,7 @@ def start() -> Measured:
 def _missed(recording: Recording) -> float:
     """RMS tracking error over RMS angle on the six motions."""
     error, wanted = recording.tracking_error, recording.reference.q
-    return _size(error[:, recording.motion]) / _size(wanted[:, recording.motion])
+    return float(np.divide(*(rms(x[:, recording.motion], None) for x in (error, wanted))))
 
 
 def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
@@ -131,16 +134,14 @@ def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
         gains = tuple(factor * np.array(KP))
         return _missed(replace(POSITION_FEEDBACK, controller=proportional(gains)).record())
 
-    position, state = (_missed(_recorded(s.name)) for s in (POSITION_FEEDBACK, STATE_FEEDBACK))
+    position, state = (
+        _missed(committed.recording(s.name)) for s in (POSITION_FEEDBACK, STATE_FEEDBACK)
+    )
     turn = turns_at(factors, [position, *map(missed, factors[1:])], close)
     text = f"RMS error {100 * position:.0f} % of the angle by position feedback, "
     text += f"{100 * state:.0f} % by state feedback; {100 * close:g} % from "
     text += f"{significant(turn, 2)} times the assumed gains on"
     return Measured(float(turn), text)
-
-
-def _size(x) -> float:
-    return float(np.sqrt(np.mean(np.square(x))))
 
 
 def unreachable(width: int = 21) -> Measured:
@@ -152,7 +153,7 @@ def unreachable(width: int = 21) -> Measured:
         Window size.
     """
     power = 2 * log10_reachable_share(width, RADIUS * LOG_STEP / np.pi)
-    recording = _recorded()
+    recording = committed.recording()
     windows = sliding_windows(recording.q[:TRAINING], width, recording.motion)
     step = STATE_FEEDBACK.effects.encoder[0].step
     used = used_dimensions(windows.reshape(-1, 2 * width), step)
@@ -160,6 +161,11 @@ def unreachable(width: int = 21) -> Measured:
     text = f"a share below {share} (window {width}, speeds up to {RADIUS:.2f} "
     text += f"rad/s); the recordings use {used} of {2 * width} dimensions"
     return Measured(float(power), text)
+
+
+def _states(setup: str) -> np.ndarray:
+    """True states of the training runs, ``(runs, samples, 2, 3)``."""
+    return true_states(committed.recording(setup)[:TRAINING], SETUPS[setup])
 
 
 def coverage(cells: int = 10) -> Measured:
@@ -172,21 +178,9 @@ def coverage(cells: int = 10) -> Measured:
     """
     shares = {}
     for name in SETUPS:
-        recording = _recorded(name)
-        states = _states(recording, SETUPS[name])
+        states = _states(name).reshape(-1, 6)
         shares[name] = cells_reached(states, RADIUS, cells) / cells**6
     text = f"of {cells**6:,} cells " + ", ".join(
         f"{100 * x:.2g} % ({n})" for n, x in shares.items()
     )
     return Measured(max(shares.values()), text)
-
-
-def _states(recording: Recording, setup: Setup = STATE_FEEDBACK) -> np.ndarray:
-    """True states of the training runs, ``(samples, 6)``: positions, velocities, accelerations."""
-    arm, motion = setup.arm, recording.motion
-    q, qd, tau = (
-        x[:TRAINING, motion] for x in (recording.q_true, recording.qd_true, recording.tau_true)
-    )
-    friction = setup.effects.friction_torque(qd)
-    qdd = arm.forward_dynamics(q, qd, tau - friction)
-    return np.concatenate([q, qd, qdd], axis=-1).reshape(-1, 6)
