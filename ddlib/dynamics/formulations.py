@@ -104,14 +104,7 @@ def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     second moments and ``r_p`` its centre of mass. Each of the products in ``D_ijk`` is done
     anew, as in the programs that Hollerbach (1980) counts.
 
-    Parameters
-    ----------
-    constants : Constants
-        From `ddlib.dynamics.serial.SerialArm.constants`.
-    q, qd, qdd : sequence
-        Angle (rad), velocity (rad/s) and acceleration (rad/s^2) of each joint.
-    zero, one
-        The numbers that stand for 0 and 1.
+    ``constants, q, qd, qdd, zero, one`` are those of `newton_euler`.
     """
     links, base = constants
     first, second = _sweeps([_frame(link, x, zero, one) for link, x in zip(links, q)], zero)
@@ -143,14 +136,7 @@ def recursive_lagrange(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     mass beyond joint i (``r`` from the joint, in frame i; ``a`` its acceleration), and the first
     moments ``c_i``. Then ``tau_i = tr(dW_i/dq_i D_i) - g' dW_i/dq_i c_i``.
 
-    Parameters
-    ----------
-    constants : Constants
-        From `ddlib.dynamics.serial.SerialArm.constants`.
-    q, qd, qdd : sequence
-        Angle (rad), velocity (rad/s) and acceleration (rad/s^2) of each joint.
-    zero, one
-        The numbers that stand for 0 and 1.
+    ``constants, q, qd, qdd, zero, one`` are those of `newton_euler`.
     """
     links, base = constants
     turns = [_rotation(link, angle, zero) for link, angle in zip(links, q)]

@@ -10,7 +10,9 @@ from ddlib._names import hand_on
 
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
-    real_arm="Backlash CMU_DD_ARM_II_EFFECTS Delay Effects IDEAL Noise Quantisation started",
+    real_arm=(
+        "Backlash CMU_DD_ARM_II_EFFECTS Delay Effects EncoderZero IDEAL Noise Quantisation started"
+    ),
     friction="CoulombFriction StickSlipFriction StribeckFriction ViscousFriction",
     actuators="ComputingTime DeadZone FlexibleJoint Ripple Saturation",
 )

@@ -38,6 +38,17 @@ class Quantisation:
 
 
 @dataclass(frozen=True)
+class EncoderZero:
+    """A shift of the readings by `angle` (rad, ``(..., 2)``): where an encoder's zero lies."""
+
+    angle: tuple[float, float]
+
+    def apply(self, x, rng=None):
+        """The reading `x`, shifted."""
+        return x + np.asarray(self.angle)
+
+
+@dataclass(frozen=True)
 class Noise:
     """White Gaussian noise of standard deviation `std` (per joint, in the reading's unit)."""
 

@@ -76,7 +76,8 @@ SECTIONS = {
 
 _PLACE = re.compile(
     r"(?P<abstract>Abstract)|(?P<appendix>Appendix I\b)"
-    r"|section (?P<section>\d)(?:\.(?P<part>\d))?|(?P<float>Table|Figure) (?P<in>\d)-(?P<no>\d)"
+    r"|section (?P<section>[1-7])(?:\.(?P<part>\d))?"
+    r"|(?P<float>Table|Figure) (?P<in>[1-7])-(?P<no>\d)"
 )
 
 
@@ -143,22 +144,16 @@ class Claim:
             If ``where`` names none of the paper's parts.
         """
         found = _PLACE.search(self.where)
-        if found is None or (section := self._section(found)) not in SECTIONS:
+        if found is None:
             raise ValueError(
                 f"where of claim {self.id!r} must name a section from 1 to 7, a table, a figure, "
                 f"'Appendix I' or 'Abstract' of the paper, got {self.where!r}"
             )
-        after_text = 10 if found["float"] == "Table" else 20
-        if found["float"]:
-            return section, after_text, int(found["no"])
-        return section, int(found["part"] or 0), 0
-
-    @staticmethod
-    def _section(found: re.Match) -> str:
         if found["abstract"] or found["appendix"]:
-            return "0" if found["abstract"] else "8"
-        of = found["section"] or found["in"]
-        return of if "1" <= of <= "7" else ""
+            return "0" if found["abstract"] else "8", 0, 0
+        if found["float"]:
+            return found["in"], 10 if found["float"] == "Table" else 20, int(found["no"])
+        return found["section"], int(found["part"] or 0), 0
 
     def measured(self) -> Measured:
         """What we find, by the claim's measuring function.

@@ -14,6 +14,7 @@ from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     CoulombFriction,
     Effects,
+    EncoderZero,
     Quantisation,
     ViscousFriction,
 )
@@ -55,17 +56,6 @@ COURSE = (*sorted({0, *(round(10 ** (k / 14)) for k in range(61))}), paper.EPOCH
 
 INITIAL = 0.3
 """Initial weights are uniform in plus or minus this (Rumelhart, Hinton & Williams 1986)."""
-
-
-@dataclass(frozen=True)
-class EncoderZero:
-    """A shift of the readings by `angle` (rad, per joint): where an encoder's zero lies."""
-
-    angle: tuple[float, float]
-
-    def apply(self, x, rng=None):
-        """The reading `x`, shifted."""
-        return x + np.asarray(self.angle)
 
 
 @dataclass(frozen=True)

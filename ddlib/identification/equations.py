@@ -8,7 +8,7 @@ Modulating functions (Shinbrot 1957) need no acceleration and treat torque and m
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -17,7 +17,7 @@ from scipy.signal import savgol_filter
 from ddlib._check import finite_array, integer, number
 from ddlib.control import Controller
 from ddlib.dynamics import Arm
-from ddlib.effects import Effects, Quantisation
+from ddlib.effects import Effects, EncoderZero, Quantisation
 from ddlib.identification.regression import (
     FRICTION,
     RIGID,
@@ -169,22 +169,12 @@ def repeat(
     runs = len(extents)
     steps = [e.step for e in effects.encoder if isinstance(e, Quantisation)]
     zeros = np.random.default_rng(seed).uniform(0.0, sum(steps), (repetitions, 1, 2))
-    shift = _Shift(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
+    shift = EncoderZero(np.broadcast_to(zeros, (repetitions, runs, 2)).reshape(-1, 2))
     mounted = replace(effects, encoder=(shift, *effects.encoder))
     options |= {"effects": mounted, "seed": seed}
     many = record(arm, controller, np.tile(extents, (repetitions, 1)), **options)
     many = many.mapped(lambda x: x.reshape(repetitions, runs, -1, 2))
     return replace(many, reference=type(many.reference)(*(x[0] for x in many.reference)))
-
-
-@dataclass(frozen=True)
-class _Shift:
-    """A reading with a constant added: an encoder whose zero lies elsewhere."""
-
-    offset: np.ndarray
-
-    def apply(self, x, rng=None):
-        return x + self.offset
 
 
 def _in_runs(recording: Recording) -> Recording:
