@@ -5,6 +5,7 @@
 - ``training``, ``descent``: training sets, and descent with momentum, of one network or many
 - ``surrogates``: targets that look like torques and have nothing to do with the motion
 - ``levenberg_marquardt``, ``gauss_newton``: the optimum by second-order steps
+- ``span``: directions of the windows, how fast each is learnt, training of the linearised network
 - ``parity_networks``: the parity example of section 1.1
 """
 
@@ -22,6 +23,7 @@ __getattr__, __dir__, __all__ = hand_on(
     ),
     gauss_newton="Objective penalty",
     levenberg_marquardt="NotConverged Solution solve",
+    span="Course Directions Lazy effective_steps jacobian rows with_ones",
     parity_networks=(
         "CODINGS MOST_BITS NETWORKS UnitNetwork counter direct learn monomials one_layer parity "
         "parity_cases patterns right tree"

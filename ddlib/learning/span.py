@@ -1,0 +1,277 @@
+"""Why descent learns smooth filters: along which directions of the window, and how fast.
+
+Let X be the matrix of all windows, a row for each case, with a column of ones for the bias, and
+``X = U S V'`` its singular value decomposition. The weights w from the window to a unit, its bias
+among them, change in an epoch of batch descent by
+
+    step(t) = alpha step(t - 1) - eps X'd(t)
+
+with d(t) the unit's back-propagated error in each case. Summed over epochs the change of w is
+``-eps X'c``, where c counts each d(t) as often as momentum repeats it, up to 1 / (1 - alpha)
+times. So the change lies in the span of the windows; along v_k, the k-th column of V, it is
+``-eps s_k u_k'c``, and it moves the net input along u_k by ``-eps s_k^2 u_k'c``. As long as d
+stands still, a direction is learnt at a rate in proportion to its squared singular value.
+
+How d changes is known for a network so large, or a time so short, that its weights hardly move
+("lazy training", Chizat, Oyallon & Bach 2019). With the network replaced by its tangent at the
+initial weights, the error is a sum of modes, the eigenvectors of the neural tangent kernel JJ'
+(Jacot, Gabriel & Hongler 2018), J being the derivatives of all outputs by all weights. Each mode
+follows a recursion of its own, which `effective_steps` solves. For one linear unit J is X itself,
+and the rates are the eigenvalues of the inputs' second moments (Widrow & Stearns 1985; LeCun,
+Kanter & Solla 1991).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, integer, non_negative, number
+from ddlib.learning.network import Weights
+from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
+
+
+def with_ones(x) -> np.ndarray:
+    """Windows ``(cases, joint, width)`` as rows, with a one for the bias."""
+    x = finite_array("x", x)
+    if x.ndim != 3:
+        raise ValueError(f"x must have shape (cases, joint, width), got {x.shape}")
+    return np.column_stack([x.reshape(len(x), -1), np.ones(len(x))])
+
+
+def rows(weights: Weights) -> np.ndarray:
+    """Weights from the window to each unit, and its bias.
+
+    Returns
+    -------
+    ndarray, shape (..., unit, joint * width + 1)
+        Hidden units first, then the outputs with their direct weights.
+    """
+    parts = [
+        np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
+        for w, b in (
+            (weights.hidden_weights, weights.hidden_bias),
+            (weights.direct_weights, weights.output_bias),
+        )
+    ]
+    return np.concatenate(parts, -2)
+
+
+@dataclass(frozen=True)
+class Directions:
+    """Singular directions of the windows of a training set, the steepest first.
+
+    Attributes
+    ----------
+    values : ndarray, shape (directions,)
+        Singular values s_k.
+    axes : ndarray, shape (directions, joint * width + 1)
+        Unit vectors v_k: the windows of all joints, oldest sample first, then the bias.
+    cases : ndarray, shape (cases, directions)
+        Unit vectors u_k as columns: how far each case lies along a direction, over s_k.
+    joints : int
+        Number of joints in a window.
+    """
+
+    values: np.ndarray
+    axes: np.ndarray
+    cases: np.ndarray
+    joints: int
+
+    @classmethod
+    def of(cls, data: TrainingSet) -> Directions:
+        """The directions of a training set's windows, with a column of ones for the bias.
+
+        Each is turned so that the last sample of its main joint is positive.
+        """
+        cases, values, axes = np.linalg.svd(with_ones(data.x), full_matrices=False)
+        filters = axes[:, :-1].reshape(len(axes), *data.x.shape[1:])
+        main = (filters**2).sum(-1).argmax(-1)
+        sign = np.where(filters[np.arange(len(axes)), main, -1] < 0, -1.0, 1.0)
+        return cls(values, sign[:, None] * axes, cases * sign, data.x.shape[1])
+
+    @property
+    def filters(self) -> np.ndarray:
+        """The directions as filters of each joint's window, ``(directions, joint, width)``."""
+        return self.axes[:, :-1].reshape(len(self.axes), self.joints, -1)
+
+    def along(self, weights: Weights) -> np.ndarray:
+        """Components of every unit's weights and bias, ``(..., unit, directions)``."""
+        return rows(weights) @ self.axes.T
+
+    def energy(self, weights: Weights, start: Weights | None = None) -> np.ndarray:
+        """Squared components summed over units, ``(..., directions)``: of weights, or a change.
+
+        Parameters
+        ----------
+        weights : Weights
+        start : Weights, optional
+            Weights to take off first.
+        """
+        components = self.along(weights)
+        if start is not None:
+            components = components - self.along(start)
+        return (components**2).sum(-2)
+
+
+def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> np.ndarray:
+    """How many plain steps against a standing error descent has taken along each mode.
+
+    For a parameter p that starts at 0 with the slope ``g + curvature p`` of the error, p is
+    ``-eps g q(t)`` after t epochs, and the share ``1 - rate q(t)`` of the slope is left. At
+    first q counts the epochs, times ``1 / (1 - momentum)`` when momentum has gathered; at last it
+    is ``1 / rate``. The recursion ``step = momentum step + 1 - rate q`` is linear, so that
+    powers of one small matrix jump to any epoch.
+
+    Parameters
+    ----------
+    rates : array_like, shape (modes,)
+        Step size times curvature, 0 or more. Descent is stable below ``2 (1 + momentum)``.
+    epochs : sequence of int
+        When; must not decrease.
+    momentum : float
+        The factor alpha of the previous step, 0 to 0.999.
+    warm_up : int
+        Epochs at the start with a momentum of `WARM_UP_MOMENTUM`, if that is smaller.
+
+    Returns
+    -------
+    ndarray, shape (epochs, modes)
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or `epochs` decreases.
+    """
+    rates = non_negative("rates", rates)
+    if rates.ndim != 1:
+        raise ValueError(f"rates must be in a row, got shape {rates.shape}")
+    number("momentum", momentum, 0.0, 0.999)
+    integer("warm_up", warm_up, 0)
+    epochs = [integer("epochs", epoch, 0) for epoch in epochs]
+    if sorted(epochs) != epochs:
+        raise ValueError(f"epochs must not decrease, got {epochs}")
+
+    def epoch_matrix(alpha):
+        """One epoch of (q, last step, 1)."""
+        matrix = np.zeros((rates.size, 3, 3))
+        matrix[:, :2, 0], matrix[:, :2, 1], matrix[:, :, 2] = -rates[:, None], alpha, 1.0
+        matrix[:, 0, 0] += 1.0
+        return matrix
+
+    phases = (epoch_matrix(min(momentum, WARM_UP_MOMENTUM)), epoch_matrix(momentum))
+    state, now, found = np.tile([[0.0], [0.0], [1.0]], (rates.size, 1, 1)), 0, []
+    for epoch in epochs:
+        for matrix, stop in zip(phases, (min(epoch, warm_up), epoch)):
+            if stop > now:
+                state, now = np.linalg.matrix_power(matrix, stop - now) @ state, stop
+        found.append(state[:, 0, 0])
+    return np.array(found)
+
+
+def jacobian(weights: Weights, x) -> np.ndarray:
+    """Derivatives of the outputs of one network by all its weights and biases.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network.
+    x : array_like, shape (cases, joint, width)
+        Scaled windows.
+
+    Returns
+    -------
+    ndarray, shape (cases, output, parameter)
+        Parameters: `rows` one after the other, then the hidden-to-output weights.
+    """
+    hidden, output = weights.activity(x)
+    own = np.eye(output.shape[-1])
+    shape = (len(hidden), len(own), -1)
+    through = weights.output_weights * (hidden * (1 - hidden))[:, None]
+    by_net = np.concatenate([through, np.broadcast_to(own, (len(hidden), *own.shape))], 2)
+    first = by_net[..., None] * with_ones(x)[:, None, None]
+    second = own[:, :, None] * hidden[:, None, None]
+    parts = np.concatenate([first.reshape(shape), second.reshape(shape)], 2)
+    return (output * (1 - output))[..., None] * parts
+
+
+class Course(NamedTuple):
+    """What a network does along its training.
+
+    Attributes
+    ----------
+    weights : Weights
+        With a leading axis of epochs.
+    error : ndarray, shape (epochs, cases, output)
+        Output minus target, in scaled units.
+    """
+
+    weights: Weights
+    error: np.ndarray
+
+
+class Lazy:
+    """A network replaced by its tangent at the initial weights: its training in closed form.
+
+    Parameters
+    ----------
+    weights : Weights
+        The initial weights of one network.
+    data : TrainingSet
+        Cases.
+
+    Attributes
+    ----------
+    curvatures : ndarray, shape (parameters,)
+        Eigenvalues of J'J, falling: those of the neural tangent kernel JJ' and zeros.
+    """
+
+    def __init__(self, weights: Weights, data: TrainingSet):
+        if weights.hidden_bias.ndim != 1:
+            raise ValueError(f"weights must be of one network, got {weights}")
+        self._start, self._targets = weights, data.y
+        self._output = weights.activity(data.x)[1]
+        slopes = jacobian(weights, data.x)
+        self._slopes = slopes.reshape(-1, slopes.shape[-1])
+        curvatures, axes = np.linalg.eigh(self._slopes.T @ self._slopes)
+        self.curvatures, self._axes = np.maximum(curvatures[::-1], 0.0), axes[:, ::-1]
+
+    def predict(
+        self, rate: float, epochs, momentum: float = 0.0, warm_up: int = 0, targets=None
+    ) -> Course:
+        """Weights and errors after some epochs of batch descent with momentum.
+
+        Parameters
+        ----------
+        rate : float
+            Step size per case, as in `ddlib.learning.training.train`.
+        epochs, momentum, warm_up
+            As in `effective_steps`.
+        targets : ndarray, shape (cases, output), optional
+            Scaled targets in place of the training set's.
+        """
+        eps = number("rate", rate, 0.0, open_low=True) / len(self._output)
+        error = self._output - (self._targets if targets is None else targets)
+        gradient = (self._slopes.T @ error.ravel()) @ self._axes
+        steps = effective_steps(eps * self.curvatures, epochs, momentum, warm_up)
+        change = -eps * (steps * gradient) @ self._axes.T
+        left = error.ravel() + change @ self._slopes.T
+        return Course(self._weights(change), left.reshape(-1, *error.shape))
+
+    def _weights(self, change) -> Weights:
+        """The initial weights plus changes of all parameters, shape ``(epochs, parameter)``."""
+        begun = self._start
+        first = rows(begun)
+        first = first + change[:, : first.size].reshape(-1, *first.shape)
+        second = change[:, rows(begun).size :].reshape(-1, *begun.output_weights.shape)
+        window, hidden = begun.hidden_weights.shape[-2:], len(begun.hidden_bias)
+        filters = first[..., :-1].reshape(*first.shape[:-1], *window)
+        return Weights(
+            filters[:, :hidden],
+            first[:, :hidden, -1],
+            begun.output_weights + second,
+            filters[:, hidden:],
+            first[:, hidden:, -1],
+        )

@@ -1,0 +1,170 @@
+"""A direction of the windows while it is learnt, measured and predicted (`ddlib.learning.span`)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ddlib._check import integer
+from ddlib.analysis import content
+from ddlib.learning import Directions
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, Panel, Scalar, module
+from ddlib.widgets.hinton import EXACT, JOINTS, width_choice, zero_padded
+from ddlib.widgets.parts.parameters import Choice
+
+WHO = ("measured", "predicted")
+FLOOR = -8.0
+"""Lowest change shown, as a power of ten of the random start."""
+
+SHARES = ("bias", "position", "velocity", "acceleration", "jerk", "rest")
+
+
+class SpectrumExplorer(CurveWidget):
+    """Pick a direction of the windows; see its shape, and watch it being learnt.
+
+    Curves are medians over the networks of the study "span". The slider steps over the epochs
+    that it kept; nothing is interpolated.
+
+    Parameters
+    ----------
+    study : mapping
+        What `ddlib.experiments.studies.span.span` returns, or `results.read` of it.
+    directions : sequence of Directions
+        Of the training set of each cell of the study, in their order.
+    **options
+        Passed on to `CurveWidget`.
+
+    Attributes
+    ----------
+    case : int
+        Which recording and scaling of inputs, in the order of the study.
+    width : int
+        Window size.
+    direction : int
+        1 for the direction in which the windows vary most.
+    epoch : int
+        One of the recorded epochs, from 1.
+    """
+
+    _esm = module(*SCRIPT, "player.js")
+    _css = module(*STYLE, "player.css")
+
+    def __init__(self, study: Mapping, directions: Sequence[Directions], **options):
+        cells = study["cells"]
+        if len(directions) != len(cells):
+            raise ValueError(
+                f"directions must be one for each of {len(cells)} cells, got {len(directions)}"
+            )
+        names, self._cells = [], {}
+        for cell, along in zip(cells, directions):
+            width = integer("width", cell["width"], 3)
+            if along.filters.shape[-1] != width:
+                raise ValueError(
+                    f"directions must be of window {width} like its cell, "
+                    f"got {along.filters.shape[-1]}"
+                )
+            name = "{}, inputs {:g} to {:g}".format(cell["setup"], *cell["scaling"])
+            names += [name] if name not in names else []
+            self._cells[names.index(name), width] = cell, along
+        epochs = study["epochs"][1:]  # at epoch 0 nothing has changed
+        shown = len(cells[0]["measured"]["error"][0])
+        self._index = {epoch: k for k, epoch in enumerate(epochs, 1)}
+        self._reach = max(width for _, width in self._cells) // 2
+        places = np.log10(epochs)
+        self._places = np.clip(places, 1e-3 * places[-1], (1 - 1e-3) * places[-1])
+        time = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
+        over = {"cursor": "place", "ticks": [(k, f"{10**k:,}") for k in range(int(places[-1]) + 1)]}
+        cell, per_epoch = ("case", "width", "direction"), ("case", "width", "direction", "epoch")
+        shape = [f"{joint} shape" for joint in JOINTS]
+        courses = [f"{what} {who}" for what in ("change", "error") for who in WHO]
+        super().__init__(
+            self._curves,
+            [
+                Choice("case", "Recording", dict(enumerate(names)), 0),
+                width_choice({width for _, width in self._cells}),
+                Choice("direction", "Direction", range(1, shown + 1), 4, display="slider"),
+                Choice(
+                    "epoch", "Epoch", {e: f"{e:,}" for e in epochs}, epochs[-1], display="slider"
+                ),
+            ],
+            [
+                Panel(
+                    "The direction as a filter",
+                    dict(zip(shape, JOINTS)),
+                    "time from the centre, ms",
+                    time,
+                    kind="stems",
+                    cursor=("first", "last"),
+                    y_fit=True,
+                ),
+                Panel(
+                    "What it responds to, share",
+                    "shares",
+                    "part of the window",
+                    np.arange(len(SHARES)),
+                    kind="bars",
+                    ticks=list(enumerate(("bias", "pos.", "vel.", "acc.", "jerk", "rest"))),
+                    y_range=(0.0, 1.0),
+                ),
+                Panel(
+                    "Change over the start, power of ten",
+                    {f"change {who}": who for who in WHO},
+                    "epoch",
+                    places,
+                    fixed={"as large as the start": np.zeros(len(places))},
+                    y_range=(FLOOR, 2.5),
+                    **over,
+                ),
+                Panel(
+                    "Its part of the RMSS",
+                    {f"error {who}": who for who in WHO},
+                    "epoch",
+                    places,
+                    y_fit=True,
+                    **over,
+                ),
+            ],
+            title="Learning along a direction",
+            alt=(
+                "A direction of the windows as a filter, the derivatives that it responds to, and "
+                "over the epochs how far training has changed the weights along it, measured and "
+                "predicted, and what it leaves of the error."
+            ),
+            scalars=[
+                Scalar("variance", "Variance beside direction 1, power of ten", digits=1),
+                *(Scalar(f"now {who}", f"Change, {who}, power of ten", digits=1) for who in WHO),
+            ],
+            depends={
+                **dict.fromkeys((*shape, *courses, "shares", "variance"), cell),
+                **dict.fromkeys((f"now {who}" for who in WHO), per_epoch),
+                **dict.fromkeys(("first", "last"), ("width",)),
+                "place": ("epoch",),
+            },
+            note=(
+                "Power of ten: 1 is ten times, -3 a thousandth. "
+                "Below 0 the random start outweighs what was learnt."
+            ),
+            **{"tolerance": EXACT, **options},
+        )
+
+    def _curves(self, case, width, direction, epoch) -> dict:
+        cell, along = self._cells[case, width]
+        k, row = direction - 1, self._index[epoch]
+        f, half = along.filters[k], (width // 2 + 0.5) * LOG_STEP * 1e3
+        energy = [along.axes[k, -1] ** 2, *(content(f) ** 2).sum(0)]
+        curves = {f"{joint} shape": zero_padded(g, self._reach) for joint, g in zip(JOINTS, f)}
+        for who in WHO:
+            change = np.array(cell[who]["change over start"])[1:, k]
+            change = np.log10(np.maximum(change, 10**FLOOR))
+            curves |= {f"change {who}": change, f"now {who}": change[row - 1]}
+            curves[f"error {who}"] = np.array(cell[who]["error"])[1:, k]
+        return {
+            **curves,
+            "shares": np.array([*energy, max(0.0, 1 - sum(energy))]),
+            "variance": np.log10(cell["variance"][k]),
+            "place": self._places[row - 1],
+            "first": -half,
+            "last": half,
+        }

@@ -1,0 +1,260 @@
+"""Directions of windows and how fast they are learnt, against descent and autograd."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import strategies as st
+from test_training import parts, smooth_cases
+
+from ddlib.learning import (
+    Directions,
+    Lazy,
+    TrainingSet,
+    Weights,
+    WindowNetwork,
+    effective_steps,
+    jacobian,
+    rows,
+    train_ensemble,
+    with_ones,
+)
+
+WIDTH = 7
+INPUTS = 2 * WIDTH + 1
+
+
+@pytest.fixture(scope="module")
+def data():
+    return TrainingSet.from_arrays(*smooth_cases())
+
+
+@pytest.fixture(scope="module")
+def few():
+    """Six cases, fewer than inputs: their span leaves most directions out."""
+    x, y = smooth_cases()
+    return TrainingSet.from_arrays(x[::13][:6], y[::13][:6])
+
+
+def start(seed=3, hidden=4):
+    return Weights.random(1, WIDTH, hidden, seed=seed)[0]
+
+
+def module(weights):
+    """The same network in PyTorch, in double precision."""
+    net = WindowNetwork(WIDTH, len(weights.hidden_bias)).double()
+    with torch.no_grad():
+        for parameter, array in zip(net.parameters(), parts(weights)):
+            parameter.copy_(torch.from_numpy(array))
+    return net
+
+
+def descend(weights, data, eps, momentum, epochs):
+    """Batch descent with momentum by autograd in double precision."""
+    net = module(weights)
+    optimiser = torch.optim.SGD(net.parameters(), lr=eps, momentum=momentum)
+    x, y = torch.from_numpy(data.x), torch.from_numpy(data.y)
+    for _ in range(epochs):
+        optimiser.zero_grad()
+        (0.5 * (net(x) - y).square().sum()).backward()
+        optimiser.step()
+    return net.weights()
+
+
+def outside(change, x):
+    """Length of what no combination of the rows of x gives, over the whole length."""
+    left = change - (np.linalg.lstsq(x.T, change.T, rcond=None)[0].T @ x)
+    return np.linalg.norm(left) / np.linalg.norm(change)
+
+
+def flat_jacobian(weights, data):
+    j = jacobian(weights, data.x)
+    return j.reshape(-1, j.shape[-1])
+
+
+# --- the theorem --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("momentum, epochs", [(0.0, 1), (0.9, 50)])
+def test_updates_lie_in_the_span_of_the_windows(few, momentum, epochs):
+    begun = start()
+    change = rows(descend(begun, few, 0.1, momentum, epochs)) - rows(begun)
+    x = with_ones(few.x)
+    assert np.linalg.matrix_rank(x) == 6 < INPUTS
+    assert outside(change, x) < 1e-13
+    everything = np.random.default_rng(0).normal(size=change.shape)
+    assert outside(everything, x) > 0.5  # what descent might have done, but cannot
+    assert outside(change, with_ones(few.x[:3])) > 1e-3  # fewer windows do not do
+
+
+def test_a_change_is_singular_value_times_accumulated_error(data):
+    """The sum of back-propagated errors with momentum, by our own numpy, against the weights."""
+    along, begun, eps, alpha = Directions.of(data), start(), 0.02, 0.8
+    x, h = with_ones(data.x), len(begun.hidden_bias)
+    w, second = rows(begun), begun.output_weights.copy()
+    step, step_second, memory, total = 0 * w, 0 * second, 0, 0
+    for _ in range(40):
+        hidden = 1 / (1 + np.exp(-x @ w[:h].T))
+        output = 1 / (1 + np.exp(-x @ w[h:].T - hidden @ second.T))
+        delta = (output - data.y) * output * (1 - output)
+        back = np.column_stack([delta @ second * hidden * (1 - hidden), delta])
+        memory = alpha * memory + back
+        total = total + memory
+        step, step_second = (
+            alpha * step - eps * back.T @ x,
+            alpha * step_second - eps * (delta.T @ hidden),
+        )
+        w, second = w + step, second + step_second
+    trained = descend(begun, data, eps, alpha, 40)
+    np.testing.assert_allclose(rows(trained), w, atol=1e-12)
+    expected = -eps * along.values * (along.cases.T @ total).T
+    np.testing.assert_allclose(along.along(trained) - along.along(begun), expected, atol=1e-12)
+
+
+def test_directions_are_those_of_the_second_moments(data):
+    along, x = Directions.of(data), with_ones(data.x)
+    np.testing.assert_allclose(
+        along.values**2, np.linalg.eigvalsh(x.T @ x)[::-1], atol=1e-11 * along.values[0] ** 2
+    )
+    np.testing.assert_allclose((along.cases * along.values) @ along.axes, x, atol=1e-12)
+    np.testing.assert_array_equal(along.filters[3, 1], along.axes[3, WIDTH:-1])
+    for f in along.filters:
+        assert f[np.argmax((f**2).sum(-1)), -1] > 0
+
+
+def test_energy_along_all_directions_is_the_energy_of_the_weights(data):
+    along, a, b = Directions.of(data), start(1), start(2)
+    per_unit = [sum((w**2).sum() for w in parts(a)) - (a.output_weights**2).sum()]
+    assert along.energy(a).sum() == pytest.approx(per_unit[0])
+    np.testing.assert_allclose(along.energy(b, a), ((along.along(b) - along.along(a)) ** 2).sum(0))
+    many = Weights.stack([a, b])
+    np.testing.assert_allclose(along.energy(many, a)[1], along.energy(b, a))
+
+
+# --- the recursion ------------------------------------------------------------------------
+
+
+@given(
+    rates=st.lists(st.floats(0, 2.9), min_size=1, max_size=5),
+    momentum=st.floats(0.5, 0.95),
+    warm_up=st.integers(0, 30),
+)
+def test_recursion_is_descent_epoch_by_epoch(rates, momentum, warm_up):
+    q = effective_steps(rates, range(60), momentum, warm_up)
+    p, step = np.zeros(len(rates)), np.zeros(len(rates))
+    for epoch in range(60):
+        np.testing.assert_allclose(q[epoch], -p, rtol=1e-7, atol=1e-7)
+        alpha = min(momentum, 0.5) if epoch < warm_up else momentum
+        step = alpha * step - (1 + np.array(rates) * p)
+        p = p + step
+
+
+def test_a_flat_mode_gathers_one_over_one_minus_momentum():
+    (q,) = effective_steps([0.0], [5000], 0.98)
+    assert q[0] == pytest.approx(50 * (5000 - 49), rel=1e-9)  # less what gathering has cost
+    (q,) = effective_steps([0.0, 1e-30, 0.1], [20_000], 0.98)
+    np.testing.assert_allclose(q[1:], [q[0], 10.0])
+    assert effective_steps([0.3], [0]) == 0
+
+
+@pytest.mark.parametrize(
+    "bad, message",
+    [
+        (([-1.0], [1]), "rates must not be negative"),
+        (([[1.0]], [1]), "rates must be in a row"),
+        (([1.0], [2, 1]), "epochs must not decrease"),
+        (([1.0], [1], 1.5), r"momentum must lie in \[0, 0.999\], got 1.5"),
+        (([1.0], [1], 0.5, -1), "warm_up must be an integer from 0"),
+    ],
+)
+def test_bad_recursions_are_refused(bad, message):
+    with pytest.raises(ValueError, match=message):
+        effective_steps(*bad)
+
+
+# --- the linearised network ---------------------------------------------------------------
+
+
+def test_jacobian_is_that_of_autograd(data):
+    weights, x = start(), torch.from_numpy(data.x)
+    net = module(weights)
+    names = [name for name, _ in net.named_parameters()]
+
+    def run(*arrays):
+        return torch.func.functional_call(net, dict(zip(names, arrays)), (x,))
+
+    found = torch.autograd.functional.jacobian(run, tuple(net.parameters()))
+    exact = dict(zip(names, (d.detach().numpy() for d in found)))
+    cases = len(data.x), 2
+    into = {
+        unit: np.concatenate(
+            [exact[w].reshape(*cases, n, -1), exact[b].reshape(*cases, n, 1)], -1
+        ).reshape(*cases, -1)
+        for unit, w, b, n in (
+            ("hidden", "hidden_weights", "hidden_bias", 4),
+            ("output", "direct_weights", "output_bias", 2),
+        )
+    }
+    whole = np.concatenate([*into.values(), exact["output_weights"].reshape(*cases, -1)], -1)
+    np.testing.assert_allclose(jacobian(weights, data.x), whole, atol=1e-14)
+    kernel = whole.reshape(-1, whole.shape[-1])
+    lazy = Lazy(weights, data).curvatures
+    exact = np.linalg.eigvalsh(kernel @ kernel.T)[::-1][: lazy.size]
+    np.testing.assert_allclose(lazy, exact, atol=1e-11 * lazy[0])
+    assert lazy.size == kernel.shape[1] < len(kernel) and (np.diff(lazy) <= 0).all()
+
+
+def test_prediction_is_descent_of_the_linearised_network(data):
+    weights, momentum, warm_up, rate = start(), 0.9, 20, 2.0
+    j, eps = flat_jacobian(weights, data), rate / len(data.x)
+    begun = (weights.activity(data.x)[1] - data.y).ravel()
+    change, step, errors = np.zeros(j.shape[1]), np.zeros(j.shape[1]), []
+    for epoch in range(201):
+        errors.append(begun + j @ change)
+        alpha = 0.5 if epoch < warm_up else momentum
+        last, step = change, alpha * step - eps * j.T @ errors[-1]
+        change = change + step
+    course = Lazy(weights, data).predict(rate, [0, 5, 200], momentum, warm_up)
+    for k, epoch in enumerate((0, 5, 200)):
+        np.testing.assert_allclose(course.error[k].ravel(), errors[epoch], atol=1e-10)
+    size = rows(weights).size
+    np.testing.assert_allclose(
+        (rows(course.weights[2]) - rows(weights)).ravel(), last[:size], atol=1e-10
+    )
+    moved = (course.weights[2].output_weights - weights.output_weights).ravel()
+    np.testing.assert_allclose(moved, last[size:], atol=1e-10)
+    assert abs(last[size:]).max() > 1e-3
+    other = replace(data, y=data.y[::-1])
+    turned = Lazy(weights, data).predict(rate, [200], momentum, warm_up, targets=other.y)
+    np.testing.assert_allclose(
+        turned.error, Lazy(weights, other).predict(rate, [200], momentum, warm_up).error
+    )
+
+
+def test_short_training_follows_the_prediction(data):
+    """`train_ensemble`: the shorter the steps, the better its tangent tells where it goes."""
+    begun, along, missed = Weights.random(2, WIDTH, 4, seed=5), Directions.of(data), []
+    how = {"momentum": 0.9, "warm_up": 5}
+    for rate in (0.5, 0.005, 0.0005):
+        _, _, kept = train_ensemble(
+            begun, data, rate=rate, epochs=20, snapshots=(20,), progress=False, **how
+        )
+        for member in range(2):
+            course = Lazy(begun[member], data).predict(rate, [20], **how)
+            change = along.along(kept[20][member]) - along.along(begun[member])
+            predicted = along.along(course.weights[0]) - along.along(begun[member])
+            missed.append(np.linalg.norm(predicted - change) / np.linalg.norm(change))
+    first, second, third = np.reshape(missed, (3, 2))
+    assert (second < 0.3 * first).all() and (third < 0.2 * second).all()
+    assert (third < 0.002).all() and (first > 0.05).all()
+
+
+def test_an_ensemble_is_refused(data):
+    with pytest.raises(ValueError, match="weights must be of one network"):
+        Lazy(Weights.random(2, WIDTH), data)
+    with pytest.raises(ValueError, match="rate must lie in"):
+        Lazy(start(), data).predict(0.0, [1])
+    with pytest.raises(ValueError, match=r"x must have shape \(cases, joint, width\)"):
+        with_ones(data.y)
