@@ -14,7 +14,7 @@ __getattr__, __dir__, __all__ = hand_on(
         "COLOURS DASHES FAINT INK Illustration JOINTS RC check_label illustrate legend_above "
         "plain_ticks"
     ),
-    lines="clusters curves families overlay rmss_by_window",
+    lines="clusters curves families overlay predicted_curves rmss_by_window",
     weights="decomposition hinton network_diagram share_map",
     dynamics="CENTRED arm_sketch estimates hand_paths operations",
     effects="by_case ranking side_by_side",

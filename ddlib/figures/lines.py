@@ -263,3 +263,59 @@ def clusters(
         axes[0].set_ylabel(unit)
 
     return illustrate(draw, alt, 7.0, 2.9)
+
+
+def predicted_curves(
+    x,
+    curves: Mapping[str, tuple],
+    clouds: Mapping[str, tuple],
+    labels: tuple[str, str, str, str],
+    alt: str,
+) -> Illustration:
+    """Courses as predicted (dashed) and measured (solid), and all their ends side by side.
+
+    Parameters
+    ----------
+    x : array_like, shape (points,)
+        The axis of the courses, logarithmic like all others.
+    curves : mapping
+        ``{name: (measured, predicted)}``, both of shape (points,), positive.
+    clouds : mapping
+        ``{name: (predicted, measured)}``, both of shape (ends,), positive.
+    labels : tuple of str
+        Of the axes: x and y of the courses, then x and y of the ends.
+    alt : str
+        Alternative text.
+
+    Raises
+    ------
+    ValueError
+        If values are not positive and finite, or shapes do not fit.
+    """
+    for name, pair in (*curves.items(), *clouds.items()):
+        first, second = (finite_array(f"values of {name!r}", values) for values in pair)
+        if first.shape != second.shape or first.ndim != 1 or min(first.min(), second.min()) <= 0:
+            raise ValueError(f"values of {name!r} must be two positive rows of the same length")
+
+    def draw(figure: Figure):
+        left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
+        for k, (name, (measured, predicted)) in enumerate(curves.items()):
+            colour = COLOURS[k % len(COLOURS)]
+            left.plot(x, predicted, color=colour, ls="--", lw=1.2)
+            left.plot(x, measured, color=colour, lw=1.9, marker="os^Dv*"[k % 6], ms=3.5, label=name)
+        handles, names = left.get_legend_handles_labels()
+        handles.append(Line2D([], [], color=INK, ls="--", lw=1.2))
+        for k, (name, (foreseen, found)) in enumerate(clouds.items()):
+            style = {"ls": "", "marker": "os^Dv*"[k % 6], "mfc": "none", "ms": 4}
+            right.plot(foreseen, found, color=COLOURS[k % len(COLOURS)], label=name, **style)
+        ends = np.concatenate([np.concatenate(pair) for pair in clouds.values()])
+        ends = ends.min(), ends.max()
+        right.plot(ends, ends, color=INK, lw=0.8)
+        right.legend(loc="upper left", handletextpad=0.1)
+        for axis, pair in ((left, labels[:2]), (right, labels[2:])):
+            axis.set(xscale="log", yscale="log")
+            axis.set_xlabel(check_label(pair[0]))
+            axis.set_ylabel(check_label(pair[1]))
+        legend_above(figure, handles, [*names, "predicted"])
+
+    return illustrate(draw, alt, 7.0, 3.5)

@@ -23,7 +23,7 @@ __getattr__, __dir__, __all__ = hand_on(
     ),
     gauss_newton="Objective penalty",
     levenberg_marquardt="NotConverged Solution solve",
-    span="Course Directions Lazy effective_steps jacobian rows with_ones",
+    span="Course Directions Lazy effective_steps jacobian moved rows with_ones",
     parity_networks=(
         "CODINGS MOST_BITS NETWORKS UnitNetwork counter direct learn monomials one_layer parity "
         "parity_cases patterns right tree"

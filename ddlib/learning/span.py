@@ -197,6 +197,35 @@ def jacobian(weights: Weights, x) -> np.ndarray:
     return (output * (1 - output))[..., None] * parts
 
 
+def moved(weights: Weights, change) -> Weights:
+    """One network plus a change of all its parameters.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network.
+    change : array_like, shape (..., parameter)
+        In the order of `jacobian`; leading axes are those of the result.
+    """
+    start, change = rows(weights), finite_array("change", change)
+    if change.shape[-1:] != (start.size + weights.output_weights.size,):
+        raise ValueError(
+            f"change must have {start.size + weights.output_weights.size} parameters, "
+            f"got shape {change.shape}"
+        )
+    lead, hidden = change.shape[:-1], len(weights.hidden_bias)
+    first = start + change[..., : start.size].reshape(*lead, *start.shape)
+    second = change[..., start.size :].reshape(*lead, *weights.output_weights.shape)
+    filters = first[..., :-1].reshape(*first.shape[:-1], *weights.hidden_weights.shape[-2:])
+    return Weights(
+        filters[..., :hidden, :, :],
+        first[..., :hidden, -1],
+        weights.output_weights + second,
+        filters[..., hidden:, :, :],
+        first[..., hidden:, -1],
+    )
+
+
 class Course(NamedTuple):
     """What a network does along its training.
 
@@ -258,20 +287,4 @@ class Lazy:
         steps = effective_steps(eps * self.curvatures, epochs, momentum, warm_up)
         change = -eps * (steps * gradient) @ self._axes.T
         left = error.ravel() + change @ self._slopes.T
-        return Course(self._weights(change), left.reshape(-1, *error.shape))
-
-    def _weights(self, change) -> Weights:
-        """The initial weights plus changes of all parameters, shape ``(epochs, parameter)``."""
-        begun = self._start
-        first = rows(begun)
-        first = first + change[:, : first.size].reshape(-1, *first.shape)
-        second = change[:, rows(begun).size :].reshape(-1, *begun.output_weights.shape)
-        window, hidden = begun.hidden_weights.shape[-2:], len(begun.hidden_bias)
-        filters = first[..., :-1].reshape(*first.shape[:-1], *window)
-        return Weights(
-            filters[:, :hidden],
-            first[:, :hidden, -1],
-            begun.output_weights + second,
-            filters[:, hidden:],
-            first[:, hidden:, -1],
-        )
+        return Course(moved(self._start, change), left.reshape(-1, *error.shape))

@@ -17,6 +17,7 @@ from ddlib.learning import (
     WindowNetwork,
     effective_steps,
     jacobian,
+    moved,
     rows,
     train_ensemble,
     with_ones,
@@ -249,6 +250,19 @@ def test_short_training_follows_the_prediction(data):
     first, second, third = np.reshape(missed, (3, 2))
     assert (second < 0.3 * first).all() and (third < 0.2 * second).all()
     assert (third < 0.002).all() and (first > 0.05).all()
+
+
+def test_moved_adds_a_change_in_the_order_of_the_jacobian(data):
+    """The outputs of a network that is moved a little: its Jacobian times the change."""
+    weights, rng = start(), np.random.default_rng(2)
+    j = flat_jacobian(weights, data)
+    change = 1e-6 * rng.normal(size=(3, j.shape[1]))
+    after = moved(weights, change)
+    assert after.hidden_weights.shape == (3, 4, 2, WIDTH)
+    difference = after.activity(data.x)[1] - weights.activity(data.x)[1]
+    np.testing.assert_allclose(difference.reshape(3, -1), change @ j.T, atol=1e-10)
+    with pytest.raises(ValueError, match="change must have 98 parameters, got shape"):
+        moved(weights, change[:, 1:])
 
 
 def test_an_ensemble_is_refused(data):

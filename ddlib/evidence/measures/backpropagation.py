@@ -8,7 +8,7 @@ import numpy as np
 
 from ddlib import paper
 from ddlib.evidence import committed
-from ddlib.evidence.verdicts import Measured, median, over_members
+from ddlib.evidence.verdicts import Measured, judged, median, over_members
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
 from ddlib.learning import (
     Descent,
@@ -267,3 +267,113 @@ def settling(steepest: float = 0.1) -> Measured:
         (needed,), (flat,) = settled(at, slopes[None])
         words.append(f"{needed:,}" if flat else f"over {needed:,}")
     return Measured(value, "epochs: " + ", ".join(words), replicates)
+
+
+# --- ddlib.learning.span: what is learnt along them
+
+
+def learning(width: int, reading: int) -> dict:
+    """A cell of the study "span": `reading` 0, inputs 0 to 1; 1, -1 to 1; 2, damped joints."""
+    return results.read("span")["cells"][len(WINDOWS) * reading + WINDOWS.index(width)]
+
+
+def changes_predicted(width: int = 21, reading: int = 0, by: str = "own") -> Measured:
+    """Correlation of the logarithms of predicted and measured changes along all directions.
+
+    Parameters
+    ----------
+    width, reading : int
+        Window size; recording and scaling, as in the study.
+    by : str
+        What predicts: the network's "own" tangent, or that "of another" network, "of shuffled
+        torques", or squared singular values, "of the spectrum".
+    """
+    found = dict(learning(width, reading)["correlation"])
+    found["own"] = np.array(found["own"])[:, -1]
+    others = ", ".join(
+        f"{significant(np.median(v), 2)} {k}" for k, v in found.items() if k != "own"
+    )
+    text = f"{spread(found[by])}" + (f"; {others}" if by == "own" else "")
+    return judged(median, found[by], text=text)
+
+
+def prediction_factor(epoch: int, width: int = 21, reading: int = 0) -> Measured:
+    """Factor by which predicted and measured changes differ, median over 12 directions.
+
+    Parameters
+    ----------
+    epoch : int
+        One of the study's epochs.
+    width, reading : int
+        As in `changes_predicted`.
+    """
+    row = results.read("span")["epochs"].index(epoch) - 1
+    factors = np.array(learning(width, reading)["factor"])[:, row]
+    return judged(median, factors, text=f"factor {spread(factors)}")
+
+
+def prediction_off(name: str, reading: int = 0) -> Measured:
+    """Factor between median predicted and median measured values, the largest of three windows.
+
+    Parameters
+    ----------
+    name : str
+        A quantity of the study: "learnt", "rmss", "roughness, trained", ...
+    reading : int
+        As in `changes_predicted`.
+    """
+    cells = [learning(w, reading) for w in WINDOWS]
+    pairs = [tuple(np.array(c[who][name]) for who in ("predicted", "measured")) for c in cells]
+
+    def factor(*drawn):
+        return np.exp(np.max([np.abs(np.log(median(p) / median(m))) for p, m in drawn], axis=0))
+
+    shown = zip(WINDOWS, ([significant(np.median(x), 2) for x in pair] for pair in pairs))
+    text = ", ".join(f"{p} predicted, {m} measured at {w}" for w, (p, m) in shown)
+    return judged(factor, *pairs, text=text)
+
+
+def halved(first: list, then: list, width: int = 21, reading: int = 0) -> Measured:
+    """Epoch at which some directions' parts of the error are half, over that of others.
+
+    Of several directions the geometric mean counts.
+
+    Parameters
+    ----------
+    first, then : list of int
+        Directions below and above the line, 1 for the steepest.
+    width, reading : int
+        As in `changes_predicted`.
+    """
+    cell, epochs = learning(width, reading), {}
+    for who in ("measured", "predicted"):
+        halves = np.log(np.array(cell[who]["halves"], float))
+        epochs[who] = [halves[:, np.array(group) - 1].mean(1) for group in (first, then)]
+    ratios = {who: np.exp(late - early) for who, (early, late) in epochs.items()}
+    text = f"{spread(ratios['measured'])}; predicted {spread(ratios['predicted'])}"
+    return judged(median, ratios["measured"], text=text)
+
+
+def centred(name: str = "rmss") -> Measured:
+    """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows.
+
+    Parameters
+    ----------
+    name : str
+        Quantity of the study.
+    """
+    cells = [[learning(w, reading) for reading in (0, 1)] for w in WINDOWS]
+    pairs = {
+        who: [tuple(np.array(c[who][name]) for c in both) for both in cells]
+        for who in ("measured", "predicted")
+    }
+    shown = {
+        who: ", ".join(significant(np.median(a) / np.median(b), 2) for a, b in each)
+        for who, each in pairs.items()
+    }
+
+    def least(*drawn):
+        return np.min([median(a) / median(b) for a, b in drawn], axis=0)
+
+    text = f"{shown['measured']}; predicted {shown['predicted']}"
+    return judged(least, *[(a, b) for a, b in pairs["measured"]], text=text)

@@ -146,10 +146,21 @@ def training_error_falls() -> Measured:
     return Measured(value, text, replicates)
 
 
-def memory(width: int) -> Measured:
-    """Training error on shuffled torques: what falls below 1 was memorised."""
-    errors = {row["width"]: row["training"] for row in results.read("memory")["rows"]}[width]
-    return judged(median, errors, text=spread(errors, 3))
+def memory(width: int, by: str = "descent") -> Measured:
+    """Training error on shuffled torques: what falls below 1 was memorised.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    by : str
+        "descent"; "solver" for Levenberg-Marquardt; "solver, decay" for it with weight decay.
+    """
+    row = {row["width"]: row for row in results.read("memory")["rows"]}[width]
+    cell = row if by == "descent" else row[by]
+    largest = significant(np.median(cell["largest weight"]), 2)
+    text = f"{spread(cell['training'], 3)}, largest weight {largest}"
+    return judged(median, cell["training"], text=text)
 
 
 # --- section 6: networks of exact states

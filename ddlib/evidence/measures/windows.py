@@ -7,14 +7,26 @@ from functools import cache
 import numpy as np
 
 from ddlib import paper
-from ddlib.analysis import savitzky_golay
+from ddlib.analysis import content, savitzky_golay
 from ddlib.evidence import committed
-from ddlib.evidence.verdicts import Measured, mean, median, over_members
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
-from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
+from ddlib.evidence.measures.backpropagation import learning
+from ddlib.evidence.verdicts import Measured, judged, mean, median, over_members
+from ddlib.experiments import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, results
+from ddlib.learning import (
+    Directions,
+    TrainingSet,
+    Weights,
+    cases,
+    default_rate,
+    jacobian,
+    moved,
+    rows,
+    train_ensemble,
+    with_ones,
+)
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import scientific, significant
+from ddlib.tables import scientific, significant, spread
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -306,3 +318,83 @@ def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -
         text = f"{significant(value, 2)} of the weight at {narrow}, "
         text += f"the filter {significant(fall, 2)}"
     return Measured(value, text, replicates)
+
+
+# --- ddlib.learning.span: the directions of the windows
+
+
+def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
+    """Share of a change of the input weights that no combination of the windows gives.
+
+    Batch descent with momentum in double precision on a few cases, fewer than there are inputs.
+
+    Parameters
+    ----------
+    taken, epochs : int
+        Number of cases and of epochs.
+    """
+    data = TrainingSet.from_recording(committed.training(), 11)
+    picked = np.linspace(0, len(data.x) - 1, taken).astype(int)
+    x, y, start = data.x[picked], data.y[picked], Weights.random(1, 11)[0]
+    now, step = start, 0.0
+    for _ in range(epochs):
+        error = (now.activity(x)[1] - y).ravel()
+        step = 0.9 * step - 0.1 * error @ jacobian(now, x).reshape(error.size, -1)
+        now = moved(now, step)
+    change, windows = rows(now) - rows(start), with_ones(x)
+    left = change - np.linalg.lstsq(windows.T, change.T, rcond=None)[0].T @ windows
+    share = float(np.linalg.norm(left) / np.linalg.norm(change))
+    return Measured(share, f"{scientific(share)}, {taken} windows of {windows.shape[1] - 1} inputs")
+
+
+def direction_purity(count: int = 9) -> Measured:
+    """Least share of one derivative, or the bias, in the first directions of three windows.
+
+    Parameters
+    ----------
+    count : int
+        How many directions: two of each derivative up to the jerk, and the bias.
+    """
+    least = {}
+    for width in WINDOWS:
+        along = Directions.of(TrainingSet.from_recording(committed.training(), width))
+        parts = (content(along.filters[:count]) ** 2).sum(1), along.axes[:count, -1] ** 2
+        least[width] = float(np.column_stack(parts).max(1).min())
+    text = ", ".join(f"{significant(v, 2)} at {w}" for w, v in least.items())
+    return Measured(min(least.values()), f"least share {text}")
+
+
+def noise_left(width: int = 41) -> Measured:
+    """Correlation of trained with initial weights along the directions predicted not to be learnt.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    learnt = int(np.median(learning(width, 0)["predicted"]["learnt"]))
+    along = Directions.of(TrainingSet.from_recording(committed.training(), width))
+    models = committed.networks(width), committed.untrained(width)
+    ends = [along.along(model.weights)[..., learnt:] for model in models]
+    found = np.array([np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in zip(*ends)])
+    text = f"{spread(found)} in {along.values.size - learnt} of {along.values.size} directions"
+    return judged(median, found, text=text)
+
+
+def learnt_by_solver(width: int = 41) -> Measured:
+    """Share of directions in which Levenberg-Marquardt moves weights beyond their start.
+
+    Of joint damping; beside it the share by descent on the same recording.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    name = JOINT_DAMPING.name
+    along = Directions.of(TrainingSet.from_recording(committed.training(name), width))
+    trained, start = (m(width, name).weights for m in (committed.networks, committed.untrained))
+    share = (along.energy(trained, start) > along.energy(start)).mean(-1)
+    descent = np.array(learning(width, 2)["measured"]["learnt"]) / along.values.size
+    text = f"{significant(np.median(share), 2)} of the directions; by descent "
+    return judged(median, share, text=f"{text}{significant(np.median(descent), 2)}")

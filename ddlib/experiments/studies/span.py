@@ -23,9 +23,7 @@ COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
 CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
 """State feedback with inputs around zero, against the printed "0.0 to 1.0"."""
 
-DAMPED = replace(
-    JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0
-)
+DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
 """The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
 the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors."""
 
@@ -100,7 +98,7 @@ def _cell(setup, recording, width, members) -> dict:
             "learnt": (change[:, -1] > 1).sum(-1),
             "error": np.median(courses["error"][..., :SHOWN], 0),
             "rmss": courses["rmss"][:, -1],
-            "outgrows": [_outgrows(each[:, :SHOWN]) for each in change],
+            "halves": [_halves(each[:, :SHOWN]) for each in courses["error"]],
             "moved": np.median(courses["moved"], 0),
             **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
         }
@@ -109,21 +107,19 @@ def _cell(setup, recording, width, members) -> dict:
     return {**found, "factor": np.median(apart, -1)}
 
 
-def _outgrows(change) -> np.ndarray:
-    """First epoch at which a change ``(epochs, directions)`` exceeds 1; NaN: never.
+def _halves(error) -> np.ndarray:
+    """First epoch at which a part of the error ``(epochs, directions)`` is half its first value.
 
-    Between recorded epochs it goes linearly on logarithmic scales; epoch 0 is left out.
+    Between recorded epochs it goes linearly on logarithmic scales; NaN if it never is.
     """
-    first, found = np.log(COURSE[1:]), []
-    for each in np.log(change[1:]).T:
-        over = np.flatnonzero(each > 0)
-        if not over.size:
+    epochs, found = np.log(COURSE[1:]), []
+    for each in np.log(2 * error[1:] / error[0]).T:
+        k = np.argmax(each <= 0)
+        if each[k] > 0:
             found.append(np.nan)
-        elif over[0] == 0:
-            found.append(1.0)
         else:
-            k = over[0]
-            found.append(np.exp(np.interp(0.0, each[k - 1 : k + 1], first[k - 1 : k + 1])))
+            before = max(k - 1, 0)
+            found.append(np.exp(np.interp(0.0, each[[k, before]], epochs[[k, before]])))
     return np.array(found)
 
 

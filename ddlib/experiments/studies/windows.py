@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.analysis import CLASSES, classify, roughness, savitzky_golay
-from ddlib.experiments.setups import STATE_FEEDBACK, errors, split, train_windows
-from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
+from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
+from ddlib.learning import TrainingSet, Weights, cases, solve, train_ensemble
 from ddlib.simulation import LOG_STEP
 
 SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
@@ -63,15 +63,24 @@ def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     return {"members": members, "width": width, "rows": rows}
 
 
-def memory(members=6) -> dict:
+MEMORY_STEPS = 40
+"""Steps of Levenberg-Marquardt on shuffled torques: not enough to converge, and said so."""
+
+MEMORY_DECAY = 1e-3
+"""Weight decay with which weights stay about as large as the printed ones."""
+
+
+def memory(members=5) -> dict:
     """Networks that have nothing to learn but noise: how much of it do they memorise?
 
     The targets are the torques in shuffled order, so that no window says anything about its
-    torque; what the training error falls below 1 is memory.
+    torque; what the training error falls below 1 is memory. By descent as usual, which tells what
+    these networks do memorise, and by Levenberg-Marquardt, with and without weight decay, which
+    tells what they could. The solver is stopped after `MEMORY_STEPS`; its gradients are kept.
     """
     training = split(STATE_FEEDBACK.record())[0]
     rows = []
-    for width in (11, 21, 41, 81):
+    for width in WINDOWS:
         data = TrainingSet.from_recording(training, width)
         order = np.random.default_rng(0).permutation(len(data.y))
         shuffled = replace(data, y=data.y[order])
@@ -88,10 +97,26 @@ def memory(members=6) -> dict:
         rows.append(
             {
                 "width": width,
+                "weights": weights.count(biases=True),
+                "targets": shuffled.y.size,
                 "training": history.training[-1],
                 "largest weight": model.weights.largest,
                 "roughness, hidden": np.median(roughness(model.weights.hidden_weights), (-2, -1)),
                 "classes": {name: (classes == name).mean((-2, -1)) for name in CLASSES},
+                "solver": _capacity(weights, shuffled, 0.0),
+                "solver, decay": _capacity(weights, shuffled, MEMORY_DECAY),
             }
         )
-    return {"members": members, "rows": rows}
+    return {"members": members, "steps": MEMORY_STEPS, "decay": MEMORY_DECAY, "rows": rows}
+
+
+def _capacity(weights, shuffled, decay) -> dict:
+    """What the solver memorises in `MEMORY_STEPS`, and how far from an optimum it was left."""
+    found = solve(weights, shuffled, decay=decay, steps=MEMORY_STEPS, label=f"decay {decay:g}")
+    return {
+        "training": found.history.training[-1],
+        "course": np.median(found.history.training, 1),
+        "largest weight": found.model.weights.largest,
+        "gradient": found.gradient,
+        "converged": found.converged,
+    }

@@ -1,0 +1,185 @@
+"""The widget of directions that are learnt, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import copy
+
+import numpy as np
+import pytest
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, READ, page_of, settings
+
+from ddlib.analysis import basis
+from ddlib.learning import Directions
+from ddlib.widgets.spectrum import FLOOR, WHO, SpectrumExplorer
+
+EPOCHS = (0, 1, 10, 100, 1000, 20_000)
+WIDTHS, SHOWN = (7, 11), 5
+READINGS = [("quiet", (0.0, 1.0)), ("quiet", (-1.0, 1.0))]
+
+
+def directions(width):
+    """Five directions: of position, velocity, acceleration and jerk of one joint, and the bias."""
+    axes = np.zeros((2 * width + 1, 2 * width + 1))
+    for k, taps in enumerate(basis(width)):
+        axes[k, (k % 2) * width : (k % 2 + 1) * width] = taps
+    axes[4, -1] = 1.0
+    values = 10.0 ** -np.arange(len(axes))
+    return Directions(values, axes, np.zeros((1, len(axes))), 2)
+
+
+def cell(setup, scaling, width, rng):
+    def course():
+        grows = np.cumprod(rng.uniform(1, 30, (len(EPOCHS), SHOWN)), 0) * 1e-6
+        return {
+            "change over start": (grows * (np.arange(len(EPOCHS)) > 0)[:, None]).tolist(),
+            "error": rng.uniform(0, 1, (len(EPOCHS), SHOWN)).tolist(),
+        }
+
+    return {
+        "setup": setup,
+        "scaling": list(scaling),
+        "width": width,
+        "variance": (10.0 ** (-2 * np.arange(2 * width + 1))).tolist(),
+        **{who: course() for who in WHO},
+    }
+
+
+@pytest.fixture(scope="module")
+def study():
+    rng = np.random.default_rng(4)
+    cells = [cell(*reading, width, rng) for reading in READINGS for width in WIDTHS]
+    return {"epochs": list(EPOCHS), "cells": cells}
+
+
+@pytest.fixture(scope="module")
+def along(study):
+    return [directions(cell["width"]) for cell in study["cells"]]
+
+
+@pytest.fixture(scope="module")
+def widget(study, along):
+    return SpectrumExplorer(study, along)
+
+
+def test_baked_curves_are_the_exact_ones(widget):
+    assert max(widget.interpolation_error(100, seed=3), widget.spec["error"]) < 1e-4
+    assert widget.baked_bytes < 400_000
+
+
+def test_curves_are_those_of_the_study(widget, study, along):
+    for values in settings(widget, 40, seed=1):
+        at = 2 * values["case"] + WIDTHS.index(values["width"])
+        cell, k = study["cells"][at], values["direction"] - 1
+        row, shown = EPOCHS.index(values["epoch"]), widget.interpolate(**values)
+        zeros = (max(WIDTHS) - values["width"]) // 2
+        for joint, f in zip(("shoulder", "elbow"), along[at].filters[k]):
+            np.testing.assert_allclose(shown[f"{joint} shape"], np.pad(f, zeros), atol=2e-4)
+        for who in WHO:
+            change = np.array(cell[who]["change over start"])[1:, k]
+            kept = np.maximum(np.log10(change), FLOOR)
+            np.testing.assert_allclose(shown[f"change {who}"], kept, atol=2e-3)
+            assert shown[f"now {who}"][0] == pytest.approx(kept[row - 1], abs=2e-3)
+            error = np.array(cell[who]["error"])[1:, k]
+            np.testing.assert_allclose(shown[f"error {who}"], error, atol=2e-4)
+        assert shown["variance"][0] == pytest.approx(-2 * k, abs=2e-3)
+
+
+def test_shares_name_the_derivative(widget):
+    for direction, share in enumerate((1, 2, 3, 4, 0), 1):  # in SHARES the bias comes first
+        expected = np.eye(6)[share]
+        shown = widget.interpolate(direction=direction, width=11)["shares"]
+        np.testing.assert_allclose(shown, expected, atol=1e-3)
+
+
+def test_readings_are_named_once(widget):
+    (options,) = [p["options"] for p in widget.spec["parameters"] if p["name"] == "case"]
+    assert [label for _, label in options] == ["quiet, inputs 0 to 1", "quiet, inputs -1 to 1"]
+
+
+@pytest.mark.parametrize("name, bad", [("epoch", 0), ("direction", 6), ("case", 2), ("width", 9)])
+def test_bad_values_are_refused(widget, name, bad):
+    with pytest.raises(TraitError, match=f"{name} must be one of"):
+        setattr(widget, name, bad)
+
+
+def test_bad_arguments_are_refused(study, along):
+    with pytest.raises(ValueError, match="directions must be one for each of 4 cells, got 3"):
+        SpectrumExplorer(study, along[:3])
+    with pytest.raises(ValueError, match="directions must be of window 7 like its cell, got 11"):
+        SpectrumExplorer(study, along[::-1])
+    broken = copy.deepcopy(study)
+    broken["cells"][0]["width"] = 2
+    with pytest.raises(ValueError, match="width must be an integer from 3"):
+        SpectrumExplorer(broken, along)
+
+
+# In a page without a kernel
+
+
+def shown(page, name) -> str:
+    page.evaluate(NEXT_FRAME)
+    return page.locator(f"output[for$={name}]").inner_text()
+
+
+def assert_change(page, study, at, direction, row):
+    """The third chart shows the changes of a cell, and the numbers those at an epoch."""
+    page.evaluate(NEXT_FRAME)
+    drawn = [np.log10(np.array(study["cells"][at][w]["change over start"])[1:, direction - 1])
+             for w in WHO]  # fmt: skip
+    curves = page.evaluate(READ, 2)
+    _, *moving = curves if np.ptp(curves[0]) == 0 else [None, *curves]
+    np.testing.assert_allclose(moving, drawn, atol=0.06)
+    texts = page.locator(".scalars output").all_inner_texts()[1:]
+    numbers = [float(text.replace("−", "-")) for text in texts]
+    assert numbers == pytest.approx([d[row - 1] for d in drawn], abs=0.051)
+
+
+@pytest.mark.browser
+def test_sliders_and_menus(tmp_path, visit, widget, study):
+    widget.case, widget.width, widget.direction, widget.epoch = 0, 7, 1, 1
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page = opened.page
+    direction, epoch = page.get_by_role("slider").all()
+    assert_change(page, study, 0, 1, 1)
+    epoch.press("End")
+    assert shown(page, "epoch") == "20,000"
+    assert_change(page, study, 0, 1, 5)
+    direction.press("ArrowRight")
+    assert shown(page, "direction") == "2"
+    assert_change(page, study, 0, 2, 5)
+    box = direction.bounding_box()
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.99 * box["width"], box["y"] + box["height"] / 2, steps=4)
+    page.mouse.up()
+    assert_change(page, study, 0, 5, 5)
+    page.get_by_label("Window size").select_option(label="11 samples")
+    assert_change(page, study, 1, 5, 5)
+    page.get_by_label("Recording").select_option(label="quiet, inputs -1 to 1")
+    assert_change(page, study, 3, 5, 5)
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_film_runs(tmp_path, visit, widget):
+    widget.case, widget.width, widget.direction, widget.epoch = 0, 7, 1, 1
+    page = visit(page_of(tmp_path / "page.html", widget)).page
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '20,000'")
+
+
+@pytest.mark.browser
+def test_touch_moves_the_slider(tmp_path, browser, widget):
+    widget.case, widget.width, widget.direction, widget.epoch = 0, 7, 1, 1
+    context = browser.new_context(
+        viewport={"width": 380, "height": 900}, has_touch=True, is_mobile=True
+    )
+    page = context.new_page()
+    page.goto(page_of(tmp_path / "page.html", widget))
+    page.wait_for_selector(".chart > svg .curve[d]", state="attached")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 380
+    box = page.get_by_role("slider").first.bounding_box()
+    page.touchscreen.tap(box["x"] + box["width"] - 3, box["y"] + box["height"] / 2)
+    assert shown(page, "direction") == "5"
+    context.close()
