@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import number, shaped
+from ddlib._check import number, positive, shaped
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -292,10 +292,11 @@ def predicted_curves(
     ValueError
         If values are not positive and finite, or shapes do not fit.
     """
-    for name, pair in (*curves.items(), *clouds.items()):
-        first, second = (finite_array(f"values of {name!r}", values) for values in pair)
-        if first.shape != second.shape or first.ndim != 1 or min(first.min(), second.min()) <= 0:
-            raise ValueError(f"values of {name!r} must be two positive rows of the same length")
+    points = len(shaped("x", x, "(points,)"))
+    for length, named in ((points, curves), ("ends", clouds)):
+        for name, pair in named.items():
+            first, second = (positive(f"values of {name!r}", v, f"({length},)") for v in pair)
+            shaped(f"values of {name!r}", second, first.shape)
 
     def draw(figure: Figure):
         left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pictures import drawn
 
-from ddlib.figures import COLOURS, Illustration, clusters, families
+from ddlib.figures import COLOURS, Illustration, clusters, families, predicted_curves
 
 X = np.linspace(1.0, 10.0, 6)
 FAN = X[:, None] * [1.0, 2.0, 6.0]
@@ -76,3 +76,41 @@ def test_clusters_draw_medians_and_the_wanted_value():
 def test_clusters_refuse_bad_arguments_by_name(panels, name):
     with pytest.raises(ValueError, match=rf"^{name} must"):
         clusters(panels, "N m", "Dots.")
+
+
+AXES = ("epoch", "change", "predicted change", "measured change")
+
+
+def test_courses_and_their_ends():
+    """Measured solid, predicted dashed in the same colour; ends beside a diagonal."""
+    courses = {"slow": (X, 2 * X), "fast": (X**2, X**3)}
+    ends = {"one": ([1e-3, 1.0], [1e-2, 1.0]), "two": ([10.0], [5.0])}
+    picture, figure = drawn(lambda: predicted_curves(X, courses, ends, AXES, "Two."))
+    left, right = figure.axes
+    for k, (measured, predicted) in enumerate(courses.values()):
+        dashed, solid = left.lines[2 * k : 2 * k + 2]
+        assert (dashed.get_linestyle(), solid.get_linestyle()) == ("--", "-")
+        assert dashed.get_color() == solid.get_color() == COLOURS[k]
+        np.testing.assert_array_equal(solid.get_xydata(), np.stack([X, measured], -1))
+        np.testing.assert_array_equal(dashed.get_xydata(), np.stack([X, predicted], -1))
+    one, two, diagonal = (line.get_xydata().tolist() for line in right.lines)
+    assert one == [[1e-3, 1e-2], [1.0, 1.0]] and two == [[10.0, 5.0]]
+    assert diagonal == [[1e-3, 1e-3], [10.0, 10.0]]
+    assert {axis.get_xscale() for axis in figure.axes} == {"log"}
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["slow", "fast", "predicted"]
+    assert picture.alt == "Two."
+
+
+@pytest.mark.parametrize(
+    "courses, ends, words",
+    [
+        ({"a": (X, X[:3])}, {}, "values of 'a' must have shape"),
+        ({"a": (X, -X)}, {}, "values of 'a' must"),
+        ({"a": (X, X)}, {"b": (X, X[:3])}, "values of 'b' must have shape"),
+        ({"a": (X, X)}, {"b": (X, 0 * X)}, "values of 'b' must"),
+    ],
+)
+def test_courses_refuse_bad_arguments(courses, ends, words):
+    with pytest.raises(ValueError, match=words):
+        predicted_curves(X, courses, ends, AXES, "Two.")
