@@ -80,7 +80,7 @@ def test_every_figure_has_an_example():
         if f.__module__ == module.__name__ and not name.startswith("_")
     }
     elsewhere = {"arm_sketch", "extents_square"}  # in `dynamics` and `recording`
-    others = {"families", "clusters", "root_loci"}  # with tests of their own
+    others = {"families", "clusters", "predicted_curves", "root_loci"}  # with tests of their own
     others |= {"dots", "largest_weight"}  # parts of figures
     assert public - others == set(EXAMPLES) - elsewhere
 
