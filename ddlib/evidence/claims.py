@@ -38,7 +38,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -231,10 +231,14 @@ def _measured(measure: str, arguments: str) -> Measured:
     return joblib.Memory(folder, verbose=0).cache(_measure)(measure, arguments)
 
 
+def function(measure: str) -> Callable:
+    """The function of `ddlib.evidence.measures` that a claim names as "module.function"."""
+    module, _, name = measure.partition(".")
+    return getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), name)
+
+
 def _measure(measure: str, arguments: str) -> Measured:
-    module, _, function = measure.partition(".")
-    found = getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), function)
-    result = found(**json.loads(arguments))
+    result = function(measure)(**json.loads(arguments))
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()

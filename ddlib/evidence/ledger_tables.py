@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 import json
 import re
 from collections.abc import Iterable, Mapping
 
-from ddlib.evidence.claims import FILE, LEDGER, SECTIONS, Claim, here, of_section, printed, sure
+from ddlib.evidence.claims import (
+    FILE,
+    LEDGER,
+    SECTIONS,
+    Claim,
+    function,
+    here,
+    of_section,
+    printed,
+    sure,
+)
 from ddlib.evidence.verdicts import VERDICTS
 from ddlib.experiments import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK
 from ddlib.tables import Table, number_beside, significant, typeset
@@ -64,9 +73,7 @@ def window(claim: Claim) -> int | None:
     """
     if not claim.measure:
         return None
-    module, _, name = claim.measure.partition(".")
-    function = getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), name)
-    given = inspect.signature(function).bind(**claim.arguments)
+    given = inspect.signature(function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
 

@@ -103,23 +103,27 @@ def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) ->
     """
     integer("draws", draws, DRAWS)
     rng = np.random.default_rng(seed)
+    found = np.asarray(statistic(*_picked(cells, lambda n: rng.integers(0, n, (draws, n)))))
+    if found.shape != (draws,):
+        raise ValueError(
+            f"statistic must give one number for each of {draws} draws, got shape {found.shape}"
+        )
+    return found
+
+
+def _picked(cells, pick: Callable) -> list:
+    """The cells with members picked by ``pick(members)``, of shape ``(draws, members)``."""
     drawn = []
     for cell in cells:
         parts = [np.asarray(part) for part in (cell if isinstance(cell, tuple) else (cell,))]
         members = {part.shape[0] for part in parts}
         if len(members) != 1 or not min(members):
             raise ValueError(f"cells must have the same members in a tuple, got {sorted(members)}")
-        if min(members) < FEWEST:
-            raise ValueError(f"members must be {FEWEST} or more, got {min(members)}")
-        picked = rng.integers(0, *members, (draws, *members))
+        integer("members", *members, FEWEST)
+        picked = pick(*members)
         parts = tuple(part[picked] for part in parts)
         drawn.append(parts if isinstance(cell, tuple) else parts[0])
-    found = np.asarray(statistic(*drawn))
-    if found.shape != (draws,):
-        raise ValueError(
-            f"statistic must give one number for each of {draws} draws, got shape {found.shape}"
-        )
-    return found
+    return drawn
 
 
 def median(cell) -> np.ndarray:
@@ -157,12 +161,7 @@ def over_members(statistic: Callable, *cells) -> tuple[float, np.ndarray]:
     value : float
     replicates : ndarray, shape (draws,)
     """
-    once = [
-        tuple(np.asarray(p)[None] for p in cell)
-        if isinstance(cell, tuple)
-        else np.asarray(cell)[None]
-        for cell in cells
-    ]
+    once = _picked(cells, lambda n: np.arange(n)[None])
     return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells)
 
 

@@ -71,7 +71,7 @@ def test_value_and_replicates_come_from_one_function():
     [
         ((mean, (np.ones(3), np.ones(4))), r"same members in a tuple, got \[3, 4\]"),
         ((mean, np.ones(0)), r"same members in a tuple, got \[0\]"),
-        ((mean, np.ones(FEWEST - 1)), "members must be 5 or more, got 4"),
+        ((mean, np.ones(FEWEST - 1)), "members must be an integer from 5 and up, got 4"),
         ((np.mean, np.ones(FEWEST)), r"one number for each of 2000 draws, got shape \(\)"),
     ],
 )

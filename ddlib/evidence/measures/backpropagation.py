@@ -117,10 +117,9 @@ def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
     def faster(pair):
         return median(pair[0]) / median(pair[1])
 
-    value, replicates = over_members(lambda here, there: faster(here) / faster(there), *cells)
     here, there = (significant(np.median(a) / np.median(b), 2) for a, b in cells)
     text = f"{here} times faster here, {there} times on parity of {bits} bits"
-    return Measured(value, text, replicates)
+    return judged(lambda here, there: faster(here) / faster(there), *cells, text=text)
 
 
 def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
@@ -154,8 +153,7 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
         parity_networks.parity(corner) == parity_networks.parity(np.repeat(x[:, 0], 250, axis=0))
     )
     text = f"{spread(100 * share, 3)} % right, at best {significant(100 * best, 3)} %"
-    value, replicates = over_members(median, share / best)
-    return Measured(value, text, replicates)
+    return judged(median, share / best, text=text)
 
 
 def polynomial(coding: str = "bits", most: int = 10) -> Measured:

@@ -141,9 +141,8 @@ def training_error_falls() -> Measured:
     def falls(*cells):
         return (np.diff([median(cell) for cell in cells], axis=0) < 0).mean(0)
 
-    value, replicates = over_members(falls, *sizes.values())
-    text = f"{value * steps:.0f} of {steps} steps from {min(sizes)} to {max(sizes)} samples"
-    return Measured(value, text, replicates)
+    text = f"of {steps} steps from {min(sizes)} to {max(sizes)} samples"
+    return judged(falls, *sizes.values(), text=lambda value: f"{value * steps:.0f} {text}")
 
 
 def memory(width: int, by: str = "descent") -> Measured:
@@ -324,9 +323,8 @@ def weights_and_saturation() -> Measured:
         x, y = (r - r.mean(-1, keepdims=True) for r in ranks)
         return (x * y).sum(-1) / np.sqrt((x**2).sum(-1) * (y**2).sum(-1))
 
-    value, replicates = over_members(correlation, *cells)
-    units = sum(largest.size for largest, _ in cells)
-    return Measured(value, f"rank correlation {value:.2f} over {units} units", replicates)
+    units = f"over {sum(largest.size for largest, _ in cells)} units"
+    return judged(correlation, *cells, text=lambda value: f"rank correlation {value:.2f} {units}")
 
 
 def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
