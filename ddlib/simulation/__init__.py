@@ -15,7 +15,7 @@ __getattr__, __dir__, __all__ = hand_on(
     plant="PHASE Plant substeps",
     simulate="CONTROL_STEP LOG_STEP REST follow free_motion record",
     loops=(
-        "Load Response SecondOrderModel fast_pick_and_place feedforward_system predicted_response "
+        "Load Response SecondOrderModel feedforward_system predicted_response "
         "run_system score simulated_response smooth_pick_and_place"
     ),
     residual="residual_torque rms",

@@ -18,7 +18,7 @@ from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, ViscousFriction
 from ddlib.simulation.recording import Recording
 from ddlib.simulation.simulate import CONTROL_STEP, follow
-from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.trajectories import MOTION_SECONDS, Trajectory
 
 
 @dataclass(frozen=True)
@@ -285,23 +285,6 @@ def run_system(
     )
     q, qd, tau = np.split(answer.outputs.T, 3, axis=1)
     return Recording(t, reference, q, tau, q, qd, tau, control_step=0.0)
-
-
-def fast_pick_and_place(extents_deg, t, speed: float) -> Trajectory:
-    """A member of the paper's family, `speed` times as fast.
-
-    Parameters
-    ----------
-    extents_deg : array_like, shape (..., 2)
-        As in `ddlib.trajectories.pick_and_place`.
-    t : array_like, shape (time,)
-        Times, s; the motion lasts ``3 / speed``.
-    speed : float
-        Velocities grow by this factor, accelerations by its square.
-    """
-    number("speed", speed, 0.0, open_low=True)
-    slow = pick_and_place(extents_deg, speed * finite_array("t", t))
-    return Trajectory(slow.q, speed * slow.qd, speed**2 * slow.qdd)
 
 
 def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:

@@ -135,7 +135,6 @@ ROWS = [
     ("period", lambda x: linear.proportional_limit(1.0, 0.1, x), [1e-3, 0.5], [0.0]),
     ("torque", loops.Load, [(0.0, -1.0)], [(1.0,), (np.inf, 0.0)]),
     ("posture", lambda x: loops.SecondOrderModel(ARM, x), [(0.0, -1.0)], [(1.0,)]),
-    ("speed", lambda x: loops.fast_pick_and_place((9, 9), T, x), [1e-3, 0.5], [0.0]),
     ("speed", lambda x: loops.smooth_pick_and_place((9, 9), T, x), [1e-3, 0.5], [0.0]),
     ("repetitions", lambda x: equations.repeat(
         ARM, pd((9, 9), (9, 9)), (9.0, 9.0), CMU_DD_ARM_II_EFFECTS, x), [1], [0, 1.0]),

@@ -11,7 +11,6 @@ from ddlib.simulation import (
     Load,
     Recording,
     SecondOrderModel,
-    fast_pick_and_place,
     feedforward_system,
     follow,
     free_motion,
@@ -204,16 +203,6 @@ def test_gravity_belongs_to_the_system_too():
 # --- references and scores ------------------------------------------------------------
 
 
-def test_fast_member_is_the_same_path_in_less_time():
-    t = np.linspace(0.0, 0.99, 100)
-    slow, fast = pick_and_place(APPENDIX_I[0], 3 * t), fast_pick_and_place(APPENDIX_I[0], t, 3)
-    np.testing.assert_array_equal(fast.q, slow.q)
-    np.testing.assert_allclose(np.gradient(fast.q[:, 0], t)[1:-1], fast.qd[1:-1, 0], atol=0.01)
-    np.testing.assert_allclose(np.gradient(fast.qd[:, 0], t)[1:-1], fast.qdd[1:-1, 0], atol=0.01)
-    unchanged = fast_pick_and_place(APPENDIX_I[0], t, 1)
-    np.testing.assert_array_equal(unchanged.qdd, pick_and_place(APPENDIX_I[0], t).qdd)
-
-
 def test_scores_of_a_made_up_recording():
     """A constant error of 1 degree at the elbow, 3 degrees in the first third."""
     t = time_grid(0.01, 0.5)
@@ -235,7 +224,7 @@ def test_scores_of_a_made_up_recording():
 
 def test_a_score_goes_by_the_motion_of_the_recording():
     t = np.arange(-50, 800) * 0.002
-    quick = fast_pick_and_place(APPENDIX_I[:2], t, 2.5)
+    quick = pick_and_place(APPENDIX_I[:2], t, 3 / 2.5)
     made = follow(ARM, PD, quick, t)
     by_itself, told = score(ARM, made), score(ARM, made, 1.2)
     for value, other in zip(told, by_itself, strict=True):
@@ -288,7 +277,6 @@ def test_the_smooth_motion_goes_out_and_back_without_a_jump(speed):
         (lambda: simulated_response(ARM, PD, viscous=VISCOUS, step_deg=0), "step_deg"),
         (lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD), "kp"),
         (lambda: feedforward_system(ARM, ARM, KP, (-1, 0)), "kd"),
-        (lambda: fast_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
         (lambda: smooth_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
         (lambda: smooth_pick_and_place([1, 2, 3], [0.0, 0.1]), "extents_deg"),
         (lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0), "seconds"),
