@@ -37,13 +37,9 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         places = range(len(counts))
         for name, look in zip(names, LOOKS):
             numbers = [row[name] for row in counts.values()]
-            axis.barh(places, numbers, left=starts, height=0.66, label=name, **look)
-            for place, start, number in zip(places, starts, numbers):
-                if number:
-                    axis.text(
-                        start + number / 2, place, str(number), color=INK, size=8.5,
-                        ha="center", va="center",
-                    )  # fmt: skip
+            bars = axis.barh(places, numbers, left=starts, height=0.66, label=name, **look)
+            words = [str(number or "") for number in numbers]
+            axis.bar_label(bars, words, label_type="center", color=INK, size=8.5)
             starts = [a + b for a, b in zip(starts, numbers)]
         axis.set_yticks(places, list(counts))
         axis.invert_yaxis()

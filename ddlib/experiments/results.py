@@ -19,7 +19,6 @@ import hashlib
 import json
 import os
 import platform
-import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -147,22 +146,10 @@ def _is_text(node) -> bool:
     )
 
 
-def peak_memory() -> float | None:
-    """Largest memory that this process ever held, GiB; None where the system does not tell."""
-    try:
-        import resource
-    except ImportError:  # Windows
-        return None
-    unit = 2**30 if sys.platform == "darwin" else 2**20  # bytes on macOS, KiB elsewhere
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
-
-
 def stamp(seconds: float) -> dict:
-    """What is kept beside a result: time, peak memory if known, the machine's kernels, versions."""
-    peak = peak_memory()
+    """What is kept beside a result: time, the machine's kernels, versions."""
     return {
         "seconds": round(seconds, 1),
-        "peak GiB": None if peak is None else round(peak, 2),
         "machine": f"{platform.system()} {platform.machine()}, {kernels()}",
         "python": platform.python_version(),
         "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},

@@ -122,11 +122,9 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
         for j, joint in enumerate(joints):
             rows = places + (j - (len(joints) - 1) / 2) * height
             look = dict(color=COLOURS[j], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
-            axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
-            for y, value in zip(rows, values[:, j]):
-                axis.text(
-                    value * 1.12, y, significant(value, 2), va="center", fontsize=7.5, color=INK
-                )
+            bars = axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
+            words = [significant(value, 2) for value in values[:, j]]
+            axis.bar_label(bars, words, padding=3, fontsize=7.5, color=INK)
         axis.set_yticks(places, order)
         axis.set(xscale="log", xlim=(low, values.max() * 2.5), xlabel="torque, N m (RMS)")
         axis.set_ylim(len(order) - 0.4, -0.6)

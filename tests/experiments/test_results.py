@@ -161,7 +161,7 @@ def test_modules_are_followed_through_the_imports(copy):
 
 def test_stamp():
     made = results.stamp(12.345)
-    assert made["seconds"] in (12.3, 12.4) and 0 < made["peak GiB"] < 100
+    assert made["seconds"] in (12.3, 12.4)
     assert set(made["versions"]) == {"numpy", "torch", "scipy"}
     assert made["versions"]["numpy"] == np.__version__
     assert made["machine"].endswith(torch.backends.cpu.get_cpu_capability())

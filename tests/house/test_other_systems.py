@@ -9,7 +9,6 @@ import sys
 import tomllib
 from importlib.metadata import packages_distributions
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 import yaml
@@ -39,31 +38,6 @@ def test_every_module_loads_without_resource_and_without_a_warning():
     assert answer.returncode == 0, answer.stderr
     files = set((ROOT / "ddlib").rglob("*.py")) - {ROOT / "ddlib" / "__init__.py"}
     assert int(answer.stdout) == len(files)
-
-
-# --- memory -----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("system, unit", [("linux", 2**20), ("darwin", 2**30)])
-def test_peak_memory_is_in_the_unit_of_the_system(monkeypatch, system, unit):
-    """Linux counts KiB, macOS bytes."""
-    usage = SimpleNamespace(ru_maxrss=3 * unit)
-    fake = SimpleNamespace(RUSAGE_SELF=0, getrusage=lambda who: usage)
-    monkeypatch.setitem(sys.modules, "resource", fake)
-    monkeypatch.setattr(results.sys, "platform", system)
-    assert results.peak_memory() == 3.0
-    assert results.stamp(1.0)["peak GiB"] == 3.0
-
-
-def test_where_nobody_tells_the_memory_is_unknown(monkeypatch):
-    monkeypatch.setitem(sys.modules, "resource", None)
-    assert results.peak_memory() is None
-    assert json.loads(json.dumps(results.stamp(1.0)))["peak GiB"] is None
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not tell")
-def test_peak_memory_is_plausible():
-    assert 0.05 < results.peak_memory() < 64
 
 
 # --- files that may not be read ---------------------------------------------------------
