@@ -36,7 +36,7 @@ $(READY): requirements.txt pyproject.toml
 book: $(READY)  ## execute the notebooks and build the pages
 	@$(BIN)/python book/_ext/build.py
 
-test: lint stripped unit notebooks foreign-ci pages  ## everything that CI checks
+test: lint stripped unit foreign-ci pages  ## everything that CI checks
 
 lint: $(READY)
 	@echo "==> Style"
@@ -51,7 +51,7 @@ unit: $(READY)
 	@echo "==> Unit and property tests"
 	$(BIN)/python -m pytest -n $(JOBS) -m "not built and not browser"
 
-notebooks: $(READY)
+notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
 	OMP_NUM_THREADS=1 PYTHONWARNINGS="error:::__main__" \
 	  $(BIN)/python -m pytest -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
@@ -61,7 +61,7 @@ foreign: $(READY)  ## notebooks and claims on machines that round otherwise
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) $(FOREIGN)
 
 foreign-ci: $(READY)
-	@echo "==> Notebooks and claims on two foreign machines"
+	@echo "==> Notebooks and claims on a foreign machine"
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
 pages: $(READY)

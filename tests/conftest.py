@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
 
 import chromium
 import pytest
 from hypothesis import settings
 
 from ddlib.evidence import verdicts
+from ddlib.evidence.claims import SHARED
 
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
 
 settings.register_profile("book", deadline=None, derandomize=CI, print_blob=True)
 settings.load_profile("book")
+
+
+def pytest_configure(config):
+    """What a claim measures is measured once, by whichever of the processes needs it first."""
+    if SHARED not in os.environ:
+        os.environ[SHARED] = tempfile.mkdtemp(prefix="measured-")
+        config.add_cleanup(lambda: shutil.rmtree(os.environ.pop(SHARED), ignore_errors=True))
 
 
 @pytest.fixture(autouse=True)

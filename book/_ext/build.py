@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import logging
 import os
 import re
 import shutil
@@ -24,11 +23,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import yaml
 from ddlib.evidence.claims import SHARED
 from jupyter_cache import get_cache
-from jupyter_cache.executors import load_executor
 from sphinx.util.console import strip_colors
 
+from ahead import execute
 from dd_book import PAGE_INPUTS, cache_path, digest
 from dd_failures import FAILURES, UNEXECUTED, last_line, where
 
@@ -40,12 +40,20 @@ TRACEBACK = "Traceback (most recent call last):"
 NOTEBOOK_FAILED = "Executing notebook failed"
 CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme error:")
 
-TIMEOUT = 600  # seconds for one cell, as in _config.yml
+# Its command has no option for as many jobs as there are cores.
+JUPYTER_BOOK = """
+import os
+from jupyter_book import sphinx
+from jupyter_book.cli.main import main
+
+sphinx.build_sphinx.__kwdefaults__["jobs"] = os.cpu_count()
+main()
+"""
 
 
 def build(root: Path, strict: bool) -> tuple[int, list[str]]:
     """Run Jupyter Book; its exit status and what it complained about, a message an entry."""
-    command = [Path(sys.executable).with_name("jupyter-book"), "build", root]
+    command = [sys.executable, "-c", JUPYTER_BOOK, "build", root]
     options = ["-W", "-n", "--keep-going"] if strict else []
     lines = []
     with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, text=True) as process:
@@ -86,16 +94,23 @@ def execute_ahead(root: Path) -> None:
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
     folder = cache_path(root, root / "_build")
     os.environ[SHARED] = str(folder / "measured")  # chapters and ledger share claims
-    cache = get_cache(str(folder))
-    for path in sorted((root / "book").glob("*.ipynb")):
-        cache.add_nb_to_project(str(path))
-    silent = logging.getLogger("ahead")
-    silent.setLevel(logging.CRITICAL + 1)
+    pages = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
+    paths = [root / f"{page}.ipynb" for page in listed(pages)]  # the ledger after the chapters
+    folder.mkdir(parents=True, exist_ok=True)
     with errors_into(log(root)):
-        done = load_executor("local-parallel", cache, logger=silent).run_and_cache(timeout=TIMEOUT)
-    ended = [Path(path).relative_to(root).with_suffix("").as_posix() for path in done.errored]
+        done, ended = execute(get_cache(str(folder)), [path for path in paths if path.is_file()])
+    ended = [path.relative_to(root).with_suffix("").as_posix() for path in ended]
     os.environ[UNEXECUTED] = json.dumps(ended)
-    print(f"==> Executed {len(done.succeeded)} notebooks", flush=True)
+    print(f"==> Executed {len(done)} notebooks", flush=True)
+
+
+def listed(contents) -> Iterator[str]:
+    """The pages of a table of contents, in their order."""
+    if isinstance(contents, dict):
+        yield from (contents[key] for key in ("root", "file") if key in contents)
+    for inner in contents.values() if isinstance(contents, dict) else contents:
+        if isinstance(inner, (dict, list)):
+            yield from listed(inner)
 
 
 @contextmanager

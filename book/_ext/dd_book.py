@@ -58,6 +58,17 @@ def copy_mathjax(app):
     shutil.copyfile(source.locate(), target)
 
 
+def read_side_by_side(app, env, names):
+    """Pages are read on all cores.
+
+    Two extensions of Jupyter Book do not say that they are safe: one acts after all pages are
+    read, one on LaTeX alone.
+    """
+    for name in ("sphinx_multitoc_numbering", "sphinx_jupyterbook_latex"):
+        if name in app.extensions:
+            app.extensions[name].parallel_read_safe = True
+
+
 def slim_pages(app, exception):
     """Trim what was written, once all of it is there."""
     if app.builder.format == "html" and exception is None:
@@ -67,5 +78,6 @@ def slim_pages(app, exception):
 def setup(app):
     app.connect("config-inited", set_cache_path)
     app.connect("builder-inited", copy_mathjax)
+    app.connect("env-before-read-docs", read_side_by_side)
     app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -247,6 +247,18 @@ def _measure(measure: str, arguments: str) -> Measured:
     return result
 
 
+class Printed(float):
+    """A number that keeps the digits it is printed with."""
+
+    def __new__(cls, text: str):
+        made = super().__new__(cls, text)
+        made.text = text
+        return made
+
+    def __getnewargs__(self):
+        return (self.text,)
+
+
 def load(path: Path = FILE) -> list[Claim]:
     """All claims, in the order of the file.
 
@@ -255,11 +267,13 @@ def load(path: Path = FILE) -> list[Claim]:
     ValueError
         If an entry has unknown or missing fields, or an id twice.
     """
-    entries = yaml.safe_load(book_file(Path(path)).read_text(encoding="utf-8"))
+    text = book_file(Path(path)).read_text(encoding="utf-8")
     claims, seen = [], set()
-    for entry in entries:
+    for entry, plain in zip(yaml.safe_load(text), yaml.load(text, Loader=yaml.BaseLoader)):
         entry = dict(entry)
         entry["arguments"] = entry.pop("with", {})
+        if isinstance(entry.get("printed"), float):
+            entry["printed"] = Printed(plain["printed"])
         try:
             claim = Claim(**entry)
         except TypeError as error:
@@ -288,7 +302,9 @@ def printed(claim: Claim) -> str:
     ----------
     claim : Claim
     """
-    return claim.printed if isinstance(claim.printed, str) else f"{claim.printed:,g}"
+    if isinstance(claim.printed, (str, Printed)):
+        return getattr(claim.printed, "text", claim.printed)
+    return f"{claim.printed:,g}"
 
 
 def here(claim: Claim) -> str:

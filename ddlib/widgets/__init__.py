@@ -8,34 +8,17 @@
   each that draws something of its own (``picker.js``)
 """
 
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
-from ddlib.widgets.explorer import FilterExplorer
-from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
-from ddlib.widgets.parts.parameters import Choice, Parameter
-from ddlib.widgets.picker import TrajectoryPicker, inside_hull
-from ddlib.widgets.player import TrainingPlayer
-from ddlib.widgets.spectrum import SpectrumExplorer
-from ddlib.widgets.switches import RealArmSwitches
-from ddlib.widgets.tuner import PIDTuner
-from ddlib.widgets.window import SlidingWindow
+from ddlib._names import hand_on
 
-__all__ = [
-    "SCRIPT",
-    "STYLE",
-    "Choice",
-    "CurveWidget",
-    "FilterExplorer",
-    "Mark",
-    "PIDTuner",
-    "Pad",
-    "Panel",
-    "Parameter",
-    "RealArmSwitches",
-    "Scalar",
-    "SlidingWindow",
-    "SpectrumExplorer",
-    "TrainingPlayer",
-    "TrajectoryPicker",
-    "inside_hull",
-    "module",
-]
+__getattr__, __dir__, __all__ = hand_on(
+    __name__,
+    base="SCRIPT STYLE CurveWidget module",
+    explorer="FilterExplorer",
+    picker="TrajectoryPicker inside_hull",
+    player="TrainingPlayer",
+    spectrum="SpectrumExplorer",
+    switches="RealArmSwitches",
+    tuner="PIDTuner",
+    window="SlidingWindow",
+    **{"parts.panels": "Mark Pad Panel Scalar", "parts.parameters": "Choice Parameter"},
+)

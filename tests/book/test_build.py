@@ -48,8 +48,9 @@ def write_page(root, text, *code, name="index"):
 
 
 def add_page(root, text, *code, name="chapter"):
-    with (root / "_toc.yml").open("a") as toc:
-        toc.write(f"chapters:\n- file: book/{name}\n")
+    toc = (root / "_toc.yml").read_text()
+    head = "" if "chapters:" in toc else "chapters:\n"
+    (root / "_toc.yml").write_text(f"{toc}{head}- file: book/{name}\n")
     write_page(root, text, *code, name=name)
 
 
@@ -116,21 +117,27 @@ def test_notebooks_run_again_only_when_needed(tiny):
     assert runs(tiny) == 1
 
 
+FAULTS = {
+    "nowhere": ("# Title\n\n{ref}`nowhere`", "1"),
+    "ZeroDivisionError": ("# Title", "1 / 0"),
+    "stderr was found": ("# Title", "import warnings\n\nwarnings.warn('look here')"),
+    "ddlib.nothing": ("# Title\n\n{py:func}`ddlib.nothing`", "1"),
+}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("text", "code", "complaint", "ci"),
-    [
-        ("# Title\n\n{ref}`nowhere`", "1", "nowhere", False),
-        ("# Title", "1 / 0", "ZeroDivisionError", True),
-        ("# Title", "import warnings\n\nwarnings.warn('look here')", "stderr was found", False),
-        ("# Title\n\n{py:func}`ddlib.nothing`", "1", "ddlib.nothing", True),
-    ],
+    "faults, ci", [(tuple(FAULTS)[:3], False), (tuple(FAULTS)[3:], True)], ids=["option", "CI"]
 )
-def test_a_strict_build_fails(tiny, text, code, complaint, ci):
-    write_page(tiny, text, code)
+def test_a_strict_build_fails(tiny, faults, ci):
+    """Whatever it complains about, each alone is enough: see `build.main`."""
+    write_page(tiny, *FAULTS[faults[0]])
+    for k, fault in enumerate(faults[1:]):
+        add_page(tiny, *FAULTS[fault], name=f"chapter-{k}")
     outcome = build(tiny, *([] if ci else ["--strict"]), ci=ci)
     assert outcome.returncode == 1
-    assert complaint in outcome.stderr and "FAILED: under --strict" in outcome.stderr
+    assert not [complaint for complaint in faults if complaint not in outcome.stderr]
+    assert "FAILED: under --strict" in outcome.stderr
     assert not (tiny / STAMP).exists()  # else the next call would say "nothing changed"
 
 
@@ -145,7 +152,8 @@ def test_a_warning_does_not_stop_a_reader(tiny):
 
 
 @pytest.mark.slow
-def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
+def test_bad_chapters_do_not_take_the_book_with_them(tiny):
+    """One of which a cell fails, one of which the kernel ends."""
     quotes = [f"from ddlib.tables import quote\nquote({name!r}, -1.5)" for name in "ab"]
     add_page(
         tiny,
@@ -154,12 +162,16 @@ def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
         "print('so far')\n1 / 0",
         quotes[1],
     )
+    add_page(tiny, "# Ended", "import os\n\nos._exit(1)", name="ended")
     outcome = build(tiny)
     assert outcome.returncode == 1
     assert "Traceback" not in outcome.stderr
     assert "FAILED in part" in outcome.stderr
     assert "book/chapter: code cell 2 (“print('so far')”): ZeroDivision" in outcome.stderr
-    pages = {n: (tiny / "_build/html/book" / f"{n}.html") for n in ("index", "chapter")}
+    assert "book/ended: its notebook: The Python process" in outcome.stderr
+    pages = {n: tiny / "_build/html/book" / f"{n}.html" for n in ("index", "chapter", "ended")}
+    ended = pages["ended"].read_text(encoding="utf-8")
+    assert "This page is incomplete" in ended and "os._exit" in ended
     bad = BeautifulSoup(pages["chapter"].read_text(encoding="utf-8"), "html.parser")
     box = bad.select_one("article h1 + .admonition.failed")
     said = box.get_text(" ", strip=True)
@@ -172,19 +184,48 @@ def test_one_bad_chapter_does_not_take_the_book_with_it(tiny):
     assert not (tiny / STAMP).exists()
 
     write_page(tiny, "# Chapter", "1 + 1", name="chapter")
+    write_page(tiny, "# Ended", "1 + 1", name="ended")
     assert build(tiny).returncode == 0
     assert (tiny / STAMP).exists()
     assert "incomplete" not in pages["chapter"].read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
-def test_a_kernel_that_ends_is_told_too(tiny):
-    add_page(tiny, "# Chapter", "import os\n\nos._exit(1)")
-    outcome = build(tiny)
-    assert outcome.returncode == 1
-    assert "book/chapter: its notebook: The Python process" in outcome.stderr
-    page = (tiny / "_build/html/book/chapter.html").read_text(encoding="utf-8")
-    assert "This page is incomplete" in page and "os._exit" in page
+@pytest.mark.skipif(sys.platform != "linux", reason="kernels are forked on Linux only")
+def test_forked_kernels_are_like_others(tmp_path):
+    """Fresh, in their folder, with the given surroundings; one that ends takes nothing with it."""
+    tell = "import os, sys; print(os.getcwd(), os.environ['TOLD'], __name__, 'book' in dir());"
+    tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0))"
+    sources = [(tell, "book = 1"), (tell,), ("import os; os._exit(1)",), ("1 / 0",)]
+    for k, cells in enumerate(sources):
+        (tmp_path / "book").mkdir(exist_ok=True)
+        write_page(tmp_path, "# Title", *cells, name=str(k))
+    ask = f"""if True:
+        import os, sys
+        from pathlib import Path
+        sys.path.insert(0, {str(ROOT / "book" / "_ext")!r})
+        import ahead
+        from jupyter_cache import get_cache
+        ahead.FEW = 0
+        cache = get_cache("cache")
+        paths = [Path("book", f"{{k}}.ipynb").resolve() for k in range({len(sources)})]
+        done, ended = ahead.execute(cache, paths)
+        print([path.stem for path in done], [path.stem for path in ended])
+        print(ahead.execute(cache, paths[:2]))
+        for record in cache.list_cache_records():
+            cells = cache.get_cache_bundle(record.pk).nb.cells
+            print("TOLD", *(o.text for c in cells for o in c.outputs if "text" in o))
+    """
+    answer = subprocess.run(
+        [sys.executable, "-c", ask], capture_output=True, text=True, cwd=tmp_path,
+        env={**os.environ, "TOLD": "here", "OMP_NUM_THREADS": "1"},
+    )  # fmt: skip
+    assert answer.returncode == 0, answer.stderr
+    first, again, *told = answer.stdout.splitlines()
+    assert first == "['0', '1'] ['2']" and again == "([], [])"
+    said = " ".join(told)
+    assert said.count(f"{tmp_path / 'book'} here __main__ False") == 2
+    assert said.count("True False True") == 2
 
 
 CAUGHT = """\

@@ -12,7 +12,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from book_pages import CHAPTERS, ROOT, WITH_WIDGETS, source
+from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, source
 from reactions import Handle, handles
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -120,18 +120,24 @@ ANSWERS = """
   };
 }
 """
-OPEN = """
-async (path) => {
-  const app = window.jupyterapp;
-  await app.restored;
-  const panel = await app.commands.execute("docmanager:open", { path, factory: "Notebook" });
-  await panel.context.ready;
+RUN = """
+async () => {
+  const { panel } = window;
   await panel.sessionContext.ready;
   while (panel.sessionContext.session?.kernel?.status !== "idle") {
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  window.panel = panel;
-  app.commands.execute("notebook:run-all-cells");
+  window.jupyterapp.commands.execute("notebook:run-all-cells");
+}
+"""
+# Without a question whether to keep what was changed.
+CLOSE = """
+async () => {
+  const { panel } = window;
+  const { session } = panel.sessionContext;
+  await panel.context.revert();
+  panel.close();
+  if (session && !session.isDisposed) await session.shutdown();
 }
 """
 # Every code cell has its prompt number, or one has failed.
@@ -215,9 +221,9 @@ def reacts_alone(page, handle: Handle):
     wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
 
 
-@pytest.fixture
-def opened(lab, browser):
-    """A page of JupyterLab, and the errors of its scripts."""
+@pytest.fixture(scope="module")
+def running(lab, browser):
+    """An open JupyterLab, and the errors of its scripts."""
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     context.set_default_timeout(1000 * STARTING)
     page = context.new_page()
@@ -229,11 +235,28 @@ def opened(lab, browser):
     context.close()
 
 
-@pytest.mark.parametrize("name", ANSWERED)
-def test_answers_are_folded(name, opened):
-    page, errors = opened
+@pytest.fixture
+def opened(running):
+    """The page, with nothing open in it before and after; its scripts make no errors."""
+    page, errors = running
+    errors.clear()
+    yield page
+    page.evaluate(CLOSE)
+    assert not errors
+
+
+@pytest.mark.parametrize("name", [page for page in PAGES if page in ANSWERED + WITH_WIDGETS])
+def test_a_chapter_in_the_lab(name, lab, opened):
+    """Its answers are folded; its widgets live with a kernel and outlive it."""
+    page = opened
     page.evaluate(SHOW, f"book/{source(name).name}")
-    text = source(name).read_text(encoding="utf-8")
+    if name in ANSWERED:
+        answers_are_folded(page, source(name).read_text(encoding="utf-8"))
+    if name in WITH_WIDGETS:
+        widgets_live(page, lab)
+
+
+def answers_are_folded(page, text: str):
     words = text.count("</details>")
     wait(page, "the text", lambda: page.locator(".jp-Notebook details").count() == words, ANSWER)
     seen = page.evaluate(ANSWERS)
@@ -244,15 +267,11 @@ def test_answers_are_folded(name, opened):
         "said": 0,
     }
     assert seen["code"] >= 3 and seen["words"] >= 1
-    assert not errors
 
 
-@pytest.mark.parametrize("name", WITH_WIDGETS)
-def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, opened):
-    page, errors = opened
-    page.evaluate(OPEN, f"book/{source(name).name}")
+def widgets_live(page, lab):
+    page.evaluate(RUN)
     run_all(page)
-
     models = page.evaluate(SHOWN)
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
     wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)
@@ -263,4 +282,3 @@ def test_widgets_live_with_a_kernel_and_outlive_it(name, lab, opened):
     request(f"{lab}api/kernels/{kernel}", "DELETE")
     for handle in firsts:
         reacts_alone(page, handle)
-    assert not errors

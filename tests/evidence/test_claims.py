@@ -373,8 +373,28 @@ def test_the_claims_that_are_left_out():
 
 def test_cards_on_a_phone_are_headed_like_the_table():
     css = (claims.FILE.parent / "_static" / "book.css").read_text(encoding="utf-8")
-    heads = re.findall(r"\.tag_cards td:nth-child\((\d)\)::before \{\s*content: \"(.*?)\"", css)
-    assert heads == [(str(k), f"{head}: ") for k, head in enumerate(ledger_tables.HEADER[1:], 2)]
+    heads = re.findall(r"td:nth-child\((\d)\)::before \{\s*content: (.*?);", css)
+    (judged,) = re.findall(r"--verdict: (.*?);", css)
+    plain = [
+        (place, text.replace('var(--verdict, "verdict: ")', '"verdict: "')) for place, text in heads
+    ]
+    in_ledger = [(place, judged if text.startswith("var(") else text) for place, text in heads]
+    for shown, header in (
+        (plain, claims.chapter_table(ALL[0].chapter).header),
+        (in_ledger, ledger_tables.HEADER),
+    ):
+        assert shown == [(str(k), f'"{head}: "') for k, head in enumerate(header[1:], 2)]
+
+
+def test_printed_numbers_keep_their_digits(tmp_path):
+    path = tmp_path / "claims.yml"
+    entry = "- {id: a, where: section 1, chapter: dynamics, claim: x, printed: %s, "
+    entry += "verdict: not testable, why: y, refuted: z}"
+    for text, shown in (("0.10", "0.10"), ("700000", "700,000"), ("1.2 ms", "1.2 ms")):
+        path.write_text(entry % text)
+        (claim,) = claims.load(path)
+        assert claims.printed(claim) == shown
+        assert isinstance(claim.printed, str) or claim.printed == float(text)
 
 
 def test_counts_add_up():

@@ -80,11 +80,12 @@ def test_threads_are_as_many(name, count, tmp_path):
 
 
 def test_a_check_that_fails_is_told(monkeypatch, capfd):
-    monkeypatch.setattr(foreign, "CHECKS", {"claims": ["-k", "no_such_test"]})
+    nothing = ["tests/test_paper.py", "-k", "no_such_test"]
+    monkeypatch.setattr(foreign, "CHECKS", {"claims": nothing})
     assert foreign.main(["jog-1", "--jobs", "1"]) == 1
-    assert "1 foreign machines: jog-1: claims" in capfd.readouterr().out
+    assert "1 foreign machine: jog-1: claims" in capfd.readouterr().out
     with pytest.raises(SystemExit):
-        foreign.main(["mars"])
+        foreign.main(["jog-1+mars"])
     assert "settings must be among jog-1" in capfd.readouterr().err
 
 
@@ -92,4 +93,11 @@ def test_all_that_hold_are_told(monkeypatch, capfd):
     monkeypatch.setattr(foreign, "CHECKS", {"claims": ["tests/test_paper.py"]})
     assert foreign.main(["--ci", "--jobs", "1"]) == 0
     out = capfd.readouterr().out
-    assert "2 foreign machines: all hold" in out and "jog-1: claims took" in out
+    assert "1 foreign machine: all hold" in out
+    assert "jog-1+other-libraries: claims took" in out
+
+
+def test_a_machine_may_differ_in_several_ways(tmp_path):
+    env = foreign.environment(foreign.CI, tmp_path)
+    wanted = {**foreign.SETTINGS["jog-1"], **foreign.SETTINGS["other-libraries"]}
+    assert wanted and {key: env[key] for key in wanted} == wanted

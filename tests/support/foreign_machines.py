@@ -34,10 +34,10 @@ SETTINGS = {
     "one-thread": _threads(1),
     "two-threads": _threads(2),
 }
-"""Environment variables of each foreign machine."""
+"""Environment variables of each foreign machine; ``jog-1+other-libraries`` has those of both."""
 
-CI = ("jog-1", "other-libraries")
-"""Those that every run of the test suite tries."""
+CI = "jog-1+other-libraries"
+"""The one that every run of the test suite tries."""
 
 CHECKS = {
     "claims": ["tests/evidence/test_claims.py", "-k", "verdicts_are"],
@@ -50,7 +50,8 @@ def environment(name: str, folder: Path) -> dict[str, str]:
     """Environment of a setting; notebooks and claims share in `folder` what they measure."""
     path = os.pathsep.join(filter(None, [JOGS, os.environ.get("PYTHONPATH", "")]))
     own = {"PYTHONPATH": path, "PYTHONWARNINGS": "error:::__main__", "DDLIB_MEASURED": str(folder)}
-    return {**os.environ, "OMP_NUM_THREADS": "1", **own, **SETTINGS[name]}
+    differs = {key: value for part in name.split("+") for key, value in SETTINGS[part].items()}
+    return {**os.environ, "OMP_NUM_THREADS": "1", **own, **differs}
 
 
 def check(name: str, jobs: int, root: Path = ROOT) -> list[str]:
@@ -103,18 +104,20 @@ def reproduce(name: str, jobs: int) -> list[str]:
 def main(arguments=None) -> int:
     """Run settings one after the other; 1 if anything fails."""
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("settings", nargs="*", help=f"among {', '.join(SETTINGS)}; default: all")
-    parser.add_argument("--ci", action="store_true", help=f"only {' and '.join(CI)}")
+    known = f"among {', '.join(SETTINGS)}, or several joined by +"
+    parser.add_argument("settings", nargs="*", help=f"{known}; default: all, one after the other")
+    parser.add_argument("--ci", action="store_true", help=f"only {CI}")
     parser.add_argument("--reproduce", action="store_true", help="make the results anew, too")
     parser.add_argument("--jobs", type=int, default=2, help="processes at a time")
     options = parser.parse_args(arguments)
     for name in options.settings:
-        if name not in SETTINGS:
-            parser.error(f"settings must be among {', '.join(SETTINGS)}, got {name!r}")
-    names = options.settings or (CI if options.ci else tuple(SETTINGS))
+        if not set(name.split("+")) <= set(SETTINGS):
+            parser.error(f"settings must be {known}, got {name!r}")
+    names = options.settings or ((CI,) if options.ci else tuple(SETTINGS))
     run = reproduce if options.reproduce else check
     failed = [what for name in names for what in run(name, options.jobs)]
-    print(f"==> {len(names)} foreign machines: " + ("; ".join(failed) or "all hold"), flush=True)
+    count = f"{len(names)} foreign machine{'s' * (len(names) > 1)}"
+    print(f"==> {count}: " + ("; ".join(failed) or "all hold"), flush=True)
     return bool(failed)
 
 
