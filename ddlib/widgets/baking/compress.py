@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import bisect
 import itertools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -18,12 +19,8 @@ FAINT = 5
 TINY = 1e-12
 """Keeps divisions by a size finite where all is zero."""
 
-SMALL = 100_000
-"""Size up to which leaving components out may cost little (see `SHARES`)."""
-
-SHARES = (0.05, 0.6)
-"""Share of the tolerance that leaving components out may cost at the grid points: the
-second where the first gives more than `SMALL` bytes."""
+SHARE = 0.3
+"""Share of the tolerance that leaving components out may cost."""
 
 
 class Table:
@@ -74,7 +71,7 @@ class Table:
         weight = np.repeat(1 / np.sqrt(lengths), lengths)  # a number counts as much as a curve
         left, shapes = _components(rows * weight)
         shapes = shapes / weight
-        rank = self._least_rank(left.reshape(*size, -1), shapes, values, tolerance)
+        rank = _least_rank(left, shapes, SHARE * tolerance)
         if rank:
             table, shapes = left[:, :rank], shapes[:rank]
             most = np.abs(table).max(0) + TINY, np.abs(shapes).max(1) + TINY
@@ -94,22 +91,6 @@ class Table:
     def rank(self) -> int:
         """Number of shapes; 0 if the coefficients are the curves' own."""
         return len(self.shapes)
-
-    def _least_rank(self, left, shapes, values, tolerance) -> int:
-        """How many components to keep; 0 if that saves nothing."""
-        at_points = _each_axis([_at_points(p, self.cubic) for p in self.parameters], left)
-        points, samples = left[..., 0].size, shapes.shape[1]
-        at_points, values = (x.reshape(-1, x.shape[-1]) for x in (at_points, values))
-
-        def error(rank):
-            return np.abs(at_points[:, :rank] @ shapes[:rank] - values).max() / 2
-
-        most = min(len(shapes), int(0.9 * points * samples / (points + samples)))
-        for share in SHARES:
-            rank = _least(lambda r, allowed=share * tolerance: error(r) <= allowed, most)
-            if 2 * (rank * (points + samples) or points * samples) <= SMALL:
-                break
-        return rank
 
     def tobytes(self) -> bytes:
         """`table`, then `shapes`, the last axis fastest.
@@ -138,15 +119,6 @@ def _each_axis(matrices, values) -> np.ndarray:
     return values
 
 
-def _at_points(parameter, cubic) -> np.ndarray:
-    """The matrix that makes values at the baked points from a spline's coefficients."""
-    matrix = np.zeros(parameter.coefficients(cubic).shape[::-1])
-    for k, point in enumerate(parameter.points()):
-        for i, weight in parameter.weights(point, cubic):
-            matrix[k, i] = weight
-    return matrix
-
-
 def _components(rows) -> tuple[np.ndarray, np.ndarray]:
     """Two matrices whose product is `rows`, largest singular components first."""
     tall = rows.shape[0] > rows.shape[1]
@@ -156,12 +128,17 @@ def _components(rows) -> tuple[np.ndarray, np.ndarray]:
     return (rows @ vectors, vectors.T) if tall else (vectors, vectors.T @ rows)
 
 
-def _least(fits: Callable[[int], bool], most: int) -> int:
-    """The smallest number from 1 to `most` that fits, if larger ones do, too; 0 for none."""
-    if most < 1 or not fits(most):
-        return 0
-    low, high = 0, most
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (low, middle) if fits(middle) else (middle, high)
-    return high
+def _least_rank(left, shapes, allowed: float) -> int:
+    """How many components to keep; 0 if that saves nothing.
+
+    A spline's values lie between its coefficients, so that it is off by no more than they are.
+    """
+    points, samples = len(left), shapes.shape[1]
+    exact = left @ shapes
+    ranks = range(1, int(0.9 * points * samples / (points + samples)) + 1)[: len(shapes)]
+
+    def fits(rank):
+        return np.abs(left[:, :rank] @ shapes[:rank] - exact).max() / 2 <= allowed
+
+    place = bisect.bisect_left(ranks, True, key=fits)
+    return ranks[place] if place < len(ranks) else 0
