@@ -24,5 +24,8 @@ __getattr__, __dir__, __all__ = hand_on(
     ),
     exact_states="EPOCHS RADIUS RATE SAMPLES random_states states_along torque",
     random_arms="RANGES distance draw setup",
-    two_harmonics="ORDER SHARE record_two_harmonics second_amplitudes true_states",
+    two_harmonics=(
+        "NEUTRAL ORDER record_circle record_quintic record_two_harmonics second_amplitudes SHARE "
+        "true_states"
+    ),
 )

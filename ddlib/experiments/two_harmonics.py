@@ -1,8 +1,9 @@
-"""A control for the paper's family: motions in which position and acceleration differ.
+"""Controls for the paper's family: motions in which position and acceleration differ.
 
 One sine is proportional to its own second derivative, so along the paper's reference a filter
 cannot tell position from acceleration. A second, faster sine of drawn amplitude and sign tells
-them apart, at nearly the same extents and speeds.
+them apart, at nearly the same extents and speeds. Two single motions do so, too: a polynomial of
+degree five out and back, and a circle of the hand.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ middle of the motion, where half of the paper's sine turns."""
 
 SHARE = 2.0
 """Largest acceleration of the second sine over that of the first one at 45 degrees."""
+
+
+NEUTRAL = (-0.35, -0.55)
+"""Joint angles about which the hand's circle lies, rad: inside the family's range."""
 
 
 def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
@@ -104,6 +109,55 @@ def record_two_harmonics(
         log_every=round(LOG_STEP / CONTROL_STEP),
         duration=MOTION_SECONDS,
     )
+
+
+def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
+    """Both joints out and back by polynomials of degree five, at rest at either end of each.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects and controller.
+    degrees : float
+        How far out.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    half = MOTION_SECONDS / 2
+    away = np.clip(np.where(t < half, t, MOTION_SECONDS - t) / half, 0, 1)
+    q = np.deg2rad(degrees) * np.polyval([6, -15, 10, 0, 0, 0], away)
+    return _followed(setup, t, np.stack([q, 0.6 * q], -1))
+
+
+def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
+    """The hand goes round a circle about where `NEUTRAL` puts it.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects and controller.
+    radius : float
+        In m.
+    turns : int
+        In the time of a motion.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    angle = 2 * np.pi * turns * np.clip(t, 0, MOTION_SECONDS) / MOTION_SECONDS
+    first, second = setup.arm.lengths
+    sums = np.cumsum(NEUTRAL)
+    centre = np.array([f(NEUTRAL[0]) * first + f(sums[1]) * second for f in (np.cos, np.sin)])
+    x, y = centre[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
+    elbow = -np.arccos((x**2 + y**2 - first**2 - second**2) / (2 * first * second))
+    shoulder = np.arctan2(y, x) - np.arctan2(second * np.sin(elbow), first + second * np.cos(elbow))
+    return _followed(setup, t, np.stack([shoulder, elbow], -1))
+
+
+def _followed(setup: Setup, t, q) -> Recording:
+    speed = np.gradient(q, CONTROL_STEP, axis=0)
+    reference = Trajectory(q, speed, np.gradient(speed, CONTROL_STEP, axis=0))
+    return follow(
+        setup.arm, setup.controller, reference, t, effects=setup.effects, seed=setup.seed,
+        log_every=round(LOG_STEP / CONTROL_STEP), duration=MOTION_SECONDS,
+    )  # fmt: skip
 
 
 def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:

@@ -17,7 +17,9 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     Illustration,
+    check_label,
     illustrate,
+    legend_above,
 )
 from ddlib.learning import Weights
 
@@ -222,3 +224,61 @@ def share_map(shares, names, classes) -> Illustration:
     return illustrate(
         draw, f"Filters by their share of velocity and acceleration: {counts}.", 6.4, 3.6
     )
+
+
+def against_nulls(
+    panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str, columns=3
+) -> Illustration:
+    """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{title: {class: {ensemble: values}}}``; the first ensemble of a class holds networks on
+        the real torques and is drawn as a bar at its mean, the others hold draws of a null.
+    label : str
+        Of the horizontal axes.
+    alt : str
+        Alternative text.
+    columns : int
+        Panels in a row.
+
+    Raises
+    ------
+    ValueError
+        If there is no panel, or values are not finite or not of shape (draws,).
+    """
+    if not panels:
+        raise ValueError("panels must hold one panel or more, got none")
+    for groups in panels.values():
+        for name, sets in groups.items():
+            for values in sets.values():
+                shape = finite_array(f"values of {name!r}", values).shape
+                if len(shape) != 1:
+                    raise ValueError(f"values of {name!r} must have shape (draws,), got {shape}")
+    classes = list(next(iter(panels.values())))
+    rows = -(-len(panels) // columns)
+
+    def draw(figure: Figure):
+        axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
+        for axis, (title, groups) in zip(axes.ravel(), panels.items()):
+            for row, sets in enumerate(groups.values()):
+                (real, values), *nulls = sets.items()
+                axis.barh(row, np.mean(values), 0.86, color=FAINT, alpha=0.35, label=real, lw=0)
+                axis.plot([np.mean(values)] * 2, [row - 0.43, row + 0.43], color=INK, lw=2.0)
+                for k, (name, draws) in enumerate(nulls):
+                    height = row + (k - (len(nulls) - 1) / 2) * 0.26
+                    axis.plot(draws, np.full(len(draws), height), "os^Dv"[k % 5], ms=3.2, mew=0,
+                              color=COLOURS[k % len(COLOURS)], alpha=0.6, label=name)  # fmt: skip
+            axis.set(title=title, xlim=(-0.03, 1.03), ylim=(len(groups) - 0.5, -0.5))
+            axis.grid(visible=False, axis="y")
+        for axis in axes[:, 0]:
+            axis.set_yticks(range(len(classes)), classes)
+        for axis in axes[-1]:
+            axis.set_xlabel(check_label(label))
+        handles, names = axes[0, 0].get_legend_handles_labels()
+        first = {name: handle for handle, name in zip(handles[::-1], names[::-1])}
+        order = list(dict.fromkeys(names))
+        legend_above(figure, [first[name] for name in order], order)
+
+    return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))

@@ -14,7 +14,7 @@ from ddlib._names import hand_on
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
     windows="Scaler check_width sliding_windows",
-    surrogates="KINDS LEAST_SHIFT MATCHED related surrogate surrogates",
+    surrogates="KINDS LEAST_SHIFT MATCHED p_value related surrogate surrogates",
     network="TorqueModel Weights WindowNetwork kernels",
     descent="Descent prepare",
     training=(

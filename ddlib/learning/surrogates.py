@@ -84,6 +84,34 @@ def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
     return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
 
 
+def p_value(value: float, draws, side: str = "two") -> float:
+    """Probability of a value as far out as this one, if it were another draw of the null.
+
+    Parameters
+    ----------
+    value : float
+        A statistic of networks trained on the real torques.
+    draws : array_like, shape (draws,)
+        The same statistic of networks trained on surrogates, draw by draw.
+    side : {"more", "less", "two"}
+        Out: as large or larger, as small or smaller, or either.
+
+    Returns
+    -------
+    float
+        ``(1 + number of draws as far out) / (1 + number of draws)``, twice the smaller one for
+        "two", at most 1. The value itself counts as a draw, so that it is never zero (Phipson &
+        Smyth 2010); of 20 draws the least that can come out is 1/21, for "two" 2/21.
+    """
+    number("value", value)
+    draws = finite_array("draws", draws)
+    one_of("side", side, ("more", "less", "two"))
+    if draws.ndim != 1 or not draws.size:
+        raise ValueError(f"draws must be one number or more in a row, got shape {draws.shape}")
+    more, less = ((1 + far.sum()) / (1 + draws.size) for far in (draws >= value, draws <= value))
+    return float({"more": more, "less": less, "two": min(1.0, 2 * min(more, less))}[side])
+
+
 def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
     """Share of the variance of targets that a linear filter of the windows explains.
 

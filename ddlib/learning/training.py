@@ -258,6 +258,7 @@ def train_ensemble(
     data: TrainingSet,
     *,
     test: tuple | None = None,
+    targets=None,
     rate=None,
     momentum=0.95,
     epochs: int = 20_000,
@@ -276,6 +277,9 @@ def train_ensemble(
         Cases and scaling.
     test : tuple of ndarray, optional
         Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
+    targets : array_like, shape (members, cases, output), optional
+        Scaled targets of each member in place of ``data.y``, for instance with noise of
+        different levels. Errors are relative to the spread of ``data.y`` all the same.
     rate : float or array_like, shape (members,), optional
         Step size per case, one for all or one per member; default `default_rate`.
     momentum : float or array_like, shape (members,)
@@ -317,6 +321,8 @@ def train_ensemble(
             f"weights must have the joints and width of the data, {data.x.shape[-2:]}, "
             f"got {weights.hidden_weights.shape[-2:]}"
         )
+    if targets is not None:
+        targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
     count = WORKERS * math.ceil(members / (WORKERS * BLOCK))
@@ -324,8 +330,9 @@ def train_ensemble(
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
 
     def work(block):
+        y = data.y if targets is None else targets[block]
         start = weights[block]
-        descent = Descent(start, data.x, data.y, rate[block] / len(data.x), momentum[block])
+        descent = Descent(start, data.x, y, rate[block] / len(data.x), momentum[block])
         return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar)
 
     threads = torch.get_num_threads()

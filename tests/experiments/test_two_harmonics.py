@@ -7,10 +7,13 @@ import pytest
 
 from ddlib.analysis import explained
 from ddlib.experiments import (
+    NEUTRAL,
     ORDER,
     POSITION_FEEDBACK,
     SHARE,
     STATE_FEEDBACK,
+    record_circle,
+    record_quintic,
     record_two_harmonics,
     second_amplitudes,
     true_states,
@@ -131,3 +134,32 @@ def test_what_position_explains_of_acceleration(recordings):
     assert min(share["one sine"]) > 0.85
     assert max(share["ringing"]) < 0.1
     assert max(share["two sines"]) < 0.25
+
+
+@pytest.mark.parametrize("record", [record_quintic, record_circle])
+def test_single_motions_tell_position_from_acceleration(record):
+    recording = record(STATE_FEEDBACK)
+    states = true_states(recording, STATE_FEEDBACK)
+    assert recording.q.shape[-1] == 2 and states.shape == (300, 2, 3)
+    assert recording.q.min() > np.deg2rad(-50) and recording.q.max() < np.deg2rad(5)
+    for joint in (0, 1):
+        assert abs(np.corrcoef(states[:, joint, 0], states[:, joint, 2])[0, 1]) < 0.9
+
+
+def test_quintic_rests_at_both_ends_and_in_the_middle():
+    reference = record_quintic(STATE_FEEDBACK, -30.0).reference
+    middle = reference.q[..., 0].argmin()
+    assert np.rad2deg(reference.q[middle]) == pytest.approx([-30, -18])
+    for k in (0, middle, -1):
+        assert np.allclose(reference.qd[k], 0, atol=1e-3)
+        assert np.allclose(reference.qdd[k], 0, atol=0.1)
+    assert np.abs(reference.qd).max() == pytest.approx(np.deg2rad(30) * 1.875 / 1.5, rel=1e-3)
+
+
+def test_the_hand_goes_round_a_circle():
+    recording = record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
+    hand = STATE_FEEDBACK.arm.forward_kinematics(recording.reference.q)[:, -1]
+    centre = STATE_FEEDBACK.arm.forward_kinematics(np.array(NEUTRAL))[-1]
+    assert np.linalg.norm(hand - centre, axis=-1) == pytest.approx(0.02)
+    x = hand[recording.motion, 0] - centre[0]
+    assert (np.diff(np.sign(x[np.abs(x) > 1e-9])) != 0).sum() == 6

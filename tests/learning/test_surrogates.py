@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.learning import KINDS, LEAST_SHIFT, MATCHED, related, surrogate, surrogates
+from ddlib.learning import KINDS, LEAST_SHIFT, MATCHED, p_value, related, surrogate, surrogates
 from ddlib.learning.windows import sliding_windows
 
 
@@ -121,6 +121,25 @@ def test_related_is_the_share_that_a_filter_explains():
     assert share[1] == pytest.approx(0.5, abs=0.08)
     with pytest.raises(ValueError, match="target and windows"):
         related(target[1:], windows)
+
+
+def test_p_values_by_hand():
+    draws = [0.1, 0.2, 0.3, 0.4]
+    assert p_value(0.5, draws, "more") == 1 / 5 and p_value(0.5, draws, "less") == 1
+    assert p_value(0.3, draws, "more") == 3 / 5 and p_value(0.3, draws, "less") == 4 / 5
+    assert p_value(0.05, draws) == 2 / 5 and p_value(0.25, draws) == 1
+    with pytest.raises(ValueError, match="side"):
+        p_value(0.5, draws, "both")
+    with pytest.raises(ValueError, match="draws"):
+        p_value(0.5, [])
+
+
+def test_p_values_are_uniform_where_the_null_holds():
+    """One value among 19 draws of the same kind: each of 20 ranks is as likely."""
+    rng = np.random.default_rng(0)
+    found = [p_value(x[0], x[1:], "more") for x in rng.normal(size=(4000, 20))]
+    assert np.mean(np.array(found) <= 0.05 + 1e-9) == pytest.approx(0.05, abs=0.015)
+    assert np.mean(found) == pytest.approx(0.525, abs=0.02)
 
 
 def test_refusals():

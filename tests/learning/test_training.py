@@ -225,19 +225,24 @@ def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, 
         close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
 
 
-def test_members_may_have_their_own_rate_and_momentum(data, other):
-    """Together as alone."""
+def test_members_may_have_their_own_rate_momentum_and_targets(data, other):
+    """Together as alone; the errors are relative to the spread of the shared targets."""
     start, rates, momenta = Weights.random(4, WIDTH), [1.0, 2.0, 4.0, 3.0], [0.0, 0.5, 0.9, 0.95]
+    noise = np.random.default_rng(3).normal(size=(4, *data.y.shape))
+    targets = data.y + np.array([0.0, 0.01, 0.02, 0.05])[:, None, None] * noise
     options = dict(epochs=30, test=other, progress=False)
-    together, errors, _ = train_ensemble(start, data, rate=rates, momentum=momenta, **options)
+    together, errors, _ = train_ensemble(
+        start, data, rate=rates, momentum=momenta, targets=targets, **options
+    )
     for k in range(4):
+        own = TrainingSet(data.x, targets[k], data.inputs, data.outputs)
         alone, history, _ = train_ensemble(
-            start[k : k + 1], data, rate=rates[k], momentum=momenta[k], **options
+            start[k : k + 1], own, rate=rates[k], momentum=momenta[k], **options
         )
         close(together.weights[k], [p[0] for p in parts(alone.weights)], rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(errors.test[:, k], history.test[:, 0], rtol=1e-5)
         out = together.weights[k].activity(data.x)[1]
-        wanted = np.sqrt((((out - data.y) / data.y.std(0)) ** 2).mean())
+        wanted = np.sqrt((((out - targets[k]) / data.y.std(0)) ** 2).mean())
         assert errors.training[-1, k] == pytest.approx(wanted, rel=1e-5)
 
 
@@ -248,6 +253,8 @@ def test_members_may_have_their_own_rate_and_momentum(data, other):
         (dict(rate=[1.0, 2.0, np.nan]), "rate must be finite"),
         (dict(rate=[1.0, 2.0, 0.0]), "rate must lie in"),
         (dict(momentum=[0.9, 0.9, 1.0]), "momentum must lie in"),
+        (dict(targets=np.zeros((3, 2))), "targets must have shape"),
+        (dict(targets=np.full((3, 80, 2), np.inf)), "targets must be finite"),
         (dict(snapshots=[6]), "snapshots must be an integer from 0 to 5, got 6"),
         (dict(snapshots=[-1]), "snapshots must be an integer from 0 to 5"),
     ],
