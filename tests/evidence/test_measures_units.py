@@ -9,7 +9,6 @@ from scipy.stats import spearmanr
 from ddlib.evidence import committed
 from ddlib.evidence.measures import filters, networks
 from ddlib.experiments import STATE_FEEDBACK, WINDOWS
-from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)
 
@@ -147,82 +146,91 @@ def test_large_weights_and_saturation(monkeypatch):
     assert found.text == f"rank correlation {wanted:.2f} over 36 units"
 
 
-def test_units_held_at_their_mean(monkeypatch):
-    """Unit by unit and case by case, with the sigmoid written out."""
-    planted = Weights.random(2, 5, hidden=3, initial=1.5)
-    model = TorqueModel(
-        planted, Scaler(np.zeros(2), np.ones(2)), Scaler(-np.ones(2), np.full(2, 3.0))
-    )
-    windows, torque = RNG.uniform(size=(7, 2, 5)), RNG.normal(size=(7, 2))
-    monkeypatch.setattr(committed, "networks", lambda width, *_: model)
-    monkeypatch.setattr(networks, "cases", lambda run, width: (windows, torque))
+def _planted_features(monkeypatch, x, hidden, torque, new, held, answer, **weights):
+    """Windows, hidden activities and torques in training and on trajectory 6."""
+    asked = []
 
-    def sigmoid(x):
-        return 1 / (1 + np.exp(-x))
+    def features(width, setup):
+        asked.append((width, setup))
+        return (x, hidden, torque), (new, held, answer)
 
-    whole, still = np.empty((2, 2, 7, 2))
-    for m in range(2):
-        w = planted[m]
-        hidden = np.array([
-            [sigmoid(np.sum(w.hidden_weights[h] * x) + w.hidden_bias[h]) for h in range(3)]
-            for x in windows
-        ])  # fmt: skip
-        for activity, out in ((hidden, whole), (np.tile(hidden.mean(0), (7, 1)), still)):
-            for n, x in enumerate(windows):
-                direct = [np.sum(w.direct_weights[j] * x) for j in range(2)]
-                net = w.output_weights @ activity[n] + direct + w.output_bias
-                out[m, n] = 4 * sigmoid(net) - 1
-    found = networks._held_still(21)
-    np.testing.assert_allclose(found[0], whole, rtol=1e-5)
-    np.testing.assert_allclose(found[1], still, rtol=1e-5)
-    assert found[2] is torque
+    monkeypatch.setattr(filters, "_features", features)
+    return asked
 
 
-def test_errors_without_hidden_units(monkeypatch):
-    torque = RNG.normal(size=(40, 2))
-    steps = torque.std(0)
-    whole = np.stack([torque + f * steps for f in (0.1, 0.1, 0.2)])
-    still = np.stack([torque + f * steps for f in (0.2, 0.5, 0.6)])
-    monkeypatch.setattr(networks, "_held_still", lambda width, *_: (whole, still, torque))
-    found = networks.without_hidden_units()
-    assert found.value == pytest.approx(3.0)  # of 2, 5 and 3
-    assert found.text == "error 3.0 times as large without them"
+def test_what_hidden_units_add_to_a_linear_filter(monkeypatch):
+    """Torques of a line and a curve, which two of three networks know in part or wholly."""
+    rng = np.random.default_rng(4)
+    x, new = rng.normal(size=(300, 4)), rng.normal(size=(200, 4))
+    curve, there = rng.normal(size=(2, 300, 2)), rng.normal(size=(2, 200, 2))
+    wave = curve[0], there[0]
+    torque, answer = (a[:, :2] + 0.5 * b for a, b in zip((x, new), wave))
+    hidden = np.stack([wave[0], wave[0] + curve[1], curve[1]])
+    held = np.stack([wave[1], wave[1] + there[1], there[1]])
+    asked = _planted_features(monkeypatch, x, hidden, torque, new, held, answer)
+    alone = filters.linear_alone(11, "some")
+    assert alone == pytest.approx([0.5 / np.sqrt(1.25)] * 2, rel=0.06)
+    found = filters.hidden_units_add(11, "some", "trajectory 6")
+    # noise as large as the curve halves its power: the median network keeps 1 of sqrt 2
+    assert found.value == pytest.approx(np.sqrt(2), rel=0.1)
+    assert found.text == f"{alone[1]:.2f} alone, {alone[1] / found.value:.2f} with hidden units"
+    assert filters.hidden_units_add(21, "some").value >= 1
+    assert asked[0] == (11, "some") and asked[-1] == (21, "some")
 
 
-@pytest.mark.parametrize("noise, explained", [(0.0, 1.0), (1.0, 0.5)])
-def test_friction_in_the_hidden_units(monkeypatch, noise, explained):
-    """Hidden units whose sum is a line plus friction, and noise as large as its curved part."""
+@pytest.mark.parametrize("noise, share", [(0.0, 1.0), (1.0, 0.5)])
+def test_friction_and_rigid_body_in_the_hidden_units(monkeypatch, noise, share):
+    """Hidden units whose sum is a line, friction and the rigid body, and noise as large."""
+    setup = SimpleNamespace(arm=STATE_FEEDBACK.arm, effects=STATE_FEEDBACK.effects)
     t = np.arange(900) * 0.01
     q = np.stack([np.sin(2 * t), np.sin(3 * t + 1)], -1)
     qd = np.stack([2 * np.cos(2 * t), 3 * np.cos(3 * t + 1)], -1)
     run = SimpleNamespace(q_true=q, qd_true=qd, motion=slice(50, 850))
-    windows = np.stack([q[k - 2 : k + 3].T for k in range(50, 850)])
-    torque = STATE_FEEDBACK.effects.friction_torque(qd[50:850])
-    line = np.column_stack([windows.reshape(800, -1), np.ones(800)])
-    curved = torque - line @ np.linalg.pinv(line) @ torque
-    parts = []
-    for _ in range(3):
-        extra = RNG.normal(size=curved.shape)
-        parts.append(torque + noise * curved.std(0) * extra + line @ RNG.normal(size=(11, 2)))
-    output = np.tile([[2.0, 0.0], [0.0, -1.0]], (3, 1, 1))
-    hidden = np.array(parts) / [2.0, -1.0]
-    own = SimpleNamespace(activity=lambda x: (hidden, None), output_weights=output)
-    model = SimpleNamespace(weights=own, scaled=lambda x: x)
-    monkeypatch.setattr(committed, "networks", lambda width, *_: model)
-    monkeypatch.setattr(committed, "training", lambda: run)
-    monkeypatch.setattr(networks, "cases", lambda run, width: (windows, None))
-    found = networks.compensate_friction(5)
-    assert found.value == pytest.approx(explained, abs=0.06)
-    first, second = found.text.split("; ")
-    assert first.startswith("friction: R² ") and second.startswith("rigid body: R² ")
-    assert second.endswith(", shoulder and elbow")
-    body = STATE_FEEDBACK.arm.inverse_dynamics(q, qd, np.gradient(qd, 0.01, axis=0))[50:850]
-    left = body - line @ np.linalg.pinv(line) @ body
-    fits = [
-        np.median([np.corrcoef((p - line @ np.linalg.pinv(line) @ p)[:, j], left[:, j])[0, 1] ** 2
-                   for p in parts]) for j in (0, 1)
+    x = np.stack([q[k - 2 : k + 3].T.ravel() for k in range(50, 850)])
+    line = np.column_stack([x, np.ones(800)])
+
+    def curved(y):
+        return y - line @ np.linalg.pinv(line) @ y
+
+    friction = setup.effects.friction_torque(qd[50:850])
+    body = setup.arm.inverse_dynamics(q, qd, np.gradient(qd, 0.01, axis=0))[50:850]
+    wanted = friction + 2 * body
+    sums = [
+        wanted + line @ RNG.normal(size=(11, 2))
+        + noise * curved(wanted).std(0) * RNG.normal(size=(800, 2))
+        for _ in range(5)
     ]  # fmt: skip
-    assert second == f"rigid body: R² {fits[0]:.2f} and {fits[1]:.2f}, shoulder and elbow"
+    output = np.tile([[2.0, 0.0], [0.0, -1.0]], (5, 1, 1))
+    hidden = np.array(sums) / [2.0, -1.0]
+    _planted_features(monkeypatch, x, hidden, None, None, None, None)
+    own = SimpleNamespace(weights=SimpleNamespace(output_weights=output))
+    monkeypatch.setattr(committed, "networks", lambda *_: own)
+    monkeypatch.setattr(committed, "training", lambda *_: run)
+    monkeypatch.setattr(filters, "SETUPS", {"some": setup})
+    found = filters.compensate_friction(5, "some")
+    assert found.value == pytest.approx(share, abs=0.06)
+    first, second, third = found.text.removesuffix(", shoulder and elbow").split("; ")
+    assert first.startswith("R² friction ") and third.startswith("together ")
+    fits = [
+        np.median([np.corrcoef(curved(s)[:, j], curved(body)[:, j])[0, 1] ** 2 for s in sums])
+        for j in (0, 1)
+    ]
+    assert second == f"rigid body {fits[0]:.2f} and {fits[1]:.2f}"
+
+
+def test_features_are_of_the_set_up_that_is_asked_for(monkeypatch):
+    model = SimpleNamespace(
+        weights=SimpleNamespace(activity=lambda x: (x + 1, None)), scaled=lambda x: x[None, :, 0]
+    )
+    monkeypatch.setattr(committed, "networks", lambda width, setup: model)
+    monkeypatch.setattr(committed, "training", lambda setup: f"{setup} 1 to 5")
+    monkeypatch.setattr(committed, "recording", lambda setup: {5: f"{setup} 6"})
+    made = {"day 1 to 5": np.ones((4, 2, 3)), "day 6": np.zeros((2, 2, 3))}
+    monkeypatch.setattr(filters, "cases", lambda run, width: (made[run], (run, width)))
+    (x, hidden, torque), (new, held, answer) = filters._features(7, "day")
+    assert x.shape == (4, 6) and (x == 1).all() and (hidden == 2).all()
+    assert new.shape == (2, 6) and (held == 1).all() and held.shape == (1, 2, 3)
+    assert torque == ("day 1 to 5", 7) and answer == ("day 6", 7)
 
 
 def test_the_order_of_samples_does_not_matter():

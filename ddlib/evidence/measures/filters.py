@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 
@@ -13,18 +14,28 @@ from ddlib.analysis import (
     cancellation,
     classify,
     decompose,
+    explained,
     followed,
     net_inputs,
+    refitted,
     roughness,
     saturated,
     shares,
     transition_width,
 )
 from ddlib.evidence import committed
-from ddlib.evidence.verdicts import Measured, mean, median, over_members
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, true_states
+from ddlib.evidence.verdicts import Measured, judged, mean, median, over_members
+from ddlib.experiments import (
+    JOINT_DAMPING,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    predict,
+    true_states,
+)
 from ddlib.learning import cases
 from ddlib.metrics import rmss
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 
 
@@ -256,3 +267,106 @@ def shoulder_profile(width: int) -> Measured:
     wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
     value, replicates = over_members(median, wrong)
     return Measured(value, spread(wrong), replicates)
+
+
+ON = ("training", "trajectory 6")
+"""Where errors are taken."""
+
+
+@cache
+def _features(width: int, setup: str) -> tuple:
+    """Windows and hidden activities in rows, and torques, in training and on trajectory 6."""
+    runs = committed.training(setup), committed.recording(setup)[5]
+    model, found = committed.networks(width, setup), []
+    for run in runs:
+        windows, torque = cases(run, width)
+        hidden = model.weights.activity(model.scaled(windows))[0]
+        found.append((windows.reshape(len(windows), -1), hidden, torque))
+    return tuple(found)
+
+
+def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray:
+    """Errors of a linear filter of the window, by least squares: training, trajectory 6.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    setup : str
+        One of `ddlib.experiments.SETUPS`.
+    """
+    (x, _, y), (new, _, answer) = _features(width, setup)
+    return refitted(x, y, new, answer)
+
+
+def hidden_units_add(
+    width: int = 21, setup: str = JOINT_DAMPING.name, on: str = "training"
+) -> Measured:
+    """Error of a linear filter alone over that with the hidden units, both fitted anew (judged).
+
+    Parameters
+    ----------
+    width : int
+        Window size of networks of Table 4-1.
+    setup : str
+        One of `ddlib.experiments.SETUPS`.
+    on : str
+        One of `ON`.
+    """
+    (x, hidden, y), (new, held, answer) = _features(width, setup)
+    alone = linear_alone(width, setup)[ON.index(on)]
+    both = np.array(
+        [
+            refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)[ON.index(on)]
+            for h, t in zip(hidden, held)
+        ]
+    )
+    text = f"{significant(alone, 2)} alone, {significant(np.median(both), 2)} with hidden units"
+    return judged(median, alone / both, text=text)
+
+
+def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
+    """Share of the hidden units' non-linear part that friction and rigid body explain (judged).
+
+    Least squares takes what is linear in the window out of the hidden units' sum, of the true
+    friction torque and of the rigid body's. What is left of the sum is fitted by what is left of
+    both together; R², the better of two joints, medians over networks.
+
+    Parameters
+    ----------
+    width : int
+        Window size of networks of Table 4-1.
+    setup : str
+        One of `ddlib.experiments.SETUPS`.
+    """
+    run, chosen = committed.training(setup), SETUPS[setup]
+    x, hidden, _ = _features(width, setup)[0]
+    weights = committed.networks(width, setup).weights
+    sums = np.einsum("mnh,moh->mno", hidden, weights.output_weights)
+    speed = run.qd_true[..., run.motion, :]
+    acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
+    rigid = chosen.arm.inverse_dynamics(run.q_true[..., run.motion, :], speed, acceleration)
+    axes = np.linalg.qr(np.column_stack([x, np.ones(len(x))]))[0]
+
+    def curved(y):
+        return y - axes @ (axes.T @ y)
+
+    known = [curved(y.reshape(-1, 2)) for y in (chosen.effects.friction_torque(speed), rigid)]
+    by = {"friction": known[:1], "rigid body": known[1:], "together": known}
+    fits = {
+        name: np.array(
+            [
+                [explained(part[:, j], *(k[:, j] for k in parts)) for j in (0, 1)]
+                for part in map(curved, sums)
+            ]
+        )
+        for name, parts in by.items()
+    }
+    told = "; ".join(
+        "{} {:.2f} and {:.2f}".format(name, *np.median(each, axis=0)) for name, each in fits.items()
+    )
+    return judged(
+        lambda each: np.median(each, axis=1).max(-1),
+        fits["together"],
+        text=f"R² {told}, shoulder and elbow",
+    )

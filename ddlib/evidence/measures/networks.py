@@ -6,7 +6,6 @@ import itertools
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import expit, logit
 from scipy.stats import rankdata
 
 from ddlib import paper
@@ -23,7 +22,6 @@ from ddlib.experiments import (
 )
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
 from ddlib.metrics import rmss
-from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")
@@ -341,55 +339,3 @@ def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured
     text += f"{before['hidden'].sum()} and {before['direct'].sum()}"
     both = tuple(np.concatenate(list(named.values()), -1) for named in (found, before))
     return judged(lambda pair: mean(pair[0]) - mean(pair[1]), both, text=text)
-
-
-def _held_still(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Torque of the networks, torque with all hidden units at their mean, measured torque."""
-    model, (windows, wanted) = committed.networks(width), cases(committed.training(), width)
-    hidden, output = model.weights.activity(model.scaled(windows))
-    to_output = np.swapaxes(model.weights.output_weights, -1, -2)
-    net = logit(output) + (hidden.mean(-2, keepdims=True) - hidden) @ to_output
-    return model.outputs.unscale(output), model.outputs.unscale(expit(net)), wanted
-
-
-def without_hidden_units(width: int = 21) -> Measured:
-    """Training error with all hidden units held at their mean over that of the whole network."""
-    whole, still, wanted = _held_still(width)
-    ratio = rmss(still, wanted) / rmss(whole, wanted)
-    text = f"error {significant(np.median(ratio), 2)} times as large without them"
-    return judged(median, ratio, text=text)
-
-
-def compensate_friction(width: int = 21) -> Measured:
-    """Share of the hidden units' non-linear part that friction explains, better of two joints.
-
-    The direct weights add a linear function of the window to the net input of an output unit;
-    whatever is not linear in it comes from the hidden units. Least squares takes the linear
-    part out of the hidden units' sum, of the true friction torque and of the rigid body's
-    torque; R² is the squared correlation of what is left, its median over networks.
-    """
-    model, run = committed.networks(width), committed.training()
-    windows = cases(run, width)[0]
-    hidden = model.weights.activity(model.scaled(windows))[0]
-    sums = np.einsum("mnh,moh->mno", hidden, model.weights.output_weights)
-    speed = run.qd_true[..., run.motion, :]
-    acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
-    rigid = STATE_FEEDBACK.arm.inverse_dynamics(run.q_true[..., run.motion, :], speed, acceleration)
-    torques = {"friction": STATE_FEEDBACK.effects.friction_torque(speed), "rigid body": rigid}
-    linear = np.column_stack([windows.reshape(len(windows), -1), np.ones(len(windows))])
-
-    def curved(y):
-        return y - linear @ np.linalg.lstsq(linear, y, rcond=None)[0]
-
-    parts = [curved(y) for y in sums]
-    fits, words = {}, []
-    for name, known in torques.items():
-        left = curved(known.reshape(-1, 2))
-        each = [[np.corrcoef(p[:, j], left[:, j])[0, 1] ** 2 for j in (0, 1)] for p in parts]
-        fits[name] = np.array(each)
-        words.append("{}: R² {:.2f} and {:.2f}".format(name, *np.median(each, axis=0)))
-
-    def better(each):
-        return np.median(each, axis=1).max(-1)
-
-    return judged(better, fits["friction"], text=f"{'; '.join(words)}, shoulder and elbow")

@@ -5,7 +5,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 
 - ``table``, ``arms``: Table 4-1, longer, with clean sensors, on arms drawn at random
 - ``windows``, ``inputs``: window sizes, hidden units, states in place of windows
-- ``nulls``, ``harmonics``: other starts and ends, other motions
+- ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
 - ``states``, ``states_sizes``: section 6
 """
@@ -36,6 +36,8 @@ PARTS: dict[str, Callable[[], dict]] = {
     "memory": windows.memory,
     "state-inputs": inputs.state_inputs,
     "null-controls": nulls.null_controls,
+    "filter-trial": nulls.filter_trial,
+    "filter-trial-elsewhere": nulls.filter_trial_elsewhere,
     "span": span.span,
     "harmonics": harmonics.harmonics,
     "table-6-1": states.table_6_1,
