@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import orth
 
 from ddlib._check import finite_array, number
 from ddlib.analysis.following import Responses, gains, mean_gradient
@@ -77,7 +78,7 @@ def heard(outputs, states) -> Responses:
 
     def share(quantities):
         x = states[:, :, quantities].reshape(len(states), -1)
-        axes = np.linalg.qr((x - x.mean(0)) / x.std(0))[0]
+        axes = orth((x - x.mean(0)) / x.std(0), rcond=1e-9)
         return ((axes.T @ y) ** 2).sum(0) / power
 
     count = states.shape[-1]

@@ -15,7 +15,7 @@ __getattr__, __dir__, __all__ = hand_on(
         "plain_ticks"
     ),
     lines="clusters curves families overlay predicted_curves rmss_by_window",
-    weights="against_nulls decomposition hinton network_diagram share_map",
+    weights="against_nulls decomposition hinton network_diagram",
     dynamics="CENTRED arm_sketch estimates hand_paths operations",
     effects="by_case ranking side_by_side",
     recording="extents_square reached rounding tied",

@@ -191,41 +191,6 @@ def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustrat
     return illustrate(draw, alt, 7.0, 2.3 * rows + 0.3)
 
 
-def share_map(shares, names, classes) -> Illustration:
-    """Every filter as a point: share of velocity against share of acceleration.
-
-    Parameters
-    ----------
-    shares : array_like, shape (filters, 5)
-        From `ddlib.analysis.filters.shares`.
-    names : array_like of str, shape (filters,)
-        Class of each filter.
-    classes : sequence of str
-        Classes in the order of the legend.
-    """
-    shares, names = finite_array("shares", shares, 5), np.asarray(names)
-    markers = "os^DvPx"
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        for k, name in enumerate(classes):
-            points = shares[names == name]
-            if len(points):
-                label = f"{name} ({len(points)})"
-                axis.plot(points[:, 1], points[:, 2], markers[k], ms=4.5, mew=1, ls="none",
-                          color=(*COLOURS, FAINT)[k], alpha=0.8, label=label)  # fmt: skip
-        axis.set(xlabel="share of velocity", ylabel="share of acceleration")
-        axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal")
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-
-    counts = ", ".join(
-        f"{np.sum(names == name)} {name}" for name in classes if (names == name).any()
-    )
-    return illustrate(
-        draw, f"Filters by their share of velocity and acceleration: {counts}.", 6.4, 3.6
-    )
-
-
 def against_nulls(
     panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str, columns=3
 ) -> Illustration:
@@ -278,7 +243,7 @@ def against_nulls(
             axis.set_xlabel(check_label(label))
         handles, names = axes[0, 0].get_legend_handles_labels()
         first = {name: handle for handle, name in zip(handles[::-1], names[::-1])}
-        order = list(dict.fromkeys(names))
+        order = list(next(iter(next(iter(panels.values())).values())))
         legend_above(figure, [first[name] for name in order], order)
 
     return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))

@@ -57,6 +57,11 @@ def test_what_two_quantities_share_is_nobodys_own():
     found = heard(states[:, :1, 0], states)
     assert found.alone[0, [0, 2]] == pytest.approx(1, abs=1e-4)
     assert found.unique[0].max() < 1e-4
+    states[..., 2] = -4 * states[..., 0]  # one signal twice adds no direction
+    noise = RNG.normal(size=(300, 1))
+    found = heard(noise, states)
+    alone = heard(noise, states[..., [0, 1, 3]])
+    assert found.together[0] == pytest.approx(alone.together[0])
 
 
 def test_unit_inputs_by_loops():

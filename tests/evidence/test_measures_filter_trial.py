@@ -129,11 +129,15 @@ def test_probes_beside_those_before_training(planted):
     def probed(*probe):
         return {"probe": [list(probe)] * 6, "probe of sign": [[0.6, 0.8]] * 6}
 
-    planted(row(probed(0.9, 0.1, 0.5, 0.3), probed(1, 0, 0.8, 0), phases=probed(0.3, 0, 0.1, 0)))
+    good, better, worse = probed(0.9, 0.1, 0.5, 0.3), probed(1, 0, 0.8, 0), probed(0.3, 0, 0.1, 0)
+    planted(row(good, worse, phases=better))
+    assert trial.readable("velocity").value == pytest.approx(0.7 - 0.9)  # the best control
+    planted(row(good, better, phases=worse))
     found = trial.readable("velocity")
     assert found.value == pytest.approx(0.7 - 0.9)
     assert found.text == "0.70; untrained 0.90; phases 0.20"
-    assert trial.readable("acceleration").value == pytest.approx(0.2)
+    found = trial.readable("acceleration", "two sines")
+    assert found.value == pytest.approx(0.2) and found.text == "0.20; untrained 0.00; phases 0.00"
     assert trial.readable("sign").value == pytest.approx(0)
     assert trial.readable("sign").text.startswith("0.70; ")
 
@@ -154,5 +158,5 @@ def test_interventions_are_ratios_to_the_networks_own(planted):
     found = trial.replaced("pure parts")
     assert found.value == pytest.approx(3)
     assert found.text == "error 0.30, with its own 0.10; a linear filter alone 0.11"
-    assert trial.replaced("pure parts", on="trajectory 6").value == pytest.approx(2.5)
+    assert trial.replaced("pure parts", runs="trajectory 6").value == pytest.approx(2.5)
     assert trial.replaced("pure parts", refitted=True).value == pytest.approx(1.2)

@@ -357,16 +357,6 @@ def pure(width, *derivatives):
     return [mix(width, *np.eye(4)[k]) for k in derivatives]
 
 
-def test_filters_that_control_theory_uses(plant_filters):
-    hidden = [*pure(21, 1, 2, 3), mix(21, 0, 0.5, 0.5)]
-    trained = {"hidden": {21: hidden}, "direct": {21: pure(21, 3, 3, 2, 3)}}
-    before = {"hidden": {21: pure(21, 1, 3, 3, 3)}, "direct": {21: pure(21, 3, 3, 3, 3)}}
-    plant_filters(trained, before)
-    found = networks.interpretable()  # of window 21, if none is asked for
-    assert found.value == pytest.approx(4 / 8 - 1 / 8)
-    assert found.text == "3 of 4 hidden, 1 of 4 direct filters; before training 1 and 0"
-
-
 def test_classes_of_a_layer(plant_filters):
     trained = {"hidden": {41: pure(41, 1, 2, 2, 3)}, "direct": {41: pure(41, 1)}}
     before = {"hidden": {41: pure(41, 1, 3, 3, 2)}, "direct": {41: pure(41, 3)}}
@@ -444,18 +434,6 @@ def test_printed_parts_are_not_odd(plant_filters):
     assert re.match(r"the parts sum to f \(to (0|\d · 10⁻¹[⁴⁵⁶⁷⁸⁹])\)", found.text)
 
 
-def test_crossings_of_odd_parts(plant_filters):
-    x = np.arange(-20.0, 21)
-    cubic, line = x**3 - 100 * x, x
-    late = x**3 - 19.5**2 * x  # crosses at the edge
-    rough = np.where(np.abs(x) % 2 == 0, 1.0, -1.0) * np.sign(x)
-    trained = [cubic, line, line + x**2, late, rough]
-    plant_filters({"hidden": {41: trained}}, {"hidden": {41: [line, line, late, rough, line]}})
-    found = filters.zero_crossings()
-    assert found.value == pytest.approx(2 / 5 - 1 / 5)
-    assert found.text == "2 of 5 filters are smooth and cross, 1 before training"
-
-
 def test_what_is_left_at_the_wide_window(plant_filters):
     """Noise is not analysable, an acceleration filter is; before training all is noise."""
     noise = np.random.default_rng(0).normal(size=(4, 41))
@@ -487,15 +465,6 @@ def test_filters_are_of_the_reading_asked_for(monkeypatch, setup):
     assert committed.filters(21, "hidden", setup=setup).shape == (2, 20, 21)
     committed.networks.cache_clear()
     assert asked == [(21, setup)]
-
-
-def test_structure_beyond_chance(plant_filters):
-    trained = [mix(21, 0, 1)] * 3 + [alternating(21, 0.99)]
-    before = [mix(21, 0, 1)] + [alternating(21, 0.99)] * 3
-    plant_filters({"hidden": {21: trained}}, {"hidden": {21: before}})
-    found = filters.structured(21)
-    assert found.value == pytest.approx(0.75 - 0.25)
-    assert found.text == "75 % of the filters have a name, 25 % before training"
 
 
 def test_random_filters_are_not_analysable():

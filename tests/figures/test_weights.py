@@ -13,7 +13,6 @@ from pictures import boxes as rectangles
 from pictures import curves as curves_of
 
 from ddlib import figures, paper
-from ddlib.analysis import CLASSES, classify, shares
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.figures import COLOURS, INK, Illustration, control, lines, weights
 from ddlib.learning import Weights
@@ -30,6 +29,17 @@ TABLE = {
 PRINTED = {
     "training": {w: r.training for w, r in paper.TABLE_4_1.items()},
     "test": {w: r.test for w, r in paper.TABLE_4_1.items()},
+}
+
+NULLS = {
+    "hidden": {
+        "velocity": {"real": np.full(5, 0.2), "one": np.full(3, 0.4), "two": np.full(4, 0.7)},
+        "jerk": {"real": np.array([0.0, 0.2]), "one": np.zeros(3), "two": np.ones(4)},
+    },
+    "direct": {
+        "velocity": {"real": np.zeros(5), "one": np.zeros(3), "two": np.zeros(4)},
+        "jerk": {"real": np.ones(5), "one": np.zeros(3), "two": np.zeros(4)},
+    },
 }
 
 EXAMPLES = {
@@ -53,7 +63,9 @@ EXAMPLES = {
     "decomposition": lambda: figures.decomposition(
         {f"unit {k}": FILTERS[k] for k in range(3)}, 0.01
     ),
-    "share_map": lambda: figures.share_map(shares(FILTERS), classify(FILTERS), CLASSES),
+    "against_nulls": lambda: figures.against_nulls(
+        NULLS, "share of the filters", "Bars of shares, dots of draws."
+    ),
     "feedforward_loop": figures.feedforward_loop,
 }
 
@@ -158,9 +170,6 @@ def test_alt_texts_say_the_numbers(made):
     assert f"21: {median:.3f}" in made["rmss_by_window"].alt
     worst = np.sqrt(np.mean((np.sin(T) - np.cos(T)) ** 2))
     assert f"{worst:.2f} N m" in made["overlay"].alt and "window 11" in made["overlay"].alt
-    names, counts = np.unique(classify(FILTERS), return_counts=True)
-    for name, count in zip(names, counts):
-        assert f"{count} {name}" in made["share_map"].alt
 
 
 def test_one_panel_is_enough():
@@ -178,7 +187,8 @@ def test_one_panel_is_enough():
         (lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.1]), "q must have"),
         (lambda: figures.extents_square(APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
         (lambda: figures.decomposition({"a": np.ones(10)}, 0.01), "f must have an odd"),
-        (lambda: figures.share_map(np.ones((3, 4)), ["a"] * 3, ["a"]), "shares must have"),
+        (lambda: figures.against_nulls({}, "share", "Bars."), "panels must hold"),
+        (lambda: figures.against_nulls({"a": {"b": {"c": [[1.0]]}}}, "share", "Bars."), "of 'b'"),
         (lambda: figures.curves(T, {"y": {"a": T}}, "x", " "), "alt must describe"),
         (lambda: figures.hinton(Weights.random(3, 11)), "weights must be of one network"),
         (lambda: figures.hinton(scaled(0.0)), "weights must be finite and not all zero"),
@@ -190,6 +200,31 @@ def test_refusals(make, message):
         warnings.simplefilter("error")
         with pytest.raises(ValueError, match=message):
             make()
+
+
+# --- shares beside nulls ------------------------------------------------------------------
+
+
+def test_bars_end_at_the_mean_and_every_draw_has_a_dot():
+    _, figure = drawn(
+        lambda: figures.against_nulls(
+            NULLS, "share of the filters", "Bars of shares, dots of draws."
+        )
+    )
+    left, right, *_ = (axis for axis in figure.axes if axis.lines)
+    assert [axis.get_title(loc="left") for axis in (left, right)] == ["hidden", "direct"]
+    assert [bar.get_width() for bar in left.patches] == pytest.approx([0.2, 0.1])
+    assert [bar.get_width() for bar in right.patches] == pytest.approx([0, 1])
+    dots = [line for line in left.lines if line.get_linestyle() == "None"]
+    found = [(list(line.get_xdata()), line.get_color()) for line in dots]
+    assert found == [
+        ([0.4] * 3, COLOURS[0]), ([0.7] * 4, COLOURS[1]),
+        ([0.0] * 3, COLOURS[0]), ([1.0] * 4, COLOURS[1]),
+    ]  # fmt: skip
+    rows = [line.get_ydata()[0] for line in dots]
+    assert all(abs(y - row) < 0.4 for y, row in zip(rows, (0, 0, 1, 1)))
+    assert [t.get_text() for t in left.get_yticklabels()] == ["velocity", "jerk"]
+    assert [t.get_text() for t in figure.legends[0].get_texts()] == ["real", "one", "two"]
 
 
 # --- Hinton diagrams ----------------------------------------------------------------------

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from ddlib.analysis import CLASSES, DERIVATIVES
-from ddlib.evidence.measures.filters import ON
+from ddlib.evidence.measures.filters import RUNS
 from ddlib.evidence.verdicts import Measured, judged, largest_median, mean, median
 from ddlib.experiments import results, split, true_states
 from ddlib.experiments.studies.nulls import TRIAL
@@ -226,17 +226,17 @@ def near_by_chance(null, real, true) -> float:
     return p_value(off(np.median(real, 0)), off(null), "less")
 
 
-def readable(what: str = "velocity", width: int = 21) -> Measured:
-    """How well a probe reads a quantity from the hidden units, less before training (judged).
+def readable(what: str = "velocity", width: int | str = 21) -> Measured:
+    """How well a probe reads a quantity from the hidden units, less the best control (judged).
 
     Mean of both joints, on trajectory 6; R² for velocity and acceleration, balanced accuracy for
-    the sign of the velocity.
+    the sign of the velocity. Controls are the units before training and under each null.
 
     Parameters
     ----------
     what : {"velocity", "acceleration", "sign"}
-    width : int
-        Window size.
+    width : int or str
+        As of `row`.
     """
     found = row(width)
     name, which = {
@@ -248,17 +248,19 @@ def readable(what: str = "velocity", width: int = 21) -> Measured:
     def of(ensemble):
         return np.array(ensemble[name])[:, which].mean(-1)
 
-    real, before = of(found["real"]), of(found["untrained"])
-    told = "; ".join(f"{n} {np.median(of(x)):.2f}" for n, x in matched(found).items())
+    real = of(found["real"])
+    controls = {"untrained": of(found["untrained"])}
+    controls |= {kind: of(null) for kind, null in matched(found).items()}
+    told = "; ".join(f"{n} {np.median(x):.2f}" for n, x in controls.items())
     return judged(
-        lambda one, other: median(one) - median(other),
+        lambda one, *others: median(one) - largest_median(*others),
         real,
-        before,
-        text=f"{np.median(real):.2f}; untrained {np.median(before):.2f}; {told}",
+        *controls.values(),
+        text=f"{np.median(real):.2f}; {told}",
     )
 
 
-def replaced(by: str, width: int = 21, refitted: bool = False, on: str = "training") -> Measured:
+def replaced(by: str, width: int = 21, refitted: bool = False, runs: str = "training") -> Measured:
     """Error with other hidden filters over the error with the network's own (judged).
 
     Parameters
@@ -270,12 +272,12 @@ def replaced(by: str, width: int = 21, refitted: bool = False, on: str = "traini
         Window size.
     refitted : bool
         Fit the output layer anew, in either case.
-    on : str
-        One of `ON`.
+    runs : str
+        One of `ddlib.evidence.measures.filters.RUNS`.
     """
     found, how = row(width)["interventions"], "refitted" if refitted else "at once"
-    errors = [np.array(found[name][how])[:, ON.index(on)] for name in ("as trained", by)]
-    alone = found["linear filter alone"][ON.index(on)]
+    errors = [np.array(found[name][how])[:, RUNS.index(runs)] for name in ("as trained", by)]
+    alone = found["linear filter alone"][RUNS.index(runs)]
     own, other = (significant(np.median(x), 2) for x in errors)
     return judged(
         lambda pair: median(pair[1]) / median(pair[0]),

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from scipy.linalg import orth
 
 from ddlib.analysis import (
     LAYERS,
     QUANTITIES,
     ablation,
-    cancellation,
     classify,
     decompose,
     explained,
@@ -166,21 +166,6 @@ def parts_sum_up() -> Measured:
     )
 
 
-def zero_crossings(width: int = 41) -> Measured:
-    """Share of hidden filters that are smooth with an odd part that crosses zero, less untrained.
-
-    It crosses between the centre and the edge; smooth means that a cubic leaves less than a fifth
-    of the energy. Rough odd parts change sign all the time.
-    """
-    both = []
-    for f in _pair(width, "hidden"):
-        odd = decompose(f).odd[..., width // 2 + 1 :]
-        both.append((np.diff(np.sign(odd), axis=-1) != 0).any(-1) & (shares(f)[..., 4] < 0.2))
-    value, replicates = over_members(lambda pair: _more(*pair), tuple(both))
-    text = f"{both[0].sum()} of {both[0].size} filters are smooth and cross, "
-    return Measured(value, f"{text}{both[1].sum()} before training", replicates)
-
-
 def _activities(width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name):
     windows, torque = cases(committed.training(setup), width)
     found = model(width, setup)
@@ -210,21 +195,6 @@ def transition(width: int) -> Measured:
     return Measured(value, text, replicates)
 
 
-def cancel(width: int) -> Measured:
-    """Median share of the hidden units' influence that cancels at the outputs, less untrained.
-
-    Of independent influences much cancels too: ten equal ones leave less than a third.
-    """
-    trained, before = (
-        cancellation(model(width), _activities(width)[0])
-        for model in (committed.networks, committed.untrained)
-    )
-    value, replicates = over_members(lambda pair: median(pair[0]) - median(pair[1]),
-                                     (trained, before))  # fmt: skip
-    now, then = (f"{100 * np.median(x):.0f} %" for x in (trained, before))
-    return Measured(value, f"{now}, {then} before training", replicates)
-
-
 def _spare(width: int, worse: float, model: Callable) -> np.ndarray:
     windows, torque = cases(committed.training(), width)
     found = model(width)
@@ -252,14 +222,6 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
     return Measured(value, f"{text}{np.median(before):.0f} before training", replicates)
 
 
-def structured(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Share of hidden filters that are analysable, less that of untrained networks."""
-    trained, before = (classify(f) != "not analysable" for f in _pair(width, "hidden", setup))
-    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
-    text = f"{100 * trained.mean():.0f} % of the filters have a name, "
-    return Measured(value, f"{text}{100 * before.mean():.0f} % before training", replicates)
-
-
 def shoulder_profile(width: int) -> Measured:
     """Error of the shoulder's torque alone on trajectory 6 (Figure 4-1), median of networks."""
     test = committed.recording()[5]
@@ -269,7 +231,7 @@ def shoulder_profile(width: int) -> Measured:
     return Measured(value, spread(wrong), replicates)
 
 
-ON = ("training", "trajectory 6")
+RUNS = ("training", "trajectory 6")
 """Where errors are taken."""
 
 
@@ -300,7 +262,7 @@ def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray
 
 
 def hidden_units_add(
-    width: int = 21, setup: str = JOINT_DAMPING.name, on: str = "training"
+    width: int = 21, setup: str = JOINT_DAMPING.name, runs: str = "training"
 ) -> Measured:
     """Error of a linear filter alone over that with the hidden units, both fitted anew (judged).
 
@@ -310,14 +272,16 @@ def hidden_units_add(
         Window size of networks of Table 4-1.
     setup : str
         One of `ddlib.experiments.SETUPS`.
-    on : str
-        One of `ON`.
+    runs : str
+        One of `RUNS`.
     """
     (x, hidden, y), (new, held, answer) = _features(width, setup)
-    alone = linear_alone(width, setup)[ON.index(on)]
+    alone = linear_alone(width, setup)[RUNS.index(runs)]
     both = np.array(
         [
-            refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)[ON.index(on)]
+            refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)[
+                RUNS.index(runs)
+            ]
             for h, t in zip(hidden, held)
         ]
     )
@@ -346,7 +310,7 @@ def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
     speed = run.qd_true[..., run.motion, :]
     acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
     rigid = chosen.arm.inverse_dynamics(run.q_true[..., run.motion, :], speed, acceleration)
-    axes = np.linalg.qr(np.column_stack([x, np.ones(len(x))]))[0]
+    axes = orth(np.column_stack([x, np.ones(len(x))]), rcond=1e-9)
 
     def curved(y):
         return y - axes @ (axes.T @ y)

@@ -24,9 +24,6 @@ from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensem
 from ddlib.metrics import rmss
 from ddlib.tables import scientific, significant, spread
 
-NAMED = ("velocity", "acceleration", "velocity + acceleration")
-"""Classes of filters that control theory uses."""
-
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
     table = results.read("table-4-1")["setups"][setup]
@@ -323,19 +320,3 @@ def weights_and_saturation() -> Measured:
 
     units = f"over {sum(largest.size for largest, _ in cells)} units"
     return judged(correlation, *cells, text=lambda value: f"rank correlation {value:.2f} {units}")
-
-
-def interpretable(width: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Share of filters that are velocity, acceleration or a sum of both, less the untrained's."""
-    found, before = (
-        {
-            layer: np.isin(classify(committed.filters(width, layer, model, setup)), NAMED)
-            for layer in ("hidden", "direct")
-        }
-        for model in (committed.networks, committed.untrained)
-    )
-    text = f"{found['hidden'].sum()} of {found['hidden'].size} hidden, "
-    text += f"{found['direct'].sum()} of {found['direct'].size} direct filters; before training "
-    text += f"{before['hidden'].sum()} and {before['direct'].sum()}"
-    both = tuple(np.concatenate(list(named.values()), -1) for named in (found, before))
-    return judged(lambda pair: mean(pair[0]) - mean(pair[1]), both, text=text)
