@@ -7,4 +7,5 @@ shown. A claim names its function in ``book/claims.yml`` as "module.function".
 - ``trajectories``, ``windows``: sections 2 to 4, motions and what windows hold
 - ``networks``: Tables 4-1 and 6-1, what networks reach and what their weights show
 - ``filters``: sections 5 and 7, what filters show
+- ``filter_trial``: the same beside networks trained on unrelated torques
 """
