@@ -48,8 +48,8 @@ class SpectrumExplorer(CurveWidget):
         One of the recorded epochs, from 1.
     """
 
-    _esm = module(*SCRIPT, "player.js")
-    _css = module(*STYLE, "player.css")
+    _esm = module(*SCRIPT, "player.js", "spectrum.js")
+    _css = module(*STYLE, "player.css", "spectrum.css")
 
     def __init__(self, study: Mapping, directions: Sequence[Directions], **options):
         cells = study["cells"]
