@@ -70,7 +70,9 @@ class Measured(NamedTuple):
     replicates: np.ndarray | None = None
 
 
-def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) -> np.ndarray:
+def bootstrap(
+    statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0, nested: bool = False
+) -> np.ndarray:
     """A statistic of members drawn with replacement, again and again.
 
     Parameters
@@ -83,6 +85,9 @@ def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) ->
         the same members and are drawn together; the statistic gets them as a tuple.
     draws, seed : int
         Number of draws, 2,000 or more; seed of the drawing.
+    nested : bool
+        Members have members, like recordings and the networks trained on each, in the second
+        axis: those are drawn anew, too, for each member that was drawn.
 
     Returns
     -------
@@ -103,7 +108,8 @@ def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) ->
     """
     integer("draws", draws, DRAWS)
     rng = np.random.default_rng(seed)
-    found = np.asarray(statistic(*_picked(cells, lambda n: rng.integers(0, n, (draws, n)))))
+    drawn = _picked(cells, lambda n: rng.integers(0, n, (draws, n)), rng if nested else None)
+    found = np.asarray(statistic(*drawn))
     if found.shape != (draws,):
         raise ValueError(
             f"statistic must give one number for each of {draws} draws, got shape {found.shape}"
@@ -111,8 +117,11 @@ def bootstrap(statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0) ->
     return found
 
 
-def _picked(cells, pick: Callable) -> list:
-    """The cells with members picked by ``pick(members)``, of shape ``(draws, members)``."""
+def _picked(cells, pick: Callable, rng=None) -> list:
+    """The cells with members picked by ``pick(members)``, of shape ``(draws, members)``.
+
+    With `rng` the members of each member are drawn, too.
+    """
     drawn = []
     for cell in cells:
         parts = [np.asarray(part) for part in (cell if isinstance(cell, tuple) else (cell,))]
@@ -120,7 +129,10 @@ def _picked(cells, pick: Callable) -> list:
         if len(members) != 1 or not min(members):
             raise ValueError(f"cells must have the same members in a tuple, got {sorted(members)}")
         integer("members", *members, FEWEST)
-        picked = pick(*members)
+        picked = (pick(*members),)
+        if rng is not None:
+            inner = parts[0].shape[1]
+            picked = picked[0][..., None], rng.integers(0, inner, (*picked[0].shape, inner))
         parts = tuple(part[picked] for part in parts)
         drawn.append(parts if isinstance(cell, tuple) else parts[0])
     return drawn
@@ -148,12 +160,12 @@ def mean(cell) -> np.ndarray:
     return cell.reshape(len(cell), -1).mean(-1)
 
 
-def over_members(statistic: Callable, *cells) -> tuple[float, np.ndarray]:
+def over_members(statistic: Callable, *cells, nested: bool = False) -> tuple[float, np.ndarray]:
     """A statistic of all members, and its replicates from `bootstrap`.
 
     Parameters
     ----------
-    statistic, *cells
+    statistic, *cells, nested
         As in `bootstrap`.
 
     Returns
@@ -162,20 +174,22 @@ def over_members(statistic: Callable, *cells) -> tuple[float, np.ndarray]:
     replicates : ndarray, shape (draws,)
     """
     once = _picked(cells, lambda n: np.arange(n)[None])
-    return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells)
+    return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells, nested=nested)
 
 
-def judged(statistic: Callable, *cells, text: str | Callable[[float], str]) -> Measured:
+def judged(
+    statistic: Callable, *cells, text: str | Callable[[float], str], nested: bool = False
+) -> Measured:
     """A statistic of all members with its replicates, and a text or a function of the value.
 
     Parameters
     ----------
-    statistic, *cells
+    statistic, *cells, nested
         As in `bootstrap`.
     text : str or callable
         What the tables show, or ``text(value)`` that returns it.
     """
-    value, replicates = over_members(statistic, *cells)
+    value, replicates = over_members(statistic, *cells, nested=nested)
     return Measured(value, text(value) if callable(text) else text, replicates)
 
 

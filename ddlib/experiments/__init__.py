@@ -1,7 +1,8 @@
 """The paper's experiments, as this book repeats them: set-ups, studies, committed results.
 
 - ``setups``: the experiment of section 4, every choice in one place; its errors
-- ``exact_states``: the same for section 6; ``two_harmonics``, ``random_arms``: other motions, arms
+- ``exact_states``: the same for section 6; ``two_harmonics``: other motions
+- ``knobs``: what decides the table: a design, a regression, what the printed numbers speak for
 - ``studies``: what is too slow for a chapter, a function for each result
 - ``reproduce``: runs studies, ``make reproduce``; an outcome lies in ``book/results/NAME.json``
 - ``results``: reads these files, and tells which code made them
@@ -23,7 +24,10 @@ __getattr__, __dir__, __all__ = hand_on(
         "Setup WINDOWS errors predict solve_windows split train_windows"
     ),
     exact_states="EPOCHS RADIUS RATE SAMPLES random_states states_along torque",
-    random_arms="RANGES distance draw setup",
+    knobs=(
+        "Emulator Knob METHODS knobs_of left_out moments screening shares spread_evenly terms "
+        "weigh without_start would_tell"
+    ),
     two_harmonics=(
         "NEUTRAL ORDER record_circle record_quintic record_two_harmonics second_amplitudes SHARE "
         "true_states"

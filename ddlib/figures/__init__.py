@@ -14,12 +14,12 @@ __getattr__, __dir__, __all__ = hand_on(
         "COLOURS DASHES FAINT INK Illustration JOINTS RC check_label illustrate legend_above "
         "plain_ticks"
     ),
-    lines="clusters curves families overlay predicted_curves rmss_by_window",
+    lines="clusters curves families overlay predicted_curves",
     weights="against_nulls decomposition hinton network_diagram",
     dynamics="CENTRED arm_sketch estimates hand_paths operations",
     effects="by_case ranking side_by_side",
     recording="extents_square reached rounding tied",
-    maps="COLOUR_MAP plane scatter",
+    maps="COLOUR_MAP intervals plane rmss_by_window",
     states="SYMBOLS error_by_size hinton_states responses torque_along",
     control="feedforward_loop root_loci",
 )

@@ -121,37 +121,6 @@ def overlay(
     return illustrate(draw, alt, 7.0, 1.7 * len(predicted) + 0.4)
 
 
-def rmss_by_window(table: Mapping[str, Mapping[int, np.ndarray]], printed: Mapping) -> Illustration:
-    """Table 4-1 as a picture: every network's error, the medians and the printed values.
-
-    Parameters
-    ----------
-    table : mapping
-        ``{"training" or "test": {window: errors (members,)}}``.
-    printed : mapping
-        ``{"training" or "test": {window: value}}``.
-    """
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(table), sharey=True, squeeze=False)[0]
-        for k, (axis, (name, columns)) in enumerate(zip(axes, table.items())):
-            for place, values in enumerate(columns.values()):
-                spread = np.linspace(-0.16, 0.16, len(values))
-                axis.plot(place + spread, np.sort(values), ".", color=COLOURS[k], ms=4, alpha=0.7)
-                axis.plot([place - 0.25, place + 0.25], [np.median(values)] * 2, color=INK, lw=2)
-            marks = [printed[name][w] for w in columns]
-            axis.plot(range(len(columns)), marks, "D", mfc="none", mec=COLOURS[3], ms=9, mew=1.8)
-            axis.set_xticks(range(len(columns)), [str(w) for w in columns])
-            axis.set(xlabel="window, samples", title=name, yscale="log")
-        axes[0].set_ylabel("RMSS")
-
-    alt = "RMSS of every network by window size; medians as bars, printed values as diamonds. "
-    for name, columns in table.items():
-        medians = ", ".join(f"{w}: {np.median(v):.3f}" for w, v in columns.items())
-        alt += f"Median {name} error {medians}. "
-    return illustrate(draw, alt.strip(), 7.0, 3.1)
-
-
 def families(
     panels: Mapping[str, Mapping[str, tuple]],
     labels: tuple[str, str],

@@ -1,4 +1,4 @@
-"""Figures that are maps: an error over a plane, and arms drawn at random."""
+"""Figures that are maps: an error over a plane, Table 4-1 under set-ups, rows of intervals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,18 @@ from matplotlib.ticker import NullLocator
 from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array
-from ddlib.figures.style import COLOURS, INK, Illustration, illustrate, plain_ticks
+from ddlib.figures.style import (
+    COLOURS,
+    FAINT,
+    INK,
+    Illustration,
+    illustrate,
+    legend_above,
+    plain_ticks,
+)
+
+SIGNS = ("o", "s", "^", "v", "P", "X")
+"""Shapes of points that go with the colours."""
 
 COLOUR_MAP = matplotlib.colormaps["viridis"].resampled(32)
 """Few enough steps that its bar is drawn and not an embedded picture, which pages forbid."""
@@ -96,59 +107,134 @@ def _hull(points):
     return points[ConvexHull(points).vertices]
 
 
-def scatter(
-    points: Mapping[str, tuple],
-    values,
-    y_label: str,
-    value_label: str,
-    alt: str,
-    chosen: int | None = None,
+def rmss_by_window(
+    table: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]], printed: Mapping
 ) -> Illustration:
-    """One panel for each quantity: a result against it, a second one as colour.
+    """Table 4-1 as a picture: every network's error under each set-up, and the printed values.
 
     Parameters
     ----------
-    points : mapping
-        ``{x label: (x, y)}``; both ``(points,)`` and above 0, on logarithmic axes.
-    values : array_like, shape (points,)
-        What the colours show; above 0.
-    y_label, value_label, alt : str
-        Labels of the y axes and of the colours; alternative text.
-    chosen : int, optional
-        Index of a point to ring.
+    table : mapping
+        ``{set-up: {column: {window: errors (members,)}}}``, errors above 0.
+    printed : mapping
+        ``{column: {window: value}}``.
 
     Raises
     ------
     ValueError
-        If a value is not above 0, or shapes differ.
+        If an error is not above 0.
     """
-    values = finite_array("values", values)
-    for name, pair in points.items():
-        for part in pair:
-            part = finite_array(name, part)
-            if part.shape != values.shape or not (part > 0).all():
-                raise ValueError(
-                    f"points of {name!r} must be {values.size} numbers above 0, got {part}"
-                )
-    if not (values > 0).all():
-        raise ValueError(f"values must be above 0, got {values.min():g}")
-    columns = 3
-    rows = -(-len(points) // columns)
+    for name, columns in table.items():
+        for cells in columns.values():
+            for values in cells.values():
+                if not (finite_array(name, values) > 0).all():
+                    raise ValueError(f"errors of {name!r} must be above 0, got {min(values)}")
 
     def draw(figure: Figure):
-        axes = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
-        norm = LogNorm(values.min(), values.max())
-        for axis, (name, (x, y)) in zip(axes, points.items()):
-            shown = axis.scatter(x, y, c=values, norm=norm, cmap=COLOUR_MAP, s=26, lw=0.6, ec=INK)
-            if chosen is not None:
-                axis.plot(x[chosen], y[chosen], "o", mfc="none", mec=COLOURS[1], ms=11, mew=2)
-            axis.set(xscale="log", yscale="log", xlabel=name)
-            plain_ticks(axis.xaxis)
+        axes = figure.subplots(1, len(printed), sharey=True, squeeze=False)[0]
+        shift = 0.8 / len(table)
+        for axis, (column, marks) in zip(axes, printed.items()):
+            for k, (name, columns) in enumerate(table.items()):
+                for place, values in enumerate(columns[column].values()):
+                    middle = place + (k - (len(table) - 1) / 2) * shift
+                    across = middle + np.linspace(-0.35, 0.35, len(values)) * shift
+                    axis.plot(across, np.sort(values), SIGNS[k], color=COLOURS[k], ms=3.2,
+                              alpha=0.75, mew=0, label=name)  # fmt: skip
+                    axis.plot(middle + np.array([-0.42, 0.42]) * shift, [np.median(values)] * 2,
+                              color=INK, lw=2)  # fmt: skip
+            for place, value in enumerate(marks.values()):
+                axis.plot([place - 0.46, place + 0.46], [value] * 2, color=COLOURS[3], lw=1.8,
+                          ls="--", label="printed")  # fmt: skip
+            axis.set_xticks(range(len(marks)), [str(w) for w in marks])
+            axis.set(xlabel="window, samples", title=column, yscale="log")
+            axis.grid(False, axis="x")
             plain_ticks(axis.yaxis)
-        for axis in axes[: len(points) : columns]:
-            axis.set_ylabel(y_label)
-        for axis in axes[len(points) :]:
-            axis.remove()
-        _finish(figure.colorbar(shown, ax=list(axes[: len(points)]), label=value_label))
+        axes[0].set_ylabel("RMSS")
+        handles, names = axes[0].get_legend_handles_labels()
+        first = dict(zip(names, handles))
+        legend_above(figure, list(first.values()), list(first))
 
-    return illustrate(draw, alt, 7.0, 2.1 * rows + 0.3)
+    alt = "RMSS of every network by window; medians as bars, printed values as dashed lines. "
+    for name, columns in table.items():
+        for column, cells in columns.items():
+            medians = ", ".join(f"{w}: {np.median(v):.3f}" for w, v in cells.items())
+            alt += f"{name}, median {column} error {medians}. "
+    return illustrate(draw, alt.strip(), 7.0, 3.7)
+
+
+def intervals(
+    panels: Mapping[str, Mapping[str, Mapping[str, tuple]]],
+    x_label: str,
+    alt: str,
+    *,
+    log: bool = False,
+    band: tuple[float, float] | None = None,
+    marks: Mapping[str, Mapping[str, float]] | None = None,
+    ends: Mapping[str, tuple[str, str]] | None = None,
+) -> Illustration:
+    """Panels of rows, each with a point and an interval for every series.
+
+    Parameters
+    ----------
+    panels : mapping
+        ``{title: {series: {row: (low, middle, high)}}}``.
+    x_label, alt : str
+        Label of the x axes; alternative text.
+    log : bool
+        Logarithmic x axes.
+    band : pair of float, optional
+        A range of x to shade.
+    marks : mapping, optional
+        ``{title: {row: x}}``: places marked with a diamond.
+    ends : mapping, optional
+        ``{row: (left, right)}``: what stands at both ends of a row, x being -1 to 1 there.
+
+    Raises
+    ------
+    ValueError
+        If an interval is not in order.
+    """
+    rows = list(dict.fromkeys(r for series in panels.values() for s in series.values() for r in s))
+    for series in panels.values():
+        for points in series.values():
+            for row, point in points.items():
+                low, middle, high = finite_array(row, point)
+                if not low <= middle <= high:
+                    raise ValueError(f"interval of {row!r} must be in order, got {tuple(point)}")
+
+    def draw(figure: Figure):
+        together = ends is None
+        axes = figure.subplots(1, len(panels), sharex=together, sharey=together, squeeze=False)[0]
+        for axis, (title, series) in zip(axes, panels.items()):
+            own = rows if ends is None else list(next(iter(series.values())))
+            if band is not None:
+                axis.axvspan(*band, color=FAINT, alpha=0.2, lw=0)
+            for k, (name, points) in enumerate(series.items()):
+                offset = (k - (len(series) - 1) / 2) * 0.6 / len(series)
+                for row, (low, middle, high) in points.items():
+                    y = own.index(row) + offset
+                    axis.plot([low, high], [y, y], color=COLOURS[k], lw=1.6)
+                    axis.plot([middle], [y], SIGNS[k], color=COLOURS[k], ms=5, label=name)
+            for row, x in (marks or {}).get(title, {}).items():
+                axis.plot([x], [own.index(row)], "D", mfc="none", mec=COLOURS[3], ms=7, mew=1.5)
+            axis.set_yticks(range(len(own)), own)
+            axis.set_ylim(len(own) - 0.5, -0.5)
+            axis.set(xlabel=x_label, title=title, xscale="log" if log else "linear")
+            axis.grid(False, axis="y")
+            if log:
+                plain_ticks(axis.xaxis)
+            if ends is not None:
+                axis.set_xlim(-1, 1)
+                axis.set_xticks([-1, 0, 1], [])
+                for row, (left, right) in ends.items():
+                    if row in own:
+                        y = own.index(row) + 0.42
+                        axis.text(-1, y, left, fontsize=7, ha="left", va="center")
+                        axis.text(1, y, right, fontsize=7, ha="right", va="center")
+        named = {}
+        for axis in axes:
+            named |= dict(zip(*reversed(axis.get_legend_handles_labels())))
+        if len(named) > 1:
+            legend_above(figure, list(named.values()), list(named))
+
+    return illustrate(draw, alt, 7.0, 1.1 + 0.33 * len(rows))

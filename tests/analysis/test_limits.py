@@ -23,7 +23,7 @@ from ddlib.control import PID, delays, linear, pd, velocity  # fmt: skip
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import Arm, Link, derivation, serial  # fmt: skip
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  # fmt: skip
-from ddlib.experiments import exact_states, random_arms, setups, two_harmonics  # fmt: skip
+from ddlib.experiments import exact_states, knobs, setups, two_harmonics  # fmt: skip
 from ddlib.identification import equations, regression  # fmt: skip
 from ddlib.learning import (  # fmt: skip
     levenberg_marquardt,
@@ -78,9 +78,9 @@ def estimate(level):
     return regression.least_squares(EQUATIONS).half_width(level)
 
 
-def a_random_arm(name):
-    middle = {key: np.sqrt(low * high) for key, (low, high) in random_arms.RANGES.items()}
-    return lambda x: random_arms.setup({**middle, name: x})
+def turned(name):
+    middle = {key: knob.value(0.0) for key, knob in knobs.knobs_of("solver").items()}
+    return lambda x: knobs.setup({**middle, name: x}, "solver")
 
 
 ROWS = [
@@ -161,11 +161,13 @@ ROWS = [
     ("momentum", lambda x: learn(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),
     ("every", lambda x: learn(every=x, epochs=2), [1, 2], [0, 1.0]),
     ("epochs", lambda x: learn(epochs=x, every=2), [2], [1, 2.0]),
-    ("count", random_arms.draw, [1], [0, 1.0]),
-    ("seed", lambda x: random_arms.draw(2, x), [0, 1], [-1, 1.0]),
-    *((name, a_random_arm(name), [low, high], [low * UNDER, high * OVER])
-      for name, (low, high) in random_arms.RANGES.items()),
-    ("column", lambda x: random_arms.distance({}, x), [], ["best"]),
+    ("count", lambda x: knobs.spread_evenly(x, 2), [1], [0, 1.0]),
+    ("seed", lambda x: knobs.spread_evenly(2, 2, x), [0, 1], [-1, 1.0]),
+    *((name, turned(name), [knob.low, knob.high], [knob.high * 1.01 + 0.01])
+      for name, knob in knobs.knobs_of("solver").items()),
+    ("method", knobs.knobs_of, ["solver"], ["best"]),
+    ("seconds", lambda x: knobs.without_start(setups.STATE_FEEDBACK.record(), x), [0.0, 0.3],
+     [-0.01]),
     ("step", lambda x: following.gains(FILTERS, x), [1e-6, 0.5], [0.0]),
     ("margin", lambda x: sensitivity.transition_range(WEIGHTS, x),
      [1e-6, 0.49], [0.0, 0.49 * OVER]),

@@ -139,23 +139,19 @@ def test_one_network_of_many_is_the_median(monkeypatch):
     )  # fmt: skip
 
 
-def test_arms_at_random(monkeypatch):
-    rows = [
-        {str(w): {"training": [0.1 * k], "test": [abs(w - best)]} for w in (11, 21, 41)}
-        for k, best in ((1, 21), (2, 21), (3, 41))
-    ]
-    changed(monkeypatch, "arms", lambda: {"rows": rows})
+def test_all_knobs_turned(monkeypatch):
+    def run(best):
+        return {"windows": {str(w): {"test": [abs(w - best)] * 2} for w in (11, 21, 41)}}
+
+    methods = {"descent": [run(21), run(21)], "solver": [run(41)]}
+    damping = {str(w): {"training": [[0.1, 0.3]], "test": [[w, w]]} for w in (11, 21, 41)}
+    changed(monkeypatch, "screened", lambda: {"methods": methods})
+    changed(monkeypatch, "recordings", lambda: {"setups": {"joint damping": damping}})
     (row,) = [row for row in ledger.open_questions().rows if "gains" in row[0]]
-    assert row[3].startswith("3 arms at random: training 0.20 (0.10 to 0.30) · ")
-    assert row[3].endswith("least at window 11 on 0, 21 on 2, 41 on 1")
-
-
-def test_arms_that_were_not_trained_are_left_out(monkeypatch):
-    def missing():
-        raise FileNotFoundError("arms")
-
-    changed(monkeypatch, "arms", missing)
-    assert not [row for row in ledger.open_questions().rows if "gains" in row[0]]
+    assert "tuned: training 0.20 · 0.20 · 0.20; test 11 · 21 · 41, least at 11;" in row[3]
+    assert row[3].endswith(
+        "of 3 runs with all knobs turned, test least at window 11 in 0, 21 in 2, 41 in 1"
+    )
 
 
 def test_direct_filters_follow_position_after_two_sines_too():

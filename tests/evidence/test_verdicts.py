@@ -66,6 +66,20 @@ def test_value_and_replicates_come_from_one_function():
     assert value == 6
 
 
+def test_networks_on_recordings_are_drawn_on_both_levels():
+    """Variance of a mean of means: that of the recordings and that of the networks, each shared."""
+    rng = np.random.default_rng(5)
+    days, networks = 8, 6
+    x = rng.normal(0, 3.0, (days, 1)) + rng.normal(0, 1.0, (days, networks))
+    found = bootstrap(mean, x, nested=True, draws=20_000)
+    within = x.var(axis=1).mean() / (days * networks)
+    between = x.mean(axis=1).var() / days
+    assert found.var() == pytest.approx(between + within, rel=0.05)
+    assert bootstrap(mean, x, draws=20_000).var() == pytest.approx(between, rel=0.05)
+    flat = np.repeat(rng.normal(size=(days, 1)), networks, axis=1)
+    assert (bootstrap(lambda cell: np.ptp(cell, axis=-1).max(-1), flat, nested=True) == 0).all()
+
+
 @pytest.mark.parametrize(
     "arguments, words",
     [

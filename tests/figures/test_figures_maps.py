@@ -2,17 +2,17 @@
 
 import numpy as np
 import pytest
-from matplotlib.collections import PathCollection, QuadMesh
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 from matplotlib.contour import ContourSet
-from pictures import drawn
+from pictures import drawn, words
 
-from ddlib.figures import plane, scatter
+from ddlib import paper
+from ddlib.figures import COLOURS, INK, intervals, plane, rmss_by_window
 
 X, Y = np.linspace(0, 45, 4), np.linspace(0, 45, 3)
 VALUES = np.outer([1.0, 2.0, 4.0], [0.1, 0.2, 0.5, 1.0])
 LABELS = ("shoulder, °", "elbow, °", "error")
-POINTS = {"gain": (np.array([1.0, 2.0, 4.0]), np.array([0.1, 0.2, 0.3]))}
 
 
 def test_a_plane_has_a_cell_for_every_value():
@@ -64,36 +64,84 @@ def test_nothing_is_an_embedded_picture():
     """The pages' policy does not let `data:` in."""
     figures = (
         plane(X, Y, VALUES, LABELS, "a map"),
-        scatter(POINTS, [1.0, 2.0, 3.0], "error", "distance", "arms"),
+        intervals({"a": {"b": {"c": (1, 2, 3)}}}, "x", "rows"),
     )
     assert not [f for f in figures if "<image" in f.svg or "data:" in f.svg]
 
 
-def test_a_scatter_has_a_panel_for_each_quantity():
-    both = {**POINTS, "damping": POINTS["gain"]}
-    values = np.array([1.0, 2.0, 3.0])
-    for given in (POINTS, both):
-        _, figure = drawn(lambda given=given: scatter(given, values, "error", "distance", "arms"))
-        found = [[c for c in a.collections if isinstance(c, PathCollection)] for a in figure.axes]
-        panels = [cloud for clouds in found for cloud in clouds]
-        assert len(panels) == len(given)
-        for cloud, points in zip(panels, given.values()):
-            np.testing.assert_array_equal(cloud.get_offsets(), np.transpose(points))
-            np.testing.assert_array_equal(cloud.get_array(), values)
-        assert not any(axis.lines for axis in figure.axes)
-    _, ringed = drawn(lambda: scatter(POINTS, values, "error", "distance", "arms", chosen=1))
-    (ring,) = ringed.axes[0].lines
-    assert ring.get_xydata().tolist() == [[2.0, 0.2]]
+# --- Table 4-1 under set-ups --------------------------------------------------------------------
+
+RNG = np.random.default_rng(3)
+PRINTED = {
+    "training": {w: row.training for w, row in paper.TABLE_4_1.items()},
+    "test": {w: row.test for w, row in paper.TABLE_4_1.items()},
+}
+TABLE = {
+    name: {column: {w: RNG.uniform(0.02, 0.4, 25) for w in (11, 21, 41)} for column in PRINTED}
+    for name in ("one", "other")
+}
 
 
-@pytest.mark.parametrize(
-    "points, values, words",
-    [
-        ({"gain": ([1.0, 2.0], [1.0, 2.0])}, [1.0, 2.0, 3.0], "points of 'gain' must be 3 numbers"),
-        ({"gain": ([1.0, -2.0], [1.0, 2.0])}, [1.0, 2.0], "points of 'gain' must be 2 numbers"),
-        (POINTS, [0.0, 1.0, 2.0], "values must be above 0"),
-    ],
-)
-def test_scatters_refuse(points, values, words):
-    with pytest.raises(ValueError, match=words):
-        scatter(points, values, "error", "distance", "arms")
+def test_every_network_of_each_set_up_is_drawn():
+    picture, figure = drawn(lambda: rmss_by_window(TABLE, PRINTED))
+    for axis, (column, marks) in zip(figure.axes, PRINTED.items()):
+        assert axis.get_yscale() == "log"
+        clouds = [line for line in axis.lines if line.get_marker() != "None"]
+        assert len(clouds) == 6
+        for k, name in enumerate(TABLE):
+            mine = [line for line in clouds if line.get_color() == COLOURS[k]]
+            for line, (place, values) in zip(mine, enumerate(TABLE[name][column].values())):
+                x, y = line.get_xydata().T
+                np.testing.assert_array_equal(y, np.sort(values))
+                assert (np.abs(x - place) < 0.5).all()
+        bars = [line.get_ydata()[0] for line in axis.lines if line.get_color() == INK]
+        wanted = [np.median(v) for name in TABLE for v in TABLE[name][column].values()]
+        np.testing.assert_allclose(bars, wanted)
+        dashed = [line.get_ydata()[0] for line in axis.lines if line.get_linestyle() == "--"]
+        np.testing.assert_allclose(dashed, list(marks.values()))
+    assert f"one, median test error 11: {np.median(TABLE['one']['test'][11]):.3f}" in picture.alt
+    assert [word for word in words(picture) if word == "printed"] == ["printed"]
+    with pytest.raises(ValueError, match="errors of 'one' must be above 0"):
+        rmss_by_window({"one": {"test": {11: [0.1, 0.0]}}}, PRINTED)
+
+
+# --- rows of intervals --------------------------------------------------------------------------
+
+PANELS = {
+    "left": {"a": {"gain": (0.5, 1.0, 2.0), "friction": (1.0, 1.0, 1.0)}, "b": {"gain": (1, 2, 4)}},
+    "right": {"a": {"gain": (0.2, 0.3, 0.4)}},
+}
+
+
+def test_intervals_and_points_are_where_they_were_given():
+    picture, figure = drawn(lambda: intervals(PANELS, "factor", "rows", log=True, band=(0.7, 1.4)))
+    left, right = figure.axes
+    assert left.get_xscale() == "log" and picture.alt == "rows"
+    lines = [line for line in left.lines if line.get_marker() == "None"]
+    assert [line.get_xdata().tolist() for line in lines] == [[0.5, 2.0], [1.0, 1.0], [1, 4]]
+    points = [line.get_xydata()[0] for line in left.lines if line.get_marker() != "None"]
+    assert [point[0] for point in points] == [1.0, 1.0, 2]
+    heights = [point[1] for point in points]
+    assert heights[0] < 0 < heights[2] < 0.5 < heights[1]  # first row above, series side by side
+    assert [label.get_text() for label in left.get_yticklabels()] == ["gain", "friction"]
+    assert left.get_ylim()[0] > left.get_ylim()[1]
+    (shade,) = left.patches
+    np.testing.assert_allclose(shade.get_bbox().intervalx, (0.7, 1.4))
+    assert len([line for line in right.lines if line.get_marker() == "None"]) == 1
+    assert {"a", "b"} <= set(words(picture))
+
+
+def test_rows_with_ends_and_marks():
+    panels = {"all": {"a": {"gain": (-0.5, 0.0, 0.9)}}}
+    picture, figure = drawn(
+        lambda: intervals(
+            panels, "place", "rows", marks={"all": {"gain": 0.3}}, ends={"gain": ("300", "900")}
+        )
+    )
+    (axis,) = figure.axes
+    assert axis.get_xlim() == (-1, 1)
+    (mark,) = [line for line in axis.lines if line.get_marker() == "D"]
+    np.testing.assert_allclose(mark.get_xydata(), [[0.3, 0]])
+    assert {"300", "900"} <= set(words(picture))
+    with pytest.raises(ValueError, match="interval of 'gain' must be in order"):
+        intervals({"all": {"a": {"gain": (0.5, 0.0, 0.9)}}}, "place", "rows")

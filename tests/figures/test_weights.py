@@ -12,7 +12,7 @@ from pictures import SVG, drawn, on_paper, words
 from pictures import boxes as rectangles
 from pictures import curves as curves_of
 
-from ddlib import figures, paper
+from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.figures import COLOURS, INK, Illustration, control, lines, weights
 from ddlib.learning import Weights
@@ -22,14 +22,6 @@ NAMES = tuple(field.name for field in fields(Weights))
 T = np.linspace(0, 3, 300)
 RNG = np.random.default_rng(3)
 FILTERS = RNG.normal(size=(60, 21)).cumsum(-1)
-TABLE = {
-    "training": {w: RNG.uniform(0.02, 0.2, 25) for w in (11, 21, 41)},
-    "test": {w: RNG.uniform(0.1, 0.4, 25) for w in (11, 21, 41)},
-}
-PRINTED = {
-    "training": {w: r.training for w, r in paper.TABLE_4_1.items()},
-    "test": {w: r.test for w, r in paper.TABLE_4_1.items()},
-}
 
 NULLS = {
     "hidden": {
@@ -55,7 +47,6 @@ EXAMPLES = {
         APPENDIX_I[:5], APPENDIX_I[5], random_extents(200, 0)
     ),
     "network_diagram": lambda: figures.network_diagram(Weights.random(1, 21)[0]),
-    "rmss_by_window": lambda: figures.rmss_by_window(TABLE, PRINTED),
     "overlay": lambda: figures.overlay(
         T, np.sin(T), {"window 11": np.cos(T), "window 41": 0.9 * np.sin(T)}
     ),
@@ -67,6 +58,9 @@ EXAMPLES = {
         NULLS, "share of the filters", "Bars of shares, dots of draws."
     ),
     "feedforward_loop": figures.feedforward_loop,
+    "intervals": lambda: figures.intervals(
+        {"left": {"a": {"row": (1, 2, 3)}}, "right": {"a": {"row": (2, 2, 4)}}}, "x", "Rows."
+    ),
 }
 
 
@@ -165,9 +159,6 @@ def test_alt_texts_say_the_numbers(made):
     assert "q1 = 34 degrees" in made["arm_sketch"].alt
     assert "39.5 and 14.4 degrees" in made["extents_square"].alt
     assert "2 times 21 inputs, 10 hidden units and 2 outputs" in made["network_diagram"].alt
-    median = np.median(TABLE["test"][21])
-    assert f"Median test error 11: {np.median(TABLE['test'][11]):.3f}" in made["rmss_by_window"].alt
-    assert f"21: {median:.3f}" in made["rmss_by_window"].alt
     worst = np.sqrt(np.mean((np.sin(T) - np.cos(T)) ** 2))
     assert f"{worst:.2f} N m" in made["overlay"].alt and "window 11" in made["overlay"].alt
 
@@ -175,8 +166,6 @@ def test_alt_texts_say_the_numbers(made):
 def test_one_panel_is_enough():
     one = figures.overlay(T, np.sin(T), {"window 21": np.cos(T)})
     assert words(one).count("window 21") == 1
-    table = {"test": TABLE["test"]}
-    assert "Median test error" in figures.rmss_by_window(table, PRINTED).alt
     assert "only" in figures.decomposition({"only": FILTERS[0]}, 0.01).alt
 
 

@@ -13,6 +13,7 @@ from ddlib.analysis import classify, saturated, shares, shuffled, transition_ran
 from ddlib.evidence import committed
 from ddlib.evidence.verdicts import Measured, judged, largest_median, mean, median, over_members
 from ddlib.experiments import (
+    JOINT_DAMPING,
     STATE_FEEDBACK,
     WINDOWS,
     random_states,
@@ -26,8 +27,16 @@ from ddlib.tables import scientific, significant, spread
 
 
 def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
+    """Cells of Table 4-1; those of joint damping have an axis of recordings before the networks."""
+    if setup == JOINT_DAMPING.name:
+        days = results.read("recordings")["setups"][setup]
+        return {w: {**days[str(w)], "errors": days[str(w)]} for w in WINDOWS}
     table = results.read("table-4-1")["setups"][setup]
     return {width: table[str(width)] for width in WINDOWS}
+
+
+def _nested(setup: str) -> bool:
+    return setup == JOINT_DAMPING.name
 
 
 def _errors(column: str, setup: str = STATE_FEEDBACK.name) -> dict[int, np.ndarray]:
@@ -41,7 +50,7 @@ def _medians(errors: dict) -> str:
 def table_4_1(width: int, column: str, setup: str = STATE_FEEDBACK.name) -> Measured:
     """A cell of Table 4-1, median over all networks: `width`, `column` of the errors, `setup`."""
     cell = _errors(column, setup)[width]
-    return judged(median, cell, text=spread(cell))
+    return judged(median, cell, text=spread(cell.ravel()), nested=_nested(setup))
 
 
 def in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Measured:
@@ -64,7 +73,7 @@ def in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Meas
         pairs = itertools.pairwise(ranks)
         return np.all([np.max(low, 0) < np.min(high, 0) for low, high in pairs], axis=0)
 
-    value, replicates = over_members(holds, *errors.values())
+    value, replicates = over_members(holds, *errors.values(), nested=_nested(setup))
     text = f"medians {_medians(errors)}; in {100 * replicates.mean():.0f} % of draws"
     return Measured(bool(value), text, replicates)
 
@@ -78,7 +87,8 @@ def worse_on_test(setup: str = STATE_FEEDBACK.name) -> Measured:
         return np.min([median(test) / median(training) for training, test in cells], axis=0)
 
     ratios = [significant(np.median(test) / np.median(training), 2) for training, test in cells]
-    return judged(least, *cells, text="test / training " + ", ".join(ratios))
+    text = "test / training " + ", ".join(ratios)
+    return judged(least, *cells, text=text, nested=_nested(setup))
 
 
 def multiplications(width: int = 21) -> Measured:
@@ -98,8 +108,8 @@ def weights_against_nwh(widths=WINDOWS) -> Measured:
 
 def largest_weight(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Magnitude of the largest weight, the median over all networks."""
-    largest = _cells(setup)[width]["largest weight"]
-    return judged(median, largest, text=spread(largest, 3))
+    largest = np.array(_cells(setup)[width]["largest weight"])
+    return judged(median, largest, text=spread(largest.ravel(), 3), nested=_nested(setup))
 
 
 def slope() -> Measured:

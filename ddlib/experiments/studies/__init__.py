@@ -3,7 +3,7 @@
 Every study is a function without required arguments that returns a plain dictionary; `PARTS`
 names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 
-- ``table``, ``arms``: Table 4-1, longer, with clean sensors, on arms drawn at random
+- ``table``, ``knobs``: Table 4-1, on other days, longer, with clean sensors; which knobs decide it
 - ``windows``, ``inputs``: window sizes, hidden units, states in place of windows
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
@@ -15,9 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ddlib.experiments.studies import (
-    arms,
     harmonics,
     inputs,
+    knobs,
     nulls,
     span,
     states,
@@ -28,7 +28,8 @@ from ddlib.experiments.studies import (
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
-    "arms": arms.arms,
+    "recordings": table.recordings,
+    "screened": knobs.screened,
     "longer": table.longer,
     "clean": table.clean,
     "window-sizes": windows.window_sizes,
