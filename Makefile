@@ -49,7 +49,7 @@ stripped: $(READY)
 
 unit: $(READY)
 	@echo "==> Unit and property tests"
-	$(BIN)/python -m pytest -n $(JOBS) -m "not built and not browser"
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not built and not browser"
 
 notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
@@ -67,7 +67,7 @@ foreign-ci: $(READY)
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict
 	@echo "==> The built pages"
-	$(BIN)/python -m pytest -n $(JOBS) -m "built or browser" || { \
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "built or browser" || { \
 	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \
 	  $(BIN)/python -m pytest --last-failed --last-failed-no-failures none; }
 
