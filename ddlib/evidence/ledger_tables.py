@@ -125,13 +125,11 @@ def _bounds(bounds: Mapping) -> str:
         return "if yes" if bounds["is"] else "if no"
     if "factor" in bounds:
         return f"within a factor of {bounds['factor']:g}"
-    edges = {
-        name: significant(edge) if isinstance(edge, int) else f"{edge:g}"
-        for name, edge in bounds.items()
-    }
-    if "from" not in edges:
-        return f"up to {edges['to']}"
-    return f"from {edges['from']}" + (f" to {edges['to']}" if "to" in edges else "")
+    edges = (
+        f"{name} {significant(edge) if isinstance(edge, int) else f'{edge:g}'}"
+        for name, edge in sorted(bounds.items())
+    )
+    return ("" if "from" in bounds else "up ") + " ".join(edges)
 
 
 def _linked(claim: Claim) -> str:

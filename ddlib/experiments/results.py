@@ -139,11 +139,7 @@ def _normal_form(node) -> str:
 
 def _is_text(node) -> bool:
     """A statement that is only a string: a docstring or the note below a constant."""
-    return (
-        isinstance(node, ast.Expr)
-        and isinstance(node.value, ast.Constant)
-        and isinstance(node.value.value, str)
-    )
+    return isinstance(node, ast.Expr) and isinstance(getattr(node.value, "value", None), str)
 
 
 def stamp(seconds: float) -> dict:

@@ -36,13 +36,8 @@ class Descent:
         n, self.hidden = weights.hidden_bias.shape
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
         inputs = int(np.prod(self.shape))
-        columns = np.concatenate(
-            [
-                weights.hidden_weights.reshape(n, -1, inputs),
-                weights.direct_weights.reshape(n, -1, inputs),
-            ],
-            1,
-        )
+        layers = (weights.hidden_weights, weights.direct_weights)
+        columns = np.concatenate([w.reshape(n, -1, inputs) for w in layers], 1)
         biases = np.concatenate([weights.hidden_bias, weights.output_bias], 1)
         first = np.concatenate([columns, biases[..., None]], -1)
         self.rows = first.shape[1]
