@@ -11,7 +11,7 @@ An entry has these fields:
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
-    The printed value: a number, or text such as "by eye".
+    The printed value: a number, or text such as "by eye"; `OWN` for what this book claims itself.
 ``measure``, ``with``
     A function of `ddlib.evidence.measures` as "module.function", and its keyword arguments.
 ``band``, ``loose``
@@ -60,6 +60,10 @@ LEDGER = "ledger"
 SHARED = "DDLIB_MEASURED"
 """Environment variable with a folder in which notebooks that are built together share what they
 measured. Who sets it takes a new folder for other code or results."""
+
+OWN = "not in the paper"
+"""As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
+like the others, in its chapter, and is not counted among the paper's."""
 
 SECTIONS = {
     "0": "Abstract",
@@ -287,6 +291,11 @@ def load(path: Path = FILE) -> list[Claim]:
     return claims
 
 
+def of_the_paper() -> list[Claim]:
+    """All claims but this book's own."""
+    return [claim for claim in load() if claim.printed != OWN]
+
+
 def of_chapter(chapter: str) -> list[Claim]:
     """The claims that a page of the book deals with; an error if there are none."""
     found = [claim for claim in load() if claim.chapter == chapter]
@@ -360,4 +369,4 @@ def of_section(section: str) -> list[Claim]:
         Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
     """
     one_of("section", section, tuple(SECTIONS))
-    return sorted((c for c in load() if c.place()[0] == section), key=Claim.place)
+    return sorted((c for c in of_the_paper() if c.place()[0] == section), key=Claim.place)

@@ -280,8 +280,9 @@ def test_tables():
 
 def test_the_ledger_holds_every_claim_once_in_the_order_of_the_paper():
     listed = [claim for section in SECTIONS for claim in claims.of_section(section)]
-    assert sorted(c.id for c in listed) == sorted(c.id for c in ALL)
-    assert [c.place() for c in listed] == sorted(c.place() for c in ALL)
+    of_the_paper = claims.of_the_paper()
+    assert sorted(c.id for c in listed) == sorted(c.id for c in of_the_paper)
+    assert [c.place() for c in listed] == sorted(c.place() for c in of_the_paper)
     with pytest.raises(ValueError, match="section must be one of"):
         claims.of_section("9")
 
@@ -404,3 +405,9 @@ def test_counts_add_up():
     found = [claim.judge() for claim in ALL]
     for verdict in VERDICTS:
         assert sum(row[verdict] for row in table.values()) == found.count(verdict)
+
+
+def test_the_books_own_claims_are_not_the_papers():
+    paper, own = claims.of_the_paper(), [c for c in ALL if c.printed == claims.OWN]
+    assert own and len(paper) + len(own) == len(ALL)
+    assert {c.chapter for c in own} == {"why-smooth-filters"}
