@@ -256,6 +256,15 @@ def solve_windows(
 
     It stops after ``setup.steps`` steps and warns of members that have not converged by then;
     `Solution.gradient` says how far they are.
+
+    Parameters
+    ----------
+    setup, recording, width, members, seed, progress
+        As in `train_windows`.
+
+    Returns
+    -------
+    Solution
     """
     integer("setup.steps", setup.steps, 1)
     weights, data, test = _start(setup, recording, width, members, seed)

@@ -138,7 +138,8 @@ def test_sizes_from_three_to_eighty_one(plant):
 
 
 def test_memory_is_of_one_window(plant):
-    plant("memory", {"rows": [{"width": w, "training": [w, w, 1.0]} for w in (11, 21)]})
+    row = {"largest weight": [2.0, 3.0, 4.0]}
+    plant("memory", {"rows": [{"width": w, "training": [w, w, 1.0], **row} for w in (11, 21)]})
     assert networks.memory(21).value == 21
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
 from ddlib import paper
@@ -17,7 +15,7 @@ from ddlib.experiments.exact_states import (
     random_states,
     torque,
 )
-from ddlib.learning import NotConverged, TrainingSet, Weights, solve, train_ensemble
+from ddlib.learning import TrainingSet, Weights, solve, train_ensemble
 
 TEST_SAMPLES, TEST_SEED = 5000, 1000
 """Size and seed of the random set on which every error is measured."""
@@ -68,17 +66,16 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
     return histories
 
 
-def _solve(samples, draws, hidden=paper.HIDDEN_UNITS):
-    histories = []
+def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
+    """Errors after `STEPS` steps of the solver, and the gradients that it stopped with."""
+    found = []
     for draw in range(draws):
         data, test = _data(samples, 100 + draw)
         weights = Weights.random(1, 3, hidden, initial=INITIAL, seed=draw)
         label = f"{samples:,} samples, {hidden} units, solver {draw + 1} of {draws}"
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", NotConverged)
-            found = solve(weights, data, test=test, steps=STEPS, label=label)
-        histories.append(found.history)
-    return histories
+        found.append(solve(weights, data, test=test, steps=STEPS, label=label))
+    errors = _errors([solution.history for solution in found])
+    return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
 
 
 def state_space_sizes() -> dict:
@@ -86,7 +83,7 @@ def state_space_sizes() -> dict:
     samples = [
         {
             "samples": n,
-            "solver": _errors(_solve(n, draws)),
+            "solver": _solve(n, draws),
             "descent": _errors(_descend(n, DESCENT_DRAWS[n])) if n in DESCENT_DRAWS else None,
         }
         for n, draws in DRAWS.items()
@@ -95,7 +92,7 @@ def state_space_sizes() -> dict:
         {
             "units": hidden,
             "descent": _errors(_descend(SAMPLES, 1, hidden, first=0)),
-            "solver": _errors(_solve(SOLVED_SAMPLES, SOLVED_DRAWS, hidden))
+            "solver": _solve(SOLVED_SAMPLES, SOLVED_DRAWS, hidden)
             if hidden in SOLVED_UNITS
             else None,
         }
