@@ -259,7 +259,10 @@ def _squares(places, main, second) -> np.ndarray:
 
 
 def likeliest(places, values, variance: float) -> tuple[float, float, float]:
-    """The `widths` of `Emulator.fit` that make some values likeliest."""
+    """The `widths` of `Emulator.fit` that make the `values` at `places` likeliest.
+
+    `variance` is that of a value's own noise.
+    """
     design, values = terms(places), finite_array("values", values)
 
     def likelihood(widths):
@@ -274,7 +277,8 @@ def likeliest(places, values, variance: float) -> tuple[float, float, float]:
 def left_out(places, values, variance: float) -> np.ndarray:
     """Each run's value less what the others predict, in the standard deviations of that.
 
-    The widths are those of all runs together.
+    The widths are those of all runs together; `places`, `values` and `variance` are those of
+    `Emulator.fit`.
     """
     places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
     widths, scores = likeliest(places, values, variance), []
@@ -316,7 +320,10 @@ def shares(coefficients, count: int) -> np.ndarray:
 
 
 def spread_evenly(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
-    """Coded places that fill the cube evenly (Sobol's sequence), ``(count, dimensions)``."""
+    """Coded places that fill the cube evenly (Sobol's sequence, scrambled by `seed`).
+
+    An array of shape ``(count, dimensions)``.
+    """
     points = qmc.Sobol(dimensions, rng=integer("seed", seed, 0)).random(integer("count", count, 1))
     return 2 * points - 1
 

@@ -26,7 +26,7 @@ from ddlib.experiments import (
     would_tell,
 )
 from ddlib.experiments.studies import knobs as study
-from ddlib.experiments.studies.table import ablations
+from ddlib.experiments.studies.table import _ablations
 from ddlib.learning import cases
 
 CENTRE = {m: {n: float(k.value(0)) for n, k in knobs_of(m).items()} for m in METHODS}
@@ -238,7 +238,7 @@ def test_places_fill_the_cube():
 
 
 def test_each_ablation_takes_back_one_thing():
-    rows = ablations()
+    rows = _ablations()
     whole = rows.pop("joint damping")
     assert whole is JOINT_DAMPING
     changed = {

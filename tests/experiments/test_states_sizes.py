@@ -6,6 +6,7 @@ import pytest
 from ddlib import paper
 from ddlib.experiments import EPOCHS, SAMPLES, results
 from ddlib.experiments.studies import states_sizes as study
+from ddlib.learning import NotConverged
 
 
 @pytest.fixture(scope="module")
@@ -39,9 +40,11 @@ def test_the_best_on_the_way_is_no_worse_than_the_last(found):
 def test_the_same_cases_give_the_same_errors(found):
     """One small training set, solved anew."""
     row = next(row for row in found["samples"] if row["samples"] == SAMPLES)
-    (history,) = study._solve(SAMPLES, 1)
-    assert row["solver"]["training"][0] == pytest.approx(history.training[-1, 0], rel=0.1)
-    assert row["solver"]["test"][0] == pytest.approx(history.test[-1, 0], rel=0.1)
+    with pytest.warns(NotConverged):  # as the page says: stopped before its end
+        again = study._solve(SAMPLES, 1)
+    for what in ("training", "test"):
+        assert row["solver"][what][0] == pytest.approx(again[what][0], rel=0.1)
+    assert all(np.min(row["solver"]["gradient"]) > 0 for row in found["samples"])
 
 
 def test_the_solver_beats_descent_on_the_same_cases(found):

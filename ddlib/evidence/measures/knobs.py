@@ -171,6 +171,15 @@ def posterior(method: str, wanted=CELLS, count: int = 2**14) -> Posterior:
     """Posterior of the knobs of a method, given printed numbers; default: the six errors.
 
     One network on one recording was printed, so an observation scatters as ours do.
+
+    Parameters
+    ----------
+    method : str
+        "descent" or "solver".
+    wanted : sequence
+        The printed numbers that are given, as in `CELLS`.
+    count : int
+        Places at which the posterior is weighed.
     """
     here = screen(method, wanted)
     places = spread_evenly(count, len(here.names))

@@ -59,7 +59,7 @@ def table_4_1(members=25) -> dict:
     return {"members": members, "setups": table}
 
 
-def ablations() -> dict:
+def _ablations() -> dict:
     """`JOINT_DAMPING` with one thing changed at a time, and with nothing tuned, by name."""
     whole = JOINT_DAMPING
     viscous, coulomb = whole.effects.friction
@@ -94,7 +94,7 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
     largest weights have the shape ``(days, networks)``.
     """
     rows = {}
-    for name, setup in ablations().items():
+    for name, setup in _ablations().items():
         members = networks if setup is JOINT_DAMPING else fewer
         cells = {str(w): [] for w in WINDOWS}
         for day in range(1, days + 1):

@@ -13,7 +13,7 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 STEPS = {2: 32_767, 1: 127}
 """Largest integer of two bytes, and of one byte: numbers are scaled to it."""
 
-FAINT = 5
+FAINT = 10
 """Components that never reach this many tolerances are stored in one byte a number."""
 
 TINY = 1e-12
