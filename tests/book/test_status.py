@@ -95,7 +95,7 @@ def test_every_group_has_its_table(folder):
     assert plain(tables["Time"].rows) == [["book", "130 s", "≤ 120: missed"]]
 
 
-@pytest.mark.parametrize(("seconds", "verdict"), [(600.0, "met"), (600.1, "missed")])
+@pytest.mark.parametrize(("seconds", "verdict"), [(900.0, "met"), (900.1, "missed")])
 def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, verdict):
     for name, made in {
         "a": {"code": "1", "seconds": 100.0},
