@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from ddlib.analysis import CLASSES
+from ddlib.evidence import committed
 from ddlib.evidence.measures import filter_trial as trial
 from ddlib.experiments import results, split
 from ddlib.experiments.studies.nulls import TRIAL
+from ddlib.learning import cases
+from ddlib.simulation import LOG_STEP
 
 
 def ensemble(velocity, acceleration, count, **more):
@@ -160,3 +163,31 @@ def test_interventions_are_ratios_to_the_networks_own(planted):
     assert found.text == "error 0.30, with its own 0.10; a linear filter alone 0.11"
     assert trial.replaced("pure parts", runs="trajectory 6").value == pytest.approx(2.5)
     assert trial.replaced("pure parts", refitted=True).value == pytest.approx(1.2)
+
+
+def test_networks_of_the_table_are_judged_by_gains_that_finite_differences_confirm():
+    """A slow parabola added to one joint's window moves the torque by the inertia (and more)."""
+    found = trial.calibrated_networks(11, "state feedback")
+    windows, _ = cases(committed.training("state feedback"), 11)
+    model, x = committed.networks(11, "state feedback"), (np.arange(11) - 5) * LOG_STEP
+    true = trial.arm_gains("state feedback")[..., 2]
+    moved = np.empty((len(model.weights), 2, 2))
+    for joint in range(2):
+        bump = np.zeros((2, 11))
+        bump[joint] = x**2 / 2
+        there, back = (model.torque(windows + side * bump) for side in (1e-1, -1e-1))
+        moved[..., joint] = ((there - back) / 2e-1).mean(-2)
+    worst = np.abs(np.median(moved, 0) / true - 1).max()
+    assert found.value == pytest.approx(worst, rel=1e-2)
+
+
+def test_stiffness_is_a_share_of_what_the_inertia_is_worth(planted):
+    wanted = trial.arm_gains()
+    worth = (np.pi / 3) ** 2 * wanted[0, 0, 2]
+    gains = wanted.copy()
+    gains[0, 0, 0] = -worth / 2
+    planted(row({"gains": [gains.tolist()] * 5}, None))
+    found = trial.stiffness()
+    assert found.value == pytest.approx(0.5) and found.replicates == pytest.approx(0.5)
+    planted(row({"gains": [wanted.tolist()] * 5}, None))
+    assert trial.stiffness().value == 0

@@ -12,12 +12,14 @@ from functools import cache
 import numpy as np
 
 from ddlib.analysis import CLASSES, DERIVATIVES
+from ddlib.analysis import calibrated as gains_of
+from ddlib.evidence import committed
 from ddlib.evidence.measures.filters import RUNS
 from ddlib.evidence.verdicts import Measured, judged, largest_median, mean, median
-from ddlib.experiments import results, split, true_states
-from ddlib.experiments.studies.nulls import TRIAL
-from ddlib.learning import MATCHED, p_value
-from ddlib.tables import significant
+from ddlib.experiments import JOINT_DAMPING, SETUPS, results, true_states
+from ddlib.learning import MATCHED, cases, p_value
+from ddlib.tables import significant, spread
+from ddlib.trajectories import MOTION_SECONDS
 
 SHAPES = tuple(name for name in CLASSES if name != "not analysable")
 """Classes of filters that have a name."""
@@ -166,17 +168,22 @@ UNITS = {"inertia": "kg m²", "friction": "N m s/rad"}
 
 
 @cache
-def arm_gains() -> np.ndarray:
-    """What the gains of the trial's networks should be, shape (output, joint, 3).
+def arm_gains(setup: str = JOINT_DAMPING.name) -> np.ndarray:
+    """What the gains of networks should be, shape (output, joint, 3).
 
     No stiffness; the slope of the friction torque with the velocity, by least squares over the
     training cases; the mean mass matrix. Coulomb friction adds to the slope.
+
+    Parameters
+    ----------
+    setup : str
+        One of `ddlib.experiments.SETUPS`; the trial has the recording of joint damping.
     """
-    training, _ = split(TRIAL.record())
-    states = true_states(training, TRIAL).reshape(-1, 2, 3)
+    made = SETUPS[setup]
+    states = true_states(committed.training(setup), made).reshape(-1, 2, 3)
     speed = states[..., 1]
-    slope = np.linalg.lstsq(speed, TRIAL.effects.friction_torque(speed), rcond=None)[0].T
-    inertia = TRIAL.arm.mass_matrix(states[..., 0]).mean(0)
+    slope = np.linalg.lstsq(speed, made.effects.friction_torque(speed), rcond=None)[0].T
+    inertia = made.arm.mass_matrix(states[..., 0]).mean(0)
     return np.stack([np.zeros((2, 2)), slope, inertia], -1)
 
 
@@ -192,23 +199,62 @@ def calibrated(what: str = "inertia", width: int = 21, path: str = "gains") -> M
     path : {"gains", "gains, direct"}
         Of the whole network, or through the direct weights alone.
     """
-    found, wanted = row(width), arm_gains()
-    names, places = zip(*ENTRIES[what].items())
-    true = np.array([wanted[at] for at in places])
-
-    def of(ensemble):
-        return np.stack([np.array(ensemble[path])[(slice(None), *at)] for at in places], -1)
-
-    real = of(found["real"])
-    told = ", ".join(
-        f"{n} {m:.2f} (arm {t:.2f})" for n, m, t in zip(names, np.median(real, 0), true)
-    )
-    chance = max(near_by_chance(of(null), real, true) for null in matched(found).values())
+    found = row(width)
+    real, true, told = _entries(what, np.array(found["real"][path]), arm_gains())
+    nulls = (_entries(what, np.array(x[path]), arm_gains())[0] for x in matched(found).values())
+    chance = max(near_by_chance(null, real, true) for null in nulls)
     return judged(
-        lambda each: np.abs(np.median(each, axis=1) / true - 1).max(-1),
+        lambda each: _off(each, true),
         real,
         text=f"{told} {UNITS[what]}; as near by chance: p {chance:.2f}",
     )
+
+
+def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
+    """How far the inertia in the networks of Table 4-1 is from the arm's: the worst entry (judged).
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    setup : str
+        One of `ddlib.experiments.SETUPS`.
+    """
+    windows, _ = cases(committed.training(setup), width)
+    found = gains_of(committed.networks(width, setup), windows).whole
+    real, true, told = _entries("inertia", found, arm_gains(setup))
+    return judged(lambda each: _off(each, true), real, text=f"{told} {UNITS['inertia']}")
+
+
+def stiffness(width: int = 21) -> Measured:
+    """Stiffness of the trial's networks at the shoulder, which the arm has none of.
+
+    Judged as a share of what the inertia is worth along the family's motions, half a period of a
+    sine in `MOTION_SECONDS`.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    found = np.array(row(width)["real"]["gains"])[:, 0, 0, 0]
+    worth = (np.pi / MOTION_SECONDS) ** 2 * arm_gains()[0, 0, 2]
+    text = f"K11 {spread(found, 2)} N m/rad; the inertia is worth {worth:.1f}"
+    return judged(lambda each: np.abs(median(each)) / worth, found, text=text)
+
+
+def _entries(what, gains, wanted) -> tuple[np.ndarray, np.ndarray, str]:
+    """Gains ``(networks, entries)``, the arm's own, and both in words."""
+    names, places = zip(*ENTRIES[what].items())
+    found = np.stack([gains[(slice(None), *at)] for at in places], -1)
+    true = np.array([wanted[at] for at in places])
+    told = zip(names, np.median(found, 0), true)
+    return found, true, ", ".join(f"{n} {m:.2f} (arm {t:.2f})" for n, m, t in told)
+
+
+def _off(gains, true) -> np.ndarray:
+    """Largest deviation of the medians of ``(..., networks, entries)``, relative to the arm's."""
+    return np.abs(np.median(gains, axis=-2) / true - 1).max(-1)
 
 
 def near_by_chance(null, real, true) -> float:
@@ -219,11 +265,8 @@ def near_by_chance(null, real, true) -> float:
     null, real : array_like, shapes (draws, entries) and (networks, entries)
     true : array_like, shape (entries,)
     """
-
-    def off(gains):
-        return np.abs(np.asarray(gains) / true - 1).max(-1)
-
-    return p_value(off(np.median(real, 0)), off(null), "less")
+    each = np.asarray(null)[:, None]  # a draw at a time
+    return p_value(_off(np.asarray(real), true), _off(each, true), "less")
 
 
 def readable(what: str = "velocity", width: int | str = 21) -> Measured:
