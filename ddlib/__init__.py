@@ -13,8 +13,9 @@ Packages stand in the order in which data flows. Each may import those above it,
     control           controllers, and the linear analysis of their loops
     simulation        arm, controller and sensors together: recordings
     identification    parameters of an arm from recordings
-    learning          windows, networks and their training; nothing else imports torch
+    learning          windows, networks and their training
     analysis          what weights do and what data allow: filters, hidden units, noise
+    rivals            what else learns torques: tables, CMAC, Gaussian processes, ...
     figures           the house style, and one function for each kind of figure
     experiments       the paper's experiments: set-ups, studies, committed results
     evidence          claims, what measures them, verdicts, the ledger

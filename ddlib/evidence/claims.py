@@ -237,7 +237,7 @@ def _measured(measure: str, arguments: str) -> Measured:
 
 def function(measure: str) -> Callable:
     """The function of `ddlib.evidence.measures` that a claim names as "module.function"."""
-    module, _, name = measure.partition(".")
+    module, _, name = measure.rpartition(".")
     return getattr(importlib.import_module(f"ddlib.evidence.measures.{module}"), name)
 
 

@@ -82,7 +82,7 @@ def modules(result: str) -> list[str]:
 def _study(result: str) -> ast.Module:
     """The file whose function makes a result."""
     own = result.replace("-", "_")
-    for path in sorted((PACKAGE / STUDIES).glob("*.py")):
+    for path in sorted((PACKAGE / STUDIES).rglob("*.py")):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         if any(isinstance(node, ast.FunctionDef) and node.name == own for node in tree.body):
             return tree

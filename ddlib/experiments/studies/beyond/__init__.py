@@ -1,0 +1,1 @@
+"""Studies of Part IV, *Rivals and beyond*; `PARTS` of the package above names them too."""

@@ -1,0 +1,1 @@
+"""Figures of Part IV, *Rivals and beyond*: errors against cost, a real arm's recording."""

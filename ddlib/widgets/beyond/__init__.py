@@ -1,0 +1,1 @@
+"""Widgets of Part IV, *Rivals and beyond*: torques and errors of all rivals."""
