@@ -2,6 +2,7 @@
 
 - ``setups``: the experiment of section 4, every choice in one place; its errors
 - ``exact_states``: the same for section 6; ``two_harmonics``: other motions
+- ``extents``: trajectories all over the square of extents
 - ``knobs``: what decides the table: a design, a regression, what the printed numbers speak for
 - ``studies``: what is too slow for a chapter, a function for each result
 - ``reproduce``: runs studies, ``make reproduce``; an outcome lies in ``book/results/NAME.json``
@@ -23,6 +24,7 @@ __getattr__, __dir__, __all__ = hand_on(
         "COURSE Errors JOINT_DAMPING KD KP LITERATURE POSITION_FEEDBACK SETUPS STATE_FEEDBACK "
         "Setup WINDOWS errors predict solve_windows split train_windows"
     ),
+    extents="HULL Square inside_hull square",
     exact_states="EPOCHS RADIUS RATE SAMPLES random_states states_along torque",
     knobs=(
         "Emulator Knob METHODS knobs_of left_out moments screening shares spread_evenly terms "

@@ -14,7 +14,7 @@ __getattr__, __dir__, __all__ = hand_on(
     __name__,
     base="SCRIPT STYLE CurveWidget module",
     explorer="FilterExplorer",
-    picker="TrajectoryPicker inside_hull",
+    picker="TrajectoryPicker",
     player="TrainingPlayer",
     spectrum="SpectrumExplorer",
     switches="RealArmSwitches",

@@ -7,10 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import traitlets as t
-from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array, number
-from ddlib.experiments import STATE_FEEDBACK, Setup
+from ddlib.experiments import HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
@@ -30,7 +29,6 @@ TIMES = np.linspace(0.0, MOTION_SECONDS, 76)
 _INSIDE = np.append(TIMES[:-1], np.nextafter(MOTION_SECONDS, 0.0))
 
 _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
-_HULL = ConvexHull(_TRAINING)
 
 GRIDS = (44, 56)
 """Baked extents per joint where networks are shown, the second if the first are too few:
@@ -50,13 +48,6 @@ NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
     "mean square error over the standard deviation of the training torques."
 )
-
-
-def inside_hull(extents_deg) -> np.ndarray:
-    """Whether extents (``(..., 2)``, degrees) lie in the hull of the training trajectories."""
-    extents_deg = finite_array("extents_deg", extents_deg, 2)
-    distances = extents_deg @ _HULL.equations[:, :2].T + _HULL.equations[:, 2]
-    return (distances <= 1e-9).all(-1)
 
 
 class _Extents(t.TraitType):
@@ -209,7 +200,7 @@ def _pad() -> Pad:
         Mark(x, y, str(k), "test" if k == TEST_TRAJECTORY else "training")
         for k, (x, y) in enumerate(APPENDIX_I.tolist(), 1)
     ]
-    corners = _TRAINING[_HULL.vertices].tolist()
+    corners = _TRAINING[HULL.vertices].tolist()
     return Pad("shoulder_deg", "elbow_deg", marks, corners, "hull of the training set")
 
 

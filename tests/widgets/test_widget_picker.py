@@ -16,7 +16,7 @@ from ddlib.metrics import rmss
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
 from ddlib.widgets.baking.baked import MAX_BYTES
-from ddlib.widgets.picker import STEEP, inside_hull
+from ddlib.widgets.picker import STEEP
 
 
 @pytest.fixture(scope="module")
@@ -37,13 +37,6 @@ def full(networks):
 
 
 # Python
-
-
-def test_picker_knows_the_hull():
-    assert inside_hull(APPENDIX_I[:5]).all()
-    assert not inside_hull(APPENDIX_I[5])
-    assert inside_hull(APPENDIX_I[:5].mean(0))
-    assert not inside_hull([0.0, 0.0])
 
 
 def test_extents_and_sliders_follow_each_other():
