@@ -8,6 +8,7 @@ Packages stand in the order in which data flows. Each may import those above it,
     metrics           the paper's error measure, RMSS
     tables            tables, numbers as text, and `quote` for the prose of a page
     trajectories      reference motions: the pick-and-place family of Appendix I
+    others            data that others made: a simulated arm that writes, a real arm
     dynamics          the rigid body: arms, equations of motion, what computing them costs
     effects           what the rigid body leaves out: friction, motors, encoders
     control           controllers, and the linear analysis of their loops

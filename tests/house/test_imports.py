@@ -14,7 +14,7 @@ import ddlib
 ROOT = Path(ddlib.__file__).parent
 
 ORDER = (
-    *("_check", "_names", "paper", "metrics", "tables", "trajectories"),
+    *("_check", "_names", "paper", "metrics", "tables", "trajectories", "others"),
     *("dynamics", "effects", "control", "simulation", "identification", "learning"),
     *("analysis", "rivals", "figures", "experiments", "evidence", "widgets"),
 )
