@@ -102,6 +102,7 @@ class CMAC(Bounded):
         self.history = []
         self._train(rows, torque)
 
+    @np.errstate(over="ignore", invalid="ignore")  # divergence is told below
     def _train(self, rows, torque):
         blocks = []
         for start in range(0, len(torque), BLOCK):
@@ -115,9 +116,9 @@ class CMAC(Bounded):
             self.history.append(_error(rows @ self.weights - torque, deviation))
             if not self.history[-1] < WORSE * self.history[0] + 1e-300:
                 raise Diverged(
-                    f"{self!r} diverges: after {epoch} passes the error is {self.history[-1]:.3g} deviations "
-                    f"of the torque; rate x overlap is {self.rate * self.overlap:.3g}, which must "
-                    f"be below 2: take more slots than {self.slots} or a lower rate"
+                    f"{self!r} diverges: after {epoch} passes the error is {self.history[-1]:.3g} "
+                    f"deviations of the torque; rate x overlap is {self.rate * self.overlap:.3g}, "
+                    f"which must be below 2: take more slots than {self.slots} or a lower rate"
                 )
             if epoch < self.epochs:
                 for a, transposed, gram, y in blocks:
@@ -169,8 +170,7 @@ class CMAC(Bounded):
 
 def _error(left, deviation) -> float:
     """Root mean square of what is left, in deviations; infinite if it is no number."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        found = np.sqrt(np.mean((left / deviation) ** 2))
+    found = np.sqrt(np.mean((left / deviation) ** 2))
     return float(found) if np.isfinite(found) else np.inf
 
 

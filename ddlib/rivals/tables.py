@@ -126,7 +126,6 @@ def full_table(
     -------
     ndarray, shape (cases, joint)
     """
-    integer("cells", cells, 1)
     low, high = limits = shaped("limits", limits, "(2, joint, 3)")
     x = shaped("x", x, f"(cases, {limits.shape[1]}, 3)")
     u = _inside(x, low, high, "refuse").reshape(len(x), -1)
