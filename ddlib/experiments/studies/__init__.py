@@ -8,6 +8,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
 - ``states``, ``states_sizes``: section 6
+- ``beyond``: Part IV
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from ddlib.experiments.studies import (
     table,
     windows,
 )
+from ddlib.experiments.studies.beyond import rivals
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -44,5 +46,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "table-6-1": states.table_6_1,
     "state-space-choices": states.state_space_choices,
     "state-space-sizes": states_sizes.state_space_sizes,
+    "rivals": rivals.rivals,
 }
 """The studies by the name of their result."""

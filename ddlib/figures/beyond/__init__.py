@@ -1,1 +1,4 @@
-"""Figures of Part IV, *Rivals and beyond*: errors against cost, a real arm's recording."""
+"""Figures of Part IV, *Rivals and beyond*: errors against cost, a real arm's recording.
+
+- ``rivals``: errors of rivals against what they cost
+"""

@@ -1,1 +1,5 @@
-"""Studies of Part IV, *Rivals and beyond*; `PARTS` of the package above names them too."""
+"""Studies of Part IV, *Rivals and beyond*; `PARTS` of the package above names them too.
+
+- ``lineup``: who takes part in ``rivals``, at which sizes: a new rival is a line there
+- ``rivals``: all rivals on the same recordings: error, stored numbers, arithmetic, training time
+"""
