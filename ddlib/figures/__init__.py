@@ -4,6 +4,7 @@
 - ``lines``, ``maps``: curves over one axis, of one network or many; values over a plane
 - ``weights``: networks, Hinton diagrams, filters taken apart
 - ``dynamics``, ``effects``, ``control``, ``recording``, ``states``: figures of one chapter each
+- ``beyond``: figures of Part IV
 """
 
 from ddlib._names import hand_on

@@ -116,7 +116,17 @@ class Cases:
 
 
 def derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
-    """Filters that estimate position, velocity and acceleration, shape (3, width)."""
+    """Filters that estimate position, velocity and acceleration, shape (3, width).
+
+    Parameters
+    ----------
+    width : int
+        Samples of a window, odd.
+    step : float
+        Sampling period, s.
+    degree : int
+        Of the polynomial that is fitted to a window.
+    """
     return np.stack([savitzky_golay(width, k, step, degree) for k in range(3)])
 
 
@@ -252,9 +262,11 @@ class Estimating(Rival):
         return self.rival._torque(x @ self.filters.T)
 
     def count(self):
+        """Stored numbers: the rival's own and the three filters."""
         return self.rival.count() + self.filters.size
 
     def operations(self):
+        """Arithmetic: the rival's own and the three filters of each joint."""
         joints, (rows, width) = self._shape[0], self.filters.shape
         own, each = self.rival.operations(), joints * rows
         return own._replace(

@@ -2,6 +2,7 @@
 
 - ``picker``, ``switches``, ``tuner``, ``window``, ``explorer``, ``player``, ``spectrum``: a widget
   each, named after what the reader handles; ``hinton``: the diagram that two of them share
+- ``beyond``: widgets of Part IV
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
 - ``parts``: parameters, panels, pads; ``baking``: values and a still for pages without a kernel
 - ``static``: the page's half: scripts that all widgets share (``curves.js``, ...), and one more for

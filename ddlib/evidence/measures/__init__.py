@@ -9,4 +9,5 @@ shown. A claim names its function in ``book/claims.yml`` as "module.function".
 - ``networks``: Tables 4-1 and 6-1, what networks reach and what their weights show
 - ``filters``: sections 5 and 7, what filters show
 - ``filter_trial``: the same beside networks trained on unrelated torques
+- ``beyond``: Part IV, rivals and a real arm
 """
