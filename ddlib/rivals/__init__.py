@@ -7,6 +7,8 @@
 - ``identified``: least squares on the equations of motion, and on the inputs as they are
 - ``networks``: the paper's network by descent, by Levenberg-Marquardt, by Adam
 - ``sequences``: convolutions along the window, and a gated recurrent unit
+- ``gaussian``: Gaussian processes, alone and beside known structure, and random features
+- ``lagrangian``: Deep Lagrangian Networks
 """
 
 from ddlib._names import hand_on
@@ -23,4 +25,6 @@ __getattr__, __dir__, __all__ = hand_on(
     ),
     cmac="CMAC Diverged hashed",
     bases="Basis Fourier Polynomial exponents wave_numbers",
+    gaussian="GaussianProcess RandomFeatures SemiParametric",
+    lagrangian="AS_PUBLISHED LagrangianNetwork",
 )
