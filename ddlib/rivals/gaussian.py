@@ -173,11 +173,13 @@ class GaussianProcess(Rival):
         return self.unit * np.sqrt(level)
 
     def count(self):
+        """Stored numbers: the cases, their weights, the kernels; intervals would need more."""
         joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
         kernel = features + 1
         return self.inputs.count() + cases * features + joints * (cases + kernel + 2)
 
     def operations(self):
+        """Arithmetic of the mean: every case of training is looked at."""
         joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
         own = self.inputs.operations()
         return Operations(
@@ -226,9 +228,11 @@ class SemiParametric(Rival):
         return np.zeros(x.shape[:2]) if self.exact else self.rest._deviation(x)
 
     def count(self):
+        """Stored numbers: the parameters, and the processes."""
         return self.known.count() + (0 if self.exact else self.rest.count())
 
     def operations(self):
+        """Arithmetic of the equations and the processes."""
         own = self.known.operations()
         if self.exact:
             return own
@@ -297,10 +301,12 @@ class RandomFeatures(Rival):
         return first @ second.T
 
     def count(self):
+        """Stored numbers: cosines, weights and scaling."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
         return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
 
     def operations(self):
+        """Arithmetic of all cosines and their sum."""
         inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
         return Operations(
             own.multiplications + self.features * (inputs + joints),

@@ -355,10 +355,12 @@ class LagrangianNetwork(Rival):
         return np.linalg.solve(self.mass_matrix(q), pushed[..., None])[..., 0]
 
     def count(self):
+        """Stored numbers: the weights, and the units if scaled."""
         numbers = sum(p.numel() for p in self.network.parameters())
         return numbers + (2 * self.network.joints + 2 if self.scaled else 0)
 
     def operations(self):
+        """Arithmetic of the layers, of their derivatives, and of Lagrange's equation."""
         joints, triangle = self.network.joints, self.network.triangle
         outputs = self.network.head.out_features
         products = sums = functions = 0
@@ -371,7 +373,6 @@ class LagrangianNetwork(Rival):
             before = units
         products += outputs * before * (1 + joints) + joints * joints
         sums += outputs * (before + joints * (before - 1))
-        # L'qd, L'qdd, dL'qd, dL/dt, their products, the sum of the terms
         products += triangle * (4 + 2 * joints) + 2 * joints**2 + joints
         sums += triangle * (4 + 2 * joints) + 2 * joints**2 + 3 * joints
         if self.friction:

@@ -165,7 +165,10 @@ def test_known_structure_leaves_nothing_of_clean_torques(arm):
     )
     np.testing.assert_array_equal(rival.deviation(x), 0)
     np.testing.assert_allclose(
-        rival.known.estimate.values, [arm.a, arm.b, arm.d, *arm.gravity_moments], rtol=1e-6, atol=1e-8
+        rival.known.estimate.values,
+        [arm.a, arm.b, arm.d, *arm.gravity_moments],
+        rtol=1e-6,
+        atol=1e-8,
     )
 
 
