@@ -186,7 +186,7 @@ class Recurrent(Sequence):
         As in `Sequence`.
     """
 
-    def __init__(self, channels=16, epochs=100, **options):
+    def __init__(self, channels=16, epochs=60, **options):
         super().__init__(channels, epochs, **options)
 
     def _network(self, joints, width, outputs):

@@ -8,18 +8,25 @@ from typing import NamedTuple
 from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.identification import FRICTION, RIGID
 from ddlib.rivals import (
+    CMAC,
     ByAdam,
     ByDescent,
     BySolver,
+    CellTable,
     Convolution,
+    Fourier,
+    GridTable,
     Identified,
     Linear,
+    Nearest,
+    Polynomial,
     Recurrent,
     Rival,
 )
 
-DAYS = 5
-"""Recordings of a rival; a rival that starts at random starts otherwise on each."""
+DAYS, FEWER = 10, 5
+"""Recordings of a rival, and of one that takes seconds to train. A rival that starts at random
+starts otherwise on each."""
 
 
 class Line(NamedTuple):
@@ -30,15 +37,11 @@ class Line(NamedTuple):
     make : callable
         ``make(size, seed)`` gives a `Rival` that has learnt nothing.
     sizes : tuple
-        What is varied, from small to large.
+        What is varied, from few to many stored numbers.
     varied : str
         What that is, in words.
-    shown : object
-        The size that tables and the widget show.
     family : str
-        What it belongs to: tables, bases, known structure, kernels, networks.
-    year : int
-        Of the source that proposes it for torques, or of the method.
+        Panel of the figures that it stands in.
     days : int
         On how many recordings it is tried.
     """
@@ -46,10 +49,16 @@ class Line(NamedTuple):
     make: Callable[[object, int], Rival]
     sizes: tuple
     varied: str
-    shown: object
     family: str
-    year: int
     days: int = DAYS
+
+
+REFERENCE = "network of 1988"
+"""The rival that all others are compared with: ten hidden units, by descent."""
+
+PENALTY = 1e-4
+"""On squared coefficients of polynomials and Fourier series: of those tried in ``rivals_1988``, the
+one that leaving out trajectories chooses."""
 
 
 def _descent(hidden, seed, **options):
@@ -72,30 +81,54 @@ def _identified(count, _seed):
     return Identified((RIGID + FRICTION)[:3] if count == 3 else RIGID + FRICTION)
 
 
+def _table(over):
+    return lambda cells, _: CellTable(cells, over, beyond="edge")
+
+
 LINES: dict[str, Line] = {
+    # tables
+    "nearest case": Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
+    "table of states": Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
+    "table of configurations": Line(
+        _table("configurations"), (1, 2, 3, 10), "cells an axis", "tables"
+    ),
+    "multilinear table": Line(
+        lambda cells, _: GridTable(cells, beyond="edge"), (1, 2), "cells an axis", "tables"
+    ),
+    "CMAC": Line(
+        lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3), "width of a cube",
+        "tables",
+    ),
+    # bases
+    "polynomial": Line(
+        lambda degree, _: Polynomial(degree, ridge=PENALTY), (1, 2, 3, 5), "degree", "polynomials"
+    ),
+    "Fourier series": Line(
+        lambda order, _: Fourier(order, ridge=PENALTY), (1, 2), "order", "polynomials"
+    ),
     # known structure
-    "identified equations": Line(_identified, (3, 7), "parameters", 7, "known structure", 1986),
+    "identified": Line(_identified, (3, 7), "parameters", "known structure"),
     "linear filter": Line(
-        lambda width, _: Linear(width=width), (5, 11, 21), "samples", 21, "networks", 1960
+        lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
     ),
-    # networks
-    "network of 1988": Line(_descent, (2, 10), "hidden units", 10, "networks", 1988),
-    "its optimum": Line(_solver, (1, 2, 5, 10, 20), "hidden units", 10, "networks", 1994),
+    # the paper's network
+    REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
+    "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
     "Adam": Line(
-        lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10, 20), "hidden units", 10,
-        "networks", 2019,
+        lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
+        "the paper's network", FEWER,
     ),
-    "network on states": Line(
-        lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10), "hidden units", 10,
-        "networks", 1988,
+    "on states": Line(
+        lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10),
+        "hidden units", "the paper's network",
     ),
+    # other networks
     "convolutions": Line(
-        lambda channels, seed: Convolution(channels, seed=seed), (4, 8, 16), "channels", 8,
-        "networks", 1989,
+        lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
+        "other networks", FEWER,
     ),
     "recurrent": Line(
-        lambda channels, seed: Recurrent(channels, seed=seed), (8, 16), "units", 16,
-        "networks", 2014,
+        lambda units, seed: Recurrent(units, seed=seed), (5, 10), "units", "other networks", FEWER
     ),
 }  # fmt: skip
 """All rivals by the name that tables and figures use."""

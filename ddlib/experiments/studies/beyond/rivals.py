@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import warnings
+from itertools import product
+
 import numpy as np
 
-from ddlib import paper
 from ddlib.analysis import noise_floor
+from ddlib.experiments import results
 from ddlib.experiments.extents import square
 from ddlib.experiments.setups import JOINT_DAMPING, split
-from ddlib.experiments.studies.beyond.lineup import DAYS, LINES
+from ddlib.experiments.studies.beyond.lineup import DAYS, LINES, REFERENCE
 from ddlib.experiments.two_harmonics import true_states
 from ddlib.rivals import Cases, Estimating, trial
 from ddlib.simulation import LOG_STEP
+from ddlib.trajectories import OutsideFamilyWarning
 
 WIDTH = 21
 """Samples of the windows: the paper's best."""
@@ -19,52 +23,55 @@ WIDTH = 21
 GRID = 9
 """Trajectories in a row of the square of extents."""
 
-EVERY = 4
-"""Of the square's samples every so many are asked."""
+EVERY, SHOWN = 4, 10
+"""Of the square's samples every so many are tested, and every so many are kept to be shown."""
+
+BUDGET = 540
+"""Stored numbers of the paper's network: ten hidden units, window 21, two scalings of torque."""
+
+TORQUES = results.FOLDER / "rivals-torques.npz"
+"""Measured and predicted torques on the square of extents: each rival at its largest size within
+the budget, or at its smallest."""
 
 INPUTS = ("positions", "exact states")
 """What rivals see: windows of measured positions, or states without noise."""
 
 
-def days(number: int = DAYS):
-    """Recordings of several days as cases: what each kind of rival learns from and is tested on.
+def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
+    """What rivals learn from and are tested on, on one day.
 
     Parameters
     ----------
-    number : int
-        Of days; the first one is 1.
+    day : int
+        As in `Setup.repeated`.
 
-    Yields
-    ------
-    dict
-        For each of `INPUTS` the sets by name: training, trajectory 6, inside, outside.
+    Returns
+    -------
+    sets : dict
+        For each of `INPUTS` cases by name: training, trajectory 6; inside and outside, the
+        trajectories of the square on either side of the training hull, every `EVERY` samples.
+    asked : Cases
+        Windows of the whole square, every `SHOWN` samples.
     """
-    for day in range(1, number + 1):
-        setup = JOINT_DAMPING.repeated(day)
-        training, six = split(setup.record())
-        whole = square(setup, GRID)
-        parts = {
-            "training": training,
-            "trajectory 6": six,
-            "inside": whole.recording[whole.inside],
-            "outside": whole.recording[~whole.inside],
-        }
-        yield {
-            "positions": {name: Cases.windows(part, WIDTH) for name, part in parts.items()},
-            "exact states": {
-                name: Cases.states(part, true_states(part, setup)) for name, part in parts.items()
-            },
-        }
-
-
-def _thinned(sets: dict) -> dict:
-    """The same with every so many of the square's samples."""
-    return {
-        name: Cases(c.x[::EVERY], c.torque[::EVERY], c.kind, c.step)
-        if name in ("inside", "outside")
-        else c
-        for name, c in sets.items()
+    setup = JOINT_DAMPING.repeated(day)
+    training, six = split(setup.record())
+    whole = square(setup, GRID)
+    parts = {
+        "training": (training, 1),
+        "trajectory 6": (six, 1),
+        "inside": (whole.recording[whole.inside], EVERY),
+        "outside": (whole.recording[~whole.inside], EVERY),
     }
+    seen: dict = {inputs: {} for inputs in INPUTS}
+    for name, (part, every) in parts.items():
+        seen["positions"][name] = _every(Cases.windows(part, WIDTH), every)
+        exact = Cases.states(part, true_states(part, setup))
+        seen["exact states"][name] = _every(exact, every)
+    return seen, _every(Cases.windows(whole.recording, WIDTH), SHOWN)
+
+
+def _every(cases: Cases, step: int) -> Cases:
+    return Cases(cases.x[::step], cases.torque[::step], cases.kind, cases.step)
 
 
 def _seen(line, inputs: str, size, seed: int):
@@ -95,34 +102,38 @@ def floors(sets: dict) -> dict:
 
 
 def rivals() -> dict:
-    """Every line of `LINES` at all its sizes, on several days; torques of the first day are kept.
+    """Every line of `LINES` at all its sizes, on several days.
 
-    A row for each rival, size and kind of inputs; errors and times have a value for each day.
+    A row for each rival, size and kind of inputs; errors and times have a value for each day. The
+    torques of the first day all over the square go into a file of their own (`TORQUES`).
     """
-    rows, floor = {}, None
-    for day, seen in enumerate(days(), 1):
-        sets = {inputs: _thinned(seen[inputs]) for inputs in INPUTS}
-        floor = floor or floors(seen["positions"])
+    rows, torques, floor = {}, {}, None
+    for day in range(1, DAYS + 1):
+        sets, asked = recorded(day)
+        floor = floor or floors(sets["positions"])
         for name, line in LINES.items():
-            for inputs in INPUTS:
-                for size in line.sizes if day <= line.days else ():
-                    rival = _seen(line, inputs, size, day)
-                    if rival is None:
-                        continue
-                    found = trial(rival, sets[inputs]["training"], sets[inputs])
-                    row = rows.setdefault((name, inputs, size), _row(name, inputs, size, found))
-                    row["seconds"].append(found.seconds)
-                    for part, error in found.rmss.items():
-                        row["errors"][part].append(error)
+            for inputs, size in product(INPUTS, line.sizes if day <= line.days else ()):
+                rival = _seen(line, inputs, size, day)
+                if rival is None:
+                    continue
+                found = trial(rival, sets[inputs]["training"], sets[inputs])
+                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, found))
+                row["seconds"].append(found.seconds)
+                for part, error in found.rmss.items():
+                    row["errors"][part].append(error)
+                affordable = name not in torques or found.count <= BUDGET
+                if day == 1 and inputs == "positions" and affordable:
+                    torques[name] = _asked(rival, asked)
+        if day == 1:
+            _keep(torques, asked)
     return {
         "days": DAYS,
         "width": WIDTH,
-        "test trajectory": paper.TEST_TRAJECTORY,
+        "reference": REFERENCE,
+        "budget": BUDGET,
         "floor": floor,
         "lines": {
-            name: {"varied": line.varied, "shown": line.shown, "family": line.family}
-            | {"year": line.year, "sizes": line.sizes}
-            for name, line in LINES.items()
+            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
         },
         "rows": list(rows.values()),
     }
@@ -138,3 +149,19 @@ def _row(name, inputs, size, found) -> dict:
         "seconds": [],
         "errors": {part: [] for part in found.rmss},
     }
+
+
+def _asked(rival, asked: Cases) -> np.ndarray:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideFamilyWarning)
+        return rival.torque(asked.x)
+
+
+def _keep(torques: dict, asked: Cases) -> None:
+    """Measured and predicted torques of the square, shape (rivals + 1, runs, samples, joint)."""
+    shape = (-1, GRID**2, len(asked) // GRID**2, 2)
+    values = np.stack([asked.torque, *torques.values()]).reshape(shape)
+    part = TORQUES.with_name(TORQUES.name + ".part")
+    with open(part, "wb") as file:
+        np.savez_compressed(file, names=["measured", *torques], torque=values.astype(np.float16))
+    part.replace(TORQUES)
