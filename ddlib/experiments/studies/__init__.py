@@ -26,7 +26,7 @@ from ddlib.experiments.studies import (
     table,
     windows,
 )
-from ddlib.experiments.studies.beyond import rivals
+from ddlib.experiments.studies.beyond import rivals, rivals_1988
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -47,5 +47,8 @@ PARTS: dict[str, Callable[[], dict]] = {
     "state-space-choices": states.state_space_choices,
     "state-space-sizes": states_sizes.state_space_sizes,
     "rivals": rivals.rivals,
+    "rivals-tables": rivals_1988.rivals_tables,
+    "rivals-cmac": rivals_1988.rivals_cmac,
+    "rivals-bases": rivals_1988.rivals_bases,
 }
 """The studies by the name of their result."""

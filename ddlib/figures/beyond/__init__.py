@@ -1,4 +1,5 @@
 """Figures of Part IV, *Rivals and beyond*: errors against cost, a real arm's recording.
 
 - ``rivals``: errors of rivals against what they cost
+- ``rivals_1988``: maps of what learnt one trajectory
 """
