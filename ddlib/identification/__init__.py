@@ -1,6 +1,7 @@
 """Parameters of an arm from recordings of it, with a confidence for each.
 
 - ``equations``: from a recording to linear equations: differences, smoothing, modulation
+- ``known_axes``: six joints of which only the axes are known, joint by joint
 - ``regression``: weighted least squares on them, `Estimate`, and the true parameters
 """
 
@@ -12,5 +13,6 @@ __getattr__, __dir__, __all__ = hand_on(
         "Equations Estimate FRICTION GRAVITY RIGID SIGN_SPEED columns excitation from_states "
         "least_squares true_parameters"
     ),
+    known_axes="FRICTION_TERMS joint_columns joint_terms",
     equations="SLOW by_differences by_modulation by_smoothing repeat",
 )

@@ -8,7 +8,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
 - ``states``, ``states_sizes``: section 6
-- ``beyond``: Part IV
+- ``beyond``: Part IV, rivals and a real arm
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from ddlib.experiments.studies import (
     table,
     windows,
 )
-from ddlib.experiments.studies.beyond import rivals, rivals_1988
+from ddlib.experiments.studies.beyond import real_arm, rivals, rivals_1988
+from ddlib.experiments.studies.beyond import real_arm, rivals
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -50,5 +51,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "rivals-tables": rivals_1988.rivals_tables,
     "rivals-cmac": rivals_1988.rivals_cmac,
     "rivals-bases": rivals_1988.rivals_bases,
+    "real-arm": real_arm.real_arm,
 }
 """The studies by the name of their result."""

@@ -3,4 +3,6 @@
 - ``lineup``: who takes part in ``rivals``, at which sizes: a new rival is a line there
 - ``rivals_1988``: tables, CMAC, polynomials and Fourier series, each varied; one trajectory alone
 - ``rivals``: all rivals on the same recordings: error, stored numbers, arithmetic, training time
+- ``tx40``: the real arm's recording as cases, its blocks, and models that are no networks
+- ``real_arm``: the window network of 1988 on it
 """

@@ -1,0 +1,392 @@
+"""The window network of 1988 on a real arm, beside linear filters and an identified model."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ddlib import paper
+from ddlib.analysis import (
+    CLASSES,
+    LAYERS,
+    classify,
+    explained,
+    gains,
+    mean_gradient,
+    refitted,
+    shares,
+)
+from ddlib.experiments.studies.beyond.tx40 import (
+    BLOCKS,
+    RATES,
+    Ridge,
+    Windowed,
+    best_penalty,
+    identified,
+    known_structure,
+    least_squares,
+)
+from ddlib.learning import TorqueModel, TrainingSet, Weights, surrogates, train_ensemble
+
+HIDDEN = 10
+"""Hidden units, as in 1988."""
+
+DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
+"""Descent on inputs of -1 to 1: the rate is divided by the window size, since a window of six
+joints has three times the inputs of two."""
+
+SCALING = (-1.0, 1.0)
+"""Range of the inputs."""
+
+EPOCHS = 2000
+"""Epochs of all networks but the longest."""
+
+COURSE = (10, 30, 100, 300, 1000, 2000, 5000)
+"""Epochs at which the main window's networks are tested on the way to those of 1988."""
+
+MAIN = (100, 21)
+"""Samples a second and window where variants are tried."""
+
+FILTERS = (11, 21)
+"""Windows, at 100 samples a second, whose filters are taken apart."""
+
+KINDS = ("shifted", "phases")
+"""Unrelated currents that are as smooth as the recorded ones."""
+
+DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
+"""Weight decays, per case."""
+
+_STARTS = 1000  # seed of the first null network: none shares its start with a real one
+
+
+def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=HIDDEN,
+            epochs: int = EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
+    """Networks by descent on windows ``(cases, 6, width)`` and currents ``(cases, outputs)``.
+
+    Parameters
+    ----------
+    x, y : array_like
+    members, seed : int
+        Number of networks; seed of the first.
+    width : int
+        Window size.
+    snapshots : sequence of int
+        Epochs whose weights are kept.
+    targets : array_like, shape (members, cases, outputs), optional
+        Currents of each network in place of `y`.
+    hidden, epochs : int
+
+    Returns
+    -------
+    model : TorqueModel
+    kept : dict of TorqueModel
+        By epoch.
+    data : TrainingSet
+    """
+    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
+    start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
+    scaled = None if targets is None else data.outputs.scale(targets)
+    model, _, kept = train_ensemble(
+        start, data, targets=scaled, rate=DESCENT["rate"] / width, momentum=DESCENT["momentum"],
+        warm_up=DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
+    )  # fmt: skip
+    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in kept.items()}
+    return model, models, data
+
+
+def wrong(predicted, data: Windowed, cases) -> np.ndarray:
+    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``."""
+    error = predicted - data.current[cases]
+    return (error**2).mean(-2) / data.current.var(0)
+
+
+def _both(model: TorqueModel, data: Windowed, block: int) -> list[np.ndarray]:
+    return [wrong(model.torque(data.x[part]), data, part) for part in data.fold(block)]
+
+
+def _grid(members: int) -> list[dict]:
+    """Every window of `RATES`: errors of networks and of the models that are no networks."""
+    rows = []
+    for rate, widths in RATES.items():
+        for width in widths:
+            data = Windowed.of(rate, width)
+            found = [_cell(data, block, members) for block in range(BLOCKS)]
+            row = {name: np.stack([cell[name] for cell in found]) for name in found[0]}
+            rows.append({"rate": rate, "width": width, **row})
+    return rows
+
+
+def _cell(data: Windowed, block: int, members: int) -> dict:
+    """Errors in one fold: of networks ``(members,)`` or ``(members, 6)``, of others ``(6,)``."""
+    training, test = data.fold(block)
+    flat, states, given = data.x.reshape(len(data.x), -1), data.states, data.current[training]
+    plain = states.reshape(len(states), -1)
+    model, *_ = trained(data.x[training], given, members, 0, data.width)
+    network = _both(model, data, block)
+    penalty = best_penalty(data, training)
+    others = {
+        "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
+        "least squares": least_squares(flat[training], given, flat[test]),
+        "states": least_squares(plain[training], given, plain[test]),
+        "identified": known_structure(states[training], given, states[test]),
+        "no friction": known_structure(states[training], given, states[test], friction=False),
+    }
+    own = known_structure(states[training], given, states[training])
+    return {
+        "network, training": network[0].mean(-1),
+        "network": network[1],
+        "largest weight": model.weights.largest,
+        "penalty": penalty,
+        "identified, training": wrong(own, data, training).mean(),
+        **{name: wrong(answer, data, test) for name, answer in others.items()},
+    }
+
+
+# --- what would change it -----------------------------------------------------------------
+
+
+def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
+    """One network by quasi-Newton steps on the mean squared error with weight decay.
+
+    Parameters
+    ----------
+    x, y : array_like, shapes (cases, 6, width) and (cases, outputs)
+    start : Weights
+        Of one network.
+    decay : float
+        Half of it times the sum of squared weights, biases left out, is added to half the mean
+        over the cases of the squared error, summed over the scaled outputs.
+    steps : int
+        Most iterations.
+    """
+    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
+    flat = data.x.reshape(len(data.x), -1)
+    names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
+    shapes = [getattr(start, name).shape for name in names]
+    ends = np.cumsum([np.prod(shape) for shape in shapes])
+
+    def parts(vector):
+        return [v.reshape(s) for v, s in zip(np.split(vector, ends[:-1]), shapes)]
+
+    def objective(vector):
+        w1, b1, w2, w3, b2 = parts(vector)
+        first, direct = w1.reshape(len(b1), -1), w3.reshape(len(b2), -1)
+        hidden = 1 / (1 + np.exp(-np.clip(flat @ first.T + b1, -500, 500)))
+        out = 1 / (1 + np.exp(-np.clip(flat @ direct.T + hidden @ w2.T + b2, -500, 500)))
+        error = out - data.y
+        delta = error * out * (1 - out) / len(flat)
+        back = (delta @ w2) * hidden * (1 - hidden)
+        slopes = [
+            back.T @ flat + decay * first, back.sum(0), delta.T @ hidden + decay * w2,
+            delta.T @ flat + decay * direct, delta.sum(0),
+        ]  # fmt: skip
+        value = (error**2).sum() / len(flat) + decay * sum((w**2).sum() for w in (w1, w2, w3))
+        return value / 2, np.concatenate([s.ravel() for s in slopes])
+
+    begin = np.concatenate([getattr(start, name).ravel() for name in names])
+    found = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
+    return TorqueModel(Weights(*parts(found.x)), data.inputs, data.outputs)
+
+
+def _variants(members: int) -> dict:
+    """The main window with one thing changed at a time: errors ``(blocks, members)``."""
+    data, rows = Windowed.of(*MAIN), {}
+
+    def put(name, pair):
+        row = rows.setdefault(name, {"training": [], "test": []})
+        for side, error in zip(row, pair):
+            row[side].append(np.mean(error, -1))
+
+    for block in range(BLOCKS):
+        training, _ = data.fold(block)
+        x, y = data.x[training], data.current[training]
+        last, kept, _ = trained(x, y, members, 0, data.width, COURSE, epochs=paper.EPOCHS)
+        for epoch, model in {**kept, paper.EPOCHS: last}.items():
+            put(f"{epoch} epochs", _both(model, data, block))
+        for units in (1, 3, 20):
+            model, *_ = trained(x, y, members, 0, data.width, hidden=units)
+            put(f"{units} units", _both(model, data, block))
+        start = Weights.random(members, data.width, HIDDEN, 6, 6)
+        for decay in DECAYS:
+            each = [_both(decayed(x, y, start[k], decay), data, block) for k in range(members)]
+            put(f"decay {decay:g}", map(np.stack, zip(*each)))
+        for decay in DECAYS[1:]:
+            put(f"on the rest, decay {decay:g}", _structured(data, block, members, decay))
+    return {n: {side: np.array(v) for side, v in row.items()} for n, row in rows.items()}
+
+
+def _structured(data: Windowed, block: int, members: int, decay: float) -> list[np.ndarray]:
+    """Networks that learn what the identified model leaves over, and both together."""
+    training, _ = data.fold(block)
+    states, given = data.states, data.current[training]
+    known = known_structure(states[training], given, states)
+    left = data.current - known
+    start = Weights.random(members, data.width, HIDDEN, 6, 6)
+    models = [decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
+    return [
+        np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
+        for part in data.fold(block)
+    ]
+
+
+# --- filters, beside networks trained on unrelated currents ---------------------------------
+
+
+def _described(model: TorqueModel, data: Windowed, targets) -> dict:
+    """Of each network: errors, gains on the joint's own motion, names and shares of filters."""
+    w = model.weights
+    whole = gains(mean_gradient(model, data.x), data.step)
+    own = np.arange(6)
+    direct = shares(w.direct_weights)[:, own, own]
+    layers = {
+        layer: np.stack([(classify(getattr(w, at)) == c).mean((1, 2)) for c in CLASSES], -1)
+        for layer, at in LAYERS.items()
+    }
+    error = ((model.torque(data.x) - targets) ** 2).mean(-2) / targets.var(-2)
+    return {
+        "error": np.sqrt(error.mean(-1)),
+        "velocity": whole[:, own, own, 1],
+        "acceleration": whole[:, own, own, 2],
+        "share of velocity": direct[..., 1],
+        "share of acceleration": direct[..., 2],
+        "classes": layers,
+    }
+
+
+def _curved(model: TorqueModel, data: Windowed, known) -> np.ndarray:
+    """Share of the hidden units' non-linear part that friction and rigid body explain, by output.
+
+    Least squares takes what is linear in the window out of the hidden units' sums and of what is
+    known; shape (members, 6).
+    """
+    flat = data.x.reshape(len(data.x), -1)
+    flat = flat - flat.mean(0)
+    left, values, _ = np.linalg.svd(flat, full_matrices=False)
+    axes = np.column_stack(
+        [left[:, values > 1e-9 * values[0]], np.full(len(flat), len(flat) ** -0.5)]
+    )
+
+    def curved(y):
+        return y - axes @ (axes.T @ y)
+
+    hidden = model.weights.activity(model.scaled(data.x))[0]
+    sums = np.einsum("mnh,moh->mno", hidden, model.weights.output_weights)
+    both = [curved(part) for part in known]
+    return np.array(
+        [
+            [explained(curved(part)[:, j], *(k[:, j] for k in both)) for j in range(6)]
+            for part in sums
+        ]
+    )
+
+
+def _filters(width: int, members: int, draws: int) -> dict:
+    """Networks of one window on the whole recording, and on unrelated currents."""
+    data = Windowed.of(100, width)
+    y = data.current
+    same = np.repeat(y[None], members, 0)
+    model, _, made = trained(data.x, y, members, 0, width)
+    start = Weights.random(members, width, HIDDEN, 6, 6)
+    untrained = TorqueModel(start, made.inputs, made.outputs)
+    structure = identified(data.states, y)
+    flat = data.x.reshape(len(data.x), -1)
+    penalty = best_penalty(data, np.ones(len(flat), bool))
+
+    def linear(targets):
+        fitted = Ridge(flat, targets).filters(penalty).T.reshape(6, 6, width)
+        return gains(fitted[np.arange(6), np.arange(6)], data.step)[:, 1:]
+
+    row = {
+        "real": _described(model, data, same),
+        "untrained": _described(untrained, data, same),
+        "curved": _curved(model, data, (structure.friction, structure.rest)),
+        "identified": {
+            name: getattr(structure, name) for name in ("inertia", "slope", "viscous", "coulomb")
+        },
+        "friction": structure.friction.std(0) / y.std(0),
+        "linear": linear(y),
+        "nulls": {},
+    }
+    for number, kind in enumerate(KINDS):
+        drawn = surrogates(kind, y[None], draws, seed=100 * number)[:, 0]
+        null, *_ = trained(data.x, y, draws, _STARTS * (number + 1), width, targets=drawn)
+        row["nulls"][kind] = _described(null, data, drawn)
+        row["nulls"][kind]["linear"] = np.stack([linear(d) for d in drawn])
+    return row
+
+
+def _by_block() -> dict:
+    """Inertia and friction from each part of the recording but one, and what friction is worth."""
+    data, found = Windowed.of(*MAIN), []
+    states = data.states
+    for block in range(BLOCKS):
+        training, _ = data.fold(block)
+        made = identified(states[training], data.current[training])
+        found.append((made.inertia, made.slope, made.viscous, made.coulomb))
+    return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*found))))
+
+
+def _hidden_units(members: int) -> dict:
+    """Errors of an output layer fitted anew, with and without hidden units, by block."""
+    data, rows = Windowed.of(*MAIN), []
+    flat = data.x.reshape(len(data.x), -1)
+    for block in range(BLOCKS):
+        training, test = data.fold(block)
+        model, *_ = trained(data.x[training], data.current[training], members, 0, data.width)
+        pair, given = (flat[training], flat[test]), (data.current[training], data.current[test])
+        alone = refitted(pair[0], given[0], pair[1], given[1])
+        hidden = [
+            model.weights.activity(model.scaled(data.x[part]))[0] for part in (training, test)
+        ]
+        both = [
+            refitted(
+                np.column_stack([pair[0], a]), given[0], np.column_stack([pair[1], b]), given[1]
+            )
+            for a, b in zip(*hidden)
+        ]
+        rows.append((alone, np.array(both)))
+    alone, both = map(np.array, zip(*rows))
+    return {"alone": alone, "with hidden units": both}
+
+
+def _memory(members: int) -> dict:
+    """Training errors on currents that have nothing to do with the motion, by window."""
+    rows: dict = {}
+    for width in paper.TABLE_4_1:
+        data = Windowed.of(100, width)
+        for kind in ("phases", "shuffled"):
+            drawn = surrogates(kind, data.current[None], members, seed=500)[:, 0]
+            model, *_ = trained(data.x, data.current, members, 0, width, targets=drawn)
+            error = ((model.torque(data.x) - drawn) ** 2).mean(-2) / drawn.var(-2)
+            rows.setdefault(kind, {})[str(width)] = np.sqrt(error.mean(-1))
+    return rows
+
+
+def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
+    """Errors by blocks and windows, what changes them, and the filters beside their nulls.
+
+    Errors are mean squares over the whole recording's variance, one for each block, network and
+    output; gains are in A s/rad and A s^2/rad.
+
+    Parameters
+    ----------
+    members : int
+        Networks of a block and window.
+    filters : int
+        Networks whose filters are taken apart, for each of `FILTERS`.
+    draws : int
+        Draws of each surrogate, a network each.
+    """
+    return {
+        "members": members,
+        "filters": filters,
+        "draws": draws,
+        "epochs": EPOCHS,
+        "blocks": BLOCKS,
+        "grid": _grid(members),
+        "variants": _variants(members),
+        "identified": _by_block(),
+        "hidden units": _hidden_units(members),
+        "memory": _memory(filters),
+        "windows": {str(w): _filters(w, filters, draws) for w in FILTERS},
+    }
