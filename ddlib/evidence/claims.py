@@ -6,6 +6,10 @@ An entry has these fields:
     A name, unique.
 ``where``
     Section, table, figure or appendix of the paper, like "section 3.1" or "Figure 5-4".
+``on``, ``again``
+    Left out for most. Whose arm it is judged on if not on the simulated ones of this book, like
+    "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
+    judged like the others and not counted twice among the paper's.
 ``chapter``
     The page of the book that deals with it; `LEDGER` if there is no other.
 ``claim``
@@ -105,6 +109,8 @@ class Claim:
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
+    on: str = ""
+    again: str = ""
 
     def __post_init__(self):
         for name in ("id", "where", "chapter", "claim", "why", "refuted"):
@@ -120,6 +126,8 @@ class Claim:
             )
         if self.loose and self.verdict in ("by construction", "not testable"):
             raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
+        if self.again and not self.on:
+            raise ValueError(f"claim {self.id!r} must say on what it judges {self.again!r} again")
         for bounds in (self.band, self.loose):
             self._check_band(bounds)
 
@@ -269,7 +277,8 @@ def load(path: Path = FILE) -> list[Claim]:
     Raises
     ------
     ValueError
-        If an entry has unknown or missing fields, or an id twice.
+        If an entry has unknown or missing fields, an id twice, or repeats a claim that is not
+        there.
     """
     text = book_file(Path(path)).read_text(encoding="utf-8")
     claims, seen = [], set()
@@ -288,12 +297,27 @@ def load(path: Path = FILE) -> list[Claim]:
             raise ValueError(f"id must be unique, got {claim.id!r} twice")
         seen.add(claim.id)
         claims.append(claim)
+    for claim in claims:
+        if claim.again and claim.again not in seen:
+            raise ValueError(f"again of claim {claim.id!r} must be an id, got {claim.again!r}")
     return claims
 
 
 def of_the_paper() -> list[Claim]:
-    """All claims but this book's own."""
-    return [claim for claim in load() if claim.printed != OWN]
+    """All claims but this book's own and those that are judged again on another arm."""
+    return [claim for claim in load() if claim.printed != OWN and not claim.on]
+
+
+def judged_again(on: str) -> list[tuple[Claim, Claim]]:
+    """Sentences of the paper that are judged twice: the first claim and the one on another arm.
+
+    Parameters
+    ----------
+    on : str
+        As in the field ``on``, like "a real arm".
+    """
+    first = {claim.id: claim for claim in load()}
+    return [(first[c.again], c) for c in first.values() if c.on == on and c.again]
 
 
 def of_chapter(chapter: str) -> list[Claim]:

@@ -14,6 +14,7 @@ from ddlib.evidence.claims import (
     Claim,
     function,
     here,
+    judged_again,
     of_section,
     printed,
     sure,
@@ -54,6 +55,30 @@ def ledger_table(section: str) -> Table:
         for c in of_section(section)
     ]
     return Table(HEADER, [tuple(map(typeset, row)) for row in rows])
+
+
+def again_table(on: str) -> Table:
+    """Sentences that are judged again on another arm: both verdicts side by side.
+
+    Parameters
+    ----------
+    on : str
+        As in the field ``on`` of a claim, like "a real arm".
+
+    Raises
+    ------
+    ValueError
+        If no claim is judged there.
+    """
+    pairs = judged_again(on)
+    if not pairs:
+        raise ValueError(f"on must be named by claims, got {on!r}")
+    rows = [
+        (f"{c.claim} ({_linked(c)})", printed(c), sure(first), _judged(c), here(c))
+        for first, c in sorted(pairs, key=lambda pair: pair[1].place())
+    ]
+    header = ("claim", "printed", "verdict on the simulated arm", f"verdict on {on}", "there")
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
 def _here(claim: Claim) -> str:

@@ -4,19 +4,19 @@ Of a geared arm that somebody else recorded one knows the directions of its axes
 masses nor its lengths nor what a motor makes of an ampere. Then each joint gets equations of its
 own, linear in unknown factors, whose terms follow from Lagrange's equation:
 
-- Axis 1 is vertical, axes 2 and 3 are parallel and horizontal. What joint 1 turns depends on
-  ``q2`` and ``q2 + q3`` as a sum of cosines and sines of twice these angles, of their sum and of
-  their difference; joints 2 and 3 are a planar pair under gravity and under the centrifugal torque
-  of joint 1.
+- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. What joint 1 turns
+  is a sum of cosines and sines of twice ``q2``, of ``q3``, of ``2 q2 + q3`` and of twice ``q2 + q3``.
+  Joints 2 and 3 are a planar pair under gravity and under the centrifugal torque of joint 1.
 - Axis 4 lies in the plane of the pair, axis 5 crosses it at a right angle, axis 6 crosses axis 5 at
-  a right angle. Gravity pulls on the wrist along axis 6; of its inertia the wrist's own joints feel
-  each its own acceleration and the turning of what carries it, the other joints feel a point mass.
+  a right angle. Joints 4 to 6 feel each its own acceleration, some of what carries it, and the
+  weight of a wrist whose centre lies on axis 6.
 - Motor 6 turns joint 5, too, so that both feel friction of the sum of their velocities.
 
-Every angle comes with its cosine and its sine, so that no zero of a joint has to be known. Assumed
-are a mass that is symmetric about the plane of the pair, a wrist without velocity terms, and
-viscous and Coulomb friction. The Coriolis terms follow from Lagrange's equation by
-``d/dt (b(q) q1') = b q1'' + b' q1'``.
+The angles of joints 2 and 3 come with their cosine and their sine, so that their zeros need not be
+known; those of joints 4 and 5 are zero where axis 5 is parallel to axis 2, and axis 6 to axis 4.
+Assumed are masses that are symmetric about the plane of the pair, a wrist that joints 1 to 3 carry
+as a part of the forearm and that has no velocity terms, and viscous and Coulomb friction. The
+Coriolis terms of joint 1 follow from Lagrange's equation by ``d/dt (b(q) q1') = b q1'' + b' q1'``.
 """
 
 from __future__ import annotations

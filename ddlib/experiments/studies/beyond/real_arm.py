@@ -13,7 +13,6 @@ from ddlib.analysis import (
     explained,
     gains,
     mean_gradient,
-    refitted,
     shares,
 )
 from ddlib.experiments.studies.beyond.tx40 import (
@@ -327,26 +326,40 @@ def _by_block() -> dict:
 
 
 def _hidden_units(members: int) -> dict:
-    """Errors of an output layer fitted anew, with and without hidden units, by block."""
-    data, rows = Windowed.of(*MAIN), []
+    """Errors of an output layer fitted anew, without hidden units ``(blocks,)`` and with them."""
+    data, found = Windowed.of(*MAIN), {"training": [], "test": []}
     flat = data.x.reshape(len(data.x), -1)
     for block in range(BLOCKS):
-        training, test = data.fold(block)
-        model, *_ = trained(data.x[training], data.current[training], members, 0, data.width)
-        pair, given = (flat[training], flat[test]), (data.current[training], data.current[test])
-        alone = refitted(pair[0], given[0], pair[1], given[1])
-        hidden = [
-            model.weights.activity(model.scaled(data.x[part]))[0] for part in (training, test)
-        ]
-        both = [
-            refitted(
-                np.column_stack([pair[0], a]), given[0], np.column_stack([pair[1], b]), given[1]
-            )
-            for a, b in zip(*hidden)
-        ]
-        rows.append((alone, np.array(both)))
-    alone, both = map(np.array, zip(*rows))
-    return {"alone": alone, "with hidden units": both}
+        cases = data.fold(block)
+        training, given = cases[0], data.current[cases[0]]
+        model, *_ = trained(data.x[training], given, members, 0, data.width)
+        hidden = model.weights.activity(model.scaled(data.x))[0]
+        features = [flat, *(np.column_stack([flat, h]) for h in hidden)]
+        for row, part in zip(found.values(), cases):
+            fits = [least_squares(x[training], given, x[part]) for x in features]
+            row.append([wrong(fit, data, part).mean() for fit in fits])
+    return {
+        side: {"alone": np.array(x)[:, 0], "with hidden units": np.array(x)[:, 1:]}
+        for side, x in found.items()
+    }
+
+
+def _differences() -> dict:
+    """Errors with states from three samples, ``(blocks, 6)``, by samples a second."""
+    rows: dict = {}
+    for rate in RATES:
+        data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
+        states = data.states
+        plain = states.reshape(len(states), -1)
+        for block in range(BLOCKS):
+            training, test = data.fold(block)
+            given = data.current[training]
+            linear = least_squares(plain[training], given, plain[test])
+            known = known_structure(states[training], given, states[test])
+            for name, fit in zip(row, (linear, known)):
+                row[name].append(wrong(fit, data, test))
+        rows[str(rate)] = {name: np.array(each) for name, each in row.items()}
+    return rows
 
 
 def _memory(members: int) -> dict:
@@ -384,6 +397,7 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "epochs": EPOCHS,
         "blocks": BLOCKS,
         "grid": _grid(members),
+        "differences": _differences(),
         "variants": _variants(members),
         "identified": _by_block(),
         "hidden units": _hidden_units(members),
