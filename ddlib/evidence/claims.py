@@ -6,7 +6,7 @@ An entry has these fields:
     A name, unique.
 ``where``
     Section, table, figure or appendix of the paper, like "section 3.1" or "Figure 5-4".
-``on``, ``again``
+``arm``, ``again``
     Left out for most. Whose arm it is judged on if not on the simulated ones of this book, like
     "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
     judged like the others and not counted twice among the paper's.
@@ -109,7 +109,7 @@ class Claim:
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
-    on: str = ""
+    arm: str = ""
     again: str = ""
 
     def __post_init__(self):
@@ -126,8 +126,10 @@ class Claim:
             )
         if self.loose and self.verdict in ("by construction", "not testable"):
             raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
-        if self.again and not self.on:
-            raise ValueError(f"claim {self.id!r} must say on what it judges {self.again!r} again")
+        if self.again and not self.arm:
+            raise ValueError(
+                f"claim {self.id!r} must name the arm on which it judges {self.again!r} again"
+            )
         for bounds in (self.band, self.loose):
             self._check_band(bounds)
 
@@ -305,19 +307,19 @@ def load(path: Path = FILE) -> list[Claim]:
 
 def of_the_paper() -> list[Claim]:
     """All claims but this book's own and those that are judged again on another arm."""
-    return [claim for claim in load() if claim.printed != OWN and not claim.on]
+    return [claim for claim in load() if claim.printed != OWN and not claim.arm]
 
 
-def judged_again(on: str) -> list[tuple[Claim, Claim]]:
+def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
     """Sentences of the paper that are judged twice: the first claim and the one on another arm.
 
     Parameters
     ----------
-    on : str
-        As in the field ``on``, like "a real arm".
+    arm : str
+        As in the field ``arm``, like "a real arm".
     """
     first = {claim.id: claim for claim in load()}
-    return [(first[c.again], c) for c in first.values() if c.on == on and c.again]
+    return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
 
 
 def of_chapter(chapter: str) -> list[Claim]:

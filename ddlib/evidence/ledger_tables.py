@@ -57,27 +57,27 @@ def ledger_table(section: str) -> Table:
     return Table(HEADER, [tuple(map(typeset, row)) for row in rows])
 
 
-def again_table(on: str) -> Table:
+def again_table(arm: str) -> Table:
     """Sentences that are judged again on another arm: both verdicts side by side.
 
     Parameters
     ----------
-    on : str
-        As in the field ``on`` of a claim, like "a real arm".
+    arm : str
+        As in the field ``arm`` of a claim, like "a real arm".
 
     Raises
     ------
     ValueError
         If no claim is judged there.
     """
-    pairs = judged_again(on)
+    pairs = judged_again(arm)
     if not pairs:
-        raise ValueError(f"on must be named by claims, got {on!r}")
+        raise ValueError(f"arm must be named by claims, got {arm!r}")
     rows = [
         (f"{c.claim} ({_linked(c)})", printed(c), sure(first), _judged(c), here(c))
         for first, c in sorted(pairs, key=lambda pair: pair[1].place())
     ]
-    header = ("claim", "printed", "verdict on the simulated arm", f"verdict on {on}", "there")
+    header = ("claim", "printed", "verdict on the simulated arm", f"verdict on {arm}", "there")
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 

@@ -4,9 +4,10 @@ Of a geared arm that somebody else recorded one knows the directions of its axes
 masses nor its lengths nor what a motor makes of an ampere. Then each joint gets equations of its
 own, linear in unknown factors, whose terms follow from Lagrange's equation:
 
-- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. What joint 1 turns
-  is a sum of cosines and sines of twice ``q2``, of ``q3``, of ``2 q2 + q3`` and of twice ``q2 + q3``.
-  Joints 2 and 3 are a planar pair under gravity and under the centrifugal torque of joint 1.
+- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. What joint 1
+  turns is a sum of cosines and sines of twice ``q2``, of ``q3``, of ``2 q2 + q3`` and of twice
+  ``q2 + q3``. Joints 2 and 3 are a planar pair under gravity and under the centrifugal torque of
+  joint 1.
 - Axis 4 lies in the plane of the pair, axis 5 crosses it at a right angle, axis 6 crosses axis 5 at
   a right angle. Joints 4 to 6 feel each its own acceleration, some of what carries it, and the
   weight of a wrist whose centre lies on axis 6.

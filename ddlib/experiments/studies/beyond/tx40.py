@@ -183,7 +183,7 @@ def best_penalty(data: Windowed, training) -> float:
         if tried.any():
             made = Ridge(x[kept], data.current[kept])
             error = [made.predict(x[tried], p) - data.current[tried] for p in RIDGES]
-            total = total + (np.square(error) / data.current.var(0)).sum((1, 2))
+            total = total + (np.square(error) / data.current[training].var(0)).sum((1, 2))
     return RIDGES[int(np.argmin(total))]
 
 

@@ -1,0 +1,88 @@
+"""Figures of the chapter on a real arm: accessible, and true to what they are given."""
+
+import inspect
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from pictures import curves, drawn, words
+
+from ddlib.figures import COLOURS, FAINT, INK, Illustration
+from ddlib.figures.beyond import real_arm as figures_real_arm
+
+SPEED = np.linspace(-2.0, 1.0, 31)
+GROUPS = np.array([-1.5, 0.5]), np.array([-2.0, 1.2])
+PANELS = {
+    name: (SPEED, 0.5 * SPEED + jump * np.sign(SPEED), *GROUPS, (0.5, jump))
+    for name, jump in (("joint 1", 0.2), ("joint 2", 0.4))
+}
+LABELS = "velocity, rad/s", "current, A"
+REAL = np.array([[1.0, 0.9, 1.1, 1.2, 0.8, 1.0], [1.1, 1.0, 1.2, 1.3, 0.9, 1.1]])
+NULL = np.linspace(-0.5, 0.5, 21)[:, None] * np.ones(6)
+EXAMPLES = {
+    "friction_by_joint": lambda: figures_real_arm.friction_by_joint(PANELS, LABELS, "Two joints."),
+    "gains_by_joint": lambda: figures_real_arm.gains_by_joint(
+        {"velocity": (REAL, NULL)}, "gain over inertia", "Gains of two networks."
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {name: drawn(make) for name, make in EXAMPLES.items()}
+
+
+def test_every_figure_has_an_example():
+    functions = inspect.getmembers(figures_real_arm, inspect.isfunction)
+    own = {n for n, f in functions if f.__module__ == figures_real_arm.__name__ and n[0] != "_"}
+    assert own == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_sound_and_accessible(made, name):
+    figure, _ = made[name]
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.attrib["role"] == "figure" and root.attrib["aria-label"] == figure.alt
+    assert INK not in figure.svg and "currentColor" in figure.svg
+    assert not re.search(r"\bnan\b", figure.svg)
+
+
+def test_friction_lines_jump_at_rest_and_slope_beyond(made):
+    picture, figure = made["friction_by_joint"]
+    lines = curves(figure, COLOURS[1])
+    np.testing.assert_allclose(lines[0], [[0, -0.2], [-2, -1.2]])
+    np.testing.assert_allclose(lines[1], [[0, 0.2], [2, 1.2]])
+    np.testing.assert_allclose(lines[3], [[0, 0.4], [2, 1.4]])
+    dots = [x for x in figure.axes[0].lines if x.get_color() == COLOURS[0]]
+    np.testing.assert_allclose(dots[0].get_xydata(), np.transpose(GROUPS))
+    cloud = [x for x in figure.axes[0].lines if x.get_color() == FAINT]
+    assert len(cloud[0].get_xydata()) == len(SPEED)
+    assert {"joint 1", "joint 2", *LABELS} <= set(words(picture))
+
+
+def test_gains_are_dots_and_nulls_bars(made):
+    picture, figure = made["gains_by_joint"]
+    (axis,) = figure.axes
+    dots = np.concatenate([x.get_ydata() for x in axis.lines if x.get_color() == COLOURS[0]])
+    np.testing.assert_allclose(np.sort(dots), np.sort(REAL.ravel()))
+    bars = [p for p in axis.patches if to_hex(p.get_facecolor()) == FAINT]
+    assert len(bars) == 6
+    for k, bar in enumerate(bars, 1):
+        assert bar.get_x() < k < bar.get_x() + bar.get_width()
+        assert bar.get_y() == pytest.approx(-0.45) and bar.get_height() == pytest.approx(0.9)
+    assert {"unrelated currents", "real currents", "as identified"} <= set(words(picture))
+
+
+def test_what_makes_no_sense_is_refused():
+    friction, gains = figures_real_arm.friction_by_joint, figures_real_arm.gains_by_joint
+    with pytest.raises(ValueError, match="one panel or more"):
+        friction({}, LABELS, "a")
+    with pytest.raises(ValueError, match="one panel or more"):
+        gains({}, "gain", "a")
+    with pytest.raises(ValueError, match="current of 'x'"):
+        friction({"x": (SPEED, SPEED[1:], *GROUPS, (1, 1))}, LABELS, "a")
+    with pytest.raises(ValueError, match="gains of 'x'"):
+        gains({"x": (REAL[:, :4], NULL)}, "gain", "a")
