@@ -1,10 +1,12 @@
 """The real arm's cases, its blocks, and the models that are tried on them."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from ddlib.experiments.studies.beyond import real_arm, tx40
+from ddlib.experiments.studies.beyond import real_arm, tx40, tx40_networks
 from ddlib.experiments.studies.beyond.tx40 import (
     BLOCKS,
     RATES,
@@ -145,7 +147,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     data = Windowed.of(100, 5)
     x, y, decay = data.x[:200:4], data.current[:200:4], 1e-2
     start = Weights.random(1, 5, 2, 6, 6)[0]
-    model = real_arm.decayed(x, y, start, decay, steps=2000)
+    model = tx40_networks.decayed(x, y, start, decay, steps=2000)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     scaled, wanted = model.scaled(x), model.outputs.scale(y)
     parts = [getattr(model.weights, n) for n in names]
@@ -166,20 +168,24 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
 
 def test_networks_of_six_joints_learn_and_are_told_apart():
     data = Windowed.of(100, 5)
-    model, kept, made = real_arm.trained(data.x, data.current, 2, 0, 5, snapshots=(1,), epochs=60)
+    model, kept, made = tx40_networks.trained(
+        data.x, data.current, 2, 0, 5, snapshots=(1,), epochs=60
+    )
     assert model.weights.direct_weights.shape == (2, 6, 6, 5) and made.x.min() == -1
-    early, late = (real_arm.wrong(m.torque(data.x), data, slice(None)) for m in (kept[1], model))
+    early, late = (
+        tx40_networks.wrong(m.torque(data.x), data, slice(None)) for m in (kept[1], model)
+    )
     assert late.shape == (2, 6) and (late.mean(-1) < early.mean(-1)).all()
     nothing = np.zeros_like(data.current) + data.current.mean(0)
-    np.testing.assert_allclose(real_arm.wrong(nothing, data, slice(None)), 1, rtol=1e-9)
+    np.testing.assert_allclose(tx40_networks.wrong(nothing, data, slice(None)), 1, rtol=1e-9)
 
 
 def test_the_study_in_small(monkeypatch):
     monkeypatch.setattr(real_arm, "RATES", {100: (5,)})
-    monkeypatch.setattr(real_arm, "EPOCHS", 20)
+    monkeypatch.setattr(real_arm, "trained", partial(tx40_networks.trained, epochs=20))
     monkeypatch.setattr(real_arm, "DECAYS", (0.0, 1e-2))
     row = real_arm._grid(1)[0]
-    assert row["network"].shape == (5, 1, 6) and row["ridge"].shape == (5, 6)
+    assert row["network"].shape == (5, 1) and row["ridge"].shape == (5,)
     assert row["identified"].mean() < row["ridge"].mean() < row["no friction"].mean()
     found = real_arm._filters(5, 2, 2)
     assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm.KINDS)

@@ -47,9 +47,7 @@ def squares(width: int, model: str = "network", rate: int = RATE) -> np.ndarray:
         A name of the grid, like "network", "network, training" or "ridge".
     """
     found = np.array(cell(width, rate)[model])
-    if model.startswith("network"):
-        return found.reshape(*found.shape[:2], -1).mean(-1)
-    return found.reshape(len(found), -1).mean(-1)[:, None]
+    return found if model.startswith("network") else found[:, None]
 
 
 def of(cell) -> np.ndarray:
@@ -224,10 +222,10 @@ def differencing(rate: int = 500, width: int = 21) -> Measured:
         Samples a second; window of the polynomial.
     """
     found = results.read("real-arm")["differences"]
-    ends = [np.array(found[str(rate)][n]).mean(-1)[:, None] for n in ("states", "identified")]
+    ends = [np.array(found[str(rate)][n])[:, None] for n in ("states", "identified")]
     fitted = [squares(width, name, rate) for name in ("states", "identified")]
     a, b, c, d = _told(ends[0], fitted[0], ends[1], fitted[1])
-    slow = np.array(found[str(RATE)]["states"]).mean(-1)[:, None]
+    slow = np.array(found[str(RATE)]["states"])[:, None]
     text = f"{a} and {b} at {rate} samples a second, {_told(slow)[0]} by differences at {RATE}; "
     return _over(ends[:1], fitted[:1], f"{text}with known axes and friction {c} and {d}")
 
@@ -271,6 +269,23 @@ def over_identified(other: str = "ridge") -> Measured:
     theirs, ours = ({w: squares(w, name) for w in widths} for name in (other, "identified"))
     (a, x), (b, y) = _least(theirs), _least(ours)
     return _over([*theirs.values()], [*ours.values()], f"{x} at {a} against {y} at {b}")
+
+
+def process_over(other: str = "network", process: str = "windows") -> Measured:
+    """Error of another model over that of a Gaussian process, both at window 21 (judged).
+
+    Parameters
+    ----------
+    other : str
+        A model of the grid.
+    process : {"windows", "states", "on the rest"}
+        What the process sees; "on the rest": the states, to learn what the known structure leaves.
+    """
+    found = {n: np.array(x)[:, None] for n, x in results.read("real-arm")["processes"].items()}
+    theirs = squares(21, other)
+    text = f"{_told(theirs)[0]} against "
+    text += ", ".join(f"{_told(x)[0]} {n}" for n, x in found.items())
+    return _over([theirs], [found[process]], text)
 
 
 def without_friction(width: int = 21) -> Measured:

@@ -24,9 +24,6 @@ WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope
 UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
 """Units of these gains."""
 
-LEAST = 0.1
-"""Share of the identified value at which a gain that is less, or of the wrong sign, is counted."""
-
 
 def row(width: int) -> dict:
     """Networks of a window on the whole recording, and on unrelated currents."""
@@ -94,31 +91,44 @@ def calibrated(what: str = "inertia", width: int = 21) -> Measured:
     return judged(lambda each: _off(each, true), real, text=text)
 
 
-def _correlation(gains, true) -> np.ndarray:
-    """Of the logarithms of median gains and of what should be there, over the joints."""
-    kept = np.maximum(np.median(gains, axis=-2), LEAST * true)
-    return _pearson(np.log(kept), np.log(true))
-
-
 def _pearson(a, b) -> np.ndarray:
     a, b = (x - x.mean(-1, keepdims=True) for x in (np.asarray(a), np.asarray(b)))
     size = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
     return (a * b).sum(-1) / np.where(size > 0, size, 1)
 
 
-def _followed(statistic, real, nulls) -> Measured:
-    chance = {n: p_value(float(statistic(real)), statistic(x[:, None]), "more")
-              for n, x in nulls.items()}  # fmt: skip
-    text = f"r {float(statistic(real)):.2f}; as high by chance: "
-    text += ", ".join(f"{n} p {p:.2f}" for n, p in chance.items())
-    return judged(statistic, real, text=text)
+def beyond_null(what: str = "friction", width: int = 11) -> Measured:
+    """Joints at which the gain is nearer the identified value than unrelated currents bring it.
+
+    Nearer than all but a twentieth of the networks on either surrogate (judged: how many of six).
+
+    Parameters
+    ----------
+    what : {"inertia", "friction"}
+        Gains on acceleration, or on velocity.
+    width : int
+        Window size.
+    """
+    found, (name, wanted) = row(width), WORTH[what]
+    true = np.array(found["identified"][wanted])
+    real = np.array(found["real"][name])
+    nulls = [np.abs(np.array(x[name]) / true - 1) for x in found["nulls"].values()]
+    edge = np.min([np.percentile(x, 5, axis=0) for x in nulls], axis=0)
+
+    def joints(drawn):
+        return (np.abs(np.median(drawn, axis=-2) / true - 1) < edge).sum(-1)
+
+    off = np.abs(np.median(real, 0) / true - 1)
+    told = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
+    return judged(joints, real, text=f"off by {told} at joints 1 to 6, in brackets by chance")
 
 
-def gains_follow(what: str = "friction", width: int = 11) -> Measured:
-    """Correlation over six joints of gains and of what the identified model has (judged).
+def follow(what: str = "friction", width: int = 11) -> Measured:
+    """Correlation over six joints of gains with the identified values, less that by chance.
 
-    Of logarithms; a gain below a tenth of the identified value, or of the wrong sign, counts as
-    that tenth. The replicates draw networks.
+    Both in units of the joint's own deviations, of current over those of velocity or acceleration,
+    so that large motors do not count by their size. By chance: the 95th percentile of unrelated
+    currents.
 
     Parameters
     ----------
@@ -127,9 +137,17 @@ def gains_follow(what: str = "friction", width: int = 11) -> Measured:
         Window size.
     """
     found, (name, wanted) = row(width), WORTH[what]
-    true = np.array(found["identified"][wanted])
-    nulls = {n: np.array(x[name]) for n, x in found["nulls"].items()}
-    return _followed(lambda g: _correlation(g, true), np.array(found["real"][name]), nulls)
+    unit = np.array(found["deviations"][name])
+    true = np.array(found["identified"][wanted]) * unit
+    real = np.array(found["real"][name]) * unit
+    nulls = [_pearson(np.array(x[name]) * unit, true) for x in found["nulls"].values()]
+    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    r = float(_pearson(np.median(real, 0), true))
+    return judged(
+        lambda drawn: _pearson(np.median(drawn, axis=-2), true) - chance,
+        real,
+        text=f"r {r:.2f}; unrelated currents reach {chance:.2f} in one of twenty",
+    )
 
 
 def shares_follow(width: int = 21) -> Measured:
@@ -143,11 +161,12 @@ def shares_follow(width: int = 21) -> Measured:
         Window size.
     """
     found, name = row(width), "share of velocity"
-    true = np.array(found["friction"])
-    nulls = {n: np.array(x[name]) for n, x in found["nulls"].items()}
-    return _followed(
-        lambda g: _pearson(np.median(g, axis=-2), true), np.array(found["real"][name]), nulls
-    )
+    true, real = np.array(found["friction"]), np.array(found["real"][name])
+    r = float(_pearson(np.median(real, 0), true))
+    chance = [p_value(r, _pearson(np.array(x[name]), true), "more")
+              for x in found["nulls"].values()]  # fmt: skip
+    text = f"r {r:.2f}; as high by chance: p {max(chance):.2f}"
+    return judged(lambda drawn: _pearson(np.median(drawn, axis=-2), true), real, text=text)
 
 
 def compensate_friction(width: int = 21) -> Measured:

@@ -4,5 +4,6 @@
 - ``rivals_1988``: tables, CMAC, polynomials and Fourier series, each varied; one trajectory alone
 - ``rivals``: all rivals on the same recordings: error, stored numbers, arithmetic, training time
 - ``tx40``: the real arm's recording as cases, its blocks, and models that are no networks
-- ``real_arm``: the window network of 1988 on it
+- ``tx40_networks``: networks on these cases
+- ``real_arm``: the window network of 1988 on them, what beats it, and its filters
 """

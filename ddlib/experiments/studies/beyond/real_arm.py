@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
-from scipy.optimize import minimize
 
 from ddlib import paper
 from ddlib.analysis import (
@@ -25,20 +26,17 @@ from ddlib.experiments.studies.beyond.tx40 import (
     known_structure,
     least_squares,
 )
-from ddlib.learning import TorqueModel, TrainingSet, Weights, surrogates, train_ensemble
-
-HIDDEN = 10
-"""Hidden units, as in 1988."""
-
-DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
-"""Descent on inputs of -1 to 1: the rate is divided by the window size, since a window of six
-joints has three times the inputs of two."""
-
-SCALING = (-1.0, 1.0)
-"""Range of the inputs."""
-
-EPOCHS = 2000
-"""Epochs of all networks but the longest."""
+from ddlib.experiments.studies.beyond.tx40_networks import (
+    EPOCHS,
+    HIDDEN,
+    both,
+    decayed,
+    trained,
+    wrong,
+)
+from ddlib.learning import TorqueModel, Weights, surrogates
+from ddlib.rivals import Cases, GaussianProcess
+from ddlib.trajectories import OutsideFamilyWarning
 
 COURSE = (10, 30, 100, 300, 1000, 2000, 5000)
 """Epochs at which the main window's networks are tested on the way to those of 1988."""
@@ -58,51 +56,6 @@ DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
-def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=HIDDEN,
-            epochs: int = EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
-    """Networks by descent on windows ``(cases, 6, width)`` and currents ``(cases, outputs)``.
-
-    Parameters
-    ----------
-    x, y : array_like
-    members, seed : int
-        Number of networks; seed of the first.
-    width : int
-        Window size.
-    snapshots : sequence of int
-        Epochs whose weights are kept.
-    targets : array_like, shape (members, cases, outputs), optional
-        Currents of each network in place of `y`.
-    hidden, epochs : int
-
-    Returns
-    -------
-    model : TorqueModel
-    kept : dict of TorqueModel
-        By epoch.
-    data : TrainingSet
-    """
-    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
-    start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
-    scaled = None if targets is None else data.outputs.scale(targets)
-    model, _, kept = train_ensemble(
-        start, data, targets=scaled, rate=DESCENT["rate"] / width, momentum=DESCENT["momentum"],
-        warm_up=DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
-    )  # fmt: skip
-    models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in kept.items()}
-    return model, models, data
-
-
-def wrong(predicted, data: Windowed, cases) -> np.ndarray:
-    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``."""
-    error = predicted - data.current[cases]
-    return (error**2).mean(-2) / data.current.var(0)
-
-
-def _both(model: TorqueModel, data: Windowed, block: int) -> list[np.ndarray]:
-    return [wrong(model.torque(data.x[part]), data, part) for part in data.fold(block)]
-
-
 def _grid(members: int) -> list[dict]:
     """Every window of `RATES`: errors of networks and of the models that are no networks."""
     rows = []
@@ -116,12 +69,12 @@ def _grid(members: int) -> list[dict]:
 
 
 def _cell(data: Windowed, block: int, members: int) -> dict:
-    """Errors in one fold: of networks ``(members,)`` or ``(members, 6)``, of others ``(6,)``."""
+    """Errors in one fold, means over the outputs: of networks ``(members,)``, of others one."""
     training, test = data.fold(block)
     flat, states, given = data.x.reshape(len(data.x), -1), data.states, data.current[training]
     plain = states.reshape(len(states), -1)
     model, *_ = trained(data.x[training], given, members, 0, data.width)
-    network = _both(model, data, block)
+    network = both(model, data, block)
     penalty = best_penalty(data, training)
     others = {
         "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
@@ -133,58 +86,15 @@ def _cell(data: Windowed, block: int, members: int) -> dict:
     own = known_structure(states[training], given, states[training])
     return {
         "network, training": network[0].mean(-1),
-        "network": network[1],
+        "network": network[1].mean(-1),
         "largest weight": model.weights.largest,
         "penalty": penalty,
         "identified, training": wrong(own, data, training).mean(),
-        **{name: wrong(answer, data, test) for name, answer in others.items()},
+        **{name: wrong(answer, data, test).mean() for name, answer in others.items()},
     }
 
 
 # --- what would change it -----------------------------------------------------------------
-
-
-def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
-    """One network by quasi-Newton steps on the mean squared error with weight decay.
-
-    Parameters
-    ----------
-    x, y : array_like, shapes (cases, 6, width) and (cases, outputs)
-    start : Weights
-        Of one network.
-    decay : float
-        Half of it times the sum of squared weights, biases left out, is added to half the mean
-        over the cases of the squared error, summed over the scaled outputs.
-    steps : int
-        Most iterations.
-    """
-    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
-    flat = data.x.reshape(len(data.x), -1)
-    names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
-    shapes = [getattr(start, name).shape for name in names]
-    ends = np.cumsum([np.prod(shape) for shape in shapes])
-
-    def parts(vector):
-        return [v.reshape(s) for v, s in zip(np.split(vector, ends[:-1]), shapes)]
-
-    def objective(vector):
-        w1, b1, w2, w3, b2 = parts(vector)
-        first, direct = w1.reshape(len(b1), -1), w3.reshape(len(b2), -1)
-        hidden = 1 / (1 + np.exp(-np.clip(flat @ first.T + b1, -500, 500)))
-        out = 1 / (1 + np.exp(-np.clip(flat @ direct.T + hidden @ w2.T + b2, -500, 500)))
-        error = out - data.y
-        delta = error * out * (1 - out) / len(flat)
-        back = (delta @ w2) * hidden * (1 - hidden)
-        slopes = [
-            back.T @ flat + decay * first, back.sum(0), delta.T @ hidden + decay * w2,
-            delta.T @ flat + decay * direct, delta.sum(0),
-        ]  # fmt: skip
-        value = (error**2).sum() / len(flat) + decay * sum((w**2).sum() for w in (w1, w2, w3))
-        return value / 2, np.concatenate([s.ravel() for s in slopes])
-
-    begin = np.concatenate([getattr(start, name).ravel() for name in names])
-    found = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
-    return TorqueModel(Weights(*parts(found.x)), data.inputs, data.outputs)
 
 
 def _variants(members: int) -> dict:
@@ -201,15 +111,15 @@ def _variants(members: int) -> dict:
         x, y = data.x[training], data.current[training]
         last, kept, _ = trained(x, y, members, 0, data.width, COURSE, epochs=paper.EPOCHS)
         for epoch, model in {**kept, paper.EPOCHS: last}.items():
-            put(f"{epoch} epochs", _both(model, data, block))
+            put(f"{epoch} epochs", both(model, data, block))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
-            put(f"{units} units", _both(model, data, block))
+            put(f"{units} units", both(model, data, block))
         start = Weights.random(members, data.width, HIDDEN, 6, 6)
         for decay in DECAYS:
-            each = [_both(decayed(x, y, start[k], decay), data, block) for k in range(members)]
+            each = [both(decayed(x, y, start[k], decay), data, block) for k in range(members)]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
-        for decay in DECAYS[1:]:
+        for decay in DECAYS[-2:]:
             put(f"on the rest, decay {decay:g}", _structured(data, block, members, decay))
     return {n: {side: np.array(v) for side, v in row.items()} for n, row in rows.items()}
 
@@ -291,10 +201,8 @@ def _filters(width: int, members: int, draws: int) -> dict:
     flat = data.x.reshape(len(data.x), -1)
     penalty = best_penalty(data, np.ones(len(flat), bool))
 
-    def linear(targets):
-        fitted = Ridge(flat, targets).filters(penalty).T.reshape(6, 6, width)
-        return gains(fitted[np.arange(6), np.arange(6)], data.step)[:, 1:]
-
+    fitted = Ridge(flat, y).filters(penalty).T.reshape(6, 6, width)
+    own = np.arange(6)
     row = {
         "real": _described(model, data, same),
         "untrained": _described(untrained, data, same),
@@ -303,14 +211,17 @@ def _filters(width: int, members: int, draws: int) -> dict:
             name: getattr(structure, name) for name in ("inertia", "slope", "viscous", "coulomb")
         },
         "friction": structure.friction.std(0) / y.std(0),
-        "linear": linear(y),
+        "deviations": {
+            name: data.states[..., k].std(0) / y.std(0)
+            for k, name in ((1, "velocity"), (2, "acceleration"))
+        },
+        "linear": gains(fitted[own, own], data.step)[:, 1:],
         "nulls": {},
     }
     for number, kind in enumerate(KINDS):
         drawn = surrogates(kind, y[None], draws, seed=100 * number)[:, 0]
         null, *_ = trained(data.x, y, draws, _STARTS * (number + 1), width, targets=drawn)
         row["nulls"][kind] = _described(null, data, drawn)
-        row["nulls"][kind]["linear"] = np.stack([linear(d) for d in drawn])
     return row
 
 
@@ -345,7 +256,7 @@ def _hidden_units(members: int) -> dict:
 
 
 def _differences() -> dict:
-    """Errors with states from three samples, ``(blocks, 6)``, by samples a second."""
+    """Errors with states from three samples, one for each block, by samples a second."""
     rows: dict = {}
     for rate in RATES:
         data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
@@ -357,15 +268,43 @@ def _differences() -> dict:
             linear = least_squares(plain[training], given, plain[test])
             known = known_structure(states[training], given, states[test])
             for name, fit in zip(row, (linear, known)):
-                row[name].append(wrong(fit, data, test))
+                row[name].append(wrong(fit, data, test).mean())
         rows[str(rate)] = {name: np.array(each) for name, each in row.items()}
     return rows
+
+
+def _processes(subset: int = 120) -> dict:
+    """Gaussian processes at the main window: errors on each block.
+
+    Of the windows (their leading directions, three for each joint), of the states, and of the
+    states for what the known structure leaves over.
+    """
+    data, rows = Windowed.of(*MAIN), {"windows": [], "states": [], "on the rest": []}
+    states = data.states
+    for block in range(BLOCKS):
+        training, test = data.fold(block)
+        known = known_structure(states[training], data.current[training], states)
+        left = data.current - known
+        for name, x, y, more in (
+            ("windows", data.x, data.current, {"directions": 18}),
+            ("states", states, data.current, {}),
+            ("on the rest", states, left, {}),
+        ):
+            kind = "windows" if name == "windows" else "states"
+            process = GaussianProcess(kind, subset=subset, restarts=0, **more)
+            process.fit(Cases(x[training], y[training], kind, data.step))
+            with warnings.catch_warnings():  # beyond its training inputs on purpose
+                warnings.simplefilter("ignore", OutsideFamilyWarning)
+                answer = process.torque(x[test])
+            answer += known[test] if name == "on the rest" else 0
+            rows[name].append(wrong(answer, data, test).mean())
+    return {name: np.array(each) for name, each in rows.items()}
 
 
 def _memory(members: int) -> dict:
     """Training errors on currents that have nothing to do with the motion, by window."""
     rows: dict = {}
-    for width in paper.TABLE_4_1:
+    for width in (21, 41):
         data = Windowed.of(100, width)
         for kind in ("phases", "shuffled"):
             drawn = surrogates(kind, data.current[None], members, seed=500)[:, 0]
@@ -401,6 +340,7 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "variants": _variants(members),
         "identified": _by_block(),
         "hidden units": _hidden_units(members),
-        "memory": _memory(filters),
+        "processes": _processes(),
+        "memory": _memory(filters // 2),
         "windows": {str(w): _filters(w, filters, draws) for w in FILTERS},
     }

@@ -19,7 +19,7 @@ from ddlib.others import RealArm, staubli
 BLOCKS = 5
 """Contiguous parts of the recording; each is predicted by what was learnt on the others."""
 
-RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41, 81), 500: (21, 41, 81)}
+RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}
 """Windows that were tried, by samples a second; 100 are the paper's."""
 
 SLOTS = slice(40, 860)
