@@ -409,5 +409,51 @@ def test_counts_add_up():
 
 def test_the_books_own_claims_are_not_the_papers():
     paper, own = claims.of_the_paper(), [c for c in ALL if c.printed == claims.OWN]
-    assert own and len(paper) + len(own) == len(ALL)
-    assert {c.chapter for c in own} == {"why-smooth-filters"}
+    again = [c for c in ALL if c.arm and c.printed != claims.OWN]
+    assert own and again and len(paper) + len(own) + len(again) == len(ALL)
+    assert {c.chapter for c in own} <= {"why-smooth-filters", "rivals", "real-arm"}
+    assert {c.chapter for c in again} == {"real-arm"}
+
+
+def test_a_sentence_is_judged_again_on_another_arm(tmp_path):
+    pairs = claims.judged_again("a real arm")
+    assert len(pairs) >= 9 and len(claims.judged_again("a fish")) == 0
+    kept = {claim.id for claim in claims.of_the_paper()}
+    for first, again in pairs:
+        assert first.id == again.again and first.id in kept and again.id not in kept
+        assert first.place() == again.place(), "another place of the paper"
+        assert claims.printed(first) == claims.printed(again)
+    rows = ledger_tables.again_table("a real arm").rows
+    assert len(rows) == len(pairs)
+    for row in rows:
+        (pair,) = [p for p in pairs if row[0].startswith(p[1].claim)]
+        assert row[2].startswith(pair[0].judge()) and row[3].startswith(pair[1].judge())
+    with pytest.raises(ValueError, match="arm must be named by claims, got 'a fish'"):
+        ledger_tables.again_table("a fish")
+
+
+def test_bands_of_a_second_row_are_those_of_the_first():
+    """But where the first has none, or measures another thing."""
+    other = {"differencing-real-arm", "tailored-to-the-sensor-real-arm", "rises-again-real-arm"}
+    other |= {"unmodelled-real-arm", "unmodelled-error-real-arm"}
+    for first, again in claims.judged_again("a real arm"):
+        if again.id not in other:
+            assert (first.band, first.loose) == (again.band, again.loose), again.id
+
+
+@pytest.mark.parametrize(
+    "changes, complaint",
+    [
+        ({"again": "b"}, "claim 'a' must name the arm on which it judges 'b' again"),
+        ({"again": "c", "arm": "a fish"}, "again of claim 'a' must be an id, got 'c'"),
+    ],
+)
+def test_what_is_judged_again_must_be_there(tmp_path, changes, complaint):
+    entry = dict(
+        id="a", where="section 1", chapter="c", claim="x", printed="p",
+        verdict="not testable", why="y", refuted="z",
+    )  # fmt: skip
+    path = tmp_path / "claims.yml"
+    path.write_text(yaml.safe_dump([{**entry, "id": "b"}, {**entry, **changes}]))
+    with pytest.raises(ValueError, match=complaint):
+        claims.load(path)

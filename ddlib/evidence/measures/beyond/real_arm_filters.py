@@ -30,7 +30,7 @@ def row(width: int) -> dict:
     return results.read("real-arm")["windows"][str(width)]
 
 
-def _names(ensemble: dict) -> np.ndarray:
+def named(ensemble: dict) -> np.ndarray:
     """Share of an ensemble's filters that have one of the names in `NAMED`."""
     which = [CLASSES.index(name) for name in NAMED]
     hidden, direct = (
@@ -50,12 +50,12 @@ def excess(width: int = 21) -> Measured:
         Window size.
     """
     found = row(width)
-    real, nulls = _names(found["real"]), {n: _names(x) for n, x in found["nulls"].items()}
+    real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
     told = "; ".join(
         f"{n} {100 * x.mean():.0f} % (p {p_value(real.mean(), x, 'more'):.2f})"
         for n, x in nulls.items()
     )
-    before = 100 * _names(found["untrained"]).mean()
+    before = 100 * named(found["untrained"]).mean()
     return judged(
         lambda one, *others: mean(one) - np.max([mean(x) for x in others], axis=0),
         real,

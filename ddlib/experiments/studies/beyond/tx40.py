@@ -188,7 +188,21 @@ def best_penalty(data: Windowed, training) -> float:
 
 
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
-    """Currents at `new` states by least squares on the terms that the axes give, joint by joint."""
+    """Currents by least squares on the terms that the axes give, joint by joint.
+
+    Parameters
+    ----------
+    states, current : array_like, shapes (cases, 6, 3) and (cases, 6)
+        What is fitted.
+    new : array_like, shape (others, 6, 3)
+        States whose currents are wanted.
+    friction : bool
+        Whether friction is among the terms.
+
+    Returns
+    -------
+    ndarray, shape (others, 6)
+    """
     return np.stack(
         [
             _fitted(joint_columns(states, j, friction), current[:, j])

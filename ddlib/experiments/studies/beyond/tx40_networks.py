@@ -58,7 +58,16 @@ def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=Non
 
 
 def wrong(predicted, data: Windowed, cases) -> np.ndarray:
-    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``."""
+    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``.
+
+    Parameters
+    ----------
+    predicted : array_like, shape (..., n, 6)
+    data : Windowed
+        All cases.
+    cases : slice or ndarray
+        Which of them were predicted.
+    """
     error = predicted - data.current[cases]
     return (error**2).mean(-2) / data.current.var(0)
 
