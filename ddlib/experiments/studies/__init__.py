@@ -27,7 +27,6 @@ from ddlib.experiments.studies import (
     windows,
 )
 from ddlib.experiments.studies.beyond import real_arm, rivals, rivals_1988
-from ddlib.experiments.studies.beyond import real_arm, rivals
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
