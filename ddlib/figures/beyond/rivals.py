@@ -20,6 +20,9 @@ from ddlib.figures.style import (
 )
 
 MARKERS = "os^Dv"
+LOWEST, HIGHEST = 0.009, 12.0
+"""Ends of the axis of errors: room for noise below, for the legends above."""
+
 WIDTH = 6.4
 """Of the figure, inches: narrower than most, so that labels stay legible on a phone."""
 
@@ -48,6 +51,8 @@ def costs(
     alt : str
         Alternative text.
 
+    Errors beyond `LOWEST` and `HIGHEST` are not in the picture.
+
     Raises
     ------
     ValueError
@@ -71,12 +76,14 @@ def costs(
             axis.axhline(floor, color=FAINT, ls=":", lw=1.2)
             axis.axhline(1.0, color=FAINT, lw=0.8)
             _curve(axis, reference[1], INK, "", 1.0)
-            ends = []
             for k, (name, curve) in enumerate(named.items()):
-                colour = COLOURS[k % len(COLOURS)]
-                _curve(axis, curve, colour, MARKERS[k % len(MARKERS)], 1.8)
-                ends.append((curve[0][-1], np.median(curve[2][-1]), name, colour))
-            _label(axis, ends)
+                _curve(axis, curve, COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)], 1.8, name)
+            axis.legend(
+                loc="upper left", labelcolor="linecolor", fontsize=8, borderpad=0.1,
+                labelspacing=0.2, handlelength=1.4, handletextpad=0.4, borderaxespad=0.1,
+                ncols=2 if len(named) > 3 else 1, columnspacing=0.8,
+            )  # fmt: skip
+            axis.set_ylim(LOWEST, HIGHEST)
         for axis in axes[len(panels) :]:
             axis.remove()
         figure.supxlabel(check_label(labels[0]), fontsize=9.5)
@@ -92,22 +99,11 @@ def costs(
     return illustrate(draw, alt, WIDTH, 2.1 * rows + 0.6)
 
 
-def _curve(axis, curve, colour, marker, width) -> None:
+def _curve(axis, curve, colour, marker, width, name="") -> None:
     cost, training, test = map(np.asarray, curve)
     order = np.argsort(cost)
     cost, training, test = cost[order], training[order], test[order]
     axis.plot(cost, np.median(training, 1), color=colour, ls="--", lw=0.6 * width)
-    axis.plot(cost, np.median(test, 1), color=colour, lw=width, marker=marker, ms=4)
+    look = {"color": colour, "lw": width, "marker": marker, "ms": 4}
+    axis.plot(cost, np.median(test, 1), **look, label=name or None)
     axis.vlines(cost, test.min(1), test.max(1), color=colour, lw=0.8 * width, alpha=0.5)
-
-
-def _label(axis, ends, gap: float = 0.17) -> None:
-    """Names at the ends of the curves, pushed apart along the logarithm of the error."""
-    places = []
-    for x, y, name, colour in sorted(ends, key=lambda end: end[1]):
-        low = np.log10(y) if not places else max(np.log10(y), places[-1] + gap)
-        places.append(low)
-        axis.annotate(
-            name, (x, y), xytext=(x, 10**low), textcoords="data", color=colour, fontsize=8,
-            va="center", ha="right" if axis.get_xlim()[1] < 30 * x else "left",
-        )  # fmt: skip

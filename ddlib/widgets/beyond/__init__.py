@@ -1,1 +1,4 @@
-"""Widgets of Part IV, *Rivals and beyond*: torques and errors of all rivals."""
+"""Widgets of Part IV, *Rivals and beyond*: torques and errors of all rivals.
+
+- ``rivals``: the picker of rivals
+"""

@@ -15,16 +15,20 @@ from ddlib.rivals import (
     CellTable,
     Convolution,
     Fourier,
+    GaussianProcess,
     GridTable,
     Identified,
+    LagrangianNetwork,
     Linear,
     Nearest,
     Polynomial,
+    RandomFeatures,
     Recurrent,
     Rival,
+    SemiParametric,
 )
 
-DAYS, FEWER = 10, 5
+DAYS, FEWER = 8, 5
 """Recordings of a rival, and of one that takes seconds to train. A rival that starts at random
 starts otherwise on each."""
 
@@ -81,6 +85,14 @@ def _identified(count, _seed):
     return Identified((RIGID + FRICTION)[:3] if count == 3 else RIGID + FRICTION)
 
 
+def _lagrangian(units, seed):
+    return LagrangianNetwork((units, units), gravity="none", friction=True, epochs=150, seed=seed)
+
+
+SEARCH = {"subset": 150, "restarts": 0}
+"""For the hyperparameters of Gaussian processes: cases that decide them, and further searches."""
+
+
 def _table(over):
     return lambda cells, _: CellTable(cells, over, beyond="edge")
 
@@ -111,6 +123,24 @@ LINES: dict[str, Line] = {
     "linear filter": Line(
         lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
     ),
+    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", FEWER),
+    # Gaussian processes
+    "Gaussian process": Line(
+        lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **SEARCH),
+        (6, 9, 12), "directions", "Gaussian processes", FEWER,
+    ),
+    "process on states": Line(
+        lambda _, seed: GaussianProcess("states", seed=seed, **SEARCH), (6,), "quantities",
+        "Gaussian processes", FEWER,
+    ),
+    "structure and process": Line(
+        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **SEARCH), (6,),
+        "quantities", "Gaussian processes", FEWER,
+    ),
+    "random features": Line(
+        lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
+        (10, 50, 200), "features", "Gaussian processes", FEWER,
+    ),
     # the paper's network
     REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
     "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
@@ -128,7 +158,8 @@ LINES: dict[str, Line] = {
         "other networks", FEWER,
     ),
     "recurrent": Line(
-        lambda units, seed: Recurrent(units, seed=seed), (5, 10), "units", "other networks", FEWER
+        lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
+        FEWER,
     ),
 }  # fmt: skip
 """All rivals by the name that tables and figures use."""
