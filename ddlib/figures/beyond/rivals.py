@@ -36,6 +36,8 @@ def costs(
 ) -> Illustration:
     """Errors over a cost, both logarithmic: a panel for each family, one rival in all of them.
 
+    Errors beyond `LOWEST` and `HIGHEST` are not in the picture.
+
     Parameters
     ----------
     panels : mapping
@@ -50,8 +52,6 @@ def costs(
         Of the cost and of the error.
     alt : str
         Alternative text.
-
-    Errors beyond `LOWEST` and `HIGHEST` are not in the picture.
 
     Raises
     ------
