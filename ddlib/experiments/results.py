@@ -19,6 +19,7 @@ import hashlib
 import json
 import os
 import platform
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -55,12 +56,10 @@ def code_hash(result: str) -> str:
     ValueError
         If no function in `STUDIES` makes it.
     """
-    body = _study(result).body
-    others = {node.name for node in body if isinstance(node, ast.FunctionDef)}
-    others = {name for name in others if not name.startswith("_")} - {result.replace("-", "_")}
-    trees: list = [[node for node in body if getattr(node, "name", None) not in others]]
-    trees += [_tree(name) for name in modules(result)]
-    return hashlib.sha256("\n".join(map(_normal_form, trees)).encode()).hexdigest()[:16]
+    own = result.replace("-", "_")
+    study = _study(result)
+    forms = [_study_form(study, own), *(_form(_text(name)) for name in modules(result))]
+    return hashlib.sha256("\n".join(forms).encode()).hexdigest()[:16]
 
 
 def modules(result: str) -> list[str]:
@@ -75,28 +74,25 @@ def modules(result: str) -> list[str]:
     while waiting - reached:
         name = min(waiting - reached)
         reached.add(name)
-        waiting |= _imports(_tree(name))
+        waiting |= _imports(_text(name))
     return sorted(reached - set(ASIDE))
 
 
-def _study(result: str) -> ast.Module:
-    """The file whose function makes a result."""
+def _study(result: str) -> str:
+    """The text of the file whose function makes a result."""
     own = result.replace("-", "_")
     for path in sorted((PACKAGE / STUDIES).rglob("*.py")):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        if any(isinstance(node, ast.FunctionDef) and node.name == own for node in tree.body):
-            return tree
+        text = path.read_text(encoding="utf-8")
+        if own in _functions(text):
+            return text
     raise ValueError(f"result must be made by a function of ddlib/{STUDIES}, got {result!r}")
 
 
-def _imports(tree) -> set[str]:
-    """Modules of ddlib that a syntax tree imports from; a package's names lead to its modules."""
+def _imports(text: str) -> set[str]:
+    """Modules of ddlib that a file imports from; a package's names lead to its modules."""
     found = set()
-    for node in ast.walk(tree):
-        if not isinstance(node, ast.ImportFrom) or (node.module or "").split(".")[0] != "ddlib":
-            continue
-        place = node.module.partition(".")[2]
-        names = [alias.name for alias in node.names]
+    for module, names in _import_statements(text):
+        place = module.partition(".")[2]
         found |= {_home(place, name) for name in names} if _path(place).is_dir() else {place}
     return found
 
@@ -106,10 +102,9 @@ def _home(package: str, name: str) -> str:
     inside = f"{package}.{name}".lstrip(".")
     if _path(inside).is_dir() or _path(inside).with_suffix(".py").is_file():
         return inside
-    handed_on = (node for node in ast.walk(_tree(package)) if isinstance(node, ast.keyword))
-    for node in handed_on:
-        if name in ast.literal_eval(node.value).split():
-            return f"{package}.{node.arg}"
+    for module, names in _handed_on(_text(package)):
+        if name in names:
+            return f"{package}.{module}"
     return package
 
 
@@ -117,10 +112,50 @@ def _path(module: str) -> Path:
     return PACKAGE.joinpath(*filter(None, module.split(".")))
 
 
-def _tree(module: str) -> ast.Module:
+def _text(module: str) -> str:
     path = _path(module)
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    return ast.parse(path.read_text(encoding="utf-8"))
+    return path.read_text(encoding="utf-8")
+
+
+# What a text says is found once; whether a file has that text is asked each time.
+
+
+@cache
+def _functions(text: str) -> frozenset[str]:
+    body = ast.parse(text).body
+    return frozenset(node.name for node in body if isinstance(node, ast.FunctionDef))
+
+
+@cache
+def _import_statements(text: str) -> list[tuple[str, list[str]]]:
+    """Modules of ddlib that are imported from, with the names."""
+    nodes = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom))
+    return [
+        (node.module, [alias.name for alias in node.names])
+        for node in nodes
+        if (node.module or "").split(".")[0] == "ddlib"
+    ]
+
+
+@cache
+def _handed_on(text: str) -> list[tuple[str, list[str]]]:
+    """The keywords of a package's ``__init__``: modules, with the names they hand on."""
+    nodes = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.keyword))
+    return [(node.arg, ast.literal_eval(node.value).split()) for node in nodes]
+
+
+@cache
+def _form(text: str) -> str:
+    return _normal_form(ast.parse(text))
+
+
+@cache
+def _study_form(text: str, own: str) -> str:
+    """Of a study's file without the public functions that make other results."""
+    others = {name for name in _functions(text) if not name.startswith("_")} - {own}
+    body = ast.parse(text).body
+    return _normal_form([node for node in body if getattr(node, "name", None) not in others])
 
 
 def _normal_form(node) -> str:
