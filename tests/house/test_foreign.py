@@ -2,11 +2,14 @@
 
 import os
 import platform
+import re
 import subprocess
 import sys
 
 import foreign_machines as foreign
+import nbformat
 import pytest
+from book_pages import PAGES, source
 
 DRAWS = """
 import numpy as np
@@ -79,9 +82,13 @@ def test_threads_are_as_many(name, count, tmp_path):
     assert int(answer.stdout) == min(count, os.cpu_count() or 1)
 
 
+def only(*arguments):
+    """A single check, by pytest."""
+    return lambda jobs, root: {"claims": ["-m", "pytest", "-q", *arguments]}
+
+
 def test_a_check_that_fails_is_told(monkeypatch, capfd):
-    nothing = ["tests/test_paper.py", "-k", "no_such_test"]
-    monkeypatch.setattr(foreign, "CHECKS", {"claims": nothing})
+    monkeypatch.setattr(foreign, "commands", only("tests/test_paper.py", "-k", "no_such_test"))
     assert foreign.main(["jog-1", "--jobs", "1"]) == 1
     assert "1 foreign machine: jog-1: claims" in capfd.readouterr().out
     with pytest.raises(SystemExit):
@@ -90,11 +97,55 @@ def test_a_check_that_fails_is_told(monkeypatch, capfd):
 
 
 def test_all_that_hold_are_told(monkeypatch, capfd):
-    monkeypatch.setattr(foreign, "CHECKS", {"claims": ["tests/test_paper.py"]})
+    monkeypatch.setattr(foreign, "commands", only("tests/test_paper.py"))
     assert foreign.main(["--ci", "--jobs", "1"]) == 0
     out = capfd.readouterr().out
     assert "1 foreign machine: all hold" in out
     assert "jog-1+other-libraries: claims took" in out
+
+
+def test_claims_and_every_notebook_are_checked():
+    asked = {what: " ".join(map(str, c)) for what, c in foreign.commands(2, foreign.ROOT).items()}
+    assert set(asked) == {"claims", "notebooks"}
+    assert "test_claims.py -k verdicts_are" in asked["claims"]
+    assert not [path for page in PAGES if (path := source(page)).suffix == ".ipynb"
+                and str(path) not in asked["notebooks"]]  # fmt: skip
+
+
+CELLS = {
+    "fine": "import numpy as np, torch, os, warnings; assert os.environ['DDLIB_JOG'] == '7'\n"
+    "assert type(np.random.default_rng()).__name__ == 'Jogged'\n"
+    "assert torch.get_num_threads() == 1 and os.getcwd().endswith('pages')\n"
+    "warnings.warn_explicit('of a library', UserWarning, 'x.py', 1, module='x')",
+    "raises": "assert 1 > 2, 'not so'",
+    "warns": "import warnings; warnings.warn('look here')",
+    "deprecated": "import numpy as np; np.array([1.0, np.nan]) / 0",
+    "ends": "import os; os._exit(1)",
+}
+
+
+@pytest.mark.slow
+def test_notebooks_that_fail_are_told(tmp_path):
+    """An error, a warning of the notebook itself or of what it calls, the end of its process."""
+    folder = tmp_path / "pages"
+    folder.mkdir()
+    for name, code in CELLS.items():
+        cells = [nbformat.v4.new_code_cell(code), nbformat.v4.new_code_cell("'next'")]
+        kernel = {"name": "python3", "display_name": "Python 3"}
+        notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": kernel})
+        nbformat.write(notebook, folder / f"{name}.ipynb")
+    runner = foreign.commands(1, foreign.ROOT)["notebooks"][0]
+    answer = subprocess.run(
+        [sys.executable, runner, "--jobs", "2", *folder.glob("*.ipynb")],
+        env=foreign.environment("jog-7", tmp_path / "measured"), capture_output=True, text=True,
+    )  # fmt: skip
+    assert answer.returncode == 1
+    failed = dict(
+        re.findall(r"^FAILED (\w+)\.ipynb\n(.*?)(?=^FAILED|\Z)", answer.stdout, re.M | re.S)
+    )
+    assert set(failed) == set(CELLS) - {"fine"}, answer.stdout + answer.stderr
+    assert "not so" in failed["raises"] and "look here" in failed["warns"]
+    assert "4 failed, 1 passed" in answer.stdout
 
 
 def test_a_machine_may_differ_in_several_ways(tmp_path):

@@ -39,12 +39,6 @@ SETTINGS = {
 CI = "jog-1+other-libraries"
 """The one that every run of the test suite tries."""
 
-CHECKS = {
-    "claims": ["tests/evidence/test_claims.py", "-k", "verdicts_are"],
-    "notebooks": ["--nbmake", "--nbmake-timeout=900"],
-}
-"""Arguments of pytest; the notebooks are added."""
-
 
 def environment(name: str, folder: Path) -> dict[str, str]:
     """Environment of a setting; notebooks and claims share in `folder` what they measure."""
@@ -54,18 +48,32 @@ def environment(name: str, folder: Path) -> dict[str, str]:
     return {**os.environ, "OMP_NUM_THREADS": "1", **own, **differs}
 
 
+def commands(jobs: int, root: Path) -> dict[str, list]:
+    """What is checked, and how."""
+    pages = sorted((root / "book").glob("*.ipynb"))
+    runner = root / "tests" / "support" / "forked_notebooks.py"
+    claims = [
+        "-m",
+        "pytest",
+        "-q",
+        "-n",
+        jobs,
+        "tests/evidence/test_claims.py",
+        "-k",
+        "verdicts_are",
+    ]
+    return {"claims": claims, "notebooks": [runner, "--jobs", jobs, *pages]}
+
+
 def check(name: str, jobs: int, root: Path = ROOT) -> list[str]:
     """Run all checks under one setting; the names of those that fail."""
     failed = []
     with tempfile.TemporaryDirectory() as folder:
         env = environment(name, Path(folder))
-        for what, arguments in CHECKS.items():
-            pages = sorted(str(p) for p in (root / "book").glob("*.ipynb"))
-            command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *arguments]
-            command += pages if what == "notebooks" else []
+        for what, command in commands(jobs, root).items():
             started = time.monotonic()
             print(f"==> {name}: {what}", flush=True)
-            if subprocess.run(command, env=env, cwd=root).returncode:
+            if subprocess.run([sys.executable, *map(str, command)], env=env, cwd=root).returncode:
                 failed.append(f"{name}: {what}")
             print(f"==> {name}: {what} took {time.monotonic() - started:.0f} s", flush=True)
     return failed
