@@ -130,14 +130,15 @@ async () => {
   window.jupyterapp.commands.execute("notebook:run-all-cells");
 }
 """
-# Without a question whether to keep what was changed.
+# Without a question whether to keep what was changed. The session ends first: what still listens
+# to a closed panel would look for its kernel.
 CLOSE = """
 async () => {
   const { panel } = window;
-  const { session } = panel.sessionContext;
+  await panel.sessionContext.ready;
   await panel.context.revert();
+  await panel.sessionContext.shutdown();
   panel.close();
-  if (session && !session.isDisposed) await session.shutdown();
 }
 """
 # Every code cell has its prompt number, or one has failed.
