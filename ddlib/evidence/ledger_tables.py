@@ -15,6 +15,7 @@ from ddlib.evidence.claims import (
     function,
     here,
     judged_again,
+    load,
     of_section,
     printed,
     sure,
@@ -34,6 +35,35 @@ _OTHERWISE = {
     "not testable": "What a test would need",
 }
 """What a claim's `refuted` tells, if not what would have refuted it."""
+
+
+FINDINGS = (
+    "headline",
+    "headline-damping",
+    "saturated-21-damping",
+    "generalised-well",
+    "conventional-filters",
+    "conventional-filters-inertia-11",
+    "conventional-filters-stiffness-21",
+    "changes-predicted",
+    "hidden-units-contribute-test",
+    "tradeoff",
+)
+"""Ids of the claims on which the paper's theses and this book's answers hang."""
+
+
+def findings() -> Table:
+    """The ten main findings: claim and its chapter, printed value, ours, verdict, reason.
+
+    The verdict comes with the share of the draws in which it comes out.
+    """
+    known = {claim.id: claim for claim in load()}
+    header = ("claim", "printed", "here", "verdict", "why")
+    rows = [
+        (f"{c.claim} ({{doc}}`{c.chapter}`)", printed(c), _here(c), sure(c), c.why)
+        for c in map(known.__getitem__, FINDINGS)
+    ]
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
 def ledger_table(section: str) -> Table:

@@ -379,6 +379,7 @@ def test_cards_on_a_phone_are_headed_like_the_table():
     in_ledger = [(place, judged if text.startswith("var(") else text) for place, text in heads]
     for shown, header in (
         (plain, claims.chapter_table(ALL[0].chapter).header),
+        (plain, ledger_tables.findings().header),
         (in_ledger, ledger_tables.HEADER),
     ):
         assert shown == [(str(k), f'"{head}: "') for k, head in enumerate(header[1:], 2)]

@@ -6,7 +6,7 @@ import re
 import nbformat
 import numpy as np
 import pytest
-from book_pages import BACK_MATTER, ROOT
+from book_pages import BACK_MATTER, CHAPTERS, ROOT
 
 from ddlib import paper
 from ddlib.evidence import SURE, claims, ledger, ledger_tables, resampled
@@ -147,11 +147,14 @@ def test_all_knobs_turned(monkeypatch):
     damping = {str(w): {"training": [[0.1, 0.3]], "test": [[w, w]]} for w in (11, 21, 41)}
     changed(monkeypatch, "screened", lambda: {"methods": methods})
     changed(monkeypatch, "recordings", lambda: {"setups": {"joint damping": damping}})
-    (row,) = [row for row in ledger.open_questions().rows if "gains" in row[0]]
-    assert "tuned: training 0.20 · 0.20 · 0.20; test 11 · 21 · 41, least at 11;" in row[3]
-    assert row[3].endswith(
-        "of 3 runs with all knobs turned, test least at window 11 in 0, 21 in 2, 41 in 1"
+    rows = {row[0]: row[3] for row in ledger.open_questions().rows}
+    (knobs,) = [text for question, text in rows.items() if "gains" in question]
+    assert (
+        knobs == "of 3 runs with all knobs turned, test least at window 11 in 0, 21 in 2, 41 in 1"
     )
+    (readings,) = [text for question, text in rows.items() if "controller" in question]
+    tuned = "tuned to Table 4-1: training 0.20 · 0.20 · 0.20; test 11 · 21 · 41, least at 11"
+    assert readings.startswith("position alone: ") and readings.endswith(tuned)
 
 
 def test_direct_filters_follow_position_after_two_sines_too():
@@ -160,6 +163,23 @@ def test_direct_filters_follow_position_after_two_sines_too():
     assert "two sines most direct filters of window 21 follow the position" in claim.why
     direct = results.read("harmonics")["windows"]["21"]["direct"]["follow"]
     assert (resampled(direct["position"], np.mean) > 0.5).mean() >= SURE
+
+
+def test_ten_findings_good_and_bad():
+    """One table for those who read no other: each row a claim as it is judged, with its chapter."""
+    known = {claim.id: claim for claim in claims.load()}
+    chosen = [known[name] for name in ledger_tables.FINDINGS]
+    assert len(set(ledger_tables.FINDINGS)) == 10
+    verdicts = [claim.verdict for claim in chosen]
+    assert not {"by construction", "not testable"} & set(verdicts)
+    assert verdicts.count("not reproduced") >= 3  # no selection of what came out well
+    pages = [page.removeprefix("book/") for page in CHAPTERS]
+    places = [pages.index(claim.chapter) for claim in chosen]
+    assert places == sorted(places) and len(set(places)) >= 5
+    for row, claim in zip(ledger_tables.findings().rows, chosen, strict=True):
+        assert row[0] == f"{claim.claim} ({{doc}}`{claim.chapter}`)"
+        assert row[1] == claims.printed(claim) and claims.sure(claim) == row[3]
+        assert row[4] == claim.why
 
 
 def test_the_page_shows_every_section_and_comes_first():
