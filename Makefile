@@ -13,6 +13,8 @@ STRIP  := $(BIN)/nbstripout --keep-id --extra-keys "metadata.language_info.versi
 	metadata.language_info.mimetype metadata.language_info.nbconvert_exporter \
 	metadata.language_info.pygments_lexer"
 NOTEBOOKS = book/*.ipynb
+# Small matrices: a second thread would only wait, and so would the other process.
+PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
@@ -49,12 +51,12 @@ stripped: $(READY)
 
 unit: $(READY)
 	@echo "==> Unit and property tests"
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not built and not browser"
+	$(PYTEST) -n $(JOBS) --dist worksteal -m "not built and not browser"
 
 notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
-	OMP_NUM_THREADS=1 PYTHONWARNINGS="error:::__main__" \
-	  $(BIN)/python -m pytest -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
+	PYTHONWARNINGS="error:::__main__" \
+	  $(PYTEST) -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
 
 FOREIGN ?=
 foreign: $(READY)  ## notebooks and claims on machines that round otherwise
@@ -64,12 +66,15 @@ foreign-ci: $(READY)
 	@echo "==> Notebooks and claims on a foreign machine"
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
+# All tests with one of these marks are here: tests/house/test_suite.py.
+PAGE_TESTS = tests/book tests/widgets tests/figures
+
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict
 	@echo "==> The built pages"
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "built or browser" || { \
+	$(PYTEST) -n $(JOBS) --dist worksteal -m "built or browser" $(PAGE_TESTS) || { \
 	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \
-	  $(BIN)/python -m pytest --last-failed --last-failed-no-failures none; }
+	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
 lab: $(READY)  ## JupyterLab on the book
 	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
