@@ -9,6 +9,8 @@ it has read before; executed notebooks come from a cache. The stamp is written l
 a clean build lets the next call say "nothing changed".
 """
 
+# ruff: noqa: E402
+
 from __future__ import annotations
 
 import argparse
@@ -22,6 +24,10 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+# Imported with nbformat, it compiles a grammar of addresses for more than a second. Nothing here
+# asks for it: jsonschema goes without.
+sys.modules["rfc3987_syntax"] = None
 
 import yaml
 from ddlib.evidence.claims import SHARED
@@ -43,6 +49,9 @@ CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme err
 # Its command has no option for as many jobs as there are cores.
 JUPYTER_BOOK = """
 import os
+import sys
+
+sys.modules["rfc3987_syntax"] = None
 from jupyter_book import sphinx
 from jupyter_book.cli.main import main
 
