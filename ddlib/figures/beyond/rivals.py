@@ -20,7 +20,7 @@ from ddlib.figures.style import (
 )
 
 MARKERS = "os^Dv"
-LOWEST, HIGHEST = 0.009, 12.0
+LOWEST, HIGHEST = 0.009, 25.0
 """Ends of the axis of errors: room for noise below, for the legends above."""
 
 WIDTH = 6.4
@@ -81,9 +81,10 @@ def costs(
             axis.legend(
                 loc="upper left", labelcolor="linecolor", fontsize=8, borderpad=0.1,
                 labelspacing=0.2, handlelength=1.4, handletextpad=0.4, borderaxespad=0.1,
-                ncols=2 if len(named) > 3 else 1, columnspacing=0.8,
             )  # fmt: skip
             axis.set_ylim(LOWEST, HIGHEST)
+            axis.set_yticks((0.01, 0.1, 1.0), ("0.01", "0.1", "1"))
+            axis.minorticks_off()
         for axis in axes[len(panels) :]:
             axis.remove()
         figure.supxlabel(check_label(labels[0]), fontsize=9.5)
@@ -96,7 +97,7 @@ def costs(
         }
         legend_above(figure, [Line2D([], [], **look) for look in looks.values()], list(looks))
 
-    return illustrate(draw, alt, WIDTH, 2.1 * rows + 0.6)
+    return illustrate(draw, alt, WIDTH, 2.4 * rows + 0.6)
 
 
 def _curve(axis, curve, colour, marker, width, name="") -> None:
