@@ -9,14 +9,14 @@ from ddlib.experiments import WINDOWS, results
 MEMBERS = 5
 
 
-def planted(reading, width):
+def planted(case, width):
     """A cell whose values say where it stands."""
-    at = 10 * reading + WINDOWS.index(width) + 1.0
+    at = 10 * case + WINDOWS.index(width) + 1.0
 
     def course(factor):
         return {
             "learnt": [factor * at] * MEMBERS,
-            "rmss": [factor * (5.0 - reading)] * MEMBERS,
+            "rmss": [factor * (5.0 - case)] * MEMBERS,
             "halves": [[10.0, 10.0, 40.0, None, 90.0 * factor, 1000.0]] * MEMBERS,
         }
 
@@ -29,7 +29,7 @@ def planted(reading, width):
         },
         "factor": [[1.1, 1.2, at]] * MEMBERS,
         "measured": course(1.0),
-        "predicted": course(3.0 if width == 21 and not reading else 1.0),
+        "predicted": course(3.0 if width == 21 and not case else 1.0),
     }
 
 
@@ -43,7 +43,7 @@ def plant(monkeypatch):
 
 @pytest.fixture
 def study(plant):
-    cells = [planted(reading, width) for reading in range(3) for width in WINDOWS]
+    cells = [planted(case, width) for case in range(3) for width in WINDOWS]
     plant("span", {"epochs": [0, 1, 1000, 20_000], "cells": cells})
 
 

@@ -270,23 +270,23 @@ def settling(steepest: float = 0.1) -> Measured:
 # --- ddlib.learning.span: what is learnt along them
 
 
-def learning(width: int, reading: int) -> dict:
-    """A cell of the study "span": `reading` 0, inputs 0 to 1; 1, -1 to 1; 2, damped joints."""
-    return results.read("span")["cells"][len(WINDOWS) * reading + WINDOWS.index(width)]
+def learning(width: int, case: int) -> dict:
+    """A cell of the study "span": `case` 0, inputs 0 to 1; 1, -1 to 1; 2, damped joints."""
+    return results.read("span")["cells"][len(WINDOWS) * case + WINDOWS.index(width)]
 
 
-def changes_predicted(width: int = 21, reading: int = 0, by: str = "own") -> Measured:
+def changes_predicted(width: int = 21, case: int = 0, by: str = "own") -> Measured:
     """Correlation of the logarithms of predicted and measured changes along all directions.
 
     Parameters
     ----------
-    width, reading : int
+    width, case : int
         Window size; recording and scaling, as in the study.
     by : str
         What predicts: the network's "own" tangent, or that "of another" network, "of shuffled
         torques", or squared singular values, "of the spectrum".
     """
-    found = dict(learning(width, reading)["correlation"])
+    found = dict(learning(width, case)["correlation"])
     found["own"] = np.array(found["own"])[:, -1]
     others = ", ".join(
         f"{significant(np.median(v), 2)} {k}" for k, v in found.items() if k != "own"
@@ -295,32 +295,32 @@ def changes_predicted(width: int = 21, reading: int = 0, by: str = "own") -> Mea
     return judged(median, found[by], text=text)
 
 
-def prediction_factor(epoch: int, width: int = 21, reading: int = 0) -> Measured:
+def prediction_factor(epoch: int, width: int = 21, case: int = 0) -> Measured:
     """Factor by which predicted and measured changes differ, median over 12 directions.
 
     Parameters
     ----------
     epoch : int
         One of the study's epochs.
-    width, reading : int
+    width, case : int
         As in `changes_predicted`.
     """
     row = results.read("span")["epochs"].index(epoch) - 1
-    factors = np.array(learning(width, reading)["factor"])[:, row]
+    factors = np.array(learning(width, case)["factor"])[:, row]
     return judged(median, factors, text=f"factor {spread(factors)}")
 
 
-def prediction_off(name: str, reading: int = 0) -> Measured:
+def prediction_off(name: str, case: int = 0) -> Measured:
     """Factor between median predicted and median measured values, the largest of three windows.
 
     Parameters
     ----------
     name : str
         A quantity of the study: "learnt", "rmss", "roughness, trained", ...
-    reading : int
+    case : int
         As in `changes_predicted`.
     """
-    cells = [learning(w, reading) for w in WINDOWS]
+    cells = [learning(w, case) for w in WINDOWS]
     pairs = [tuple(np.array(c[who][name]) for who in ("predicted", "measured")) for c in cells]
 
     def factor(*drawn):
@@ -331,7 +331,7 @@ def prediction_off(name: str, reading: int = 0) -> Measured:
     return judged(factor, *pairs, text=text)
 
 
-def halved(first: list, then: list, width: int = 21, reading: int = 0) -> Measured:
+def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
     """Epoch at which some directions' parts of the error are half, over that of others.
 
     Of several directions the geometric mean counts.
@@ -340,10 +340,10 @@ def halved(first: list, then: list, width: int = 21, reading: int = 0) -> Measur
     ----------
     first, then : list of int
         Directions below and above the line, 1 for the steepest.
-    width, reading : int
+    width, case : int
         As in `changes_predicted`.
     """
-    cell, epochs = learning(width, reading), {}
+    cell, epochs = learning(width, case), {}
     for who in ("measured", "predicted"):
         halves = np.log(np.array(cell[who]["halves"], float))
         epochs[who] = [halves[:, np.array(group) - 1].mean(1) for group in (first, then)]
@@ -360,7 +360,7 @@ def centred(name: str = "rmss") -> Measured:
     name : str
         Quantity of the study.
     """
-    cells = [[learning(w, reading) for reading in (0, 1)] for w in WINDOWS]
+    cells = [[learning(w, case) for case in (0, 1)] for w in WINDOWS]
     pairs = {
         who: [tuple(np.array(c[who][name]) for c in both) for both in cells]
         for who in ("measured", "predicted")
