@@ -7,10 +7,12 @@ The processes are forked from one that has imported the large libraries, as for 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from tempfile import TemporaryFile
 
 sys.path.append(str(Path(__file__).parents[2] / "book" / "_ext"))
 
@@ -34,6 +36,24 @@ def failure(path: Path) -> str:
     return ""
 
 
+def run(paths: list[Path], jobs: int) -> dict[str, str]:
+    """What stops which notebooks; the errors of kernels are shown if there is any."""
+    kept = os.dup(2)
+    with TemporaryFile("w+") as said:
+        os.dup2(said.fileno(), 2)
+        try:
+            with ahead.forked_kernels(), ThreadPoolExecutor(jobs) as pool:
+                told = pool.map(failure, paths)
+                failed = {path.name: text for path, text in zip(paths, told) if text}
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+        said.seek(0)
+        if failed:
+            sys.stderr.write(said.read())
+    return failed
+
+
 def main(arguments=None) -> int:
     """Run all; 1 if any fails."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -42,8 +62,7 @@ def main(arguments=None) -> int:
     options = parser.parse_args(arguments)
     # the longest first, so that all processes end together
     paths = sorted(options.notebooks, key=lambda path: -path.stat().st_size)
-    with ahead.forked_kernels(), ThreadPoolExecutor(options.jobs) as pool:
-        failed = {path.name: text for path, text in zip(paths, pool.map(failure, paths)) if text}
+    failed = run(paths, options.jobs)
     for name, text in failed.items():
         print(f"FAILED {name}\n{text}", flush=True)
     print(f"{len(failed)} failed, {len(paths) - len(failed)} passed", flush=True)
