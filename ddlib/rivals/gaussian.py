@@ -127,7 +127,7 @@ class GaussianProcess(Rival):
 
     def _process(self, features, y, some, seed):
         lengths = RBF(np.full(features.shape[1], 3.0), (0.1, 1e4))
-        kernel = ConstantKernel(1.0, (1e-3, 1e5)) * lengths + WhiteKernel(1e-2, (1e-9, 1e1))
+        kernel = ConstantKernel(1.0, (1e-3, 1e4)) * lengths + WhiteKernel(1e-2, (1e-7, 1e1))
         search = GaussianProcessRegressor(
             kernel, optimizer=_ascend, n_restarts_optimizer=self.restarts, random_state=seed
         )

@@ -185,8 +185,7 @@ class LagrangianNetwork(Rival):
         watch: Callable[[int, LagrangianNetwork], None] | None = None,
     ):
         self.hidden = tuple(integer("hidden", units, 1) for units in hidden)
-        if not self.hidden:
-            raise ValueError("hidden must name at least one layer, got ()")
+        integer("hidden layers", len(self.hidden), 1)
         self.gravity_from = one_of("gravity", gravity, GRAVITIES)
         self.friction, self.annealed, self.scaled = bool(friction), bool(annealed), bool(scaled)
         self.diagonal = one_of("diagonal", diagonal, DIAGONALS)
@@ -217,9 +216,9 @@ class LagrangianNetwork(Rival):
         batch = min(self.batch, cases)
         steps = cases // batch
         adam = torch.optim.Adam(
-            network.parameters(), self.rate, weight_decay=self.decay, amsgrad=True
+            network.parameters(), self.rate, weight_decay=self.decay, amsgrad=True, fused=True
         )
-        shape = torch.optim.lr_scheduler.CosineAnnealingLR(adam, max(1, self.epochs * steps))
+        falling = torch.optim.lr_scheduler.CosineAnnealingLR(adam, max(1, self.epochs * steps))
         for epoch in range(1, self.epochs + 1):
             order = torch.randperm(cases, generator=generator)
             for k in range(steps):
@@ -228,7 +227,7 @@ class LagrangianNetwork(Rival):
                 self._loss([s[chosen] for s in states], target[chosen]).backward()
                 adam.step()
                 if self.annealed:
-                    shape.step()
+                    falling.step()
             if self.watch is not None:
                 self.watch(epoch, self)
 
@@ -272,7 +271,7 @@ class LagrangianNetwork(Rival):
         speed = qd.T[:, :, None]
         rate = (moved * speed[..., None]).sum(0)  # dL/dt
         torque = _times(lower, pushed + (turned * speed).sum(0)) + _times(rate, along)
-        torque = torque + self.floor * qdd - (turned * along).sum(-1).T
+        torque = torque - (turned * along).sum(-1).T + self.floor * qdd
         if gravity is not None:
             torque = torque + gravity
         if self.network.friction is not None:
@@ -295,22 +294,25 @@ class LagrangianNetwork(Rival):
             found = self.network(position, torch.tensor(1 / self.units.spread).to(position))
         return q.shape[:-1], [None if f is None else f.double().numpy() for f in found]
 
-    @property
-    def _inertia(self) -> float:
-        return self.units.torque / self.units.acceleration
+    def triangle(self, q) -> np.ndarray:
+        """L(q), ``(..., joint, joint)``, in the network's units."""
+        lead, (lower, *_) = self._parts(q)
+        return lower.reshape(*lead, *lower.shape[1:])
 
     def mass_matrix(self, q) -> np.ndarray:
         """The mass matrix that was learnt, ``(..., joint, joint)``, at `q` in rad; kg m^2."""
-        lead, (lower, *_) = self._parts(q)
+        lower = self.triangle(q)
         mass = lower @ np.swapaxes(lower, -1, -2) + self.floor * np.eye(lower.shape[-1])
-        return self._inertia * mass.reshape(*lead, *mass.shape[1:])
+        return self.units.torque / self.units.acceleration * mass
 
     def _mass_slopes(self, q) -> np.ndarray:
         """Derivatives of the mass matrix, ``[..., i, j, k]`` by position k, kg m^2/rad."""
         lead, (lower, moved, *_) = self._parts(q)
         half = moved @ np.swapaxes(lower, -1, -2)
-        slopes = np.moveaxis(half + np.swapaxes(half, -1, -2), 0, -1)
-        return self._inertia * slopes.reshape(*lead, *slopes.shape[1:])
+        slopes = np.moveaxis(half + np.swapaxes(half, -1, -2), 0, -1).reshape(
+            *lead, *[len(half)] * 3
+        )
+        return self.units.torque / self.units.acceleration * slopes
 
     def coriolis_matrix(self, q, qd) -> np.ndarray:
         """Coriolis and centrifugal matrix by Christoffel symbols, shape ``(..., joint, joint)``."""
@@ -343,9 +345,9 @@ class LagrangianNetwork(Rival):
         qd = finite_array("qd", qd, self.network.joints)
         if self.network.friction is None:
             return np.zeros_like(qd)
-        viscous, coulomb = self.network.friction.detach().double().numpy()
-        coulomb = coulomb * np.clip(qd / SIGN_SPEED, -1.0, 1.0)
-        return self.units.torque * (viscous * qd / self.units.acceleration**0.5 + coulomb)
+        viscous, coulomb = self.units.torque * self.network.friction.detach().double().numpy()
+        sign = np.clip(qd / SIGN_SPEED, -1.0, 1.0)
+        return viscous * qd / self.units.acceleration**0.5 + coulomb * sign
 
     def forward_dynamics(self, q, qd, tau) -> np.ndarray:
         """Acceleration of the model under torque `tau`, shape ``(..., joint)``, rad/s^2."""
@@ -375,10 +377,8 @@ class LagrangianNetwork(Rival):
         sums += outputs * (before + joints * (before - 1))
         products += triangle * (4 + 2 * joints) + 2 * joints**2 + joints
         sums += triangle * (4 + 2 * joints) + 2 * joints**2 + 3 * joints
-        if self.friction:
-            products, sums = products + 2 * joints, sums + 2 * joints
-        if self.scaled:
-            products, sums = products + 4 * joints, sums + joints
+        products += joints * (2 * self.friction + 4 * self.scaled)
+        sums += joints * (2 * self.friction + self.scaled)
         return Operations(products, sums, 0, functions + 2 * joints)
 
 

@@ -1,0 +1,66 @@
+"""Whether a Gaussian process is right about how wrong it is, on recordings with noise."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from ddlib.experiments.setups import JOINT_DAMPING, split
+from ddlib.identification import FRICTION, RIGID
+from ddlib.metrics import rmss
+from ddlib.rivals import Cases, Estimating, GaussianProcess, SemiParametric
+from ddlib.trajectories import OutsideFamilyWarning
+
+DAYS, WIDTH, DIRECTIONS = 6, 21, 10
+"""Recordings; samples of a window; principal directions that a process of windows sees."""
+
+LEVEL, SIGMAS = 0.95, 1.959964
+"""What the intervals promise, and their half width in standard deviations."""
+
+KEPT = 0.2
+"""Share of the training cases that is kept out, to be asked between its neighbours."""
+
+PROCESSES = {
+    "directions of the window": lambda: GaussianProcess(directions=DIRECTIONS, restarts=0),
+    "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
+    "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
+}
+"""What the processes see."""
+
+
+def _some(cases: Cases, rows) -> Cases:
+    return Cases(cases.x[rows], cases.torque[rows], cases.kind, cases.step)
+
+
+def _asked(rival, cases: Cases) -> dict:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideFamilyWarning)
+        error = rival.torque(cases.x) - cases.torque
+        within = isinstance(rival, Estimating)
+        deviation = rival.rival.deviation if within else rival.deviation
+        width = SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
+    return {
+        "rmss": float(rmss(error + cases.torque, cases.torque)),
+        "covered": float((np.abs(error) <= width).mean()),
+        "half width": width.mean(0),
+    }
+
+
+def gaussian_intervals() -> dict:
+    """Share of measured torques in the intervals of several processes, on several days.
+
+    Trained on `KEPT` less than all windows of trajectories 1 to 5; asked for those that were kept
+    out, which lie between others, and for trajectory 6.
+    """
+    rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in PROCESSES}
+    for day in range(1, DAYS + 1):
+        training, six = split(JOINT_DAMPING.repeated(day).record())
+        windows = Cases.windows(training, WIDTH)
+        out = np.random.default_rng(day).random(len(windows)) < KEPT
+        sets = {"kept out": _some(windows, out), "trajectory 6": Cases.windows(six, WIDTH)}
+        for name, make in PROCESSES.items():
+            rival = make().fit(_some(windows, ~out))
+            for part, cases in sets.items():
+                rows[name][part].append(_asked(rival, cases))
+    return {"days": DAYS, "level": LEVEL, "processes": rows}
