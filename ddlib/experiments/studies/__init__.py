@@ -26,7 +26,13 @@ from ddlib.experiments.studies import (
     table,
     windows,
 )
-from ddlib.experiments.studies.beyond import real_arm, rivals, rivals_1988
+from ddlib.experiments.studies.beyond import (
+    characters,
+    intervals,
+    real_arm,
+    rivals,
+    rivals_1988,
+)
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -51,5 +57,7 @@ PARTS: dict[str, Callable[[], dict]] = {
     "rivals-cmac": rivals_1988.rivals_cmac,
     "rivals-bases": rivals_1988.rivals_bases,
     "real-arm": real_arm.real_arm,
+    "characters": characters.characters,
+    "gaussian-intervals": intervals.gaussian_intervals,
 }
 """The studies by the name of their result."""

@@ -4,4 +4,5 @@
 - ``real_arm``: errors of the window network of 1988 on a real arm, and of what beats it
 - ``real_arm_filters``: its filters, beside networks trained on unrelated currents
 - ``rivals``: rivals against the paper's network, day by day
+- ``characters``: rivals on somebody else's table; intervals of Gaussian processes
 """
