@@ -176,7 +176,7 @@ def test_the_process_learns_what_the_structure_leaves():
     def left(x):  # a spring at each joint, which no parameter stands for
         return np.stack([3 * np.sin(3 * x[:, 0, 0]), 2 * x[:, 1, 0] ** 2], -1)
 
-    cases, x = data(200, noise=0.02), states(60, 9, 0.9)
+    cases, x = data(100, noise=0.02), states(60, 9, 0.9)
     cases = Cases(cases.x, cases.torque + left(cases.x), "states", STEP)
     truth = CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0)) + left(x)
     semi = SemiParametric(RIGID, restarts=0).fit(cases)
