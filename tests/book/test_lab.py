@@ -20,6 +20,15 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
+# Kernels are forked, which saves each chapter some seconds.
+SERVER = f"""
+import sys
+sys.path.insert(0, {str(ROOT / "book" / "_ext")!r})
+from ahead import forked_kernels
+from jupyterlab.labapp import main
+with forked_kernels():
+    main()
+"""
 ANSWERED = [page for page in CHAPTERS if "</details>" in source(page).read_text(encoding="utf-8")]
 
 
@@ -55,7 +64,7 @@ def lab(tmp_path_factory):
     log = home / "log.txt"
     with log.open("w") as output:
         server = subprocess.Popen(
-            [sys.executable, "-m", "jupyterlab", *options],
+            [sys.executable, "-c", SERVER, *options],
             env={
                 **os.environ,
                 "OMP_NUM_THREADS": "1",
