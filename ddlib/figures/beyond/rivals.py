@@ -23,7 +23,7 @@ MARKERS = "os^Dv"
 LOWEST, HIGHEST = 0.009, 25.0
 """Ends of the axis of errors: room for noise below, for the legends above."""
 
-WIDTH = 6.4
+WIDTH = 5.2
 """Of the figure, inches: narrower than most, so that labels stay legible on a phone."""
 
 
