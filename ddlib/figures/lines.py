@@ -171,8 +171,10 @@ def families(
                 axis.plot(x, y, color=colour, lw=0.6, alpha=0.45)
                 axis.plot(x, np.median(y, axis=1), color=colour, ls=dash, lw=2.2)
             axis.set_title(title)
-            axis.set_xscale("log" if x_log else "linear")
-            axis.set_yscale("log" if y_log else "linear")
+            for which, log in (("x", x_log), ("y", y_log)):
+                if log:
+                    axis.set(**{f"{which}scale": "log"})
+                    plain_ticks(getattr(axis, f"{which}axis"))
         for axis in axes[len(panels) :]:
             axis.remove()
         figure.supxlabel(labels[0], fontsize=9.5)

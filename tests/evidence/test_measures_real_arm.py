@@ -157,6 +157,7 @@ def ensemble(factor, members=4, velocity=0.5):
     gain = np.asarray(factor) * TRUE * np.ones((members, 6))
     return {
         "velocity": gain, "acceleration": gain, "share of velocity": gain / 10,
+        "unique velocity": gain / 10, "unique acceleration": gain / 20,
         "classes": names(velocity, members),
     }  # fmt: skip
 
@@ -214,6 +215,15 @@ def test_shares_and_friction(plant):
     plant(windows=planted(ensemble(1.0), ensemble(-1.0), ensemble(1.0)))
     found = real_arm_filters.shares_follow(21)
     assert found.value == pytest.approx(1.0) and found.text == "r 1.00; as high by chance: p 1.00"
+
+
+def test_joints_that_follow_more_than_chance(plant):
+    real = ensemble([1.0, 0.5, 1.0, 0.1, 1.0, 0.9])
+    plant(windows=planted(real, ensemble(0.2), ensemble(0.6)))
+    for what in ("velocity", "acceleration"):
+        assert real_arm_filters.unique_beyond(what, 21).value == 4
+    text = real_arm_filters.unique_beyond("velocity", 21).text
+    assert text.startswith("10 (6), 10 (12), 30 (18), 4 (24), ")
 
 
 def test_the_median_output_is_judged(plant):

@@ -12,6 +12,7 @@ from ddlib.analysis import (
     LAYERS,
     classify,
     explained,
+    followed,
     gains,
     mean_gradient,
     shares,
@@ -142,7 +143,11 @@ def _structured(data: Windowed, block: int, members: int, decay: float) -> list[
 
 
 def _described(model: TorqueModel, data: Windowed, targets) -> dict:
-    """Of each network: errors, gains on the joint's own motion, names and shares of filters."""
+    """Of each network: errors, gains on the joint's own motion, names and shares of filters.
+
+    Of the direct weights from each joint to its own motor also what they follow; of all pairs,
+    ``(quantile, output, joint, 2)``, the gains on velocity and acceleration.
+    """
     w = model.weights
     whole = gains(mean_gradient(model, data.x), data.step)
     own = np.arange(6)
@@ -152,12 +157,16 @@ def _described(model: TorqueModel, data: Windowed, targets) -> dict:
         for layer, at in LAYERS.items()
     }
     error = ((model.torque(data.x) - targets) ** 2).mean(-2) / targets.var(-2)
+    unique = followed(w.direct_weights, data.x, data.states).unique[:, own, own]
     return {
         "error": np.sqrt(error.mean(-1)),
         "velocity": whole[:, own, own, 1],
         "acceleration": whole[:, own, own, 2],
         "share of velocity": direct[..., 1],
         "share of acceleration": direct[..., 2],
+        "unique velocity": unique[..., 1],
+        "unique acceleration": unique[..., 2],
+        "pairs": np.percentile(whole[..., 1:], (2.5, 50, 97.5), axis=0),
         "classes": layers,
     }
 
