@@ -163,7 +163,6 @@ def _described(model: TorqueModel, data: Windowed, targets) -> dict:
         "velocity": whole[:, own, own, 1],
         "acceleration": whole[:, own, own, 2],
         "share of velocity": direct[..., 1],
-        "share of acceleration": direct[..., 2],
         "unique velocity": unique[..., 1],
         "unique acceleration": unique[..., 2],
         "pairs": np.percentile(whole[..., 1:], (2.5, 50, 97.5), axis=0),
