@@ -107,7 +107,7 @@ def test_text_with_wide_characters():
 def test_samples_are_drawn_anew_with_each_seed():
     first, again, other = (mutation.draw(seed, 50, "measures") for seed in (1, 1, 2))
     assert first == again and len(set(first) & set(other)) < 25
-    assert {m.module.rpartition("/")[0] for m in first} == {"evidence/measures"}
+    assert all(m.module.startswith("evidence/measures/") for m in first)
     assert mutation.draw(1, 60, "measures")[:50] == first
 
 
