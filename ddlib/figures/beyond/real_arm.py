@@ -41,7 +41,7 @@ def friction_by_joint(
         for first, second, length in ((speed, current, "cases"), (middle, median, "groups")):
             first = shaped(f"speed of {title!r}", first, f"({length},)")
             shaped(f"current of {title!r}", second, first.shape)
-    columns = min(3, len(panels))
+    columns = min(2, len(panels))
 
     def draw(figure: Figure):
         axes = figure.subplots(-(-len(panels) // columns), columns, squeeze=False).ravel()
@@ -58,7 +58,7 @@ def friction_by_joint(
         figure.supxlabel(check_label(labels[0]), fontsize=9.5)
         figure.supylabel(check_label(labels[1]), fontsize=9.5)
 
-    return illustrate(draw, alt, 7.0, 1.9 * -(-len(panels) // columns) + 0.3)
+    return illustrate(draw, alt, 5.4, 1.75 * -(-len(panels) // columns) + 0.3)
 
 
 def gains_by_joint(panels: Mapping[str, tuple], label: str, alt: str) -> Illustration:
@@ -106,4 +106,4 @@ def gains_by_joint(panels: Mapping[str, tuple], label: str, alt: str) -> Illustr
         handles = axes[0].get_legend_handles_labels()
         figure.legend(*handles, loc="outside upper left", ncols=3)
 
-    return illustrate(draw, alt, 7.0, 3.3)
+    return illustrate(draw, alt, 5.4, 3.0)
