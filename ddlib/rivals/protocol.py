@@ -15,7 +15,8 @@ A new rival is a class with four short methods::
         def operations(self):
             return Operations(0, 0)
 
-`Rival` checks what goes in and what comes out, and `trial` measures the rest.
+It sees states, unless it sets ``kind = "windows"``; `Estimating` lets a rival of states see
+windows. `Rival` checks what goes in and what comes out, and `trial` measures the rest.
 """
 
 from __future__ import annotations
