@@ -26,7 +26,7 @@ from ddlib.rivals import (
     full_table,
 )
 from ddlib.simulation import Recording
-from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
+from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning, random_extents
 
 DAYS = (1, 2, 3, 4, 5)
 """Days of recording: each has noise and encoder zeros of its own."""
@@ -39,11 +39,8 @@ WIDTH = 21
 
 KINDS = ("exact", "positions only")
 
-POINTS = 9
-"""Extents of each joint in the square."""
-
-STRIDE = 5
-"""Of the samples of the square every fifth is a test."""
+POINTS, STRIDE = 9, 5
+"""Extents of each joint in the square; of its samples every fifth is a test."""
 
 
 def _cases(setup: Setup, recording: Recording, kind: str, stride: int = 1) -> Cases:
@@ -112,11 +109,11 @@ CELLS = {
 PRACTISED = (25.0, 25.0)
 """Extents of the one trajectory of the map, degrees: a point of the square."""
 
-PRACTICE = 3
-"""On how many days it is recorded for training."""
+PRACTICE, REPEATED = 3, (1, 3, 10)
+"""On how many days it is recorded for training, how often on each; the map is of the last."""
 
-REPEATED = (1, 3, 10)
-"""How often on each of them; the map is of the last."""
+VARIED, PENALTY = ("states", "configurations"), 1e-4
+"""Tables that also learn as many different trajectories; the penalty of a plane beside them."""
 
 FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)
 """Cells of each axis of tables that are right in every cell."""
@@ -154,7 +151,8 @@ def _around(kind: str, days) -> dict:
     """What learnt one trajectory: its error there by repetitions, and all over the square.
 
     Errors are in units of the practised trajectory's deviation. Of each family of tables the
-    number of cells is the one that does best on the same trajectory on a day of its own.
+    number of cells is the one that does best on the same trajectory on a day of its own. "Varied":
+    the same tables from as many different trajectories, drawn at random.
     """
     families: dict[str, list[Callable[[], Rival]]] = {
         "nearest": [lambda: Nearest(beyond="edge")],
@@ -164,9 +162,11 @@ def _around(kind: str, days) -> dict:
         },
         "one cell": [lambda: CellTable(1, "configurations", beyond="edge")],
         "plane": [lambda: Polynomial(1)],
+        "plane, penalty": [lambda: Polynomial(1, ridge=PENALTY)],
         "structure": [Identified],
     }
-    found, floor = {name: [] for name in families}, []
+    names = (*families, *(f"{name}, varied" for name in VARIED))
+    found, floor = {name: [] for name in names}, []
     for day in days:
         numbers = [1000 * day + k for k in range(PRACTICE + 2)]
         setups = [JOINT_DAMPING.repeated(number) for number in numbers]
@@ -179,6 +179,8 @@ def _around(kind: str, days) -> dict:
             _joined([_cases(s, run[:n], kind) for s, run in zip(setups, runs[:-1])])
             for n in REPEATED
         ]
+        drawn = setups[0].record(random_extents(REPEATED[-1] * PRACTICE, seed=day))
+        varied = _cases(setups[0], drawn, kind)
         scale = by_amount[-1].torque.std(0)
         noise = (recording.tau - recording.tau_true)[practised][0, recording.motion] / scale
         floor.append(float(np.sqrt(np.mean(noise**2))))
@@ -194,6 +196,9 @@ def _around(kind: str, days) -> dict:
                 {"there": [*there, errors[practised][0]], "errors": errors,
                  "cells": getattr(best, "cells", 0)}
             )  # fmt: skip
+            if name in VARIED:
+                errors = _map(best.fit(varied), everywhere, scale)
+                found[f"{name}, varied"].append({"errors": errors})
     return {name: _over_days(some) for name, some in found.items()} | {"floor": floor}
 
 
@@ -240,17 +245,14 @@ def _full() -> dict:
 
 # CMAC
 
-LAYERS, EPOCHS = 32, 50
-"""Layers and passes of CMAC where nothing else is said. Assumed."""
+LAYERS, EPOCHS, HASHED_WIDTH = 32, 50, 0.5
+"""Layers, passes and, where slots are varied, edge of the cubes of CMAC. Assumed."""
 
 WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
 """Edges of its cubes, as shares of the box's."""
 
 SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)
 """Weights for each joint, where cubes share them by hashing."""
-
-HASHED_WIDTH = 0.5
-"""Edge of the cubes where slots are varied."""
 
 
 def rivals_cmac(days=DAYS) -> dict:
@@ -267,8 +269,7 @@ def rivals_cmac(days=DAYS) -> dict:
             found = [_cmac(sets[day], setting) for day in days]
             rows.append({"kind": kind, **setting, **_over_days(found)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
-    return {"days": list(days), "floor": [_floor(day) for day in days], "rows": rows,
-            "chosen": chosen}  # fmt: skip
+    return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
 
 def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
@@ -356,8 +357,7 @@ def rivals_bases(days=DAYS) -> dict:
                     )
     for name in ("chebyshev", "fourier"):
         chosen[name] = [_left_out(*BASES[name], sets[day]["training"]) for day in days]
-    floor = [_floor(day) for day in days]
-    return {"days": list(days), "floor": floor, "rows": rows, "chosen": chosen}
+    return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
 
 def _by_ridge(rival: Rival, training: Cases, sets: dict[str, Cases]) -> list[dict]:
@@ -387,10 +387,7 @@ def _left_out(make, highest: int, training: Cases) -> dict:
 
 
 def practised_distance() -> np.ndarray:
-    """How far trajectories of the square are from the practised one, degrees, ``(runs,)``.
-
-    The larger of the differences in the two extents; in the order of `square`.
-    """
+    """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `square`."""
     return np.abs(square_extents() - PRACTISED).max(1)
 
 
