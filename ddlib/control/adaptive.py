@@ -92,6 +92,9 @@ class SlotineLi:
         What the run begins with.
     names : sequence of str
         The parameters, from `PARAMETERS`.
+    at : {"measured", "desired"}
+        The state at which Y is taken: "desired" is Y of the reference alone, which can be computed
+        beforehand (Sadegh & Horowitz 1990). Then `lyapunov` may rise.
 
     Raises
     ------
@@ -104,8 +107,10 @@ class SlotineLi:
     rate: Sequence[float]
     estimate: Sequence[float]
     names: Sequence[str] = PARAMETERS[:3]
+    at: str = "measured"
 
     def __post_init__(self):
+        one_of("at", self.at, ("measured", "desired"))
         for name in ("gain", "slope"):
             value = shaped(name, getattr(self, name), (2,))
             if (value <= 0).any():
@@ -130,6 +135,8 @@ class SlotineLi:
             Per second.
         """
         s, v, a = self._sliding(wanted, q, qd)
+        if self.at == "desired":
+            q, qd, v, a = wanted.q, wanted.qd, wanted.qd, wanted.qdd
         Y = mixed_regressor(q, qd, v, a, self.names)
         torque = np.einsum("...jp,...p->...j", Y, np.asarray(estimate)) + self.gain * s
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", Y, s)

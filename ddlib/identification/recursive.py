@@ -1,0 +1,70 @@
+"""Least squares one sample at a time: what a controller can afford while it runs.
+
+The recursion gives after every sample what batch least squares would give for all samples so far,
+with a penalty on the distance from the first guess (Ljung 1999, section 11.2). A factor below 1
+forgets: a sample that is n steps old counts ``forgetting ** n``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import finite_array, number, shaped
+
+
+class RecursiveLeastSquares:
+    """Estimates of ``target = weights @ features``, sample by sample.
+
+    Parameters
+    ----------
+    weights : array_like, shape (outputs, features)
+        First guess.
+    penalty : float
+        Weight of the first guess: it is ``penalty / 2`` times the squared distance from it,
+        above 0.
+    forgetting : float
+        Above 0, at most 1; 1: nothing is forgotten. Features that are not excited are forgotten
+        all the same: the estimate's uncertainty then grows without bound.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (outputs, features)
+        The estimate after the last sample.
+    covariance : ndarray, shape (features, features)
+        Inverse of the (discounted) sum of squares, ``penalty`` included; of all outputs alike.
+    """
+
+    def __init__(self, weights, penalty: float = 1e-3, forgetting: float = 1.0):
+        self.weights = shaped("weights", weights, "(outputs, features)").copy()
+        number("penalty", penalty, 0.0, open_low=True)
+        self.forgetting = number("forgetting", forgetting, 0.0, 1.0, open_low=True)
+        self.covariance = np.eye(self.weights.shape[1]) / penalty
+
+    def update(self, features, target) -> np.ndarray:
+        """Learn from one sample; what the estimate before it would have said.
+
+        Parameters
+        ----------
+        features : array_like, shape (features,)
+        target : array_like, shape (outputs,)
+
+        Returns
+        -------
+        ndarray, shape (outputs,)
+            The prediction before learning.
+
+        Raises
+        ------
+        ValueError
+            If a shape does not fit or a number is not finite; nothing is learnt then.
+        """
+        outputs, count = self.weights.shape
+        features = shaped("features", features, (count,))
+        target = finite_array("target", target, outputs)
+        seen = self.covariance @ features
+        gain = seen / (self.forgetting + features @ seen)
+        predicted = self.weights @ features
+        self.weights = self.weights + np.outer(target - predicted, gain)
+        left = (self.covariance - np.outer(gain, seen)) / self.forgetting
+        self.covariance = (left + left.T) / 2
+        return predicted

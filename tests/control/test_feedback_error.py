@@ -1,0 +1,63 @@
+"""Feedback-error learning: the identity with Slotine & Li, and what it learns."""
+
+import numpy as np
+import pytest
+
+from ddlib.control import pd
+from ddlib.control.adaptive import PARAMETERS, SlotineLi, Watched
+from ddlib.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.simulation import follow, record
+from ddlib.trajectories import Trajectory
+
+GAIN, SLOPE = 30.0, np.array([8.0, 6.0])
+RATE = np.array([2.0, 0.5, 0.2, 10.0, 4.0])
+NAMES = (*PARAMETERS[:3], "F_v1", "F_v2")
+TEACHER = pd(tuple(GAIN * SLOPE), (GAIN, GAIN))
+
+
+def learner(rate=RATE / GAIN, weights=(0.0,) * 5, names=NAMES):
+    return FeedbackErrorLearning(RigidBodyTerms(names), rate, weights, TEACHER)
+
+
+def both(extents, **change):
+    fixed = dict(gain=(GAIN, GAIN), slope=SLOPE, rate=RATE, estimate=np.zeros(5), names=NAMES)
+    ours = Watched(learner())
+    theirs = Watched(SlotineLi(**fixed, **{"at": "desired", **change}))
+    runs = [record(ARM, law, extents, duration=1.0, rest=0.2) for law in (ours, theirs)]
+    return runs, ours.law.weights, theirs.law.estimates
+
+
+def test_it_is_slotine_and_li_at_the_desired_state_with_another_gain():
+    runs, weights, estimates = both([[40.0, 30.0], [10.0, 45.0]])
+    assert np.abs(weights[..., -1, :]).max() > 0.1
+    np.testing.assert_allclose(weights, estimates, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(runs[0].tau_true, runs[1].tau_true, rtol=1e-12, atol=1e-11)
+
+
+def test_at_the_measured_state_it_is_not():
+    _, weights, estimates = both((40.0, 30.0), at="measured")
+    assert np.abs(weights - estimates).max() > 1e-3
+
+
+def test_with_the_right_terms_it_finds_the_arm():
+    truth = np.array([ARM.a, ARM.b, ARM.d])
+    t = np.arange(0.0, 20.0, 0.002)
+    phase = np.multiply.outer(t, [[2.0, 5.0], [3.0, 4.0]])
+    speed = np.array([[2.0, 5.0], [3.0, 4.0]])
+    size = np.array([[0.5, 0.2], [0.6, 0.3]])
+    sine, cosine = size * np.sin(phase), size * np.cos(phase)
+    wanted = Trajectory(*(x.sum(-1) for x in (sine, speed * cosine, -(speed**2) * sine)))
+    taught = Watched(learner(np.array([0.3, 0.05, 0.03]), 0.5 * truth, PARAMETERS[:3]))
+    follow(ARM, taught, wanted, t, start=(wanted.q[0], wanted.qd[0]))
+    assert np.abs(taught.law.weights[-1] / truth - 1).max() < 0.15
+
+
+def test_bad_shapes_are_refused():
+    with pytest.raises(ValueError, match="weights"):
+        learner(weights=np.zeros(4))
+    with pytest.raises(ValueError, match="rate"):
+        learner(rate=-RATE)
+    bad = FeedbackErrorLearning(lambda q, qd, qdd: np.zeros(3), RATE, np.zeros(5), TEACHER)
+    with pytest.raises(ValueError, match=r"terms\(q, qd, qdd\) must have shape"):
+        record(ARM, bad, (10.0, 10.0), duration=0.5, rest=0.1)

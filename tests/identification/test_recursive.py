@@ -1,0 +1,50 @@
+"""Recursive least squares against the batch solution of the same penalised problem."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ddlib.identification.recursive import RecursiveLeastSquares
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10_000), st.integers(1, 60), st.sampled_from([1.0, 0.97]))
+def test_after_every_sample_it_is_the_batch_solution(seed, samples, forgetting):
+    rng = np.random.default_rng(seed)
+    x, y = rng.normal(size=(samples, 4)), rng.normal(size=(samples, 2))
+    first, penalty = rng.normal(size=(2, 4)), 0.3
+    found = RecursiveLeastSquares(first, penalty, forgetting)
+    for features, target in zip(x, y):
+        before = found.weights.copy()
+        np.testing.assert_array_equal(found.update(features, target), before @ features)
+    age = forgetting ** np.arange(samples)[::-1]
+    square = (x.T * age) @ x + forgetting**samples * penalty * np.eye(4)
+    right = (x.T * age) @ y + forgetting**samples * penalty * first.T
+    np.testing.assert_allclose(
+        found.weights.T, np.linalg.solve(square, right), rtol=1e-8, atol=1e-9
+    )
+    np.testing.assert_allclose(found.covariance, np.linalg.inv(square), rtol=1e-7, atol=1e-9)
+
+
+def test_bad_samples_are_refused_and_not_learnt():
+    found = RecursiveLeastSquares(np.zeros((2, 3)))
+    for features, target in (((1.0, 2.0), (0.0, 0.0)), ((1.0, np.nan, 0.0), (0.0, 0.0))):
+        with pytest.raises(ValueError, match="features"):
+            found.update(features, target)
+    with pytest.raises(ValueError, match="target"):
+        found.update((1.0, 2.0, 3.0), (np.inf, 0.0))
+    assert (found.weights == 0).all()
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [
+        ({"penalty": 0.0}, "penalty"),
+        ({"forgetting": 1.1}, "forgetting"),
+        ({"forgetting": 0.0}, "f"),
+    ],
+)
+def test_values_out_of_range_are_refused(change, name):
+    with pytest.raises(ValueError, match=name):
+        RecursiveLeastSquares(np.zeros((1, 2)), **change)
