@@ -1,0 +1,166 @@
+"""Where the hand is and how to get it there: Jacobian, inverse kinematics, end-point error."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import finite_array, number, one_of
+from ddlib.dynamics.arm import Arm
+
+ELBOWS = ("positive", "negative")
+"""Signs of the elbow angle: most points of the hand can be reached with either."""
+
+LEAST_SINE = 0.05
+"""Smallest sine of the elbow angle that is not taken for singular: at 3 degrees from stretched or
+folded the joints must turn twenty times as fast as the hand moves, per length of a link."""
+
+
+class Unreachable(ValueError):
+    """The hand cannot get there, or only with the arm stretched or folded."""
+
+
+class Joints(NamedTuple):
+    """Positions (rad), velocities (rad/s), accelerations (rad/s^2), each ``(..., 2)``."""
+
+    q: np.ndarray
+    qd: np.ndarray
+    qdd: np.ndarray
+
+
+def jacobian(arm: Arm, q) -> np.ndarray:
+    """Derivatives of the hand's position by the angles, shape (..., 2, 2), m/rad.
+
+    Parameters
+    ----------
+    arm : Arm
+    q : array_like, shape (..., 2)
+        Joint angles, rad.
+    """
+    elbow, hand = np.moveaxis(arm.forward_kinematics(q), -2, 0)
+    arms = np.stack([hand, hand - elbow], -1)  # from each joint to the hand, (..., xy, joint)
+    return np.stack([-arms[..., 1, :], arms[..., 0, :]], -2)
+
+
+def jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
+    """Time derivative of `jacobian` in motion, shape (..., 2, 2), m/(rad s).
+
+    Parameters
+    ----------
+    arm : Arm
+    q, qd : array_like, shape (..., 2)
+        Joint angles (rad) and velocities (rad/s).
+    """
+    J, qd = jacobian(arm, q), finite_array("qd", qd, 2)
+    turning = np.stack([qd.sum(-1), qd.sum(-1)], -1)
+    l1, first = arm.lengths[0], np.asarray(q, float)[..., 0]
+    upper = l1 * np.stack([np.cos(first), np.sin(first)], -1)
+    extra = np.zeros_like(J * turning[..., None, :])
+    extra[..., 0] = upper * (qd[..., :1] - turning[..., :1])  # the upper arm turns without elbow
+    quarter = np.stack([-J[..., 1, :], J[..., 0, :]], -2)
+    return quarter * turning[..., None, :] - extra
+
+
+def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
+    """Angles that bring the hand to a point, shape (..., 2), rad.
+
+    Parameters
+    ----------
+    arm : Arm
+    hand : array_like, shape (..., 2)
+        Position from the shoulder, m.
+    elbow : {"positive", "negative"}
+        Sign of the elbow angle.
+
+    Raises
+    ------
+    Unreachable
+        If a point is too far or too near, or the sine of the elbow angle is below `LEAST_SINE`.
+    """
+    hand, (l1, l2) = finite_array("hand", hand, 2), arm.lengths
+    one_of("elbow", elbow, ELBOWS)
+    distance2 = (hand**2).sum(-1)
+    cosine = (distance2 - l1**2 - l2**2) / (2 * l1 * l2)
+    low, high = (np.sqrt(l1**2 + l2**2 + s * 2 * l1 * l2 * np.sqrt(1 - LEAST_SINE**2))
+                 for s in (-1, 1))  # fmt: skip
+    bad = np.abs(cosine) > np.sqrt(1 - LEAST_SINE**2)
+    if bad.any():
+        worst = float(np.sqrt(distance2[bad].ravel()[0]))
+        raise Unreachable(
+            f"hand must be {low:.3f} to {high:.3f} m from the shoulder (nearer or farther the arm "
+            f"is folded or stretched), got {worst:.3f} m"
+        )
+    sine = np.sqrt(1 - cosine**2) * (1 if elbow == ELBOWS[0] else -1)
+    first = np.arctan2(hand[..., 1], hand[..., 0]) - np.arctan2(l2 * sine, l1 + l2 * cosine)
+    return np.stack([first, np.arctan2(sine, cosine)], -1)
+
+
+def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive") -> Joints:
+    """Joint motion that moves the hand along a path.
+
+    Parameters
+    ----------
+    arm : Arm
+    hand, velocity, acceleration : array_like, shape (..., time, 2)
+        Of the hand, m, m/s and m/s^2. The path is continuous, so the shoulder's angle is made to
+        run on beyond half a turn.
+    elbow : {"positive", "negative"}
+        Sign of the elbow angle, all the way.
+
+    Raises
+    ------
+    Unreachable
+        As in `inverse_kinematics`.
+    """
+    q = inverse_kinematics(arm, hand, elbow)
+    q = np.stack([np.unwrap(q[..., 0], axis=-1), q[..., 1]], -1)
+    J = jacobian(arm, q)
+    velocity = finite_array("velocity", velocity, 2)
+    acceleration = finite_array("acceleration", acceleration, 2)
+    qd = np.linalg.solve(J, velocity[..., None])[..., 0]
+    bent = np.einsum("...ij,...j->...i", jacobian_rate(arm, q, qd), qd)
+    return Joints(q, qd, np.linalg.solve(J, (acceleration - bent)[..., None])[..., 0])
+
+
+def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
+    """Where the hand is minus where it should be, shape (..., 2), m.
+
+    Parameters
+    ----------
+    arm : Arm
+    wanted, q : array_like, shape (..., 2)
+        Desired and true joint angles, rad.
+    """
+    return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]
+
+
+def circle(arm: Arm, centre, radius: float, period: float, t, elbow: str = "positive") -> Joints:
+    """ "Stirring": the hand goes round a circle, counter-clockwise, from its far right.
+
+    Parameters
+    ----------
+    arm : Arm
+    centre : array_like, shape (2,) or (runs, 2)
+        Of the circle, from the shoulder, m.
+    radius : float
+        Of the circle, m, above 0.
+    period : float
+        Of one turn, s, above 0.
+    t : array_like, shape (time,)
+        Times, s.
+    elbow : {"positive", "negative"}
+        Sign of the elbow angle.
+
+    Raises
+    ------
+    Unreachable
+        If part of the circle cannot be reached.
+    """
+    number("radius", radius, 0.0, open_low=True)
+    omega = 2 * np.pi / number("period", period, 0.0, open_low=True)
+    phase = omega * finite_array("t", t)
+    along = np.stack([np.cos(phase), np.sin(phase)], -1)
+    across = np.stack([-np.sin(phase), np.cos(phase)], -1)
+    hand = finite_array("centre", centre, 2)[..., None, :] + radius * along
+    return follow_hand(arm, hand, omega * radius * across, -(omega**2) * radius * along, elbow)
