@@ -1,6 +1,8 @@
 """Controllers of the joints, and the linear analysis of their loops.
 
 - ``controllers``: proportional, PD and PID control, feedforward, computed torque
+- ``adaptive``, ``feedback_error``: controllers that learn while they control
+- ``windowed``: a model of windows as feedforward of a desired motion
 - ``linear``: loops as python-control systems: poles, `margins` of gain and phase
 - ``delays``: poles of a sampled loop whose torque comes late
 - ``velocity``: velocity from position readings, noise against lag
@@ -13,6 +15,9 @@ __getattr__, __dir__, __all__ = hand_on(
     controllers=(
         "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
     ),
+    adaptive="CraigHsuSastry PARAMETERS SlotineLi Watched mixed_regressor",
+    feedback_error="FeedbackErrorLearning RigidBodyTerms",
+    windowed="BETWEEN WindowFeedforward",
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
     delays="late_poles",
     velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",

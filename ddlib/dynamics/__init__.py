@@ -1,6 +1,7 @@
 """The rigid body: arms, their equations of motion, and what computing them costs.
 
 - ``arm``: `Arm` of two links, made of `Link`; the book's arm and two measured ones
+- ``kinematics``: where the hand is and how to get it there; circles of the hand
 - ``serial``: arms in space of any number of joints; the PUMA 560
 - ``derivation``: the equations of motion, derived by sympy
 - ``formulations``: Lagrange-Euler, its recursion and Newton-Euler in plain arithmetic
@@ -12,6 +13,10 @@ from ddlib._names import hand_on
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
     arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY",
+    kinematics=(
+        "ELBOWS LEAST_SINE Unreachable circle end_point_error follow_hand "
+        "inverse_kinematics jacobian jacobian_rate"
+    ),
     serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
     formulations="Constants LinkConstants lagrange_euler newton_euler recursive_lagrange",
     derivation="Derivation MAX_LINKS derive",

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ddlib._check import finite_array, number, one_of
 from ddlib.dynamics.arm import Arm
+from ddlib.trajectories import Trajectory
 
 ELBOWS = ("positive", "negative")
 """Signs of the elbow angle: most points of the hand can be reached with either."""
@@ -19,14 +18,6 @@ folded the joints must turn twenty times as fast as the hand moves, per length o
 
 class Unreachable(ValueError):
     """The hand cannot get there, or only with the arm stretched or folded."""
-
-
-class Joints(NamedTuple):
-    """Positions (rad), velocities (rad/s), accelerations (rad/s^2), each ``(..., 2)``."""
-
-    q: np.ndarray
-    qd: np.ndarray
-    qdd: np.ndarray
 
 
 def jacobian(arm: Arm, q) -> np.ndarray:
@@ -96,7 +87,7 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
     return np.stack([first, np.arctan2(sine, cosine)], -1)
 
 
-def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive") -> Joints:
+def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive") -> Trajectory:
     """Joint motion that moves the hand along a path.
 
     Parameters
@@ -120,7 +111,7 @@ def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive")
     acceleration = finite_array("acceleration", acceleration, 2)
     qd = np.linalg.solve(J, velocity[..., None])[..., 0]
     bent = np.einsum("...ij,...j->...i", jacobian_rate(arm, q, qd), qd)
-    return Joints(q, qd, np.linalg.solve(J, (acceleration - bent)[..., None])[..., 0])
+    return Trajectory(q, qd, np.linalg.solve(J, (acceleration - bent)[..., None])[..., 0])
 
 
 def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
@@ -135,7 +126,9 @@ def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
     return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]
 
 
-def circle(arm: Arm, centre, radius: float, period: float, t, elbow: str = "positive") -> Joints:
+def circle(
+    arm: Arm, centre, radius: float, period: float, t, elbow: str = "positive"
+) -> Trajectory:
     """ "Stirring": the hand goes round a circle, counter-clockwise, from its far right.
 
     Parameters
