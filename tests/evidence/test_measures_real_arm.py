@@ -158,6 +158,7 @@ def ensemble(factor, members=4, velocity=0.5):
     return {
         "velocity": gain, "acceleration": gain, "share of velocity": gain / 10,
         "unique velocity": gain / 10, "unique acceleration": gain / 20,
+        "curved": gain / gain.max() if np.any(gain) else gain,
         "classes": names(velocity, members),
     }  # fmt: skip
 
@@ -189,6 +190,14 @@ def test_gains_are_off_by_the_worst_joint(plant):
         found = real_arm_filters.calibrated(what, 21)
         assert found.value == pytest.approx(0.3)
         assert "0.70" not in found.text and found.text.endswith("as near by chance: p 1.00")
+
+
+def test_the_typical_network_is_compared_with_single_networks(plant):
+    """Networks that scatter far to both sides are right in the median and not one by one."""
+    scattered = np.array([[0.5], [0.5], [1.5], [1.5]]) * np.ones(6)
+    plant(windows=planted(ensemble(scattered), ensemble(0.6), ensemble(0.6)))
+    assert np.median(scattered, 0)[0] == 1.0
+    assert real_arm_filters.beyond_null("friction", 21).value == 0
 
 
 def test_joints_that_chance_does_not_reach(plant):
@@ -228,4 +237,11 @@ def test_joints_that_follow_more_than_chance(plant):
 
 def test_the_median_output_is_judged(plant):
     plant(windows=planted(ensemble(1.0), ensemble(0.0), ensemble(0.0)))
-    assert real_arm_filters.compensate_friction(21).value == pytest.approx(0.4)
+    found = real_arm_filters.compensate_friction(21)
+    assert found.value == pytest.approx(0.4)
+    assert found.text.endswith("unrelated currents reach 0.00 in one of twenty")
+    plant(windows=planted(ensemble(1.0), ensemble(0.0), ensemble(1.0)))
+    half = np.median(TRUE / TRUE.max())
+    assert real_arm_filters.compensate_friction(21).text.endswith(
+        f"reach {half:.2f} in one of twenty"
+    )

@@ -189,7 +189,8 @@ def test_the_study_in_small(monkeypatch):
     assert row["identified"].mean() < row["ridge"].mean() < row["no friction"].mean()
     found = real_arm._filters(5, 2, 2)
     assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm.KINDS)
-    assert found["curved"].shape == (2, 6) and (found["curved"] <= 1).all()
+    for each in (found, *found["nulls"].values()):
+        assert each["curved"].shape == (2, 6) and (each["curved"] <= 1).all()
     memory = real_arm._memory(1)
     assert all(0 < x < 1.5 for rows in memory.values() for row in rows.values() for x in row)
     units = real_arm._hidden_units(1)

@@ -81,8 +81,9 @@ def calibrated(what: str = "inertia", width: int = 21) -> Measured:
     """
     found, (name, wanted) = row(width), WORTH[what]
     real, true = np.array(found["real"][name]), np.array(found["identified"][wanted])
+    typical = np.median(_off(real[:, None], true))  # of one network, as each of the nulls is
     chance = max(
-        p_value(_off(real, true), _off(np.array(x[name])[:, None], true), "less")
+        p_value(typical, _off(np.array(x[name])[:, None], true), "less")
         for x in found["nulls"].values()
     )
     pairs = zip(np.median(real, 0), true)
@@ -100,7 +101,8 @@ def _pearson(a, b) -> np.ndarray:
 def beyond_null(what: str = "friction", width: int = 11) -> Measured:
     """Joints at which the gain is nearer the identified value than unrelated currents bring it.
 
-    Nearer than all but a twentieth of the networks on either surrogate (judged: how many of six).
+    At how many of six joints the typical network (the median of the distances of single networks)
+    is nearer than all but a twentieth of the networks on either surrogate (judged).
 
     Parameters
     ----------
@@ -116,9 +118,9 @@ def beyond_null(what: str = "friction", width: int = 11) -> Measured:
     edge = np.min([np.percentile(x, 5, axis=0) for x in nulls], axis=0)
 
     def joints(drawn):
-        return (np.abs(np.median(drawn, axis=-2) / true - 1) < edge).sum(-1)
+        return (np.median(np.abs(drawn / true - 1), axis=-2) < edge).sum(-1)
 
-    off = np.abs(np.median(real, 0) / true - 1)
+    off = np.median(np.abs(real / true - 1), 0)
     told = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
     return judged(joints, real, text=f"off by {told} at joints 1 to 6, in brackets by chance")
 
@@ -127,8 +129,8 @@ def follow(what: str = "friction", width: int = 11) -> Measured:
     """Correlation over six joints of gains with the identified values, less that by chance.
 
     Both in units of the joint's own deviations, of current over those of velocity or acceleration,
-    so that large motors do not count by their size. By chance: the 95th percentile of unrelated
-    currents.
+    so that large motors do not count by their size. The median of single networks; by chance: the
+    95th percentile of single networks of unrelated currents.
 
     Parameters
     ----------
@@ -142,9 +144,9 @@ def follow(what: str = "friction", width: int = 11) -> Measured:
     real = np.array(found["real"][name]) * unit
     nulls = [_pearson(np.array(x[name]) * unit, true) for x in found["nulls"].values()]
     chance = max(float(np.percentile(x, 95)) for x in nulls)
-    r = float(_pearson(np.median(real, 0), true))
+    r = np.median(_pearson(real, true))
     return judged(
-        lambda drawn: _pearson(np.median(drawn, axis=-2), true) - chance,
+        lambda drawn: np.median(_pearson(drawn, true), axis=-1) - chance,
         real,
         text=f"r {r:.2f}; unrelated currents reach {chance:.2f} in one of twenty",
     )
@@ -189,7 +191,8 @@ def shares_follow(width: int = 21) -> Measured:
     found, name = row(width), "share of velocity"
     true, real = np.array(found["friction"]), np.array(found["real"][name])
     r = float(_pearson(np.median(real, 0), true))
-    chance = [p_value(r, _pearson(np.array(x[name]), true), "more")
+    typical = np.median(_pearson(real, true))  # of one network, as each of the nulls is
+    chance = [p_value(typical, _pearson(np.array(x[name]), true), "more")
               for x in found["nulls"].values()]  # fmt: skip
     text = f"r {r:.2f}; as high by chance: p {max(chance):.2f}"
     return judged(lambda drawn: _pearson(np.median(drawn, axis=-2), true), real, text=text)
@@ -200,11 +203,17 @@ def compensate_friction(width: int = 21) -> Measured:
 
     Median of six outputs; least squares takes out what is linear in the window.
 
+    Told beside it: what single networks of unrelated currents reach, in the same median.
+
     Parameters
     ----------
     width : int
         Window size.
     """
-    found = np.array(row(width)["curved"])
+    cells = row(width)
+    found = np.array(cells["curved"])
     told = ", ".join(significant(x, 2) for x in np.median(found, 0))
-    return judged(median, found, text=f"R² {told} at joints 1 to 6")
+    nulls = [np.median(x["curved"], axis=-1) for x in cells["nulls"].values()]
+    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
+    return judged(median, found, text=text)

@@ -206,6 +206,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
     start = Weights.random(members, width, HIDDEN, 6, 6)
     untrained = TorqueModel(start, made.inputs, made.outputs)
     structure = identified(data.states, y)
+    known = structure.friction, structure.rest
     flat = data.x.reshape(len(data.x), -1)
     penalty = best_penalty(data, np.ones(len(flat), bool))
 
@@ -214,7 +215,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
     row = {
         "real": _described(model, data, same),
         "untrained": _described(untrained, data, same),
-        "curved": _curved(model, data, (structure.friction, structure.rest)),
+        "curved": _curved(model, data, known),
         "identified": {
             name: getattr(structure, name) for name in ("inertia", "slope", "viscous", "coulomb")
         },
@@ -229,7 +230,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
     for number, kind in enumerate(KINDS):
         drawn = surrogates(kind, y[None], draws, seed=100 * number)[:, 0]
         null, *_ = trained(data.x, y, draws, _STARTS * (number + 1), width, targets=drawn)
-        row["nulls"][kind] = _described(null, data, drawn)
+        row["nulls"][kind] = _described(null, data, drawn) | {"curved": _curved(null, data, known)}
     return row
 
 
