@@ -2,6 +2,7 @@
 
 - ``arm``: `Arm` of two links, made of `Link`; the book's arm and two measured ones
 - ``kinematics``: where the hand is and how to get it there; circles of the hand
+- ``payload``: what the hand carries
 - ``serial``: arms in space of any number of joints; the PUMA 560
 - ``derivation``: the equations of motion, derived by sympy
 - ``formulations``: Lagrange-Euler, its recursion and Newton-Euler in plain arithmetic
@@ -17,6 +18,7 @@ __getattr__, __dir__, __all__ = hand_on(
         "ELBOWS LEAST_SINE Unreachable circle end_point_error follow_hand "
         "inverse_kinematics jacobian jacobian_rate"
     ),
+    payload="with_load",
     serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
     formulations="Constants LinkConstants lagrange_euler newton_euler recursive_lagrange",
     derivation="Derivation MAX_LINKS derive",

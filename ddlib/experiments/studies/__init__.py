@@ -9,6 +9,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 - ``span``: learning curves along the directions of the windows
 - ``states``, ``states_sizes``: section 6
 - ``beyond``: Part IV, rivals and a real arm
+- ``loop``: Part IV, closing the loop
 """
 
 from __future__ import annotations

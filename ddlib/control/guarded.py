@@ -1,0 +1,124 @@
+"""A safety stop: a run that leaves its limits is an outcome with a time and a reason, no crash."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import positive
+from ddlib.control.controllers import ControlLaw, Controller, as_controller
+from ddlib.trajectories import Trajectory
+
+REASONS = ("", "shoulder angle", "elbow angle", "shoulder speed", "elbow speed")
+"""Why a run was stopped, by its number in `Stops.reason`; nothing if it was not."""
+
+ANGLES = (np.pi, 2.8)
+"""Largest angles of shoulder and elbow, rad: half a turn, and an elbow nearly folded. Assumed."""
+
+SPEEDS = (20.0, 20.0)
+"""Largest joint speeds, rad/s: several times what the family of Appendix I asks for. Assumed."""
+
+
+@dataclass(frozen=True)
+class Guarded:
+    """A controller whose motors are switched off where the arm leaves its limits.
+
+    From then on the run's torque is zero, and the controller inside is shown the reference in
+    place of the arm, so that a learner has nothing to learn from. Other runs go on.
+
+    Parameters
+    ----------
+    controller : Controller or callable
+    angles : array_like, shape (2,)
+        Largest magnitudes of the angles, rad.
+    speeds : array_like, shape (2,)
+        Largest magnitudes of the velocities, rad/s.
+
+    Raises
+    ------
+    ValueError
+        If a limit is not positive.
+    """
+
+    controller: Controller
+    angles: tuple[float, float] = ANGLES
+    speeds: tuple[float, float] = SPEEDS
+
+    def __post_init__(self):
+        for name in ("angles", "speeds"):
+            positive(name, getattr(self, name), (2,))
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The guarded law; ``law.stops`` says what happened, ``law.inner`` is the law inside."""
+        return _Law(self, reference, step)
+
+
+@dataclass(frozen=True)
+class Stops:
+    """Which runs were stopped, when and why.
+
+    Attributes
+    ----------
+    time : ndarray, shape (...)
+        After the first control sample, s; infinite for runs that were not stopped.
+    reason : ndarray of int, shape (...)
+        Index into `REASONS`.
+    """
+
+    time: np.ndarray
+    reason: np.ndarray
+
+    @property
+    def stopped(self) -> np.ndarray:
+        """Whether each run was stopped, shape (...)."""
+        return np.isfinite(self.time)
+
+    def running(self, t) -> np.ndarray:
+        """Whether each run was under control at times of a log, shape (..., time).
+
+        Parameters
+        ----------
+        t : array_like, shape (time,)
+            Times, s; the first is that of the first control sample.
+        """
+        t = np.asarray(t, float)
+        return t - t[0] < np.asarray(self.time)[..., None] - 1e-9
+
+    def __str__(self):
+        if not self.stopped.any():
+            return "no run was stopped"
+        first = np.unravel_index(np.argmin(self.time), self.time.shape)
+        return (
+            f"{self.stopped.sum()} of {self.time.size} runs were stopped, the first after "
+            f"{self.time[first]:.2f} s: {REASONS[int(self.reason[first])]}"
+        )
+
+
+class _Law:
+    """A running guard: called once a control period, it remembers who was stopped."""
+
+    def __init__(self, guard: Guarded, reference: Trajectory, step: float):
+        self._reference, self._step = reference, step
+        self._limits = np.concatenate([guard.angles, guard.speeds]).astype(float)
+        self._reason = np.zeros((), int)
+        self._sample = np.full((), np.inf)
+        self.inner = as_controller(guard.controller).start(reference, step)
+
+    def __call__(self, k, q, qd):
+        state = np.abs(np.concatenate(np.broadcast_arrays(q, qd), -1))
+        over = ~(state <= self._limits)  # a speed that is no number is over, too
+        new = over.any(-1) & (self._reason == 0)
+        self._reason = np.where(new, over.argmax(-1) + 1, self._reason)
+        self._sample = np.where(new, k, self._sample)
+        off = (self._reason > 0)[..., None]
+        wanted = self._reference
+        torque = self.inner(
+            k, np.where(off, wanted.q[..., k, :], q), np.where(off, wanted.qd[..., k, :], qd)
+        )
+        return np.where(off, 0.0, torque)
+
+    @property
+    def stops(self) -> Stops:
+        """What happened to each run until now."""
+        return Stops(self._sample * self._step, self._reason)
