@@ -10,4 +10,5 @@ shown. A claim names its function in ``book/claims.yml`` as "module.function".
 - ``filters``: sections 5 and 7, what filters show
 - ``filter_trial``: the same beside networks trained on unrelated torques
 - ``beyond``: Part IV, rivals and a real arm
+- ``loop``: Part IV, closing the loop
 """
