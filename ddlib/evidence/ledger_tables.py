@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterable, Mapping
 
+from ddlib._check import one_of
 from ddlib.evidence.claims import (
     FILE,
     LEDGER,
@@ -53,15 +54,30 @@ FINDINGS = (
 
 
 def findings() -> Table:
-    """The ten main findings: claim and its chapter, printed value, ours, verdict, reason.
+    """The main findings, `FINDINGS`, as `chosen` shows them."""
+    return chosen(FINDINGS)
+
+
+def chosen(ids: Iterable[str]) -> Table:
+    """Some claims: claim and its chapter, printed value, ours, verdict, reason.
 
     The verdict comes with the share of the draws in which it comes out.
+
+    Parameters
+    ----------
+    ids : iterable of str
+        Of claims, in the order of the rows.
+
+    Raises
+    ------
+    ValueError
+        If there is no claim of that name.
     """
     known = {claim.id: claim for claim in load()}
     header = ("claim", "printed", "here", "verdict", "why")
     rows = [
         (f"{c.claim} ({{doc}}`{c.chapter}`)", printed(c), _here(c), sure(c), c.why)
-        for c in map(known.__getitem__, FINDINGS)
+        for c in (known[one_of("ids", name, tuple(known))] for name in ids)
     ]
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
