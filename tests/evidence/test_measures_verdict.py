@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from ddlib.evidence import claims, summing_up
+from ddlib.evidence import claims
 from ddlib.evidence.claims import Claim
 from ddlib.evidence.measures.loop import verdict
 
@@ -21,7 +21,7 @@ def claim(name, setup=None, found="reproduced", measure="loop.verdict.reproduced
 
 
 def test_sentences_of_one_measure_belong_together():
-    found = summing_up.by_reading(
+    found = verdict.by_reading(
         [claim("a"), claim("b, position", "position feedback", "undecided"),
          claim("other", measure="loop.verdict.changed_by_reading")]
     )  # fmt: skip
@@ -30,20 +30,20 @@ def test_sentences_of_one_measure_belong_together():
         "state feedback": "a",
         "position feedback": "b, position",
     }
-    table = summing_up.readings_table(found, ("position feedback", "joint damping"))
+    table = verdict.readings_table(found, ("position feedback", "joint damping"))
     assert table.rows == [("a (section 4)", "undecided", "–")]
 
 
 def test_sentences_on_which_readings_agree_come_last():
     same = {"x": claim("same"), "y": claim("same, y")}
     differ = {"x": claim("differ"), "y": claim("differ, y", found="undecided")}
-    rows = summing_up.readings_table([same, differ], ("x", "y")).rows
+    rows = verdict.readings_table([same, differ], ("x", "y")).rows
     assert [row[0].split()[0] for row in rows] == ["differ", "same"]
 
 
 def test_agreement_against_all_permutations():
     first, second = "aabcc", "aabbc"
-    found = summing_up.agreement(zip(first, second))
+    found = verdict.agreement(zip(first, second))
     every = [sum(map(str.__eq__, first, p)) for p in itertools.permutations(second)]
     assert found.same == 4 and found.pairs == 5
     assert found.expected == pytest.approx(np.mean(every))
@@ -53,7 +53,7 @@ def test_agreement_against_all_permutations():
 def test_lists_that_have_nothing_to_do_with_each_other_agree_by_chance():
     rng = np.random.default_rng(3)
     chances = [
-        summing_up.agreement(rng.choice(list("abc"), (20, 2)).tolist(), seed=k).chance
+        verdict.agreement(rng.choice(list("abc"), (20, 2)).tolist(), seed=k).chance
         for k in range(20)
     ]
     assert np.mean(np.array(chances) < 0.05) < 0.3
@@ -61,13 +61,13 @@ def test_lists_that_have_nothing_to_do_with_each_other_agree_by_chance():
 
 def test_one_pair_is_too_few():
     with pytest.raises(ValueError, match="pairs must be two or more"):
-        summing_up.agreement([("a", "a")])
+        verdict.agreement([("a", "a")])
 
 
 def test_expected_changes_are_the_shares_that_disagree(monkeypatch):
     shares = {"a": {"reproduced": 0.9, "undecided": 0.1}, "b": {"reproduced": 0.2}, "c": {}}
     monkeypatch.setattr(Claim, "shares", lambda self: shares[self.id])
-    number, turning = summing_up.expected_changes(claim(name) for name in shares)
+    number, turning = verdict.expected_changes(claim(name) for name in shares)
     assert number == 2 and turning == pytest.approx(0.1 + 0.8)
 
 
