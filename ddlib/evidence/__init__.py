@@ -6,7 +6,7 @@
 - ``verdicts``: `Measured`, and how sure a verdict is; ``judging``: written beside fresh verdicts
 - ``committed``: recordings and trained networks that several measures look at
 - ``statements``: words of direction in prose, checked; ``ledger``, ``ledger_tables``, ``chart``:
-  the page of all claims
+  the page of all claims; ``wall``: claims as tiles to open
 """
 
 from ddlib._names import hand_on
@@ -20,6 +20,7 @@ __getattr__, __dir__, __all__ = hand_on(
     "ledger",
     "ledger_tables",
     "measures",
+    "wall",
     verdicts=(
         "CONTRADICTS DECIDED DRAWS FEWEST Measured STANDS VERDICTS bootstrap fresh judged "
         "largest_median mean median over_members shares stands turns_at"

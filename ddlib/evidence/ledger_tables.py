@@ -17,7 +17,6 @@ from ddlib.evidence.claims import (
     here,
     judged_again,
     load,
-    of_section,
     printed,
     sure,
 )
@@ -27,10 +26,7 @@ from ddlib.tables import Table, number_beside, significant, typeset
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
 
-HEADER = ("claim", "printed", "here", "verdict (judged by)", "why")
-"""Heads of a table of claims; ``book.css`` repeats them where a row becomes a card."""
-
-_OTHERWISE = {
+HEADS = {
     "not reproduced": "What would have supported it",
     "by construction": "Why nothing could have refuted it",
     "not testable": "What a test would need",
@@ -82,27 +78,6 @@ def chosen(ids: Iterable[str]) -> Table:
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
-def ledger_table(section: str) -> Table:
-    """All claims of a section of the paper, in its order: values, verdicts, bands, reasons.
-
-    The verdict comes with the share of the draws in which it comes out, the value that is judged
-    and its bands; the reason is followed by the outcome that would have changed the verdict. A
-    value that is measured at one window size names it.
-
-    The place in the paper is a link to the chapter that deals with the claim.
-
-    Parameters
-    ----------
-    section : str
-        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
-    """
-    rows = [
-        (f"{c.claim} ({_linked(c)})", printed(c), _here(c), _judged(c), _reasons(c))
-        for c in of_section(section)
-    ]
-    return Table(HEADER, [tuple(map(typeset, row)) for row in rows])
-
-
 def again_table(arm: str) -> Table:
     """Sentences that are judged again on another arm: both verdicts side by side.
 
@@ -147,11 +122,6 @@ def window(claim: Claim) -> int | None:
     given = inspect.signature(function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
-
-
-def _reasons(claim: Claim) -> str:
-    head = _OTHERWISE.get(claim.verdict, "What would have refuted it")
-    return f"{claim.why} *{head}:* {claim.refuted}"
 
 
 def left_out(claims: Iterable[Claim]) -> Table:
@@ -205,10 +175,19 @@ def _bounds(bounds: Mapping) -> str:
 
 def _linked(claim: Claim) -> str:
     """The claim's place in the paper, as a link to its chapter."""
+    page = page_of(claim)
+    return claim.where if claim.chapter == LEDGER or not page else f"[{claim.where}]({page})"
+
+
+def page_of(claim: Claim) -> str:
+    """The file of the page that deals with a claim, beside the others; empty if there is none.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
     names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    page = next((name for name in names if FILE.with_name(name).is_file()), None)
-    own = claim.chapter == LEDGER or page is None
-    return claim.where if own else f"[{claim.where}]({page})"
+    return next((name for name in names if FILE.with_name(name).is_file()), "")
 
 
 def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:

@@ -284,19 +284,6 @@ def test_the_ledger_holds_every_claim_once_in_the_order_of_the_paper():
         claims.of_section("9")
 
 
-@pytest.mark.parametrize("section", SECTIONS)
-def test_ledger_tables(section):
-    expected = claims.of_section(section)
-    lines = ledger_tables.ledger_table(section)._repr_markdown_().splitlines()[2:]
-    assert len(lines) == len(expected)
-    for line, claim in zip(lines, expected):
-        assert claim.claim.replace("|", r"\|") in line
-        assert claim.why.replace("|", r"\|") in line
-        assert f" | {claim.judge()}" in line
-        links = re.findall(r"\]\(([\w-]+)\.ipynb\)", line)
-        assert links == ([] if claim.chapter == LEDGER else [claim.chapter])
-
-
 def test_bands_in_words(monkeypatch):
     monkeypatch.setattr(Claim, "measured", lambda self: Measured(0.5, "text"))
     assert ledger_tables.bands(make()) == "0.50; reproduced within a factor of 1.5"
@@ -333,13 +320,6 @@ def test_the_window_of_a_claim(arguments, measure, width):
     assert ledger_tables.window(make(measure=measure, arguments=arguments, **changes)) == width
 
 
-@pytest.mark.parametrize("section", SECTIONS)
-def test_measured_at_one_window_and_said_so(section):
-    for row, claim in zip(ledger_tables.ledger_table(section).rows, claims.of_section(section)):
-        if width := ledger_tables.window(claim):
-            assert re.search(rf"\b{width}\b", f"{row[0]} {row[2]}"), claim.id
-
-
 @pytest.mark.parametrize("claim", ALL, ids=lambda claim: claim.id)
 def test_refutations_have_one_form(claim):
     """An outcome, with no word on whether it came out; a reason; or what is needed."""
@@ -347,19 +327,6 @@ def test_refutations_have_one_form(claim):
     assert not re.match(r"None|Nothing|It would", claim.refuted) and ":" not in claim.refuted
     if claim.verdict in ("reproduced", "qualitative", "not reproduced", "undecided"):
         assert re.match(r"An? ", claim.refuted)
-
-
-@pytest.mark.parametrize(
-    "verdict, head",
-    [
-        ("reproduced", "What would have refuted it"),
-        ("undecided", "What would have refuted it"),
-        ("not reproduced", "What would have supported it"),
-        ("by construction", "Why nothing could have refuted it"),
-    ],
-)
-def test_what_would_have_changed_the_verdict(verdict, head):
-    assert ledger_tables._reasons(make(verdict=verdict)) == f"because *{head}:* 1"
 
 
 def test_the_claims_that_are_left_out():
@@ -372,17 +339,8 @@ def test_the_claims_that_are_left_out():
 def test_cards_on_a_phone_are_headed_like_the_table():
     css = (claims.FILE.parent / "_static" / "book.css").read_text(encoding="utf-8")
     heads = re.findall(r"td:nth-child\((\d)\)::before \{\s*content: (.*?);", css)
-    (judged,) = re.findall(r"--verdict: (.*?);", css)
-    plain = [
-        (place, text.replace('var(--verdict, "verdict: ")', '"verdict: "')) for place, text in heads
-    ]
-    in_ledger = [(place, judged if text.startswith("var(") else text) for place, text in heads]
-    for shown, header in (
-        (plain, claims.chapter_table(ALL[0].chapter).header),
-        (plain, ledger_tables.findings().header),
-        (in_ledger, ledger_tables.HEADER),
-    ):
-        assert shown == [(str(k), f'"{head}: "') for k, head in enumerate(header[1:], 2)]
+    for header in (claims.chapter_table(ALL[0].chapter).header, ledger_tables.findings().header):
+        assert heads == [(str(k), f'"{head}: "') for k, head in enumerate(header[1:], 2)]
 
 
 def test_printed_numbers_keep_their_digits(tmp_path):
@@ -409,7 +367,10 @@ def test_the_books_own_claims_are_not_the_papers():
     paper, own = claims.of_the_paper(), [c for c in ALL if c.printed == claims.OWN]
     again = [c for c in ALL if c.arm and c.printed != claims.OWN]
     assert own and again and len(paper) + len(own) + len(again) == len(ALL)
-    assert {c.chapter for c in own} <= {"why-smooth-filters", "rivals", "real-arm"}
+    assert {c.chapter for c in own} <= {
+        "why-smooth-filters", "rivals", "real-arm", "run-time", "adaptive-control",
+        "learning-in-the-loop", "stirring", "joints-three-and-four", "verdict",
+    }  # fmt: skip
     assert {c.chapter for c in again} == {"real-arm"}
 
 

@@ -186,7 +186,7 @@ def test_the_page_shows_every_section_and_comes_first():
     notebook = nbformat.read(BOOK / "ledger.ipynb", as_version=4)
     source = "\n".join(cell.source for cell in notebook.cells)
     for key, title in claims.SECTIONS.items():
-        assert f'ledger_table("{key}")' in source
+        assert f'wall.Tiles(claims.of_section("{key}"))' in source
         assert f"### {title}" in source
     assert BACK_MATTER[0] == "book/ledger"
 
