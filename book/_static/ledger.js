@@ -37,11 +37,10 @@
       for (const [value, text] of [["", label], ...options]) box.add(new Option(text, value));
       return box;
     };
-    const titles = new Map();
-    for (const tile of tiles) {
-      const heading = tile.closest("section").querySelector("h2, h3");
-      titles.set(tile.dataset.section, heading.firstChild.textContent.trim());
-    }
+    const titles = [...wall.querySelectorAll(".wall-row")].map((row) => [
+      document.getElementById(row.querySelector("a").hash.slice(1)).dataset.section,
+      row.querySelector("span").textContent,
+    ]);
     const chapters = [...new Set(tiles.map((tile) => tile.dataset.chapter))].sort();
     const section = choice("All sections", "s", titles);
     const chapter = choice("All chapters", "c", chapters.map((c) => [c, c.replaceAll("-", " ")]));
@@ -52,7 +51,7 @@
     const reset = document.createElement("button");
     Object.assign(reset, { type: "button", textContent: "Show all" });
     bar.append(...verdicts, section, chapter, words, reset, count);
-    wall.after(bar);
+    tiles[0].closest("section").before(bar);
 
     const read = () => {
       const asked = new URLSearchParams(location.hash.slice(1));

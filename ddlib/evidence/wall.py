@@ -30,6 +30,9 @@ from ddlib.tables import significant, typeset
 MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
 """A sign for each verdict, so that colour is not all that tells them apart."""
 
+CODE = "api/evidence.html"
+"""The page of the measures, beside a chapter's."""
+
 MIDDLE = (0.025, 0.5, 0.975)
 """Quantiles of the draws that a tile's picture shows."""
 
@@ -39,7 +42,7 @@ _WIDE = 20.0  # a scale is logarithmic from this ratio of its ends on
 def mark(verdict: str) -> str:
     """A verdict's sign, for the page."""
     name = verdict.replace(" ", "-")
-    return f'<span class="mark v-{name}" aria-hidden="true">{MARKS[verdict]}</span>'
+    return f'<span class="sign v-{name}" aria-hidden="true">{MARKS[verdict]}</span>'
 
 
 @dataclass(frozen=True)
@@ -154,7 +157,7 @@ def _links(claim: Claim, on: str) -> str:
     if on != LEDGER and claim.printed != OWN and not claim.arm:
         links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.measure:
-        links.append(f"{{py:func}}`code <ddlib.evidence.measures.{claim.measure}>`")
+        links.append(f'<a href="{CODE}#ddlib.evidence.measures.{claim.measure}">code</a>')
     return " · ".join(links)
 
 

@@ -45,7 +45,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
         assert typeset(claims.printed(claim)) in inside
         page = [] if claim.chapter == LEDGER else [claim.chapter]
         assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
-        code = f"{{py:func}}`code <ddlib.evidence.measures.{claim.measure}>`"
+        code = f'<a href="api/evidence.html#ddlib.evidence.measures.{claim.measure}">code</a>'
         assert (code in inside) == bool(claim.measure)
 
 

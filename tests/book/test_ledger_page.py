@@ -1,0 +1,93 @@
+"""The ledger in a browser: a wall of signs, filters, and an address for every claim."""
+
+import pytest
+
+from ddlib.evidence import claims
+
+pytestmark = pytest.mark.browser
+
+PAPER = claims.of_the_paper()
+SHOWN = "details.claim:not([hidden])"
+
+
+@pytest.fixture
+def ledger(site, visit):
+    def open_at(address=""):
+        return visit(f"{site}/book/ledger.html{address}")
+
+    return open_at
+
+
+def shown(opened) -> int:
+    return opened.page.locator(SHOWN).count()
+
+
+def test_signs_open_their_claims(ledger):
+    opened = ledger()
+    assert shown(opened) == len(PAPER) == opened.page.locator(".wall-row a").count()
+    sign = opened.page.locator(".wall-row a").nth(len(PAPER) // 2)
+    name = sign.get_attribute("href")
+    tile = opened.page.locator(name)
+    assert not tile.evaluate("(el) => el.open")
+    sign.focus()
+    opened.page.keyboard.press("Enter")
+    opened.page.wait_for_function("(name) => document.querySelector(name).open", arg=name)
+    assert tile.locator("p").first.is_visible()
+    assert opened.page.url.endswith(name) and not opened.problems
+
+
+def test_an_address_opens_its_claim(ledger):
+    claim = PAPER[-1]
+    opened = ledger(f"#claim-{claim.id}")
+    tile = opened.page.locator(f"#claim-{claim.id}")
+    assert tile.evaluate("(el) => el.open")
+    place = tile.bounding_box()
+    assert 0 <= place["y"] < opened.page.viewport_size["height"]
+
+
+def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
+    opened = ledger()
+    bar = opened.page.locator(".claim-filter")
+    for verdict in ("reproduced", "qualitative", "not reproduced"):
+        bar.locator(f'[data-verdict="{verdict}"]').click()
+    bar.locator('[name="s"]').select_option("5")
+    wanted = [
+        c for c in PAPER if c.place()[0] == "5"
+        and c.judge() not in ("reproduced", "qualitative", "not reproduced")
+    ]  # fmt: skip
+    assert wanted and shown(opened) == len(wanted)
+    assert bar.locator("output").inner_text() == f"{len(wanted)} of {len(PAPER)} claims"
+    assert opened.page.locator(".wall-row a.off").count() == len(PAPER) - len(wanted)
+    again = ledger("#" + opened.page.url.partition("#")[2])
+    assert shown(again) == len(wanted)
+    again.page.locator(".claim-filter button", has_text="Show all").click()
+    assert shown(again) == len(PAPER) and "#" not in again.page.url
+    assert not opened.problems + again.problems
+
+
+def test_words_filter_too_and_empty_sections_go(ledger):
+    opened = ledger()
+    opened.page.locator('.claim-filter [name="q"]').fill("parity")
+    parity = [c for c in PAPER if "parity" in f"{c.claim} {c.why} {c.refuted}".lower()]
+    assert len(parity) <= shown(opened) < 20 and shown(opened) > 0
+    assert not opened.page.get_by_role("heading", name="Abstract").is_visible()
+
+
+def test_a_hidden_claim_is_shown_when_its_sign_is_followed(ledger):
+    opened = ledger("#v=undecided")
+    (claim, *_) = [c for c in PAPER if c.judge() == "reproduced"]
+    tile = opened.page.locator(f"#claim-{claim.id}")
+    assert not tile.is_visible()
+    opened.page.locator(f'.wall-row a[href="#claim-{claim.id}"]').click()
+    tile.wait_for(state="visible")
+    assert tile.evaluate("(el) => el.open")
+
+
+def test_claims_can_be_read_without_a_script(site, browser):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{site}/book/ledger.html")
+    tile = page.locator("details.claim").first
+    tile.locator("summary").click()
+    assert tile.locator("p").first.is_visible()
+    context.close()
