@@ -22,6 +22,12 @@ def source() -> str:
     return module(*ENGINE)
 
 
+def lean(script: str) -> str:
+    """A script without its comments and indentation; for scripts whose texts stay within a line."""
+    lines = (line.strip() for line in script.splitlines())
+    return "\n".join(line for line in lines if line and not line.startswith("//")) + "\n"
+
+
 def plant(arm: Arm, effects: Effects) -> dict:
     """An arm and what acts on it, as the engine's functions take it.
 

@@ -96,6 +96,14 @@ function drive(plant, q, v, step) {
   return run;
 }
 
+// The paper's family out and back to extents (rad): -extent sin(pi t / duration), at rest outside.
+function pickAndPlace(extents, t, duration) {
+  const omega = Math.PI / duration;
+  const moving = t >= 0 && t < duration * (1 - 1e-12);
+  const part = (factor, shape) => extents.map((x) => (moving ? factor * x * shape(omega * t) : 0));
+  return { q: part(-1, Math.sin), qd: part(-omega, Math.cos), qdd: part(omega * omega, Math.sin) };
+}
+
 // Follow a whole reference ({ q, qd, qdd }, a pair for each period); the log has every n-th sample.
 function follow(plant, law, reference, step, every, velocity) {
   const run = drive(plant, reference.q[0], [0, 0], step);
@@ -170,12 +178,13 @@ function scaledWindow({ net, inputs }, window) {
   return x;
 }
 
+// Torques (N m) of output activities.
+const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
+  JOINTS.map((j) => low[j] + (output[j] - first) / gain[j]);
+
 // Torques (N m) for a window of positions (rad), oldest first, joint by joint.
-function torqueOfWindow(model, window) {
-  const { output } = activity(model.net, scaledWindow(model, window));
-  const { low, gain, first } = model.outputs;
-  return JOINTS.map((j) => low[j] + (output[j] - first) / gain[j]);
-}
+const torqueOfWindow = (model, window) =>
+  torqueOfOutput(model, activity(model.net, scaledWindow(model, window)).output);
 
 // Batch gradient descent with momentum on scaled windows and targets, as in ddlib's `Descent`.
 // Each epoch changes the network in place and returns the mean square error before the step.
