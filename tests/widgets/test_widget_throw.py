@@ -190,7 +190,7 @@ def test_it_stands_still_until_asked(tmp_path, visit, widget):
     page.wait_for_timeout(300)
     before = page.evaluate(STATE)
     page.wait_for_timeout(300)
-    assert page.evaluate(STATE) == before and "At rest" in said(page)
+    assert page.evaluate(STATE) == before and "Paused on trajectory 6" in said(page)
     page.get_by_role("button", name="Play").click()
     page.wait_for_timeout(300)
     playing = page.evaluate(STATE)
@@ -214,6 +214,8 @@ def test_once_in_view_a_motion_greets(tmp_path, visit, widget):
 def test_the_hand_is_pulled_by_pointer(tmp_path, visit, widget):
     opened = visit(page_of(tmp_path / "page.html", widget), **CALM)
     page = opened.page
+    page.get_by_role("button", name="Reset").click()
+    page.evaluate(NEXT_FRAME)
     x, y = handle_at(page)
     page.mouse.move(x, y)
     page.mouse.down()
@@ -226,7 +228,7 @@ def test_the_hand_is_pulled_by_pointer(tmp_path, visit, widget):
     assert page.evaluate(STATE)["mode"] == "free" and "friction" in said(page)
     page.wait_for_timeout(200)
     assert page.evaluate(STATE)["hand"] != held["hand"]
-    page.get_by_role("button", name="Start again").click()
+    page.get_by_role("button", name="Reset").click()
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(STATE)["q"] == [0, 0]
     assert not opened.problems
@@ -235,8 +237,8 @@ def test_the_hand_is_pulled_by_pointer(tmp_path, visit, widget):
 @pytest.mark.browser
 def test_the_hand_is_pulled_by_keys(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget), **CALM).page
-    hand = page.get_by_role("application", name="arrow keys")
-    hand.focus()
+    page.get_by_role("button", name="Reset").click()
+    page.get_by_role("application", name="arrow keys").focus()
     page.keyboard.down("ArrowDown")
     page.wait_for_timeout(400)
     assert page.evaluate(STATE)["mode"] == "held" and page.evaluate(STATE)["hand"][1] < -0.01
@@ -274,7 +276,7 @@ def test_touch_pulls_the_hand_and_scrolls_elsewhere(tmp_path, browser, widget):
     x, y = handle_at(page)
     assert swipe(x, y, -100)["mode"] == "held"
     assert page.evaluate("scrollY") == 0
-    page.get_by_role("button", name="Start again").click()
+    page.get_by_role("button", name="Reset").click()
     page.evaluate(NEXT_FRAME)
     box = page.locator(".stage").bounding_box()
     assert swipe(box["x"] + 60, box["y"] + box["height"] / 2, -150)["mode"] == "free"

@@ -29,7 +29,7 @@ function coloursOf(el) {
 function roundStep(range, count) {
   const rough = range / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  return power * [1, 2, 5, 10].find((m) => m * power >= rough * 0.999);
+  return power * [1, 2, 2.5, 3, 4, 5, 10].find((m) => m * power >= rough * 0.999);
 }
 
 function stroke(pen, colour, width, dash = []) {

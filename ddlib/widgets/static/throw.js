@@ -78,10 +78,12 @@ function build({ model, el }) {
   el.setAttribute("role", "group");
   el.setAttribute("aria-label", spec.title);
 
-  // One whole motion is there before anything moves, so that there is something to see.
-  world.play(0);
+  // It begins in the middle of a motion, so that there is something to see before anything moves.
+  const motions = spec.trajectories.length;
+  world.play(motions - 1);
   while (world.mode === "play") world.period();
-  world.stand();
+  world.play(0);
+  for (let k = (spec.rest + 0.6 * spec.motion) / spec.step; k > 0; k--) world.period();
 
   const stage = stageOf(world, spec);
   const button = (text, act) => {
@@ -91,7 +93,7 @@ function build({ model, el }) {
   };
   const { low, gain, first } = spec.network.inputs;
   const band = strip({
-    height: 128,
+    height: 112,
     label: `Positions of both joints run under a window of ${width} samples`,
     width,
     lows: low,
@@ -99,7 +101,7 @@ function build({ model, el }) {
   });
   const torques = ["Shoulder", "Elbow"].map((joint, j) =>
     timeChart({
-      height: j ? 138 : 108,
+      height: j ? 128 : 98,
       label: `${joint} torque over the last three seconds: the true one and the network's`,
       low: -spec.torques[j],
       high: spec.torques[j],
@@ -141,7 +143,7 @@ function build({ model, el }) {
   let frame = 0;
   let last = 0;
   let owed = 0; // s of simulated time
-  let paused = false;
+  let paused = true;
   let several = false; // trajectories one after the other
   let told = 0;
   let colours = coloursOf(el);
@@ -196,6 +198,7 @@ function build({ model, el }) {
   }
 
   const play = button("Play", () => {
+    several = true;
     if (world.mode === "play") {
       paused = !paused;
       cancelAnimationFrame(frame);
@@ -204,8 +207,7 @@ function build({ model, el }) {
       say(paused ? "Paused." : `Playing ${named()}.`);
       return show();
     }
-    several = true;
-    world.play(world.shown);
+    world.play(world.shown + 1);
     say(`Playing ${named()}.`);
     start();
   });
@@ -215,7 +217,7 @@ function build({ model, el }) {
     say("Thrown.");
     start();
   });
-  const back = button("Start again", () => {
+  const back = button("Reset", () => {
     several = false;
     paused = false;
     world.stand([0, 0]);
@@ -289,7 +291,7 @@ function build({ model, el }) {
       make(
         "div",
         { class: "right" },
-        title(`Positions, read every 10 ms, run under a window of ${width}`),
+        title(`Positions under a window of ${width} samples`),
         band.el,
         title("Shoulder torque, N m"),
         legend,
@@ -304,7 +306,7 @@ function build({ model, el }) {
     inside.el,
   );
   world.changed = () => frame || draw();
-  say("At rest. Drag the hand and let go, or press Play.");
+  say(`Paused on ${named()}. Grab the hand and let go, or press Play.`);
 
   const resize = new ResizeObserver(() => {
     for (const place of [...places, inside]) place.resize();
@@ -322,7 +324,7 @@ function build({ model, el }) {
   const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
   media.forEach((list) => list.addEventListener("change", recolour));
 
-  // Once, when it comes into view, a motion is shown; nothing moves while it is out of sight.
+  // Once, when it comes into view, the motion goes on; nothing moves while it is out of sight.
   let greeted = calm.matches;
   let left = false; // while something moved
   const sight = new IntersectionObserver(([entry]) => {
@@ -333,7 +335,6 @@ function build({ model, el }) {
       left = moving;
     } else if (!greeted) {
       greeted = true;
-      world.play(0);
       say(`Playing ${named()}.`);
       start();
     } else if (left) start();

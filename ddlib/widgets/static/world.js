@@ -68,8 +68,8 @@ function worldOf(spec, values) {
   world.release = () => (world.mode = "free");
   world.places = () => placesOf(lengths, run.q);
   world.angles = () => run.q;
-  // Stand still: where the arm is, or elsewhere.
-  world.stand = (q = run.q) => {
+  // Stand still somewhere.
+  world.stand = (q) => {
     run = drive(plant, q, [0, 0], step);
     world.mode = "free";
   };
