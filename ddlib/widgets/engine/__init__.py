@@ -5,5 +5,6 @@
 - ``plain``: arm, effects, controller and network as the plain data that the engine takes
 - ``throw``: the arm that the reader throws, with a window network that tells its torque
 
-The rest of the engine is ``static/engine.js``: the loop, the network and its descent.
+The rest of the engine is ``static/engine.js``, the loop and the network, and
+``static/descent.js``, training.
 """

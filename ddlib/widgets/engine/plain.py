@@ -11,15 +11,18 @@ from ddlib.learning import Scaler, TorqueModel
 from ddlib.widgets.base import module
 
 ENGINE = ("physics.js", "engine.js")
-"""Files of the engine, in their order."""
+"""Files of the engine that every widget of this room has, in their order."""
+
+TRAINING = "descent.js"
+"""What a widget has after them if it trains."""
 
 FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 """Order of the weights in `weight_bytes`."""
 
 
 def source() -> str:
-    """The engine's script: functions without a module around them."""
-    return module(*ENGINE)
+    """The whole engine's script: functions without a module around them."""
+    return module(*ENGINE, TRAINING)
 
 
 def lean(script: str) -> str:

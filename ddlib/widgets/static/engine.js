@@ -1,5 +1,5 @@
-// The live engine: an arm under sampled control, window networks, and their descent. Follows
-// physics.js, which holds the equations. As in ddlib, whose numbers it gives (tests/widgets/
+// The live engine: an arm under sampled control, and window networks. Follows physics.js, which
+// holds the equations; descent.js trains. As in ddlib, whose numbers it gives (tests/widgets/
 // test_engine.py): angles in rad, torques in N m, times in s, [shoulder, elbow] in every pair.
 // A plant is what plain.py writes: { arm, lengths, viscous, coulomb, smoothing, encoder, limit }.
 
@@ -185,42 +185,3 @@ const torqueOfOutput = ({ outputs: { low, gain, first } }, output) =>
 // Torques (N m) for a window of positions (rad), oldest first, joint by joint.
 const torqueOfWindow = (model, window) =>
   torqueOfOutput(model, activity(model.net, scaledWindow(model, window)).output);
-
-// Batch gradient descent with momentum on scaled windows and targets, as in ddlib's `Descent`.
-// Each epoch changes the network in place and returns the mean square error before the step.
-function descent(net, windows, targets, eps, momentum) {
-  const gradient = networkOf({ ...net, joints: net.inputs / net.width }, new Float64Array(net.all.length));
-  const step = new Float64Array(net.all.length);
-  const [hidden, output] = [new Float64Array(net.hidden), new Float64Array(net.outputs)];
-  const add = (sums, row, x, delta) => {
-    for (let i = 0, at = row * x.length; i < x.length; i++) sums[at + i] += delta * x[i];
-  };
-  return (most = 1) => {
-    gradient.all.fill(0);
-    let square = 0;
-    windows.forEach((x, n) => {
-      activity(net, x, hidden, output);
-      const back = new Float64Array(net.hidden);
-      for (let o = 0; o < net.outputs; o++) {
-        const error = output[o] - targets[n][o];
-        const delta = error * output[o] * (1 - output[o]);
-        square += error * error;
-        add(back, 0, net.outputWeights.subarray(o * net.hidden, (o + 1) * net.hidden), delta);
-        add(gradient.outputWeights, o, hidden, delta);
-        add(gradient.directWeights, o, x, delta);
-        gradient.outputBias[o] += delta;
-      }
-      for (let h = 0; h < net.hidden; h++) {
-        const delta = back[h] * hidden[h] * (1 - hidden[h]);
-        add(gradient.hiddenWeights, h, x, delta);
-        gradient.hiddenBias[h] += delta;
-      }
-    });
-    const alpha = Math.min(momentum, most);
-    for (let i = 0; i < step.length; i++) {
-      step[i] = alpha * step[i] - eps * gradient.all[i];
-      net.all[i] += step[i];
-    }
-    return square / (windows.length * net.outputs);
-  };
-}

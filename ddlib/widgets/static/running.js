@@ -109,6 +109,7 @@ function timeChart({ height, label, low, high, lines, bottom = false }) {
 function strip({ height, label, width: samplesInWindow, lows, highs }) {
   const place = sheet(height, label);
   const { pen } = place;
+  const format = (x) => `${Math.round((x * 180) / Math.PI)}°`.replace("-", "−");
   place.draw = (samples, phase, colours) => {
     const { width } = place;
     const [left, right] = [4, width - 14];
@@ -133,12 +134,14 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
     pen.rect(left - 4, 0, width, height);
     pen.clip();
     const first = Math.max(0, samples.length - count - 1);
+    const ranges = [];
     for (const j of JOINTS) {
       let [a, b] = [lows[j], highs[j]];
       for (let i = first; i < samples.length; i++) {
         a = Math.min(a, samples[i].q[j]);
         b = Math.max(b, samples[i].q[j]);
       }
+      ranges.push([a, b]);
       const [top, floor] = [16 + (j * height) / 2, height / 2 - 8 + (j * height) / 2];
       pen.fillStyle = colours[j ? "c2" : "c0"];
       for (let i = first; i < samples.length; i++) {
@@ -157,7 +160,8 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
     pen.textAlign = "left";
     JOINTS.forEach((j) => {
       pen.fillStyle = colours[j ? "c2" : "c0"];
-      pen.fillText(j ? "elbow" : "shoulder", 0, 8 + (j * height) / 2);
+      const [low, high] = ranges[j].map((x) => format(x));
+      pen.fillText(`${j ? "elbow" : "shoulder"}, ${low} to ${high}`, 0, 8 + (j * height) / 2);
     });
   };
   return place;

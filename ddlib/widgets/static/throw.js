@@ -2,6 +2,7 @@
 // under the window, true torques and the network's. Follows inside.js. Everything is computed here.
 
 const METRE = 200; // px of the drawing
+const NUDGE = 120; // ms that a key pulls at least
 const PULLS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 function stageOf(world, spec) {
@@ -211,6 +212,7 @@ function build({ model, el }) {
     say(`Playing ${named()}.`);
     start();
   });
+  play.dataset.runs = ""; // for benchmarks
   const toss = button("Throw", () => {
     several = false;
     world.toss();
@@ -259,9 +261,9 @@ function build({ model, el }) {
     if (handle.hasPointerCapture(event.pointerId)) world.pull = { place: stage.placeOf(event) };
   });
   for (const end of ["pointerup", "pointercancel"]) handle.addEventListener(end, release);
-  const pressed = new Set();
+  const pressed = new Map(); // keys, each with the time at which it went down
   function pull() {
-    const push = [0, 1].map((i) => [...pressed].reduce((sum, name) => sum + PULLS[name][i], 0));
+    const push = [0, 1].map((i) => [...pressed.keys()].reduce((sum, key) => sum + PULLS[key][i], 0));
     if (push.some(Boolean)) take({ push: push.map((x) => x / Math.hypot(...push)) });
     else release();
   }
@@ -270,11 +272,19 @@ function build({ model, el }) {
     event.preventDefault();
     event.stopPropagation(); // a notebook has its own arrow keys
     if (event.repeat) return;
-    pressed.add(event.key);
+    pressed.set(event.key, performance.now());
     pull();
   });
-  handle.addEventListener("keyup", (event) => {
-    if (pressed.delete(event.key)) pull();
+  handle.addEventListener("keyup", ({ key }) => {
+    const since = pressed.get(key);
+    const letGo = () => {
+      if (pressed.get(key) !== since) return; // pressed again
+      pressed.delete(key);
+      pull();
+    };
+    const left = NUDGE - (performance.now() - since);
+    if (left > 0) setTimeout(letGo, left);
+    else if (since !== undefined) letGo();
   });
   handle.addEventListener("blur", () => {
     if (pressed.size) release();
@@ -291,7 +301,7 @@ function build({ model, el }) {
       make(
         "div",
         { class: "right" },
-        title(`Positions under a window of ${width} samples`),
+        title(`Positions, every ${Math.round(1e3 * spec.step * spec.every)} ms, under a window of ${width}`),
         band.el,
         title("Shoulder torque, N m"),
         legend,
