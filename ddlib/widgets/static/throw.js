@@ -93,6 +93,7 @@ function build({ model, el }) {
     return made;
   };
   const { low, gain, first } = spec.network.inputs;
+  const apart = Math.round(1e3 * spec.step * spec.every);
   const band = strip({
     height: 112,
     label: `Positions of both joints run under a window of ${width} samples`,
@@ -301,7 +302,7 @@ function build({ model, el }) {
       make(
         "div",
         { class: "right" },
-        title(`Positions, every ${Math.round(1e3 * spec.step * spec.every)} ms, under a window of ${width}`),
+        title(`A window of ${width} positions, ${apart} ms apart`),
         band.el,
         title("Shoulder torque, N m"),
         legend,
