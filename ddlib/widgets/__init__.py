@@ -3,6 +3,7 @@
 - ``picker``, ``switches``, ``tuner``, ``window``, ``explorer``, ``player``, ``spectrum``: a widget
   each, named after what the reader handles; ``hinton``: the diagram that two of them share
 - ``beyond``: widgets of Part IV
+- ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
 - ``parts``: parameters, panels, pads; ``baking``: values and a still for pages without a kernel
 - ``static``: the page's half: scripts that all widgets share (``curves.js``, ...), and one more for
@@ -21,5 +22,9 @@ __getattr__, __dir__, __all__ = hand_on(
     switches="RealArmSwitches",
     tuner="PIDTuner",
     window="SlidingWindow",
-    **{"parts.panels": "Mark Pad Panel Scalar", "parts.parameters": "Choice Parameter"},
+    **{
+        "engine.throw": "ThrownArm",
+        "parts.panels": "Mark Pad Panel Scalar",
+        "parts.parameters": "Choice Parameter",
+    },
 )

@@ -18,7 +18,7 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 
 STATIC = Path(__file__).with_name("static")
 
-SCRIPT = ("baked.js", "charts.js", "controls.js", "curves.js")
+SCRIPT = ("baked.js", "elements.js", "charts.js", "controls.js", "curves.js")
 """Files of the script that every widget has; a subclass adds its own after them."""
 
 STYLE = ("curves.css",)

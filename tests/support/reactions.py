@@ -14,11 +14,11 @@ PICTURE = """
 }
 """
 FRAMES = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
-DRAWING, SLIDER = 'svg[tabindex="0"]', 'input[type="range"]'
+DRAWING, SLIDER = 'svg[tabindex="0"], svg [tabindex="0"]', 'input[type="range"]'
 
 
 def handles(root) -> list[Handle]:
-    """The first drawing that can be dragged in and the first slider of a widget."""
+    """The first drawing (or part of one) that can be dragged and the first slider of a widget."""
     found = [root.locator(kind).locator("visible=true") for kind in (DRAWING, SLIDER)]
     return [Handle(root, kind.first) for kind in found if kind.count()]
 

@@ -1,26 +1,6 @@
-// Draws charts. Follows baked.js in every widget's module.
+// Draws charts. Follows baked.js and elements.js in every widget's module.
 
-const SVG = "http://www.w3.org/2000/svg";
-const SVG_TAGS = new Set(
-  "svg g path line text rect circle polygon polyline defs clipPath title".split(" "),
-);
 const COLOURS = 6; // classes c0 to c5
-
-// An element with attributes and children, SVG or HTML by its name.
-function make(tag, attributes = {}, ...children) {
-  const el = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) el.setAttribute(name, value);
-  el.append(...children);
-  return el;
-}
-
-// Text in an element; the same text again would lay it out again.
-function write(el, text) {
-  if (el.textContent !== text) el.textContent = text;
-}
-
-// A number for a path, to hundredths of a pixel; quicker than toFixed.
-const short = (x) => Math.round(x * 100) / 100;
 
 // Powers of ten among logarithms; with fewer than two of them also twice and five times them.
 function decades(marks, low, high) {

@@ -1,0 +1,10 @@
+"""Widgets that compute in the page: the live engine, and what is built on it.
+
+- ``physics``: writes the engine's equations (``static/physics.js``) from the derivation and the
+  friction laws; run as a module it writes the file anew
+- ``plain``: arm, effects, controller and network as the plain data that the engine takes
+- ``throw``: the arm that the reader throws, with a window network that tells its torque
+
+The rest of the engine is ``static/engine.js``, the loop and the network, and
+``static/descent.js``, training.
+"""

@@ -1,0 +1,118 @@
+"""Arm, effects, controller and network as the plain data that the page's engine takes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib.control import PID
+from ddlib.dynamics import Arm
+from ddlib.effects import CoulombFriction, Effects, Quantisation, Saturation, ViscousFriction
+from ddlib.learning import Scaler, TorqueModel
+from ddlib.widgets.base import module
+
+ENGINE = ("physics.js", "engine.js")
+"""Files of the engine that every widget of this room has, in their order."""
+
+TRAINING = "descent.js"
+"""What a widget has after them if it trains."""
+
+FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
+"""Order of the weights in `weight_bytes`."""
+
+
+def source() -> str:
+    """The whole engine's script: functions without a module around them."""
+    return module(*ENGINE, TRAINING)
+
+
+def lean(script: str) -> str:
+    """A script without its comments and indentation; for scripts whose texts stay within a line."""
+    lines = (line.strip() for line in script.splitlines())
+    return "\n".join(line for line in lines if line and not line.startswith("//")) + "\n"
+
+
+def plant(arm: Arm, effects: Effects) -> dict:
+    """An arm and what acts on it, as the engine's functions take it.
+
+    Parameters
+    ----------
+    arm : Arm
+    effects : Effects
+        One viscous and one Coulomb friction, one saturation and one quantisation at most; the
+        torque sensor is ignored, since the page shows the applied torque.
+
+    Raises
+    ------
+    TypeError
+        If the engine has no such effect.
+    """
+    one = {}
+    parts = {
+        "friction": (ViscousFriction, CoulombFriction),
+        "actuator": (Saturation,),
+        "encoder": (Quantisation,),
+        "motor": (),
+        "transmission": (),
+    }
+    for part, kinds in parts.items():
+        for effect in getattr(effects, part):
+            if type(effect) not in kinds or type(effect) in one:
+                names = ", ".join(kind.__name__ for kind in kinds) or "no effect"
+                raise TypeError(f"{part} must hold at most one each of {names}, got {effect!r}")
+            one[type(effect)] = effect
+    viscous = one.get(ViscousFriction, ViscousFriction((0.0, 0.0)))
+    coulomb = one.get(CoulombFriction, CoulombFriction((0.0, 0.0)))
+    g1, g2 = arm.gravity_moments
+    return {
+        "arm": {"a": arm.a, "b": arm.b, "d": arm.d, "g1": g1, "g2": g2},
+        "lengths": list(arm.lengths),
+        "viscous": _pair(viscous.coefficient),
+        "coulomb": _pair(coulomb.level),
+        "smoothing": coulomb.smoothing,
+        "encoder": one[Quantisation].step if Quantisation in one else 0,
+        "limit": _pair(one[Saturation].limit) if Saturation in one else None,
+    }
+
+
+def gains(controller: PID) -> dict:
+    """The gains of a `PID` for the engine's ``pid``; one pair each."""
+    if not isinstance(controller, PID):
+        raise TypeError(f"controller must be a PID, got {controller!r}")
+    pairs = {name: _pair(getattr(controller, name)) for name in ("kp", "ki", "kd")}
+    return {**pairs, "integral_limit": controller.integral_limit}
+
+
+def network(model: TorqueModel) -> dict:
+    """Layout and scaling of one network; `weight_bytes` has its weights."""
+    weights = model.weights if isinstance(model, TorqueModel) else None
+    if weights is None or weights.hidden_bias.ndim != 1:
+        raise TypeError(f"model must be a single network, got {model!r}")
+    hidden, joints, width = weights.hidden_weights.shape
+    return {
+        "layout": {
+            "hidden": hidden,
+            "outputs": len(weights.output_bias),
+            "joints": joints,
+            "width": width,
+        },
+        "inputs": _scaling(model.inputs),
+        "outputs": _scaling(model.outputs),
+    }
+
+
+def weight_bytes(model: TorqueModel) -> bytes:
+    """All weights of one network as little-endian float32, as committed, in the order `FIELDS`."""
+    parts = [np.ravel(getattr(model.weights, name)) for name in FIELDS]
+    return np.concatenate(parts).astype("<f4").tobytes()
+
+
+def _scaling(scaler: Scaler) -> dict:
+    low, gain = (np.asarray(x, dtype=float).tolist() for x in (scaler.low, scaler.gain))
+    return {"low": low, "gain": gain, "first": float(scaler.target[0])}
+
+
+def _pair(values) -> list[float]:
+    pair = np.asarray(values, dtype=float)
+    if pair.shape != (2,):
+        raise TypeError(f"values must be one pair, got shape {pair.shape}")
+    return pair.tolist()

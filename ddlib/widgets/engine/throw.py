@@ -1,0 +1,145 @@
+"""The arm that the reader throws, and a window network that tells its torque from positions."""
+
+from __future__ import annotations
+
+import anywidget
+import numpy as np
+import traitlets as t
+
+from ddlib.analysis import shares
+from ddlib.experiments import JOINT_DAMPING, Setup, predict, results
+from ddlib.figures import JOINTS
+from ddlib.learning import TorqueModel
+from ddlib.paper import TEST_TRAJECTORY
+from ddlib.simulation import CONTROL_STEP, LOG_STEP
+from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
+from ddlib.widgets.baking.still import Still, still_picture
+from ddlib.widgets.base import STYLE, module
+from ddlib.widgets.engine.plain import ENGINE, gains, lean, network, plant, weight_bytes
+from ddlib.widgets.parts.panels import Panel
+
+REST = 0.4
+"""Between two motions that are played, s: longer than half a window."""
+
+FORCE = 35.0
+"""Most that the reader's pull can be, N: its torques are among those of the training."""
+
+SPRING = 150.0
+"""Stiffness of the pull on the hand, N/m."""
+
+TOSS_RATE, TOSS_SECONDS = 4.0, 0.4
+"""Largest acceleration that the button gives the joints, rad/s^2, and for how long, s."""
+
+HINT = (
+    "Grab the hand and throw it, or focus it and hold an arrow key. Friction slows the arm; under "
+    "Play a controller drives it along the paper's trajectories. The network never sees the "
+    "torque: from each window of positions it tells the torque at the window's centre."
+)
+
+
+class ThrownArm(anywidget.AnyWidget):
+    """Throw a simulated arm; a window network tells the torque from positions alone.
+
+    Everything is computed in the page by the live engine (``static/engine.js``), with a kernel
+    and without.
+
+    Parameters
+    ----------
+    model : TorqueModel, optional
+        One network; default: of the 25 of Table 4-1 with window 21 the one with the median
+        error on trajectory 6.
+    setup : Setup
+        Arm, effects and controller; the controller must be a `PID`.
+
+    Raises
+    ------
+    TypeError
+        If the model is not a single network, or the engine lacks an effect or the controller.
+    ValueError
+        If the model was trained on another sampling period than that of the log.
+    """
+
+    _esm = lean(module("elements.js", *ENGINE, "world.js", "running.js", "inside.js", "throw.js"))
+    _css = module(*STYLE, "throw.css")
+
+    spec = t.Dict(help="arm, controller, layout of the network, motions", read_only=True)
+    spec.tag(sync=True)
+    weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
+    still = Still(help="a played motion as a picture", read_only=True).tag(sync=True)
+    still_alt = t.Unicode(read_only=True).tag(sync=True)
+
+    def __init__(self, model: TorqueModel | None = None, setup: Setup = JOINT_DAMPING):
+        model = results.median_network(21, setup.name) if model is None else model
+        layout = network(model)
+        if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
+            raise ValueError(
+                f"model must have the log's sampling period of {LOG_STEP:g} s, got {model.step:g} s"
+            )
+        order = [TEST_TRAJECTORY, *(k for k in range(1, 7) if k != TEST_TRAJECTORY)]
+        span = np.maximum(-model.outputs.low, model.outputs.high)
+        self.set_trait(
+            "spec",
+            {
+                "title": "Throw the arm: a network tells its torque",
+                "hint": HINT,
+                "plant": plant(setup.arm, setup.effects),
+                "gains": gains(setup.controller),
+                "network": layout,
+                "step": CONTROL_STEP,
+                "every": round(LOG_STEP / CONTROL_STEP),
+                "motion": MOTION_SECONDS,
+                "rest": REST,
+                "force": FORCE,
+                "spring": SPRING,
+                "toss": {"rate": TOSS_RATE, "seconds": TOSS_SECONDS},
+                "torques": (0.5 * span).tolist(),
+                "trajectories": [_trajectory(k) for k in order],
+                "units": _units(model),
+            },
+        )
+        self.set_trait("weights", weight_bytes(model))
+        picture, alt = _still(model, setup)
+        self.set_trait("still", picture)
+        self.set_trait("still_alt", alt)
+        super().__init__()
+
+
+def _trajectory(k: int) -> dict:
+    test = k == TEST_TRAJECTORY
+    name = f"trajectory {k}, which the network {'never saw' if test else 'was trained on'}"
+    return {"name": name, "extents": np.deg2rad(APPENDIX_I[k - 1]).tolist()}
+
+
+def _units(model: TorqueModel) -> list[dict]:
+    """The hidden units whose weights from one joint's window lie closest to a line, a parabola."""
+    found = shares(model.weights.hidden_weights)
+    units = []
+    for kind, degree in (("line", 1), ("parabola", 2)):
+        unit, joint = np.unravel_index(found[..., degree].argmax(), found.shape[:2])
+        label = f"The unit closest to a {kind}"
+        units.append({"label": label, "unit": int(unit), "joint": int(joint)})
+    return units
+
+
+def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
+    """A motion with true torques and the network's, and what the picture shows."""
+    recording = setup.record(APPENDIX_I[[TEST_TRAJECTORY - 1]])[0]
+    moving = recording.motion
+    time, told = recording.t[moving], predict(model, recording)
+    curves = {
+        f"{joint} angle": np.rad2deg(recording.q[moving, j]) for j, joint in enumerate(JOINTS)
+    }
+    for j, joint in enumerate(JOINTS):
+        curves[f"{joint} true"] = recording.tau_true[moving, j]
+        curves[f"{joint} network"] = told[:, j]
+    angles = {f"{joint} angle": joint for joint in JOINTS}
+    panels = [Panel("Positions that the network sees, °", angles, "time, s", time)]
+    for joint in JOINTS:
+        lines = {f"{joint} true": "true", f"{joint} network": "network"}
+        panels.append(Panel(f"{joint.title()} torque, N m", lines, "time, s", time))
+    alt = (
+        f"The arm's joint angles along trajectory {TEST_TRAJECTORY} over three seconds; beside "
+        "them, for shoulder and elbow, the true torque and the torque that a network tells from "
+        "windows of these angles."
+    )
+    return still_picture(curves, panels, {}, None, alt), alt
