@@ -1,10 +1,15 @@
-"""How long the notebooks of this build took, known once all have been executed.
+"""How long the notebooks of this build took, known once all have been executed, and to read.
 
-The role ``{runtime}`words``` is a page's own time in prose, or the words where none was
-measured; the directive ``{chapter-times}`` is a table of all.
+The role ``{reading}`page page``` is the time that it takes to read some pages. The role
+``{runtime}`words``` is a page's own time in prose, or the words where none was measured; the
+directive ``{chapter-times}`` is a table of all.
 """
 
 from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
 
 from docutils import nodes
 from myst_nb.sphinx_ import NbMetadataCollector
@@ -13,6 +18,9 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxDirective
 
 MEASURED = "on one core when this page was built"
+
+WORDS_A_MINUTE = 200
+"""Of prose with formulas and figures."""
 
 
 class RunTime(nodes.Inline, nodes.TextElement):
@@ -91,10 +99,28 @@ def runtime(name, rawtext, text, lineno, inliner, options=None, content=None):
     return [RunTime(rawtext, text)], []
 
 
+def words(path: Path) -> int:
+    """Words of prose in a notebook; a word of code or of a role counts like any other."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    texts = ("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
+    return sum(len(re.findall(r"\w+", text)) for text in texts)
+
+
+def reading(name, rawtext, text, lineno, inliner, options=None, content=None):
+    """``{reading}`page page```, pages beside the one that asks."""
+    env = inliner.document.settings.env
+    paths = [Path(env.doc2path(env.docname)).with_name(f"{page}.ipynb") for page in text.split()]
+    for path in paths:
+        env.note_dependency(str(path))
+    minutes = 5 * max(1, round(sum(map(words, paths)) / WORDS_A_MINUTE / 5))
+    return [nodes.inline(text=f"{minutes} minutes")], []
+
+
 def setup(app):
     app.add_node(ChapterTimes)
     app.add_node(RunTime)
     app.add_directive("chapter-times", Directive)
     app.add_role("runtime", runtime)
+    app.add_role("reading", reading)
     app.add_post_transform(InsertTimes)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -156,3 +156,25 @@ def test_every_notebook_has_its_time_and_share(built):
         float(total[1].split()[0]), abs=0.5 + 0.05 * len(chapters)
     )
     assert sum(int(row[2].rstrip("%")) for row in chapters) == pytest.approx(100, abs=len(chapters))
+
+
+def test_words_of_prose_are_counted(tmp_path):
+    cells = [("markdown", ["# One two\n", "three"]), ("code", ["four = 5"])]
+    cells = [{"cell_type": kind, "source": source} for kind, source in cells]
+    path = tmp_path / "page.ipynb"
+    path.write_text(json.dumps({"cells": cells}))
+    assert dd_runtime.words(path) == 3
+
+
+@pytest.mark.built
+def test_reading_times_on_the_first_page(built):
+    page = BeautifulSoup((built / "book" / "index.html").read_text(encoding="utf-8"), "html.parser")
+    told = [item.get_text() for item in page.select("#four-ways-in > ul > li")]
+    minutes = [int(re.search(r"(\d+) minutes", text)[1]) for text in told]
+    ways = [
+        [Path(a["href"]).stem for a in item.select("a[href]")]
+        for item in page.select("#four-ways-in > ul > li")
+    ]
+    for number, pages in zip(minutes, ways, strict=True):
+        total = sum(dd_runtime.words(ROOT / "book" / f"{name}.ipynb") for name in pages)
+        assert abs(number - total / dd_runtime.WORDS_A_MINUTE) <= 5
