@@ -250,6 +250,19 @@ def test_paper_is_white(scheme, site, visit):
 
 
 @browser_test
+def test_answers_are_printed(site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html")
+    folded = "document.querySelectorAll('article details:not([open])').length"
+    before = opened.page.evaluate(folded)
+    opened.page.evaluate(
+        f"() => addEventListener('beforeprint', () => (window.printed = {folded}))"
+    )
+    opened.page.pdf()
+    assert before > 0 and opened.page.evaluate("window.printed") == 0
+    assert opened.page.evaluate(folded) == before
+
+
+@browser_test
 def test_there_is_one_search_field(built, site, visit):
     opened = visit(address(PAGES[1], "http", built, site))
     fields = opened.page.locator("button.search-button-field")
