@@ -16,11 +16,17 @@ __getattr__, __dir__, __all__ = hand_on(
     controllers=(
         "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
     ),
-    adaptive="CraigHsuSastry PARAMETERS SlotineLi Watched mixed_regressor",
     feedback_error="FeedbackErrorLearning RigidBodyTerms",
     guarded="Guarded REASONS Stops",
     windowed="BETWEEN MeasuredWindows PlannedTorque WindowFeedforward",
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
     delays="late_poles",
     velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",
+    **{
+        "adaptive.regressor": "PARAMETERS mixed_regressor",
+        "adaptive.running": "Watched",
+        "adaptive.slotine_li": "SlotineLi",
+        "adaptive.craig": "CraigHsuSastry",
+        "adaptive.model_reference": "ModelReference",
+    },
 )
