@@ -42,21 +42,27 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     for name in names:
         one_of("names", name, PARAMETERS)
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
-    (w1, w2), (v1, v2), (a1, a2) = (np.moveaxis(x, -1, 0) for x in (qd, v, a))
-    s1, s12, zero = np.sin(q[..., 0]), np.sin(q[..., 0] + q[..., 1]), np.zeros_like(c2)
-    sign = np.clip(v / SIGN_SPEED, -1.0, 1.0)
-    columns = {
-        "a": (a1, zero),
-        "b": (c2 * (2 * a1 + a2) - s2 * (w2 * v1 + (w1 + w2) * v2), c2 * a1 + s2 * w1 * v1),
-        "d": (a2, a1 + a2),
-        "g1": (s1, zero),
-        "g2": (s12, s12),
-        "F_v1": (v1, zero),
-        "F_v2": (zero, v2),
-        "F_c1": (sign[..., 0], zero),
-        "F_c2": (zero, sign[..., 1]),
-    }
-    return np.stack([np.stack(columns[name], -1) for name in names], -1)
+    (w1, w2), (v1, v2), (a1, a2) = ((x[..., 0], x[..., 1]) for x in (qd, v, a))
+    Y = np.zeros((*q.shape, len(names)))
+    for k, name in enumerate(names):
+        shoulder, elbow = Y[..., 0, k], Y[..., 1, k]
+        if name == "a":
+            shoulder[...] = a1
+        elif name == "b":
+            shoulder[...] = c2 * (2 * a1 + a2) - s2 * (w2 * v1 + (w1 + w2) * v2)
+            elbow[...] = c2 * a1 + s2 * w1 * v1
+        elif name == "d":
+            shoulder[...], elbow[...] = a2, a1 + a2
+        elif name == "g1":
+            shoulder[...] = np.sin(q[..., 0])
+        elif name == "g2":
+            shoulder[...] = elbow[...] = np.sin(q[..., 0] + q[..., 1])
+        else:
+            joint = int(name[-1]) - 1
+            rate = v[..., joint]
+            own = rate if name.startswith("F_v") else np.clip(rate / SIGN_SPEED, -1.0, 1.0)
+            Y[..., joint, k] = own
+    return Y
 
 
 def check_parameters(controller) -> None:
