@@ -18,7 +18,7 @@ __getattr__, __dir__, __all__ = hand_on(
     ),
     feedback_error="FeedbackErrorLearning RigidBodyTerms",
     guarded="Guarded REASONS Stops",
-    windowed="BETWEEN MeasuredWindows PlannedTorque WindowFeedforward",
+    windowed=("BETWEEN MeasuredWindows PlannedTorque WindowFeedforward past_slopes poles_inside"),
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
     delays="late_poles",
     velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",

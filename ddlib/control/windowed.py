@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import control
 import numpy as np
 
 from ddlib._check import integer, non_negative, number, one_of, shaped
-from ddlib.control.controllers import ControlLaw, Controller, Feedforward, as_controller
+from ddlib.control.controllers import PID, ControlLaw, Controller, Feedforward, as_controller
 from ddlib.trajectories import Trajectory
 
 BETWEEN = ("window", "line", "hold")
@@ -183,7 +184,7 @@ class MeasuredWindows:
             del kept[: -(made.every * half + 1)]
             windows = np.moveaxis(reference.q[..., np.clip(k + taps, 0, last), :], -1, -2)
             past = [kept[t - 1] if -t < len(kept) else 0 * kept[-1] for t in taps[: half + 1]]
-            past = share * np.stack(past, -1)
+            past = share * np.stack(np.broadcast_arrays(*past), -1)
             windows = np.broadcast_to(windows, (*past.shape[:-1], made.width)).copy()
             windows[..., : half + 1] += past
             cases = windows.reshape(-1, *windows.shape[-2:])
@@ -191,3 +192,74 @@ class MeasuredWindows:
             return torque.reshape(windows.shape[:-1]) + feedback(k, q, qd)
 
         return law
+
+
+def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
+    """How a model's torque changes with each past sample of its windows, the mean over cases.
+
+    Parameters
+    ----------
+    model : callable
+        As of `WindowFeedforward`.
+    windows : array_like, shape (cases, joint, width)
+        rad, oldest sample first.
+    step : float
+        Of the central difference quotient, rad.
+
+    Returns
+    -------
+    ndarray, shape (torque, joint, width // 2 + 1)
+        N m/rad, oldest sample first, the centre last.
+    """
+    windows = shaped("windows", windows, "(cases, joint, width)")
+    joints, width = windows.shape[1:]
+    found = np.empty((joints, joints, width // 2 + 1))
+    for joint, tap in np.ndindex(*found.shape[1:]):
+        shift = np.zeros((joints, width))
+        shift[joint, tap] = number("step", step, 0.0, open_low=True)
+        change = np.asarray(model(windows + shift)) - model(windows - shift)
+        found[:, joint, tap] = change.mean(0) / (2 * step)
+    return found
+
+
+def poles_inside(
+    joints: control.StateSpace, feedback: PID, past, period: float, every: int = 5, late: int = 0
+) -> np.ndarray:
+    """Poles of a sampled loop with a linear model of windows inside (`MeasuredWindows`).
+
+    Parameters
+    ----------
+    joints : control.StateSpace
+        From `ddlib.control.linear.plant`.
+    feedback : PID
+        Without an integral.
+    past : array_like, shape (torque, joint, samples)
+        N m/rad, times the share that is measured, as from `past_slopes`.
+    period : float
+        Control period, s.
+    every : int
+        Control periods between two samples of a window.
+    late : int
+        Control periods by which the torque comes late.
+
+    Returns
+    -------
+    ndarray of complex
+        In the z plane: stable if all lie inside the unit circle.
+    """
+    n = joints.ninputs
+    past = shaped("past", past, f"({n}, {n}, samples)")
+    integer("every", every, 1), integer("late", late, 0)
+    if np.any(feedback.ki):
+        raise ValueError(f"feedback must have no integral, got ki={feedback.ki}")
+    sampled = control.sample_system(joints, period, "zoh")
+    ages = late + every * np.arange(past.shape[-1])[::-1]  # of the samples, oldest first
+    # states: angles and velocities now, then those of 1, 2, ... periods ago
+    A = np.eye(2 * n * (ages[0] + 1), k=-2 * n)
+    A[: 2 * n, : 2 * n] = sampled.A
+    now = 2 * n * late
+    gains = np.hstack([np.diag(np.broadcast_to(k, n)) for k in (feedback.kp, feedback.kd)])
+    A[: 2 * n, now : now + 2 * n] -= sampled.B @ gains
+    for age, slope in zip(ages, np.moveaxis(past, -1, 0)):
+        A[: 2 * n, 2 * n * age : 2 * n * age + n] += sampled.B @ slope
+    return np.linalg.eigvals(A)

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from ddlib.control import Feedforward, late_poles, pd, plant
-from ddlib.control.windowed import MeasuredWindows, PlannedTorque, WindowFeedforward
+from ddlib.control import PID, Feedforward, late_poles, pd, plant
+from ddlib.control.windowed import (
+    MeasuredWindows,
+    PlannedTorque,
+    WindowFeedforward,
+    past_slopes,
+    poles_inside,
+)
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import Arm
 from ddlib.effects import Effects, ViscousFriction
@@ -120,8 +126,10 @@ def test_a_sampling_period_is_positive(step):
 
 def test_without_measurements_windows_in_the_loop_are_planned():
     made = WindowFeedforward(weight, 5, step=0.01)
-    log = record(ARM, MeasuredWindows(made, FEEDBACK, [0.0, 1.0]), [[40, 30]] * 2)
-    planned = record(ARM, PlannedTorque(made, FEEDBACK), [40, 30])
+    extents = [[40, 30], [20, 10], [10, 30]]
+    log = record(ARM, MeasuredWindows(made, FEEDBACK, [[0.0], [1.0]]), extents)
+    planned = record(ARM, PlannedTorque(made, FEEDBACK), extents)
+    assert log.q_true.shape == (2, *planned.q_true.shape)
     np.testing.assert_allclose(log.q_true[0], planned.q_true, atol=1e-12)
     assert np.abs(log.q_true[1] - planned.q_true).max() > 1e-3
 
@@ -170,3 +178,42 @@ def test_only_windows_of_their_own_go_into_the_loop():
         MeasuredWindows(WindowFeedforward(middle, 5, between="hold"), FEEDBACK)
     with pytest.raises(ValueError, match="share"):
         MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1)
+
+
+def test_slopes_of_a_linear_model_are_its_weights():
+    filters = np.random.default_rng(0).standard_normal((2, 2, 5))
+    windows = np.random.default_rng(1).standard_normal((7, 2, 5))
+    found = past_slopes(lambda w: np.einsum("tjw,cjw->ct", filters, w), windows)
+    np.testing.assert_allclose(found, filters[..., :3], atol=1e-8)
+    bent = past_slopes(lambda w: w[..., 2] ** 2, windows)
+    wanted = np.diag(2 * windows[..., 2].mean(0))
+    np.testing.assert_allclose(bent[..., 2], wanted, atol=1e-8)
+
+
+@pytest.mark.parametrize("late", [0, 1, 5])
+def test_poles_with_a_model_of_the_present_are_those_of_other_gains(late):
+    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
+    past = np.zeros((2, 2, 3))
+    past[..., 2] = [[-100, -7], [5, -30]]
+    found = np.abs(poles_inside(joints, FEEDBACK, past, 0.002, late=late)).max()
+    gain = np.hstack([np.diag([300.0, 90.0]) - past[..., 2], np.diag([35.0, 10.0])])
+    wanted = np.abs(late_poles(joints, gain, 0.002, late * 0.002)).max()
+    assert found == pytest.approx(wanted, abs=1e-12)
+
+
+def test_poles_with_a_model_of_the_past_are_those_of_a_late_loop():
+    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
+    past = np.zeros((2, 2, 3))
+    past[..., 0] = -np.diag([400.0, 120.0])
+    found = np.abs(poles_inside(joints, pd((0.0, 0.0), (0.0, 0.0)), past, 0.002)).max()
+    gain = np.hstack([np.diag([400.0, 120.0]), np.zeros((2, 2))])
+    wanted = np.abs(late_poles(joints, gain, 0.002, 0.02)).max()
+    assert found == pytest.approx(wanted, abs=1e-12)
+
+
+def test_poles_refuse_an_integral():
+    joints = plant(np.eye(2), (1.0, 1.0))
+    with pytest.raises(ValueError, match="integral"):
+        poles_inside(joints, PID((1, 1), (1, 1)), np.zeros((2, 2, 3)), 0.002)
+    with pytest.raises(ValueError, match="past"):
+        poles_inside(joints, FEEDBACK, np.zeros((2, 3)), 0.002)
