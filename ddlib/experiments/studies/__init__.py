@@ -34,6 +34,7 @@ from ddlib.experiments.studies.beyond import (
     rivals,
     rivals_1988,
 )
+from ddlib.experiments.studies.loop import joints
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -60,5 +61,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "real-arm": real_arm.real_arm,
     "characters": characters.characters,
     "gaussian-intervals": intervals.gaussian_intervals,
+    "joints": joints.joints,
 }
 """The studies by the name of their result."""

@@ -3,4 +3,5 @@
 - ``rivals``: errors of rivals against what they cost
 - ``rivals_1988``: maps of what learnt one trajectory
 - ``real_arm``: friction joint by joint, gains of networks beside their nulls
+- ``joints``: errors over motions by number of joints, what is needed, couplings
 """

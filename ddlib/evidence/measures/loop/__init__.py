@@ -1,1 +1,4 @@
-"""Measures of Part IV, *Closing the loop*: "loop.module.function" in a claim."""
+"""Measures of Part IV, *Closing the loop*: "loop.module.function" in a claim.
+
+- ``joints``: joints three and four, and up to seven
+"""
