@@ -16,8 +16,8 @@ __getattr__, __dir__, __all__ = hand_on(
     __name__,
     arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY",
     kinematics=(
-        "ELBOWS LEAST_SINE Unreachable circle end_point_error follow_hand "
-        "inverse_kinematics jacobian jacobian_rate"
+        "ELBOWS LEAST_SINE Unreachable around circle end_point_error follow_hand "
+        "inverse_kinematics jacobian jacobian_rate reach"
     ),
     payload="with_load",
     serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",

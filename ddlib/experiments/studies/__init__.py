@@ -34,7 +34,7 @@ from ddlib.experiments.studies.beyond import (
     rivals,
     rivals_1988,
 )
-from ddlib.experiments.studies.loop import joints
+from ddlib.experiments.studies.loop import joints, stirring
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -62,5 +62,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "characters": characters.characters,
     "gaussian-intervals": intervals.gaussian_intervals,
     "joints": joints.joints,
+    "stirring": stirring.stirring,
 }
 """The studies by the name of their result."""
