@@ -4,4 +4,5 @@
 - ``rivals_1988``: maps of what learnt one trajectory
 - ``real_arm``: friction joint by joint, gains of networks beside their nulls
 - ``joints``: errors over motions by number of joints, what is needed, couplings
+- ``stirring``: states of two families, errors on both, paths of the hand
 """

@@ -41,14 +41,13 @@ PERIOD = (1.5, 3.0)
 """Range of the time of a turn, s: one turn to two in the three seconds of a motion."""
 
 DISTANCE = (0.55, 0.75)
-"""Range of the centres' distances from the shoulder, m. With the largest radius the hand comes as
-near as 0.43 m and as far as 0.87 m; stretched, the arm is 0.9 m long."""
+"""Range of the centres' distances from the shoulder, m: the hand comes within 0.43 to 0.87 m."""
 
 BEARING = (-80.0, -40.0)
 """Range of the centres' directions, degrees. With a negative elbow the shoulder then turns about
 where it does in pick-and-place."""
 
-SMALL = {"radius": (0.01, 0.025), "distance": (0.855, 0.865), "bearing_deg": (-50.0, -25.0)}
+SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-50.0, -25.0)}
 """Ranges of circles that lie within the angles of pick-and-place, where only the way the joints
 move is new."""
 
