@@ -106,7 +106,7 @@ def paths(
     def draw(figure: Figure):
         axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
         for axis, (title, path) in zip(axes.ravel(), drawn.items()):
-            axis.plot(*wanted.T, color=INK, lw=1, ls="--", label="wanted")
+            axis.plot(*wanted.T, color=INK, lw=0.9, label="wanted")
             axis.plot(*path.T, color=COLOURS[1], lw=1.8, label=f"error × {factor:g}")
             axis.plot(*path[0], "o", color=COLOURS[1], ms=4)
             axis.set_title(title)
@@ -117,7 +117,7 @@ def paths(
         figure.supylabel("y, m", fontsize=9.5)
         legend_above(figure, *axes[0, 0].get_legend_handles_labels())
 
-    return illustrate(draw, alt, 6.6, 2.4 * rows + 0.6)
+    return illustrate(draw, alt, 6.6, 1.7 * rows + 0.7)
 
 
 def two_families(states: Mapping[str, np.ndarray], alt: str) -> Illustration:
