@@ -409,9 +409,6 @@ def test_the_books_own_claims_are_not_the_papers():
     paper, own = claims.of_the_paper(), [c for c in ALL if c.printed == claims.OWN]
     again = [c for c in ALL if c.arm and c.printed != claims.OWN]
     assert own and again and len(paper) + len(own) + len(again) == len(ALL)
-    loop = {"run-time", "adaptive-control", "learning-in-the-loop", "stirring", "verdict"}
-    later = {"why-smooth-filters", "rivals", "real-arm", "joints-three-and-four"} | loop
-    assert {c.chapter for c in own} <= later
     loop = {"run-time", "adaptive-control", "learning-in-the-loop", "stirring"}
     loop |= {"joints-three-and-four"}
     assert {c.chapter for c in own} <= {"why-smooth-filters", "rivals", "real-arm"} | loop
