@@ -5,7 +5,8 @@
 - ``response``: what units and networks respond to, in signals and in physical units; probes
 - ``hidden_units``: saturation, ablation, cancellation, refitting, units matched between networks
 - ``sensitivity``: which inputs and ranges a network of states responds to
-- ``coverage``, ``noise``: what samples reach, and the error that sensors leave to anybody
+- ``coverage``, ``overlap``: what samples reach, and whether others reach the same
+- ``noise``: the error that sensors leave to anybody
 - ``simplified``: what simpler models of the arm lose
 """
 
@@ -24,6 +25,7 @@ __getattr__, __dir__, __all__ = hand_on(
     response="calibrated Calibrated decoded decoded_sign heard unit_inputs with_jerk",
     sensitivity="responses INPUTS input_shares shuffled transition_centre transition_range",
     coverage="cells_reached principal_deviations log10_reachable_share used_dimensions",
+    overlap="nearest_distances shared_cells",
     noise="acceleration_noise_gain noise_floor",
     simplified=(
         "OTHER_JOINT VELOCITY_TERMS linear_residual share_of_other_joint share_of_velocity_terms"

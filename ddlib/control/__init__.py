@@ -3,7 +3,7 @@
 - ``controllers``: proportional, PD and PID control, feedforward, computed torque
 - ``adaptive``, ``feedback_error``: controllers that learn while they control
 - ``guarded``: a safety stop for runs that leave their limits
-- ``windowed``: a model of windows as feedforward of a desired motion
+- ``windowed``: a model of windows as feedforward of a desired motion, or inside the loop
 - ``linear``: loops as python-control systems: poles, `margins` of gain and phase
 - ``delays``: poles of a sampled loop whose torque comes late
 - ``velocity``: velocity from position readings, noise against lag
@@ -16,11 +16,17 @@ __getattr__, __dir__, __all__ = hand_on(
     controllers=(
         "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
     ),
-    adaptive="CraigHsuSastry PARAMETERS SlotineLi Watched mixed_regressor",
     feedback_error="FeedbackErrorLearning RigidBodyTerms",
     guarded="Guarded REASONS Stops",
-    windowed="BETWEEN WindowFeedforward",
+    windowed=("BETWEEN MeasuredWindows PlannedTorque WindowFeedforward past_slopes poles_inside"),
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
     delays="late_poles",
     velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",
+    **{
+        "adaptive.regressor": "PARAMETERS mixed_regressor",
+        "adaptive.running": "Watched",
+        "adaptive.slotine_li": "SlotineLi",
+        "adaptive.craig": "CraigHsuSastry",
+        "adaptive.model_reference": "ModelReference",
+    },
 )

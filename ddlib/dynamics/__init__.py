@@ -4,6 +4,7 @@
 - ``kinematics``: where the hand is and how to get it there; circles of the hand
 - ``payload``: what the hand carries
 - ``serial``: arms in space of any number of joints; the PUMA 560
+- ``joints``: the arm of seven joints, and tools for any number: mass matrix, hand, regressor
 - ``derivation``: the equations of motion, derived by sympy
 - ``formulations``: Lagrange-Euler, its recursion and Newton-Euler in plain arithmetic
 - ``counting``, ``costs``: multiplications and additions counted by running a formulation
@@ -15,11 +16,15 @@ __getattr__, __dir__, __all__ = hand_on(
     __name__,
     arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY",
     kinematics=(
-        "ELBOWS LEAST_SINE Unreachable circle end_point_error follow_hand "
-        "inverse_kinematics jacobian jacobian_rate"
+        "ELBOWS LEAST_SINE Unreachable around circle end_point_error follow_hand "
+        "inverse_kinematics jacobian jacobian_rate reach"
     ),
     payload="with_load",
     serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
+    joints=(
+        "DD_ARM_II_IN_SPACE FOREARM PER_LINK TO_THIRD_AXIS frames hand inertial_parameters locked "
+        "mass_matrix regressor"
+    ),
     formulations="Constants LinkConstants lagrange_euler newton_euler recursive_lagrange",
     derivation="Derivation MAX_LINKS derive",
     counting="Counted Operations Tape",

@@ -53,6 +53,18 @@ def jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
     return quarter * turning[..., None, :] - extra
 
 
+def reach(arm: Arm) -> tuple[float, float]:
+    """Least and largest distance of the hand from the shoulder that `inverse_kinematics` takes, m.
+
+    Parameters
+    ----------
+    arm : Arm
+    """
+    (l1, l2), bent = arm.lengths, np.sqrt(1 - LEAST_SINE**2)
+    near, far = (np.sqrt(l1**2 + l2**2 + s * 2 * l1 * l2 * bent) for s in (-1, 1))
+    return float(near), float(far)
+
+
 def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
     """Angles that bring the hand to a point, shape (..., 2), rad.
 
@@ -73,11 +85,10 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
     one_of("elbow", elbow, ELBOWS)
     distance2 = (hand**2).sum(-1)
     cosine = (distance2 - l1**2 - l2**2) / (2 * l1 * l2)
-    low, high = (np.sqrt(l1**2 + l2**2 + s * 2 * l1 * l2 * np.sqrt(1 - LEAST_SINE**2))
-                 for s in (-1, 1))  # fmt: skip
     bad = np.abs(cosine) > np.sqrt(1 - LEAST_SINE**2)
     if bad.any():
         worst = float(np.sqrt(distance2[bad].ravel()[0]))
+        low, high = reach(arm)
         raise Unreachable(
             f"hand must be {low:.3f} to {high:.3f} m from the shoulder (nearer or farther the arm "
             f"is folded or stretched), got {worst:.3f} m"
@@ -126,6 +137,39 @@ def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
     return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]
 
 
+def around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
+    """Joint motion that moves the hand on circles, at any pace.
+
+    Parameters
+    ----------
+    arm : Arm
+    centre : array_like, shape (2,) or (runs, 2)
+        Of the circles, from the shoulder, m.
+    radius : float or array_like, shape (runs,)
+        Of the circles, m, above 0.
+    phase : sequence of three array_like, each of shape (time,) or (runs, time)
+        Where on its circle the hand is, counter-clockwise from its far right, rad; the rate of
+        that, rad/s, and the rate's rate, rad/s^2.
+    elbow : {"positive", "negative"}
+        Sign of the elbow angle.
+
+    Raises
+    ------
+    Unreachable
+        If part of a circle cannot be reached.
+    """
+    radius = finite_array("radius", radius)
+    if not (radius > 0).all():
+        raise ValueError(f"radius must be above 0, got {radius.min():g}")
+    angle, rate, change = (finite_array("phase", x)[..., None] for x in phase)
+    along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
+    across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
+    size = radius[..., None, None]
+    hand = finite_array("centre", centre, 2)[..., None, :] + size * along
+    pull = size * (change * across - rate**2 * along)
+    return follow_hand(arm, hand, size * rate * across, pull, elbow)
+
+
 def circle(
     arm: Arm, centre, radius: float, period: float, t, elbow: str = "positive"
 ) -> Trajectory:
@@ -153,7 +197,4 @@ def circle(
     number("radius", radius, 0.0, open_low=True)
     omega = 2 * np.pi / number("period", period, 0.0, open_low=True)
     phase = omega * finite_array("t", t)
-    along = np.stack([np.cos(phase), np.sin(phase)], -1)
-    across = np.stack([-np.sin(phase), np.cos(phase)], -1)
-    hand = finite_array("centre", centre, 2)[..., None, :] + radius * along
-    return follow_hand(arm, hand, omega * radius * across, -(omega**2) * radius * along, elbow)
+    return around(arm, centre, radius, (phase, np.full_like(phase, omega), 0 * phase), elbow)

@@ -141,8 +141,12 @@ def _import_statements(text: str) -> list[tuple[str, list[str]]]:
 @cache
 def _handed_on(text: str) -> list[tuple[str, list[str]]]:
     """The keywords of a package's ``__init__``: modules, with the names they hand on."""
-    nodes = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.keyword))
-    return [(node.arg, ast.literal_eval(node.value).split()) for node in nodes]
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.keyword):  # without a name: a dictionary of dotted modules
+            value = ast.literal_eval(node.value)
+            found += value.items() if node.arg is None else [(node.arg, value)]
+    return [(module, names.split()) for module, names in found]
 
 
 @cache

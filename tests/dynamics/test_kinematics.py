@@ -10,12 +10,14 @@ from ddlib.dynamics.kinematics import (
     ELBOWS,
     LEAST_SINE,
     Unreachable,
+    around,
     circle,
     end_point_error,
     follow_hand,
     inverse_kinematics,
     jacobian,
     jacobian_rate,
+    reach,
 )
 
 angles = st.tuples(st.floats(-3.1, 3.1), st.floats(-3.0, 3.0))
@@ -91,3 +93,31 @@ def test_end_point_error_points_from_the_wanted_to_the_true_hand():
     wanted, q = np.array([0.3, 0.8]), np.array([0.35, 0.7])
     found = end_point_error(ARM, wanted, q)
     np.testing.assert_allclose(found, hand_of(q) - hand_of(wanted), atol=1e-12)
+
+
+def test_circles_of_many_kinds_at_any_pace():
+    """Radii, paces and directions differ by run; derivatives by finite differences."""
+    t = np.linspace(0.0, 1.0, 2001)
+    pace = np.array([2 * np.pi, -3.0])[:, None]
+    phase = pace * (t + 0.3 * t**2), pace * (1 + 0.6 * t), pace * 0.6 * np.ones_like(t)
+    centre, radius = np.array([[0.6, 0.1], [0.3, -0.5]]), np.array([0.1, 0.05])
+    q, qd, qdd = around(ARM, centre, radius, phase, "negative")
+    offset = hand_of(q) - centre[:, None]
+    np.testing.assert_allclose(np.hypot(*np.moveaxis(offset, -1, 0)), radius[:, None] + 0 * t)
+    turned = np.unwrap(np.arctan2(offset[..., 1], offset[..., 0]))
+    np.testing.assert_allclose(turned - turned[:, :1], phase[0], atol=1e-9)
+    for x, rate in ((q, qd), (qd, qdd)):
+        numeric = np.gradient(x, t, axis=1, edge_order=2)
+        np.testing.assert_allclose(rate, numeric, atol=1e-3 * np.abs(rate).max())
+    with pytest.raises(ValueError, match="radius must be above 0, got -1"):
+        around(ARM, centre, [0.1, -1.0], phase)
+
+
+@pytest.mark.parametrize("elbow", ELBOWS)
+def test_reach_is_where_inverse_kinematics_ends(elbow):
+    near, far = reach(ARM)
+    for fine, bad in ((near + 1e-9, near - 1e-6), (far - 1e-9, far + 1e-6)):
+        q = inverse_kinematics(ARM, (0.0, fine), elbow)
+        assert abs(np.sin(q[1])) == pytest.approx(LEAST_SINE, abs=1e-6)
+        with pytest.raises(Unreachable):
+            inverse_kinematics(ARM, (0.0, bad), elbow)

@@ -133,11 +133,15 @@ def cells() -> str:
     return "\n".join(parts)
 
 
+UNSEEN = {"pinocchio": "pin"}
+"""Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
+
+
 def distributions(source: str) -> set[str]:
     """Distributions from which a source imports, in normal form; unknown modules as they are."""
     scripts = (path for path in SOURCES if not path.is_relative_to(ROOT / "ddlib"))
     here = {path.stem for path in scripts} | {"ddlib"}
-    known = packages_distributions()
+    known = packages_distributions() | {name: [own] for name, own in UNSEEN.items()}
     names = imported(source) - set(sys.stdlib_module_names) - here
     return {canonicalize_name(known.get(name, [name])[0]) for name in names}
 

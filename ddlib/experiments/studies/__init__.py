@@ -34,6 +34,7 @@ from ddlib.experiments.studies.beyond import (
     rivals,
     rivals_1988,
 )
+from ddlib.experiments.studies.loop import joints, run_time, stirring
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -60,5 +61,8 @@ PARTS: dict[str, Callable[[], dict]] = {
     "real-arm": real_arm.real_arm,
     "characters": characters.characters,
     "gaussian-intervals": intervals.gaussian_intervals,
+    "run-time": run_time.run_time,
+    "joints": joints.joints,
+    "stirring": stirring.stirring,
 }
 """The studies by the name of their result."""

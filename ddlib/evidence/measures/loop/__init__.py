@@ -1,4 +1,7 @@
 """Measures of Part IV, *Closing the loop*: "loop.module.function" in a claim.
 
+- ``run_time``: torques at run time: end-point errors of feedforwards, and what predicts them
+- ``joints``: joints three and four, and up to seven
+- ``stirring``: circles and via points, what transfers
 - ``verdict``: what all verdicts together hang on
 """

@@ -1,1 +1,9 @@
-"""Studies of Part IV, *Closing the loop*; `PARTS` of the package above names them too."""
+"""Studies of Part IV, *Closing the loop*; `PARTS` of the package above names them too.
+
+- ``run_time_parts``: motions, feedforwards and scores of ``run_time``
+- ``run_time``: section 7.1's next step: torques at run time, and the end-point error
+- ``chain``: arms of one to seven joints on the report's family of motions
+- ``joints``: joints three and four, and up to seven
+- ``motions``: circles of the hand, several via points; what is learnt from them and asked
+- ``stirring``: what transfers between these families and Appendix I
+"""

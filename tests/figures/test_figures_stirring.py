@@ -1,0 +1,83 @@
+"""Figures of the chapter on stirring: accessible, and true to what they are given."""
+
+import inspect
+import re
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from pictures import drawn
+
+from ddlib.figures import INK, Illustration
+from ddlib.figures.beyond import stirring as figures_stirring
+
+PHASE = np.linspace(0, 2 * np.pi, 40)
+WANTED = np.stack([np.cos(PHASE), np.sin(PHASE)], -1)
+OFF = WANTED + np.array((0.01, -0.02))
+POINTS = {"one": ([1.0, 2.0], [30.0, 20.0]), "other": ([3.0], [4.0])}
+STATES = np.arange(24.0).reshape(4, 6)
+EXAMPLES = {
+    "traded": lambda: figures_stirring.traded(
+        POINTS, (10.0, 15.0), ("error there, mm", "error here, mm"), "Dots."
+    ),
+    "paths": lambda: figures_stirring.paths(
+        WANTED, {"none": OFF, "exact": WANTED}, 10, "Two paths.", columns=2
+    ),
+    "two_families": lambda: figures_stirring.two_families(
+        {"first": STATES, "second": -STATES}, "Two clouds."
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def made():
+    return {name: drawn(make) for name, make in EXAMPLES.items()}
+
+
+def test_every_figure_has_an_example():
+    functions = inspect.getmembers(figures_stirring, inspect.isfunction)
+    own = {n for n, f in functions if f.__module__ == figures_stirring.__name__ and n[0] != "_"}
+    assert own == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_sound_and_accessible(made, name):
+    figure, _ = made[name]
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.attrib["role"] == "figure" and root.attrib["aria-label"] == figure.alt
+    assert INK not in figure.svg and "currentColor" in figure.svg
+    assert not re.search(r"\bnan\b", figure.svg)
+
+
+def test_dots_and_lines_are_where_they_belong(made):
+    (axis,) = made["traded"][1].axes
+    lines = {line.get_label(): line.get_xydata() for line in axis.lines}
+    np.testing.assert_array_equal(lines["one"], np.transpose(POINTS["one"]))
+    crossing = [line for line in axis.lines if line.get_label()[0] == "_"]
+    assert crossing[0].get_xdata()[0] == 10 and crossing[1].get_ydata()[0] == 15
+
+
+def test_errors_are_exaggerated_and_the_path_is_not(made):
+    none, exact = made["paths"][1].axes
+    np.testing.assert_allclose(none.lines[0].get_xydata(), WANTED)
+    np.testing.assert_allclose(none.lines[1].get_xydata(), WANTED + np.array((0.1, -0.2)))
+    np.testing.assert_allclose(exact.lines[1].get_xydata(), WANTED)
+
+
+def test_states_are_shoulder_against_elbow(made):
+    for k, axis in enumerate(made["two_families"][1].axes):
+        np.testing.assert_array_equal(axis.lines[0].get_xydata(), STATES[:, [k, k + 3]])
+
+
+def test_bad_data_are_refused():
+    with pytest.raises(ValueError, match="points must hold"):
+        figures_stirring.traded({}, (1, 1), ("a", "b"), "x")
+    with pytest.raises(ValueError, match="points of 'one'"):
+        figures_stirring.traded({"one": ([1.0], [0.0])}, (1, 1), ("a", "b"), "x")
+    with pytest.raises(ValueError, match="path of 'a'"):
+        figures_stirring.paths(WANTED, {"a": OFF[:3]}, 10, "x")
+    with pytest.raises(ValueError, match="panels must hold"):
+        figures_stirring.paths(WANTED, {}, 10, "x")
+    with pytest.raises(ValueError, match="states must hold"):
+        figures_stirring.two_families({}, "x")
