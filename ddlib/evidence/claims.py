@@ -53,7 +53,6 @@ import yaml
 
 from ddlib._check import book_file, one_of
 from ddlib.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
-from ddlib.tables import Table
 
 FILE = Path(__file__).parents[2] / "book" / "claims.yml"
 """Where the claims are kept."""
@@ -366,24 +365,6 @@ def sure(claim: Claim) -> str:
         words = ", ".join(f"{100 * share:.0f} % {name}" for name, share in found.items())
         return f"undecided: {words} of draws"
     return f"{verdict}, {100 * found[verdict]:.0f} % of draws"
-
-
-def chapter_table(chapter: str) -> Table:
-    """A chapter's "Paper and reproduction": claim, printed value, ours, verdict, reason.
-
-    Parameters
-    ----------
-    chapter : str
-        Name of the page, like "window-networks".
-    """
-    header = ("claim", "printed", "here", "verdict", "why")
-    return Table(
-        header,
-        [
-            (f"{c.claim} ({c.where})", printed(c), here(c), sure(c), c.why)
-            for c in of_chapter(chapter)
-        ],
-    )
 
 
 def of_section(section: str) -> list[Claim]:
