@@ -45,6 +45,11 @@ FINDINGS = (
     "changes-predicted",
     "hidden-units-contribute-test",
     "tradeoff",
+    "network-against-identification",
+    "run-time-torques",
+    "kawato-different",
+    "stirring-hand-worse",
+    "joints-three-and-four",
 )
 """Ids of the claims on which the paper's theses and this book's answers hang."""
 

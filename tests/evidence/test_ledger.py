@@ -165,14 +165,14 @@ def test_direct_filters_follow_position_after_two_sines_too():
     assert (resampled(direct["position"], np.mean) > 0.5).mean() >= SURE
 
 
-def test_ten_findings_good_and_bad():
+def test_main_findings_good_and_bad():
     """One table for those who read no other: each row a claim as it is judged, with its chapter."""
     known = {claim.id: claim for claim in claims.load()}
     chosen = [known[name] for name in ledger_tables.FINDINGS]
-    assert len(set(ledger_tables.FINDINGS)) == 10
+    assert len(set(ledger_tables.FINDINGS)) == len(chosen) <= 15  # few enough to read
     verdicts = [claim.verdict for claim in chosen]
     assert not {"by construction", "not testable"} & set(verdicts)
-    assert verdicts.count("not reproduced") >= 3  # no selection of what came out well
+    assert verdicts.count("not reproduced") >= 4  # no selection of what came out well
     pages = [page.removeprefix("book/") for page in CHAPTERS]
     places = [pages.index(claim.chapter) for claim in chosen]
     assert places == sorted(places) and len(set(places)) >= 5
