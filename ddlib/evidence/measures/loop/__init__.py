@@ -3,4 +3,5 @@
 - ``run_time``: torques at run time: end-point errors of feedforwards, and what predicts them
 - ``joints``: joints three and four, and up to seven
 - ``stirring``: circles and via points, what transfers
+- ``adaptive``: adaptive controllers
 """
