@@ -34,7 +34,7 @@ from ddlib.experiments.studies.beyond import (
     rivals,
     rivals_1988,
 )
-from ddlib.experiments.studies.loop import joints, run_time, stirring
+from ddlib.experiments.studies.loop import adaptive, joints, run_time, stirring
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -64,5 +64,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "run-time": run_time.run_time,
     "joints": joints.joints,
     "stirring": stirring.stirring,
+    "adaptive": adaptive.adaptive,
 }
 """The studies by the name of their result."""

@@ -2,4 +2,5 @@
 
 - ``rivals``: the picker of rivals
 - ``stirring``: circles of the hand in the workspace
+- ``loop``: the loop with a learner inside
 """

@@ -3,5 +3,6 @@
 - ``run_time``: torques at run time: end-point errors of feedforwards, and what predicts them
 - ``joints``: joints three and four, and up to seven
 - ``stirring``: circles and via points, what transfers
+- ``adaptive``: adaptive controllers
 - ``verdict``: what all verdicts together hang on
 """

@@ -6,4 +6,6 @@
 - ``joints``: joints three and four, and up to seven
 - ``motions``: circles of the hand, several via points; what is learnt from them and asked
 - ``stirring``: what transfers between these families and Appendix I
+- ``adaptive``: adaptive controllers
+- ``runs``: runs of many controllers in one batch
 """
