@@ -4,4 +4,5 @@
 - ``joints``: joints three and four, and up to seven
 - ``stirring``: circles and via points, what transfers
 - ``adaptive``: adaptive controllers
+- ``learning``: learners in the loop, beside the feedback alone
 """
