@@ -2,6 +2,7 @@
 
 - ``controllers``: proportional, PD and PID control, feedforward, computed torque
 - ``adaptive``, ``feedback_error``: controllers that learn while they control
+- ``online``: the window network inside the controller, learning while the arm moves
 - ``guarded``: a safety stop for runs that leave their limits
 - ``windowed``: a model of windows as feedforward of a desired motion, or inside the loop
 - ``linear``: loops as python-control systems: poles, `margins` of gain and phase
@@ -16,7 +17,8 @@ __getattr__, __dir__, __all__ = hand_on(
     controllers=(
         "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
     ),
-    feedback_error="FeedbackErrorLearning RigidBodyTerms",
+    feedback_error="FeedbackErrorLearning GenericTerms MotionMemory RigidBodyTerms",
+    online="Abreast Descent LastLayer LinearFilter OnlineFeedforward OnlineNetwork TEACHERS",
     guarded="Guarded REASONS Stops",
     windowed=("BETWEEN MeasuredWindows PlannedTorque WindowFeedforward past_slopes poles_inside"),
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",

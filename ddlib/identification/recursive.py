@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, number, shaped
+from ddlib._check import number, shaped
 
 
 class RecursiveLeastSquares:
@@ -17,8 +17,8 @@ class RecursiveLeastSquares:
 
     Parameters
     ----------
-    weights : array_like, shape (outputs, features)
-        First guess.
+    weights : array_like, shape (..., outputs, features)
+        First guess; leading axes are runs, each with an estimate of its own.
     penalty : float
         Weight of the first guess: it is ``penalty / 2`` times the squared distance from it,
         above 0.
@@ -28,29 +28,30 @@ class RecursiveLeastSquares:
 
     Attributes
     ----------
-    weights : ndarray, shape (outputs, features)
+    weights : ndarray, shape (..., outputs, features)
         The estimate after the last sample.
-    covariance : ndarray, shape (features, features)
+    covariance : ndarray, shape (..., features, features)
         Inverse of the (discounted) sum of squares, ``penalty`` included; of all outputs alike.
     """
 
     def __init__(self, weights, penalty: float = 1e-3, forgetting: float = 1.0):
-        self.weights = shaped("weights", weights, "(outputs, features)").copy()
+        self.weights = shaped("weights", weights, "(..., outputs, features)").copy()
         number("penalty", penalty, 0.0, open_low=True)
         self.forgetting = number("forgetting", forgetting, 0.0, 1.0, open_low=True)
-        self.covariance = np.eye(self.weights.shape[1]) / penalty
+        *runs, _, count = self.weights.shape
+        self.covariance = np.broadcast_to(np.eye(count) / penalty, (*runs, count, count))
 
     def update(self, features, target) -> np.ndarray:
         """Learn from one sample; what the estimate before it would have said.
 
         Parameters
         ----------
-        features : array_like, shape (features,)
-        target : array_like, shape (outputs,)
+        features : array_like, shape (..., features)
+        target : array_like, shape (..., outputs)
 
         Returns
         -------
-        ndarray, shape (outputs,)
+        ndarray, shape (..., outputs)
             The prediction before learning.
 
         Raises
@@ -58,13 +59,15 @@ class RecursiveLeastSquares:
         ValueError
             If a shape does not fit or a number is not finite; nothing is learnt then.
         """
-        outputs, count = self.weights.shape
-        features = shaped("features", features, (count,))
-        target = finite_array("target", target, outputs)
-        seen = self.covariance @ features
-        gain = seen / (self.forgetting + features @ seen)
-        predicted = self.weights @ features
-        self.weights = self.weights + np.outer(target - predicted, gain)
-        left = (self.covariance - np.outer(gain, seen)) / self.forgetting
-        self.covariance = (left + left.T) / 2
+        *runs, outputs, count = self.weights.shape
+        features = shaped("features", features, (*runs, count))
+        target = shaped("target", target, (*runs, outputs))
+        seen = (self.covariance @ features[..., None])[..., 0]
+        weight = self.forgetting + (features * seen).sum(-1, keepdims=True)
+        gain = seen / weight
+        predicted = (self.weights @ features[..., None])[..., 0]
+        missed = (target - predicted)[..., None]
+        self.weights = self.weights + missed * gain[..., None, :]
+        left = (self.covariance - gain[..., None] * seen[..., None, :]) / self.forgetting
+        self.covariance = (left + np.swapaxes(left, -1, -2)) / 2
         return predicted

@@ -34,7 +34,7 @@ from ddlib.experiments.studies.beyond import (
     rivals,
     rivals_1988,
 )
-from ddlib.experiments.studies.loop import adaptive, joints, run_time, stirring
+from ddlib.experiments.studies.loop import adaptive, joints, learning, run_time, stirring
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -65,5 +65,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "joints": joints.joints,
     "stirring": stirring.stirring,
     "adaptive": adaptive.adaptive,
+    "learning-in-the-loop": learning.learning_in_the_loop,
 }
 """The studies by the name of their result."""

@@ -7,4 +7,5 @@
 - ``run_time``: what predicts the end-point error
 - ``joints``: errors over motions by number of joints, what is needed, couplings
 - ``stirring``: states of two families, errors on both, paths of the hand
+- ``learning``: learners in the loop, trial by trial and motion by motion
 """

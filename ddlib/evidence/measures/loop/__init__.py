@@ -4,5 +4,6 @@
 - ``joints``: joints three and four, and up to seven
 - ``stirring``: circles and via points, what transfers
 - ``adaptive``: adaptive controllers
+- ``learning``: learners in the loop, beside the feedback alone
 - ``verdict``: what all verdicts together hang on
 """

@@ -8,4 +8,6 @@
 - ``stirring``: what transfers between these families and Appendix I
 - ``adaptive``: adaptive controllers
 - ``runs``: runs of many controllers in one batch
+- ``learners``: what learns in the loop: draws, motions, learners that outlive a run
+- ``learning``: the same, trial by trial
 """
