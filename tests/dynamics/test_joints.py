@@ -11,6 +11,7 @@ from ddlib.dynamics import (
     PUMA_560,
     SerialArm,
     SpatialLink,
+    end_point_error,
     frames,
     hand,
     inertial_parameters,
@@ -151,3 +152,20 @@ def test_pinocchio_agrees(name):
         np.testing.assert_allclose(mass[k], upper + np.triu(upper, 1).T, rtol=0, atol=1e-9)
         pinocchio.framesForwardKinematics(library, data, q)
         np.testing.assert_allclose(place[k, -1], data.oMf[end].homogeneous, rtol=0, atol=1e-9)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Pinocchio has no wheels for Windows")
+def test_the_end_point_error_is_where_pinocchio_puts_the_hand():
+    l1, l2 = CMU_DD_ARM_II.lengths
+    links = [SpatialLink(0.0, length, 0.0, 1.0, np.zeros(3), np.eye(3)) for length in (l1, l2)]
+    library, end = model(SerialArm(links))
+    data = library.createData()
+
+    def place(q):
+        pinocchio.framesForwardKinematics(library, data, q)
+        return data.oMf[end].translation[:2].copy()
+
+    wanted, q, _ = states(2)
+    expected = [place(true) - place(asked) for true, asked in zip(q, wanted)]
+    found = end_point_error(CMU_DD_ARM_II, wanted, q)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
