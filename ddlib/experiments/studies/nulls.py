@@ -55,7 +55,7 @@ DESCENT = {
     "scaling": (-1.0, 1.0), "rate": 66.0, "momentum": 0.995, "warm_up": 1000, "steps": 0,
     "decay": 0.0, "epochs": EPOCHS,
 }  # fmt: skip
-"""Descent of the trial: with centred inputs, which gets far in few epochs."""
+"""How the trial descends, with centred inputs, which gets far in few epochs."""
 
 RIDGE = 1e-2
 """Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques
