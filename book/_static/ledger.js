@@ -14,6 +14,11 @@
   };
   addEventListener("hashchange", open);
 
+  for (const tile of tiles)
+    tile.querySelector("summary").addEventListener("click", () => {
+      if (!tile.open) history.replaceState(null, "", `#${tile.id}`);
+    });
+
   const wall = document.querySelector(".wall");
   if (wall) filters();
   open();
@@ -51,7 +56,7 @@
     const reset = document.createElement("button");
     Object.assign(reset, { type: "button", textContent: "Show all" });
     bar.append(...verdicts, section, chapter, words, reset, count);
-    tiles[0].closest("section").before(bar);
+    wall.before(bar);
 
     const read = () => {
       const asked = new URLSearchParams(location.hash.slice(1));
@@ -90,7 +95,11 @@
     };
     for (const button of verdicts)
       button.addEventListener("click", () => {
-        button.setAttribute("aria-pressed", String(button.ariaPressed !== "true"));
+        const pressed = (b) => b.ariaPressed === "true";
+        const press = (b, on) => b.setAttribute("aria-pressed", String(on));
+        if (verdicts.every(pressed)) for (const b of verdicts) press(b, b === button); // this alone
+        else press(button, !pressed(button));
+        if (!verdicts.some(pressed)) for (const b of verdicts) press(b, true);
         show(true);
       });
     bar.addEventListener("input", () => show(true));

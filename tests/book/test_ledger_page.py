@@ -36,6 +36,13 @@ def test_signs_open_their_claims(ledger):
     assert opened.page.url.endswith(name) and not opened.problems
 
 
+def test_a_claim_that_is_opened_can_be_shared(ledger):
+    opened = ledger()
+    tile = opened.page.locator("details.claim").nth(3)
+    tile.locator("summary").click()
+    assert opened.page.url.endswith("#" + tile.get_attribute("id"))
+
+
 def test_an_address_opens_its_claim(ledger):
     claim = PAPER[-1]
     opened = ledger(f"#claim-{claim.id}")
@@ -48,13 +55,11 @@ def test_an_address_opens_its_claim(ledger):
 def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     opened = ledger()
     bar = opened.page.locator(".claim-filter")
-    for verdict in ("reproduced", "qualitative", "not reproduced"):
-        bar.locator(f'[data-verdict="{verdict}"]').click()
+    for verdict in ("undecided", "by construction", "qualitative", "qualitative"):
+        bar.locator(f'[data-verdict="{verdict}"]').click()  # the first alone, others are added
     bar.locator('[name="s"]').select_option("5")
-    wanted = [
-        c for c in PAPER if c.place()[0] == "5"
-        and c.judge() not in ("reproduced", "qualitative", "not reproduced")
-    ]  # fmt: skip
+    kinds = ("undecided", "by construction")
+    wanted = [c for c in PAPER if c.place()[0] == "5" and c.judge() in kinds]
     assert wanted and shown(opened) == len(wanted)
     assert bar.locator("output").inner_text() == f"{len(wanted)} of {len(PAPER)} claims"
     assert opened.page.locator(".wall-row a.off").count() == len(PAPER) - len(wanted)

@@ -35,6 +35,7 @@ from ddlib.experiments.studies.beyond import (
     rivals_1988,
 )
 from ddlib.experiments.studies.loop import adaptive, joints, learning, run_time, stirring
+from ddlib.experiments.studies.loop.runs import conditions
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -66,5 +67,6 @@ PARTS: dict[str, Callable[[], dict]] = {
     "stirring": stirring.stirring,
     "adaptive": adaptive.adaptive,
     "learning-in-the-loop": learning.learning_in_the_loop,
+    "loop-conditions": conditions.loop_conditions,
 }
 """The studies by the name of their result."""

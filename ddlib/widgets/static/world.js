@@ -68,10 +68,12 @@ function worldOf(spec, values) {
   world.release = () => (world.mode = "free");
   world.places = () => placesOf(lengths, run.q);
   world.angles = () => run.q;
-  // Stand still somewhere.
+  // Stand still somewhere, as if it had always stood there.
   world.stand = (q) => {
     run = drive(plant, q, [0, 0], step);
     world.mode = "free";
+    world.samples = [];
+    for (let k = KEPT * every; k > 0; k--) world.period();
   };
 
   function log() {

@@ -5,5 +5,6 @@
 - ``stirring``: circles and via points, what transfers
 - ``adaptive``: adaptive controllers
 - ``learning``: learners in the loop, beside the feedback alone
+- ``conditions``: four of these findings under other conditions
 - ``verdict``: what all verdicts together hang on
 """

@@ -1,4 +1,5 @@
 """Runs of many controllers in one batch, for the studies of the package above.
 
+- ``conditions``: on what four findings of these studies hang
 - ``adaptive``: adaptive controllers side by side, one motion after another
 """
