@@ -1,14 +1,9 @@
 """Figures of the chapter on stirring: accessible, and true to what they are given."""
 
-import inspect
-import re
-import xml.etree.ElementTree as ET
-
 import numpy as np
 import pytest
-from pictures import drawn
+from pictures import check_sound, drawn, figures_in
 
-from ddlib.figures import INK, Illustration
 from ddlib.figures.beyond import stirring as figures_stirring
 
 PHASE = np.linspace(0, 2 * np.pi, 40)
@@ -35,19 +30,13 @@ def made():
 
 
 def test_every_figure_has_an_example():
-    functions = inspect.getmembers(figures_stirring, inspect.isfunction)
-    own = {n for n, f in functions if f.__module__ == figures_stirring.__name__ and n[0] != "_"}
-    assert own == set(EXAMPLES)
+    assert figures_in(figures_stirring) == set(EXAMPLES)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_sound_and_accessible(made, name):
     figure, _ = made[name]
-    assert isinstance(figure, Illustration)
-    root = ET.fromstring(figure.svg)
-    assert root.attrib["role"] == "figure" and root.attrib["aria-label"] == figure.alt
-    assert INK not in figure.svg and "currentColor" in figure.svg
-    assert not re.search(r"\bnan\b", figure.svg)
+    check_sound(figure)
 
 
 def test_dots_and_lines_are_where_they_belong(made):

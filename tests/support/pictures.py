@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from types import ModuleType
 from unittest import mock
 
 import numpy as np
@@ -11,7 +14,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from ddlib.figures import Illustration, style
+from ddlib.figures import INK, Illustration, style
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -28,6 +31,21 @@ def drawn(make: Callable[[], Illustration]) -> tuple[Illustration, Figure]:
     with mock.patch.object(style, "Figure", Kept):
         picture = make()
     return picture, kept[-1]
+
+
+def figures_in(module: ModuleType) -> set[str]:
+    """The public figures that a module defines itself."""
+    functions = inspect.getmembers(module, inspect.isfunction)
+    return {n for n, f in functions if f.__module__ == module.__name__ and n[0] != "_"}
+
+
+def check_sound(figure: Illustration) -> None:
+    """Read aloud as its alternative text, drawn in the page's own ink, with numbers only."""
+    assert isinstance(figure, Illustration)
+    root = ET.fromstring(figure.svg)
+    assert root.attrib["role"] == "figure" and root.attrib["aria-label"] == figure.alt
+    assert INK not in figure.svg and "currentColor" in figure.svg
+    assert not re.search(r"\bnan\b", figure.svg)
 
 
 def curves(figure: Figure, colour: str) -> list[np.ndarray]:
