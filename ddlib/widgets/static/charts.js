@@ -49,7 +49,9 @@ function swatch(kind, k) {
 const DRAW = {
   line: ({ xs, y, values }) => {
     let d = "";
-    for (let i = 0; i < xs.length; i++) d += `${i ? "L" : "M"}${xs[i]} ${short(y(values[i]))}`;
+    for (let i = 0; i < xs.length && values[i] === values[i]; i++) { // a run that was stopped ends in NaN
+      d += `${i ? "L" : "M"}${xs[i]} ${short(y(values[i]))}`;
+    }
     return [d];
   },
   stems: ({ xs, y, values, base, shift }) => {

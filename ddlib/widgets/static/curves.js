@@ -11,9 +11,14 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // controls, top, numbers (a list below the charts), words (returns texts to be spoken), schedule() (redraws in the next frame).
 const extras = [];
 
+// What a widget that computes in the page sets (engine/live.py): the view's curves by name; they end
+// in NaN where a run is over.
+let live = null;
+
 function build({ model, el }) {
   const spec = model.get("spec");
-  const tables = readTables(spec, model.get("baked"));
+  if (spec?.live) checkSpec(spec);
+  const tables = spec?.live ? null : readTables(spec, model.get("baked"));
   const names = spec.parameters.map((p) => p.name);
   const view = { model, el, spec, id: `dd${Math.random().toString(36).slice(2, 10)}` };
   const read = () => {
@@ -63,13 +68,14 @@ function build({ model, el }) {
   // Everything but the charts.
   function update() {
     frame = 0;
-    view.curves = split(spec, current());
+    view.curves = spec.live ? live(view) : split(spec, current());
     controls.forEach((control) => control.update());
     for (const { name, output, unit, digits } of scalars) {
       const { low, high } = spec.curves.find((curve) => curve.name === name);
-      write(output, format(view.curves[name][0], low, high, unit, digits));
+      const [value] = view.curves[name];
+      write(output, Number.isNaN(value) ? "none" : format(value, low, high, unit, digits));
     }
-    el.dataset.values = view.exact ? "exact" : "interpolated";
+    el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "interpolated";
   }
   function redraw() {
     update();
@@ -98,6 +104,7 @@ function build({ model, el }) {
   };
   function ask() {
     if (model.kernelless) return;
+    if (spec.live) return void model.save_changes();
     again = Boolean(waiting);
     if (waiting) return;
     model.set("request", model.get("request") + 1);
@@ -179,6 +186,7 @@ function build({ model, el }) {
 }
 
 function footerText(model, spec) {
+  if (spec.live) return "Computed in this page while you move things.";
   const percent = Number((100 * spec.error).toPrecision(2)) || "below 0.001";
   const points = spec.parameters.map((p) => p.grid).join(" × ");
   const measured = `at most ${percent} % of a curve's range, at ${spec.checks} random settings`;

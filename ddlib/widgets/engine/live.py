@@ -1,0 +1,95 @@
+"""Widgets whose curves the page computes itself: no table, no grid, no interpolation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts.parameters import Choice, Parameter
+
+
+class Computed:
+    """What `ddlib.widgets.baking.baked.Baked` is for a widget without a table.
+
+    Parameters
+    ----------
+    function : callable
+        The Python side of what the page computes; its curves may end in NaN.
+    parameters : sequence of Parameter or Choice
+    examples : sequence of mappings
+        Settings, each with the parameters that differ from the start. The ranges of the curves
+        over them decide with how many decimals numbers are written.
+    """
+
+    cubic, groups = False, ()
+
+    def __init__(self, function, parameters, examples: Sequence[Mapping] = ()):
+        self.function, self.parameters = function, tuple(parameters)
+        start = {p.name: p.value for p in self.parameters}
+        found = [self.interpolate(**start, **{})]
+        found += [self.interpolate(**{**start, **setting}) for setting in examples]
+        self.lengths = {name: curve.size for name, curve in found[0].items()}
+        ends = [[(np.nanmin(x), np.nanmax(x)) for x in row.values()] for row in found]
+        self.low, self.high = np.nanmin(ends, 0)[:, 0], np.nanmax(ends, 0)[:, 1]
+
+    def interpolate(self, **values) -> dict[str, np.ndarray]:
+        """The function's curves; nothing is interpolated."""
+        return {name: np.atleast_1d(x) for name, x in self.function(**values).items()}
+
+    def error(self, n=200, seed=0) -> float:
+        """0: the page computes; how well, its tests say."""
+        return 0.0
+
+    def tobytes(self) -> bytes:
+        """Nothing."""
+        return b""
+
+    def checksum(self) -> int:
+        """Of nothing."""
+        return 0
+
+
+class LiveWidget(CurveWidget):
+    """A `CurveWidget` whose script computes the curves: it sets ``live`` (static/curves.js).
+
+    The kernel is not asked for curves; it sees the parameters, and Python code may set them.
+
+    Parameters
+    ----------
+    function : callable
+        The same in Python, for `curves`, for tests and for the still picture.
+    parameters : sequence of Parameter or Choice
+    panels : sequence of Panel
+    examples : sequence of mappings
+        As for `Computed`.
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    def __init__(
+        self,
+        function,
+        parameters: Sequence[Parameter | Choice],
+        panels,
+        *,
+        examples: Sequence[Mapping] = (),
+        **options,
+    ):
+        self._examples = examples
+        super().__init__(function, parameters, panels, **options)
+
+    @property
+    def curves(self) -> dict[str, np.ndarray]:
+        """The function's result at the parameters as they stand; NaN where a run was over."""
+        return self._baked.interpolate(**self.values)
+
+    def _bake(self, function, parameters, *_):
+        return Computed(function, parameters, self._examples)
+
+    def _spec(self, *given) -> dict:
+        return {**super()._spec(*given), "live": True}
+
+    def _compute(self):
+        """The page does."""
