@@ -42,10 +42,15 @@
       for (const [value, text] of [["", label], ...options]) box.add(new Option(text, value));
       return box;
     };
-    const titles = [...wall.querySelectorAll(".wall-row")].map((row) => [
-      document.getElementById(row.querySelector("a").hash.slice(1)).dataset.section,
-      row.querySelector("span").textContent,
-    ]);
+    const titles = [...wall.querySelectorAll(".wall-row")].flatMap((row) => {
+      const inside = [...row.querySelectorAll("a")].map(
+        (a) => document.getElementById(a.hash.slice(1)).dataset);
+      const parts = [...new Set(inside.map((data) => data.part))].filter(Boolean);
+      return [
+        [inside[0].section, row.querySelector("span").textContent],
+        ...parts.map((part) => [/^\d/.test(part) ? part.slice(0, 3) : part, `\u2003${part}`]),
+      ];
+    });
     const chapters = [...new Set(tiles.map((tile) => tile.dataset.chapter))].sort();
     const section = choice("All sections", "s", titles);
     const chapter = choice("All chapters", "c", chapters.map((c) => [c, c.replaceAll("-", " ")]));
@@ -75,8 +80,9 @@
       const asked = words.value.trim().toLowerCase();
       let shown = 0;
       for (const tile of tiles) {
-        const { verdict, section: s, chapter: c } = tile.dataset;
-        const fits = on.has(verdict) && [s, ""].includes(section.value)
+        const { verdict, section: s, part, chapter: c } = tile.dataset;
+        const place = section.value.includes(".") ? part.slice(0, 3) : part;
+        const fits = on.has(verdict) && [s, place, ""].includes(section.value)
           && [c, ""].includes(chapter.value)
           && (!asked || tile.textContent.toLowerCase().includes(asked));
         tile.hidden = !fits;

@@ -7,6 +7,7 @@ a page that holds a `Wall`. Both can be read without a script.
 from __future__ import annotations
 
 import html
+import inspect
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +19,7 @@ from ddlib.evidence.claims import (
     SECTIONS,
     Claim,
     Printed,
+    function,
     here,
     of_chapter,
     printed,
@@ -30,12 +32,27 @@ from ddlib.tables import significant, typeset
 MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
 """A sign for each verdict, so that colour is not all that tells them apart."""
 
-CODE = "api/evidence.html"
-"""The page of the measures, beside a chapter's."""
+CODE = "../_modules"
+"""The folder of the pages that show source, beside that of the chapters."""
+
+PARTS = {
+    "1.1": "Motivation",
+    "1.2": "Backpropagation Networks",
+    "2.1": "The CMU DD Arm II",
+    "3.1": "Temporal Windows",
+    "3.2": "Network Topology",
+    "3.3": "Learning Parameters",
+    "5.1": "Weight Displays",
+    "5.2": "A More Global Perspective",
+    "5.3": "Window Size vs. Generalization",
+    "7.1": "Future Work",
+}
+"""Titles of the paper's subsections."""
 
 MIDDLE = (0.025, 0.5, 0.975)
 """Quantiles of the draws that a tile's picture shows."""
 
+_TABLE = 10  # a table's place among subsections
 _WIDE = 20.0  # a scale is logarithmic from this ratio of its ends on
 
 
@@ -115,9 +132,33 @@ def _text(text: str) -> str:
     return html.escape(typeset(text), quote=False)
 
 
+def part(claim: Claim) -> str:
+    """The subsection, table or figure in which a claim stands; empty for its section's own text.
+
+    Parameters
+    ----------
+    claim : Claim
+
+    Returns
+    -------
+    str
+        Like "7.1. Future Work" or "Table 4-1".
+    """
+    section, below, number = claim.place()
+    if number:
+        return f"{'Table' if below == _TABLE else 'Figure'} {section}-{number}"
+    name = f"{section}.{below}"
+    return f"{name}. {PARTS[name]}" if below else ""
+
+
 def _tile(claim: Claim, on: str) -> str:
     verdict = claim.judge()
-    data = {"verdict": verdict, "section": claim.place()[0], "chapter": claim.chapter}
+    data = {
+        "verdict": verdict,
+        "section": claim.place()[0],
+        "part": part(claim),
+        "chapter": claim.chapter,
+    }
     given = " ".join(f'data-{name}="{html.escape(value)}"' for name, value in data.items())
     lines = [
         f'<details class="claim" id="claim-{claim.id}" {given}>',
@@ -157,8 +198,14 @@ def _links(claim: Claim, on: str) -> str:
     if on != LEDGER and claim.printed != OWN and not claim.arm:
         links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.measure:
-        links.append(f'<a href="{CODE}#ddlib.evidence.measures.{claim.measure}">code</a>')
+        links.append(f'<a href="{source(claim)}">code</a>')
     return " · ".join(links)
+
+
+def source(claim: Claim) -> str:
+    """Address of the lines that measure a claim, from the page of a chapter."""
+    measure = inspect.unwrap(function(claim.measure))
+    return f"{CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
 def draws(claim: Claim) -> str:

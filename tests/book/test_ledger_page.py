@@ -2,7 +2,7 @@
 
 import pytest
 
-from ddlib.evidence import claims
+from ddlib.evidence import claims, wall
 
 pytestmark = pytest.mark.browser
 
@@ -68,6 +68,27 @@ def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     again.page.locator(".claim-filter button", has_text="Show all").click()
     assert shown(again) == len(PAPER) and "#" not in again.page.url
     assert not opened.problems + again.problems
+
+
+def test_a_subsection_and_a_table_can_be_chosen(ledger):
+    opened = ledger()
+    bar = opened.page.locator(".claim-filter")
+    for value, name in (("7.1", "7.1. Future Work"), ("Table 4-1", "Table 4-1")):
+        bar.locator('[name="s"]').select_option(value)
+        wanted = [c for c in PAPER if wall.part(c) == name]
+        assert wanted and shown(opened) == len(wanted)
+    again = ledger("#s=7.1")
+    assert shown(again) == len([c for c in PAPER if wall.part(c).startswith("7.1")])
+
+
+def test_code_leads_to_the_lines_that_measure(ledger, site, visit):
+    opened = ledger()
+    link = opened.page.locator("details.claim a", has_text="code").first
+    where = link.evaluate("(a) => a.href")
+    assert "/_modules/ddlib/evidence/measures/" in where
+    source = visit(where)
+    name = where.partition("#")[2]
+    assert f"def {name}" in source.page.locator(f'[id="{name}"]').inner_text()
 
 
 def test_words_filter_too_and_empty_sections_go(ledger):

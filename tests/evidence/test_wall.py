@@ -13,12 +13,13 @@ from ddlib.evidence.verdicts import VERDICTS, Measured
 from ddlib.tables import typeset
 
 ALL = claims.load()
+ANY = next(claim.measure for claim in ALL if claim.measure)
 
 
 def make(band, printed="no number", draws=None, value=0.5, monkeypatch=None, **changes):
     fields = {
         "id": "a", "where": "section 4", "chapter": "verdict", "claim": "c < d", "why": "w",
-        "refuted": "r", "verdict": "reproduced", "measure": "m.f", "printed": printed,
+        "refuted": "r", "verdict": "reproduced", "measure": ANY, "printed": printed,
         "band": band, **changes,
     }  # fmt: skip
     found = Measured(value, "told", None if draws is None else np.array(draws, float))
@@ -45,8 +46,30 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
         assert typeset(claims.printed(claim)) in inside
         page = [] if claim.chapter == LEDGER else [claim.chapter]
         assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
-        code = f'<a href="api/evidence.html#ddlib.evidence.measures.{claim.measure}">code</a>'
-        assert (code in inside) == bool(claim.measure)
+        file, _, name = claim.measure.rpartition(".")
+        code = f'measures/{file.replace(".", "/")}.html#{name}">code</a>'
+        assert (f'<a href="../_modules/ddlib/evidence/{code}' in inside) == bool(claim.measure)
+
+
+@pytest.mark.parametrize(
+    "where, expected",
+    [
+        ("section 7.1", "7.1. Future Work"),
+        ("section 7", ""),
+        ("Abstract", ""),
+        ("Appendix I", ""),
+        ("Table 4-1", "Table 4-1"),
+        ("Figure 5-6", "Figure 5-6"),
+        ("section 4, footnote", ""),
+    ],
+)
+def test_parts_of_a_section(where, expected, monkeypatch):
+    claim = make({"to": 1}, monkeypatch=monkeypatch, where=where)
+    assert wall.part(claim) == expected
+
+
+def test_every_subsection_that_is_named_is_one_of_a_claim():
+    assert {wall.part(claim)[:3] for claim in ALL} >= set(wall.PARTS)
 
 
 def test_measured_at_one_window_and_said_so():

@@ -141,7 +141,9 @@ def sampled(case: str, where: str = "elsewhere", least: bool = False) -> Measure
     """
     each = [row[where] for row in kept("lyapunov")[case]]
     value = min(each) if least else max(each)
-    return Measured(value, f"{min(each):.1e} to {max(each):.1e} of its start")
+    return Measured(
+        value, f"{significant(min(each), 2)} to {significant(max(each), 2)} of its start"
+    )
 
 
 # --- sensors -------------------------------------------------------------------------------
