@@ -1,92 +1,266 @@
-"""Three gains and a model: what they do to tracking error, torque and margins."""
+"""Three gains, a delay and a model: what they do to tracking error, torque and stability."""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
+from functools import lru_cache
 
-from ddlib.control import PID, Feedforward, margins, opened_loop, plant
+import numpy as np
+import traitlets as t
+
+from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.simulation import CONTROL_STEP, follow
+from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.engine.live import LiveWidget
+from ddlib.widgets.engine.loops import LOOPS, controller, linear, modes, run
+from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
 JOINTS = ("shoulder", "elbow")
 
 VISCOUS = (0.5, 0.15)
-"""Viscous friction of the joints, N m s/rad, and the only effect here: every curve must
-change smoothly with the gains, or it could not be interpolated. Assumed."""
+"""Viscous friction of the joints, N m s/rad, and the only effect here, as in the linear loop.
+Assumed."""
 
-LOG_EVERY = 5
+MOST_DEG = 30.0
+"""Error of a joint at which a run is stopped, degrees: larger than any of a stable loop here."""
 
-_STEPS = np.arange(round(3.5 / CONTROL_STEP) + 1)
-_T = _STEPS * CONTROL_STEP
+LATE = (0, 1, 5, 10, 20)
+"""Control periods between a reading and its torque."""
 
-TIMES = np.r_[0:90:3, 90:298:8, 299, 300:351:5] / 100
-"""Where the curves are sampled, s: closer where the reference starts and stops."""
+_T = np.arange(round(3.5 / CONTROL_STEP) + 1) * CONTROL_STEP
 
-_SHOWN = np.rint(TIMES / CONTROL_STEP / LOG_EVERY).astype(int)
+TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]
+"""When the curves are sampled, s."""
 
 _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 
+START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}
+"""The book's gains."""
 
-class PIDTuner(CurveWidget):
-    """Tune the gains of both joints on trajectory 6, with or without feedforward.
+
+@dataclass(frozen=True)
+class Question:
+    """What happens if: asked before it is shown.
+
+    Parameters
+    ----------
+    text : str
+        What is changed.
+    change : dict
+        Parameters that differ from `START` afterwards.
+    choices : tuple of str
+        What might happen.
+    right : int
+        Place of what does happen among them; a test measures it.
+    why : str
+        The reason.
+    first : dict
+        Parameters that differ from `START` before.
+    """
+
+    text: str
+    change: dict
+    choices: tuple[str, ...]
+    right: int
+    why: str
+    first: dict
+
+    @property
+    def settings(self) -> tuple[dict, dict]:
+        """All parameters before and after."""
+        return {**START, **self.first}, {**START, **self.change}
+
+
+_KINDS = (
+    "It settles, as far as one can see as before.",
+    "It swings through the whole motion.",
+    "The swing grows until the run is stopped.",
+)
+
+QUESTIONS = (
+    Question(
+        "the damper is taken away (derivative gain 0)",
+        {"kd": 0.0},
+        _KINDS,
+        1,
+        "P alone is a spring. Only the joint's own friction takes energy out of the swing.",
+        {},
+    ),
+    Question(
+        "there is no damper, and an integral gain of 600 N m/(rad s) is added",
+        {"kd": 0.0, "ki": 600.0},
+        ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
+        2,
+        "An integral answers to errors that have been: it pushes late, and so along the swing.",
+        {"kd": 0.0},
+    ),
+    Question(
+        "there is no damper, and every torque comes 20 ms late",
+        {"kd": 0.0, "late": 10},
+        _KINDS,
+        2,
+        "A late spring pushes along the velocity. That is negative friction, and there is more of "
+        "it than of the joint's own.",
+        {"kd": 0.0},
+    ),
+    Question(
+        "the damper is there, and every torque comes 20 ms late",
+        {"late": 10},
+        _KINDS,
+        0,
+        "The damper leads by more than the delay lags: the phase margin pays for it.",
+        {},
+    ),
+    Question(
+        "the damper is more than twice as strong (80 N m s/rad), and every torque comes 40 ms late",
+        {"kd": 80.0, "late": 20},
+        _KINDS,
+        2,
+        "A stronger damper has its crossover at a higher frequency, where the same delay is a "
+        "larger angle.",
+        {},
+    ),
+    Question(
+        "the damper is made twice as strong (70 N m s/rad)",
+        {"kd": 2 * KD[0]},
+        (
+            "The first torque stays as it is.",
+            "The first torque doubles.",
+            "The first torque is halved.",
+        ),
+        1,
+        "The reference begins with a jump of its velocity, and only the damper looks at velocity.",
+        {},
+    ),
+    Question(
+        "feedforward is switched on",
+        {"feedforward": True},
+        (
+            "All errors shrink.",
+            "The first error stays, the later ones shrink.",
+            "The errors stay, the torques change.",
+        ),
+        1,
+        "The model knows which torque the wanted acceleration needs. It knows nothing of the jump "
+        "at the start.",
+        {},
+    ),
+)
+
+
+class PIDTuner(LiveWidget):
+    """Tune the gains of both joints on trajectory 6; the arm moves, and so does the last one.
 
     The sliders set the shoulder's gains; the elbow's are in the ratio of `ddlib.experiments.setups`
     (its integral gain in that of the proportional gains). The arm is rigid, with viscous
     friction and exact sensors; feedforward uses the rigid arm as its model, without friction.
-    Margins are those of the sampled loop at the stretched arm, cut open at one joint's torque
-    while the other joint's loop is closed.
+    The page computes everything by the live engine. A run is stopped where a joint's error
+    passes `MOST_DEG`. Growth and margins are those of the sampled linear loop at the stretched
+    arm, margins with the loop cut open at one joint's torque while the other joint's is closed.
 
     Parameters
     ----------
     arm : Arm
         The arm that moves.
     **options
-        Passed on to `CurveWidget`: ``checks``, ``tolerance``, ``interpolation``.
+        Passed on to `LiveWidget`.
     """
 
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "stage.js", "tuner.js"))
+    _css = module(*STYLE, "tuner.css")
+
+    before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
+    loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)
+
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
+        self._arm = arm
+        milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in LATE}
         super().__init__(
-            lambda **setting: _curves(arm, setting),
+            self._both,
             [
-                Parameter("kp", "Proportional gain", 150, 600, KP[0], "N m/rad", 9, "log"),
-                Parameter("ki", "Integral gain", 0, 150, 0, "N m/(rad s)", 4),
-                Parameter("kd", "Derivative gain", 20, 80, KD[0], "N m s/rad", 6, "log"),
+                Parameter("kp", "Proportional gain", 50, 1200, KP[0], "N m/rad", scale="log"),
+                Parameter("ki", "Integral gain", 0, 1500, 0, "N m/(rad s)"),
+                Parameter("kd", "Derivative gain", 0, 80, KD[0], "N m s/rad"),
+                Choice("late", "The torque comes late by", milliseconds, 0, "slider"),
                 Choice("feedforward", "Feedforward", {False: "off", True: "on"}, False, "switch"),
             ],
             [
                 Panel(
-                    f"{what}, {unit}",
-                    {f"{joint} {what.lower()}": joint for joint in JOINTS},
+                    f"{joint.title()} {what}, {unit}",
+                    {f"{joint} {what} before": "before", f"{joint} {what}": "now"},
                     "time, s",
                     TIMES,
+                    y_fit=True,
                 )
-                for what, unit in (("Error", "°"), ("Torque", "N m"))
+                for what, unit in (("error", "°"), ("torque", "N m"))
+                for joint in JOINTS
             ],
+            examples=[{"kd": 0.0}, {"kp": 50.0}],
             title="PID tuner",
             alt=(
                 "Tracking error and torque of both joints over trajectory 6 under PD control with "
                 "the book's gains, without feedforward."
             ),
             scalars=[
-                *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°") for j in JOINTS),
-                *(Scalar(f"{j} phase margin", f"{j.title()} phase margin", "°") for j in JOINTS),
-                Scalar("crossover", "Shoulder crossover", "rad/s"),
-                Scalar("gain margin", "Shoulder gain margin", "dB"),
+                *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°", 2) for j in JOINTS),
+                *(Scalar(f"{j} phase margin", f"{j.title()} phase margin", "°", 1) for j in JOINTS),
+                Scalar("crossover", "Shoulder crossover", "rad/s", 1),
             ],
-            note=(
-                "The sliders set the shoulder's gains; the elbow's follow in fixed ratio. "
-                "The ranges end before a loop becomes unstable."
-            ),
-            many=lambda **settings: _many(arm, settings),
+            note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
             **options,
         )
+        self.set_trait("before", self.values)
+        effects = Effects(friction=(ViscousFriction(VISCOUS),))
+        self.set_trait(
+            "loop",
+            {
+                "plant": plant(arm, effects),
+                "modes": modes(arm, VISCOUS),
+                "elbow": _ELBOW,
+                "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
+                "motion": MOTION_SECONDS,
+                "step": CONTROL_STEP,
+                "periods": len(_T),
+                "every": round(LOG_STEP / CONTROL_STEP),
+                "most": np.deg2rad(MOST_DEG),
+                "questions": [
+                    {
+                        "text": q.text,
+                        "choices": list(q.choices),
+                        "right": q.right,
+                        "why": q.why,
+                        "settings": list(q.settings),
+                    }
+                    for q in QUESTIONS
+                ],
+            },
+        )
+
+    @t.validate("before")
+    def _checked_before(self, proposal):
+        for name, value in proposal["value"].items():
+            one_of("parameter of before", name, tuple(self._parameters))
+            self._parameters[name].check(value)
+        return proposal["value"]
+
+    def _both(self, **setting) -> dict:
+        """The curves of a setting, and of the one before."""
+        now = _kept(self._arm, **setting)
+        old = _kept(self._arm, **{**setting, **self.before})
+        ghost = {f"{name} before": x for name, x in old.items() if np.size(x) > 1}
+        return {**ghost, **{name: x for name, x in now.items() if name != "stopped"}}
+
+
+@lru_cache(maxsize=32)
+def _kept(arm: Arm, **setting) -> dict:
+    return tuned(arm, **setting)
 
 
 def gains(kp, ki, kd) -> dict[str, np.ndarray]:
@@ -106,47 +280,36 @@ def gains(kp, ki, kd) -> dict[str, np.ndarray]:
     return {k: np.multiply.outer(np.asarray(x, float), (1.0, _ELBOW[k])) for k, x in given.items()}
 
 
-def _curves(arm, setting) -> dict:
-    """The curves of one setting."""
-    rows = _many(arm, {name: np.array([value]) for name, value in setting.items()})
-    return {name: row[0] for name, row in rows.items()}
+def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
+    """Curves and numbers of one setting, by ddlib's simulator and python-control.
 
+    Parameters
+    ----------
+    arm : Arm
+    kp, ki, kd : float
+        The shoulder's gains, in N m/rad, N m/(rad s) and N m s/rad.
+    late : int
+        Control periods between a reading and its torque.
+    feedforward : bool
 
-def _many(arm, settings) -> dict[str, np.ndarray]:
-    """The curves of many settings, shape (n, samples) or (n,)."""
-    law = gains(settings["kp"], settings["ki"], settings["kd"])
-    on = np.asarray(settings["feedforward"], dtype=float)[:, None, None]
-    reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T)
-    recording = follow(
-        arm,
-        Feedforward(lambda q, qd, qdd: on * arm.inverse_dynamics(q, qd, qdd), PID(**law)),
-        Trajectory(*(np.broadcast_to(x, (len(on), *x.shape)) for x in reference)),
-        _T,
-        effects=Effects(friction=(ViscousFriction(VISCOUS),)),
-        log_every=LOG_EVERY,
-    )
-    error = np.rad2deg(recording.tracking_error)
-    moving = error[:, recording.t < MOTION_SECONDS]
+    Returns
+    -------
+    dict
+        Errors (degrees) and torques (N m) at `TIMES`, NaN after the end of a run; RMS error of the
+        motion (NaN if it was stopped), phase margins, crossover and growth (1/s) of the linear
+        loop, and the time (s) at which the run was stopped (NaN if it was not).
+    """
+    law = gains(kp, ki, kd)
+    reference = Trajectory(*pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T))
+    drive = controller(arm, law, feedforward)
+    done = run(arm, VISCOUS, drive, late, reference, _T, np.deg2rad(MOST_DEG))
+    near = linear(arm, VISCOUS, law, late)
+    error = np.rad2deg(done.error)
     rows = {}
     for j, joint in enumerate(JOINTS):
-        rows[f"{joint} error"] = error[:, _SHOWN, j]
-        rows[f"{joint} torque"] = recording.tau_true[:, _SHOWN, j]
-        rows[f"{joint} RMS"] = np.sqrt((moving[..., j] ** 2).mean(-1))
-    return rows | _margins(arm, law)
-
-
-def _margins(arm, law) -> dict[str, np.ndarray]:
-    """Margins of the linear loops at the stretched arm, shape (n,)."""
-    joints = plant(arm.mass_matrix([0.0, 0.0]), VISCOUS)
-    rows, where = np.unique(np.hstack(list(law.values())), axis=0, return_inverse=True)
-    shoulder, elbow = (
-        [margins(opened_loop(joints, *x, CONTROL_STEP, joint=j)) for x in rows.reshape(-1, 3, 2)]
-        for j in (0, 1)
-    )
-    numbers = {
-        "shoulder phase margin": [m.phase_deg for m in shoulder],
-        "elbow phase margin": [m.phase_deg for m in elbow],
-        "crossover": [m.crossover for m in shoulder],
-        "gain margin": 20 * np.log10([m.upper_gain for m in shoulder]),
-    }
-    return {name: np.asarray(values)[where] for name, values in numbers.items()}
+        rows[f"{joint} error"] = error[:, j]
+        rows[f"{joint} torque"] = done.torque[:, j]
+        rows[f"{joint} RMS"] = np.sqrt((error[TIMES < MOTION_SECONDS - 1e-9, j] ** 2).mean())
+        rows[f"{joint} phase margin"] = near.phase_deg[j]
+    stopped = np.nan if done.stopped is None else TIMES[done.stopped]
+    return {**rows, "crossover": near.crossover[0], "growth": near.growth, "stopped": stopped}

@@ -1,25 +1,38 @@
-"""The PID tuner, in Python and in a page without a kernel."""
+"""The PID tuner: what the page computes against ddlib and python-control, and its page."""
 
 from __future__ import annotations
 
-import itertools
+from functools import cache
 
-import control
 import numpy as np
 import pytest
+from axe import violations_in
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
+from widget_pages import NEXT_FRAME, PATHS, READ, page_of
 
-from ddlib.control import PID, Feedforward, closed_loop, opened_loop, plant
-from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.control import PID, Feedforward, closed_loop, plant
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.experiments import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.tuner import TIMES, VISCOUS, PIDTuner, gains
+from ddlib.widgets import module
+from ddlib.widgets.engine import loops, plain
+from ddlib.widgets.tuner import (
+    MOST_DEG,
+    QUESTIONS,
+    START,
+    TIMES,
+    VISCOUS,
+    PIDTuner,
+    Question,
+    gains,
+    tuned,
+)
 
 ARM = CMU_DD_ARM_II
 LATE = (TIMES >= 1) & (TIMES < 3)
+CALM = {"reduced_motion": "reduce"}
 
 
 @pytest.fixture(scope="module")
@@ -27,14 +40,25 @@ def tuner():
     return PIDTuner()
 
 
+@pytest.fixture(scope="module")
+def engine(browser):
+    page = browser.new_page()
+    page.add_script_tag(content=plain.source() + module(loops.LOOPS))
+    yield page.evaluate
+    page.close()
+
+
+@cache
+def known_run(**setting):
+    """The same by ddlib; settings that are not given are those of the start."""
+    return tuned(ARM, **{**START, **setting})
+
+
 def rms(x):
     return np.sqrt(np.mean(x**2))
 
 
-def test_interpolation_is_within_what_the_widget_states(tuner):
-    assert tuner.spec["error"] <= 0.01
-    assert tuner.interpolation_error(1000, seed=11) <= 0.01
-    assert tuner.baked_bytes < 200_000
+# What is computed
 
 
 def test_the_books_gains_keep_their_ratio():
@@ -45,7 +69,7 @@ def test_the_books_gains_keep_their_ratio():
 
 
 @pytest.mark.parametrize("feedforward", [False, True])
-def test_curves_are_the_recorded_ones(tuner, feedforward):
+def test_curves_are_the_recorded_ones(feedforward):
     """The same runs with a rest before the motion, by `record`."""
     feedback = PID(**gains(200, 100, 30))
     recording = record(
@@ -54,147 +78,285 @@ def test_curves_are_the_recorded_ones(tuner, feedforward):
         APPENDIX_I[5],
         effects=Effects(friction=(ViscousFriction(VISCOUS),)),
     )
-    shown = tuner.interpolate(kp=200, ki=100, kd=30, feedforward=feedforward)
-    at = np.searchsorted(recording.t, TIMES[:-1] - 1e-9)
-    assert recording.t[at] == pytest.approx(TIMES[:-1])
-    widths = {c["name"]: c["high"] - c["low"] for c in tuner.spec["curves"]}
-    error, torque = np.rad2deg(recording.tracking_error), recording.tau_true
+    shown = tuned(ARM, 200, 100, 30, 0, feedforward)
+    at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
+    error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(("shoulder", "elbow")):
-        for name, exact in ((f"{joint} error", error), (f"{joint} torque", torque)):
-            allowed = tuner.spec["error"] * widths[name]
-            np.testing.assert_allclose(shown[name][:-1], exact[at, j], atol=allowed)
-        exact = rms(error[recording.motion, j])
-        assert shown[f"{joint} RMS"][0] == pytest.approx(exact, abs=0.01 * widths[f"{joint} RMS"])
+        np.testing.assert_allclose(shown[f"{joint} error"][: len(at)], error[at, j], atol=1e-9)
+        torque = recording.tau_true[at, j]
+        np.testing.assert_allclose(shown[f"{joint} torque"][: len(at)], torque, atol=1e-9)
+        assert shown[f"{joint} RMS"] == pytest.approx(rms(error[recording.motion, j]))
 
 
-def test_margins_are_python_controls_on_the_unit_circle(tuner):
-    """From samples of the frequency response: another way through python-control."""
-    joints = plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS)
-    omega = np.geomspace(0.3, 0.9999 * np.pi / CONTROL_STEP, 4000)
-    for values in settings(tuner, 5, seed=2):
-        law = gains(values["kp"], values["ki"], values["kd"])
-        exact = tuner._function(**values)
-        for j, joint in enumerate(("shoulder", "elbow")):
-            loop = opened_loop(joints, **law, period=CONTROL_STEP, joint=j)
-            answer = loop(np.exp(1j * omega * CONTROL_STEP))
-            _, phase, _, _, crossover, _ = control.stability_margins(
-                control.frd(answer, omega, smooth=True)
-            )
-            assert exact[f"{joint} phase margin"] == pytest.approx(phase, abs=0.01)
-            if j == 0:
-                assert exact["crossover"] == pytest.approx(crossover, rel=1e-4)
-                # at the highest frequency the loop is real and negative
-                assert exact["gain margin"] == pytest.approx(-20 * np.log10(-answer[-1].real), 1e-2)
+def test_modes_are_the_joints_of_python_control():
+    joints = plant(ARM.mass_matrix([0.0, 0.7]), VISCOUS)
+    found = loops.modes(ARM, VISCOUS, (0.0, 0.7))
+    rates = sorted(-np.linalg.eigvals(joints.A).real)[2:]
+    np.testing.assert_allclose([mode["rate"] for mode in found], rates)
+    shape = np.array([mode["shape"] for mode in found]).T
+    dual = np.array([mode["dual"] for mode in found])
+    np.testing.assert_allclose(shape @ dual, np.eye(2), atol=1e-12)
+    np.testing.assert_allclose(shape @ np.diag(rates) @ dual, -joints.A[2:, 2:], atol=1e-12)
+    np.testing.assert_allclose(shape @ shape.T, joints.B[2:], atol=1e-12)
 
 
-def test_every_setting_is_stable(tuner):
-    joints = plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS)
-    axes = [p.points() for name, p in tuner._parameters.items() if name != "feedforward"]
-    for kp, ki, kd in itertools.product(*axes):
-        loop = closed_loop(joints, **gains(kp, ki, kd), period=CONTROL_STEP)
-        assert abs(loop.poles()).max() < 1
+LINEAR = """([modes, all]) => all.map(([gains, step, late]) => {
+  const margins = [0, 1].map((j) => marginOf(modes, gains, step, late, j));
+  return [growthOf(modes, gains, step, late), ...margins.flatMap((m) => [m.phase, m.crossover])];
+})"""
 
 
-def test_what_each_gain_does(tuner):
-    base = tuner.interpolate()
-    stiff, damped, patient = (
-        tuner.interpolate(**{name: value}) for name, value in (("kp", 500), ("kd", 70), ("ki", 150))
-    )
-    margin, error = "shoulder phase margin", "shoulder error"
-    assert stiff["crossover"] > base["crossover"]
-    assert stiff[margin] < base[margin] < damped[margin]
-    assert patient[margin] < base[margin]
-    assert rms(stiff[error][LATE]) < rms(base[error][LATE])
-    # the reference jumps: the first torque is that of the damper
-    assert damped["shoulder torque"][0] / base["shoulder torque"][0] == pytest.approx(2, abs=0.03)
+@pytest.mark.browser
+@pytest.mark.parametrize("arm", [ARM, IMI_ARM], ids=lambda arm: arm.name)
+def test_growth_and_margins_are_python_controls(engine, arm):
+    """At random gains, delays and control periods; the margins where a loop is stable."""
+    rng = np.random.default_rng(7)
+    given, wanted = [], []
+    for k in range(60):
+        kp, kd = rng.uniform(40, 1200), rng.uniform(0, 80) * (k % 4 > 0)
+        law = gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
+        step, late = rng.choice([0.0005, 0.002, 0.008]), int(rng.choice([0, 1, 3, 20]))
+        found = loops.linear(arm, VISCOUS, law, late, step)
+        given.append([{name: x.tolist() for name, x in law.items()}, step, late])
+        wanted.append([found.growth, *np.ravel([found.phase_deg, found.crossover], order="F")])
+    answer = np.array(engine(LINEAR, [loops.modes(arm, VISCOUS), given]), dtype=float)
+    wanted = np.array(wanted)
+    stable = wanted[:, 0] < 0
+    assert 10 < stable.sum() < 50
+    np.testing.assert_allclose(answer[:, 0], wanted[:, 0], rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(answer[stable], wanted[stable], rtol=1e-5, atol=1e-5)
 
 
-def test_feedforward_repairs_what_a_model_can_know(tuner):
-    """Not the jump of the reference at the start."""
-    off, on = (tuner.interpolate(feedforward=on) for on in (False, True))
+def test_growth_is_that_of_the_poles():
+    law = gains(300, 600, 0)
+    loop = closed_loop(plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS), **law, period=CONTROL_STEP)
+    growth = loops.linear(ARM, VISCOUS, law, 0).growth
+    assert np.exp(growth * CONTROL_STEP) == pytest.approx(abs(loop.poles()).max(), abs=1e-12)
+    assert growth > 0
+
+
+def test_a_stopped_run_has_no_end_and_no_margin():
+    run = known_run(**QUESTIONS[4].change)
+    error = np.abs([run["shoulder error"], run["elbow error"]])
+    ends = np.searchsorted(TIMES, run["stopped"])
+    assert np.isfinite(error[:, : ends + 1]).all() and np.isnan(error[:, ends + 1 :]).all()
+    assert error[:, ends].max() > MOST_DEG > error[:, :ends].max()
+    assert np.isnan([run["shoulder RMS"], run["elbow phase margin"]]).all()
+
+
+# The answers to what is asked
+
+
+def swing(run, begin, end):
+    at = (TIMES >= begin) & (TIMES < end)
+    return max(np.ptp(run[f"{joint} error"][at]) / 2 for joint in ("shoulder", "elbow"))
+
+
+def test_what_happens_if():
+    """Each answer that the page calls right, by ddlib, with a margin."""
+    before, after = zip(*([known_run(**x) for x in (q.first, q.change)] for q in QUESTIONS))
+    for question in QUESTIONS:
+        assert isinstance(question, Question) and len(question.choices) == 3
+    # swings through the whole motion, and dies out no sooner
+    free = after[0]
+    assert -1 / 9 < free["growth"] < 0 and np.isnan(free["stopped"])
+    assert 0.7 < swing(free, 2, 3) / swing(free, 1, 2) < 1.3
+    assert swing(free, 2, 3) > 5 * swing(before[0], 2, 3)
+    for k in (1, 2, 4):
+        assert "grows" in QUESTIONS[k].choices[QUESTIONS[k].right]
+        assert after[k]["growth"] > 0.5 and after[k]["stopped"] < 2.8
+        assert before[k]["growth"] < 0 and np.isnan(before[k]["stopped"])
+    late = after[3]
+    assert late["growth"] < 0.8 * before[3]["growth"] < 0
+    assert swing(late, 1, 3) < 1.3 * swing(before[3], 1, 3)
+    assert late["shoulder phase margin"] < before[3]["shoulder phase margin"] - 5
+    assert after[4]["stopped"] < 1
+    first = [x[5]["shoulder torque"][0] for x in (before, after)]
+    assert first[1] == pytest.approx(2 * first[0], rel=0.01) and first[0] < -10
     for joint in ("shoulder", "elbow"):
-        name = f"{joint} error"
-        assert rms(on[name][LATE]) < rms(off[name][LATE]) / 4
-        assert np.abs(on[name]).max() == pytest.approx(np.abs(off[name]).max(), rel=0.1)
+        off, on = (x[6][f"{joint} error"] for x in (before, after))
+        assert rms(on[LATE]) < rms(off[LATE]) / 4
+        assert np.abs(on).max() == pytest.approx(np.abs(off).max(), rel=0.1)
 
 
 @pytest.mark.parametrize(
-    "name, bad", [("kp", 149), ("kp", np.nan), ("ki", -1), ("kd", 81), ("kd", "x"), ("ki", None),
-                  ("feedforward", "on"), ("feedforward", 1)],
+    "name, bad", [("kp", 49), ("kp", np.nan), ("ki", -1), ("kd", 81), ("kd", "x"), ("ki", None),
+                  ("late", 2), ("feedforward", "on"), ("feedforward", 1), ("before", {"kd": 99}),
+                  ("before", {"gain": 1})],
 )  # fmt: skip
 def test_bad_values_are_refused(tuner, name, bad):
-    before = tuner.values
-    with pytest.raises(TraitError, match=f"{name} must"):
+    before = tuner.values, tuner.before
+    with pytest.raises((TraitError, ValueError), match="must"):
         setattr(tuner, name, bad)
-    assert tuner.values == before
+    assert (tuner.values, tuner.before) == before
+
+
+def test_the_ghost_is_the_setting_before(tuner):
+    now, last = {**START, "kp": 200.0}, {**START, "kd": 60.0}
+    tuner.before = last
+    shown = tuner.interpolate(**now)
+    tuner.before = START
+    for setting, name in ((now, "elbow error"), (last, "elbow error before")):
+        np.testing.assert_array_equal(shown[name], tuned(ARM, **setting)["elbow error"])
+
+
+def test_no_table_and_a_small_script(tuner):
+    assert tuner.baked_bytes == 0 and tuner.spec["live"] and tuner.interpolation_error() == 0
+    assert tuner.still and "trajectory 6" in tuner.still_alt
+    script = module(*plain.ENGINE, loops.LOOPS, "stage.js", "tuner.js")
+    assert all(line.count("`") % 2 == 0 for line in script.splitlines())
 
 
 # In a page without a kernel
 
+SEEN = """() => {
+  const { now, ghost } = document.querySelector(".ddlib-tuner").tuner;
+  const { error, torque, rms, growth, log, margins } = now;
+  return { error: error.map((x) => [...x]), torque: torque.map((x) => [...x]), rms, growth,
+    stopped: log.stopped, margins, setting: now.setting, before: ghost.setting };
+}"""
 
-def assert_shown(page, tuner, **values):
-    """Curves and numbers of the page are Python's, within a hundredth of each curve's range."""
+
+def assert_computed(page, **setting):
+    """Everything that the page computed is ddlib's, to 1e-6 rad."""
     page.evaluate(NEXT_FRAME)
-    exact = tuner._function(**{**tuner.values, **values})
-    width = {c["name"]: c["high"] - c["low"] for c in tuner.spec["curves"]}
-    for panel, shown in enumerate(tuner.spec["panels"]):
-        for got, (name, _) in zip(page.evaluate(READ, panel), shown["curves"]):
-            np.testing.assert_allclose(got, exact[name], atol=0.01 * width[name])
-    numbers = page.locator(".scalars output").all_inner_texts()
-    for text, scalar in zip(numbers, tuner.spec["scalars"]):
-        got = float(text.replace("−", "-").replace("°", " ").split()[0])
-        assert got == pytest.approx(exact[scalar["name"]], abs=0.01 * width[scalar["name"]])
+    seen, known = page.evaluate(SEEN), known_run(**setting)
+    for j, joint in enumerate(("shoulder", "elbow")):
+        error = np.deg2rad(np.array(seen["error"][j], float))
+        np.testing.assert_allclose(error, np.deg2rad(known[f"{joint} error"]), atol=1e-6)
+        torque = np.array(seen["torque"][j], float)
+        np.testing.assert_allclose(torque, known[f"{joint} torque"], atol=1e-3)
+        for got, name in ((seen["rms"][j], "RMS"), (seen["margins"][j]["phase"], "phase margin")):
+            assert got == pytest.approx(known[f"{joint} {name}"], rel=1e-5, nan_ok=True)
+    assert seen["growth"] == pytest.approx(known["growth"], rel=1e-6)
+    ended = np.nan if seen["stopped"] is None else TIMES[seen["stopped"]]
+    assert ended == pytest.approx(known["stopped"], nan_ok=True)
+    for panel in range(4):  # what is drawn, as far as the run goes
+        _, got = page.evaluate(READ, panel)
+        name = f"{('shoulder', 'elbow')[panel % 2]} {'error' if panel < 2 else 'torque'}"
+        whole = known[name][np.isfinite(known[name])]
+        np.testing.assert_allclose(got, whole, atol=0.01 * np.ptp(whole))
 
 
 def value_of(page, tuner, name):
     """The parameter that the slider stands at."""
-    place = page.locator(f"input[id$={name}]").evaluate("(x) => x.value / x.max")
+    place = page.locator(f"input[id$=-{name}]").evaluate("(x) => x.value / x.max")
     return tuner._parameters[name].place(place)
 
 
 @pytest.mark.browser
 def test_drag_keys_and_switch(tmp_path, visit, tuner):
-    opened = visit(page_of(tmp_path / "page.html", tuner))
+    opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
     page = opened.page
-    page.evaluate(NEXT_FRAME)
-    assert_shown(page, tuner)
+    assert_computed(page)
     before = page.evaluate(PATHS)
-    box = page.locator("input[id$=kp]").bounding_box()
+    box = page.locator("input[id$=-kp]").bounding_box()
     y = box["y"] + box["height"] / 2
-    page.mouse.move(box["x"] + box["width"] / 2, y)
+    page.mouse.move(box["x"] + 0.56 * box["width"], y)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.9 * box["width"], y, steps=5)
     page.mouse.up()
     page.evaluate(NEXT_FRAME)
     dragged = page.evaluate(PATHS)
-    assert all(a != b for a, b in zip(before, dragged)) and len(before) == 4
+    assert len(before) == 8 and all(a != b for a, b in zip(before[1::2], dragged[1::2]))
     kp = value_of(page, tuner, "kp")
-    assert tuner._parameters["kp"].place(0.85) < kp < tuner._parameters["kp"].place(0.95)
-    assert_shown(page, tuner, kp=kp)
-    page.locator("input[id$=kd]").press("Home")
-    page.locator("input[id$=ki]").press("End")
-    assert_shown(page, tuner, kp=kp, kd=20, ki=150)
+    assert_computed(page, kp=kp)
+    page.locator("input[id$=-kd]").press("Home")
+    page.locator("input[id$=-ki]").press("ArrowRight")
+    page.evaluate(NEXT_FRAME)
+    ki = value_of(page, tuner, "ki")
+    page.locator("input[id$=-late]").press("ArrowRight")
+    assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1)
+    assert "unstable" in page.locator(".verdict").inner_text()
     page.get_by_role("switch").press("Space")
-    assert_shown(page, tuner, kp=kp, kd=20, ki=150, feedforward=True)
+    assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1, feedforward=True)
     assert not opened.problems
 
 
 @pytest.mark.browser
+def test_the_ghost_stands_where_a_change_began(tmp_path, visit, tuner):
+    page = visit(page_of(tmp_path / "page.html", tuner), **CALM).page
+    kd = page.locator("input[id$=-kd]")
+    for _ in range(3):
+        kd.press("ArrowLeft")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(SEEN)["before"] == START
+    page.wait_for_timeout(1000)  # a new change begins
+    page.locator("input[id$=-late]").press("End")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(SEEN)["before"]["kd"] == value_of(page, tuner, "kd") < KD[0]
+    ghost, now = page.evaluate(READ, 0)
+    assert len(ghost) == 351 and ghost != now
+
+
+@pytest.mark.browser
+def test_a_prediction_comes_first(tmp_path, visit, tuner):
+    opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
+    page = opened.page
+    show, told = page.get_by_role("button", name="Try it"), page.locator(".told")
+    for k, question in enumerate(QUESTIONS):
+        assert question.text in page.locator(".question").inner_text()
+        assert show.is_disabled() and not told.inner_text()
+        guess = question.right if k % 2 else (question.right + 1) % 3
+        page.get_by_role("radio").nth(guess).check()
+        assert not told.inner_text()
+        show.press("Enter")
+        begins = "As you said." if k % 2 else "Not what you said."
+        assert told.inner_text().startswith(f"{begins} {question.choices[question.right]}")
+        first, then = question.settings
+        assert_computed(page, **question.change)
+        assert page.evaluate(SEEN)["before"] == first
+        assert page.evaluate(SEEN)["setting"] == then
+        stopped = "Run stopped at" in page.locator(".verdict").inner_text()
+        assert stopped == (k in (1, 2, 4))
+        assert page.get_by_role("radio").first.is_disabled()
+        page.get_by_role("button", name="Next question").click()
+    assert QUESTIONS[0].text in page.locator(".question").inner_text()
+    assert not opened.problems + violations_in(page, "light", "dark")
+
+
+@pytest.mark.browser
+def test_the_arm_moves_when_asked(tmp_path, visit, tuner):
+    page = visit(page_of(tmp_path / "page.html", tuner)).page
+    drawn = "() => document.querySelector('.arm.now .links').getAttribute('d')"
+    before = page.evaluate(drawn)
+    page.wait_for_timeout(300)
+    assert page.evaluate(drawn) == before  # not before it is asked
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_timeout(400)
+    assert page.evaluate(drawn) != before
+    page.get_by_role("button", name="Pause").click()
+    held = page.evaluate(drawn)
+    page.wait_for_timeout(200)
+    assert page.evaluate(drawn) == held
+    time = page.get_by_label("Time", exact=True)
+    time.press("Home")
+    assert page.evaluate(drawn) != held and time.get_attribute("aria-valuetext") == "0.00\u00a0s"
+    cursor = page.locator(".cursor").first
+    at = cursor.get_attribute("x1")
+    time.press("End")
+    assert cursor.get_attribute("x1") != at
+
+
+@pytest.mark.browser
 def test_touch(tmp_path, browser, tuner):
-    context = browser.new_context(viewport={"width": 380, "height": 900}, has_touch=True)
+    context = browser.new_context(viewport={"width": 380, "height": 900}, has_touch=True, **CALM)
     page = context.new_page()
     page.goto(page_of(tmp_path / "page.html", tuner))
     page.wait_for_selector(".chart")
     page.evaluate(NEXT_FRAME)
     assert page.evaluate("document.documentElement.scrollWidth") <= 380
-    before = page.evaluate(PATHS)
-    slider = page.locator("input[id$=kd]")
+    slider = page.locator("input[id$=-kd]")
+    slider.scroll_into_view_if_needed()
     box = slider.bounding_box()
     page.touchscreen.tap(box["x"] + 0.8 * box["width"], box["y"] + box["height"] / 2)
     page.evaluate(NEXT_FRAME)
     kd = value_of(page, tuner, "kd")
-    assert 50 < kd < 75 and page.evaluate(PATHS) != before
-    assert_shown(page, tuner, kd=kd)
+    assert 50 < kd < 75
+    assert_computed(page, kd=kd)
     page.get_by_role("switch").tap()
-    assert_shown(page, tuner, kd=kd, feedforward=True)
+    assert_computed(page, kd=kd, feedforward=True)
+    page.get_by_role("radio").nth(2).tap()
+    page.get_by_role("button", name="Try it").tap()
+    assert_computed(page, **QUESTIONS[0].change)
     context.close()

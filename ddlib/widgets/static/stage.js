@@ -1,0 +1,28 @@
+// Arms seen from above, drawn over each other. Follows elements.js and engine.js.
+
+// `kinds` are names of arms, the lowest first; `place(kind, q)` draws one at joint angles in rad.
+function armsOf(lengths, kinds, [left, bottom, right, top], label) {
+  const scale = 300 / (right - left);
+  const x = (v) => short(scale * (v - left));
+  const y = (v) => short(scale * (top - v));
+  const arms = new Map(
+    kinds.map((kind) => {
+      const line = make("path", { class: "links" });
+      const hand = make("circle", { class: "hand", r: 4 });
+      return [kind, { line, hand, el: make("g", { class: `arm ${kind}` }, line, hand) }];
+    }),
+  );
+  const base = make("circle", { class: "joint", cx: x(0), cy: y(0), r: 6 });
+  const size = [300, y(bottom)];
+  const svg = make("svg", { class: "stage", role: "img", viewBox: `0 0 ${size.join(" ")}` });
+  svg.setAttribute("aria-label", label);
+  svg.append(...[...arms.values()].map(({ el }) => el), base);
+  const place = (kind, q) => {
+    const { line, hand } = arms.get(kind);
+    const [elbow, end] = placesOf(lengths, q);
+    line.setAttribute("d", `M${x(0)} ${y(0)}L${x(elbow[0])} ${y(elbow[1])}L${x(end[0])} ${y(end[1])}`);
+    hand.setAttribute("cx", x(end[0]));
+    hand.setAttribute("cy", y(end[1]));
+  };
+  return { svg, place, arms };
+}

@@ -1,0 +1,234 @@
+// What PIDTuner (tuner.py) computes and shows. Follows loops.js and stage.js.
+
+const NAMES = ["shoulder", "elbow"];
+const PAUSE = 800; // ms without a change after which a setting is the one before the next
+
+// Everything about one setting.
+function tuned(loop, setting) {
+  const { plant, modes, elbow, step, every, periods, motion } = loop;
+  const gains = { integral_limit: 1e6 };
+  for (const name of ["kp", "ki", "kd"]) gains[name] = [setting[name], setting[name] * elbow[name]];
+  const reference = { q: [], qd: [], qdd: [] };
+  for (let k = 0; k < periods; k++) {
+    const wanted = pickAndPlace(loop.extents, k * step, motion);
+    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
+  }
+  const feedback = pid(gains, step);
+  const law = behind(setting.late, setting.feedforward ? feedforward(plant.arm, feedback) : feedback);
+  const log = guarded(plant, law, reference, step, every, loop.most);
+  const count = Math.floor((periods - 1) / every) + 1;
+  const shape = (of) => JOINTS.map((j) => Float64Array.from({ length: count }, (_, k) => (k < log.q.length ? of(k, j) : NaN)));
+  const wanted = reference.q.filter((_, k) => k % every === 0);
+  const error = shape((k, j) => ((wanted[k][j] - log.q[k][j]) * 180) / Math.PI);
+  const torque = shape((k, j) => log.tau[k][j]);
+  const moving = Math.round(motion / step / every);
+  const rms = error.map((x) => Math.sqrt(x.slice(0, moving).reduce((sum, e) => sum + e * e, 0) / moving));
+  const growth = growthOf(modes, gains, step, setting.late);
+  const margins = JOINTS.map((j) =>
+    growth < 0 ? marginOf(modes, gains, step, setting.late, j) : { phase: NaN, crossover: NaN },
+  );
+  return { setting, log, wanted, error, torque, rms, growth, margins, seconds: step * every };
+}
+
+// Runs by their settings, the newest last.
+function memory(loop, most = 4) {
+  const kept = new Map();
+  return (setting) => {
+    const key = JSON.stringify(setting);
+    const found = kept.get(key) ?? tuned(loop, setting);
+    kept.delete(key);
+    kept.set(key, found);
+    if (kept.size > most) kept.delete(kept.keys().next().value);
+    return found;
+  };
+}
+
+live = (view) => {
+  const { model, spec } = view;
+  view.tuned ??= memory(model.get("loop"));
+  const setting = Object.fromEntries(spec.parameters.map((p) => [p.name, view.get(p.name)]));
+  const now = view.tuned(setting);
+  if (view.now && view.now !== now && !view.keeps) {
+    const time = performance.now();
+    if (!(time - view.changed < PAUSE)) model.set("before", view.now.setting);
+    view.changed = time;
+  }
+  view.keeps = false;
+  view.now = now;
+  view.ghost = view.tuned({ ...setting, ...model.get("before") });
+  const curves = { crossover: [now.margins[0].crossover] };
+  NAMES.forEach((name, j) => {
+    curves[`${name} RMS`] = [now.rms[j]];
+    curves[`${name} phase margin`] = [now.margins[j].phase];
+    for (const what of ["error", "torque"]) {
+      curves[`${name} ${what}`] = now[what][j];
+      curves[`${name} ${what} before`] = view.ghost[what][j];
+    }
+  });
+  return curves;
+};
+
+extras.push((view) => {
+  const { model, spec, el } = view;
+  const loop = model.get("loop");
+  const { lengths } = loop.plant;
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  el.classList.add("ddlib-tuner");
+
+  // The arm, and time
+  const far = lengths[0] + lengths[1];
+  const kinds = ["ghost", "wanted", "now"];
+  const box = [-0.06 * far, -0.72 * far, 1.05 * far, 0.36 * far];
+  const stage = armsOf(lengths, kinds, box, "The arm from above, over the arm of the setting before");
+  const end = (loop.periods - 1) * loop.step;
+  const id = `${view.id}-time`;
+  const output = make("output", { for: id });
+  const slider = make("input", { id, type: "range", min: 0, max: end, step: loop.step * loop.every });
+  const play = make("button", { type: "button" }, "Play");
+  const verdict = make("p", { class: "verdict", role: "status" });
+  const key = (kind, text) => {
+    const line = make("path", { class: "links", d: "M2 6H24" });
+    const icon = make("svg", { width: 26, height: 12, "aria-hidden": "true" });
+    icon.append(make("g", { class: `arm ${kind}` }, line));
+    return make("span", {}, icon, text);
+  };
+  const legend = make("div", { class: "legend" });
+  legend.append(key("now", "now"), key("ghost", "the setting before"), key("wanted", "wanted"));
+  const row = make("div", { class: "time" }, play);
+  row.append(make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider));
+  view.top.prepend(make("div", { class: "scene" }, stage.svg, legend, row, verdict));
+
+  let time = 1.0;
+  let frame = 0;
+  let from = 0;
+  const along = (list, k) => {
+    const i = Math.min(Math.floor(k), list.length - 1);
+    const next = list[Math.min(i + 1, list.length - 1)];
+    const part = Math.min(1, k - i);
+    return list[i].map((q, j) => q + part * (next[j] - q));
+  };
+  function draw() {
+    const { now, ghost } = view;
+    const k = time / now.seconds;
+    stage.place("wanted", along(now.wanted, k));
+    stage.place("ghost", along(ghost.log.q, k));
+    stage.place("now", along(now.log.q, k));
+    const over = now.log.stopped !== null && k >= now.log.stopped;
+    stage.arms.get("now").el.classList.toggle("stopped", over);
+    slider.value = time;
+    write(output, `${time.toFixed(2)}\u00a0s${over ? ", stopped" : ""}`);
+    slider.setAttribute("aria-valuetext", output.textContent);
+    for (const c of view.charts) c.point(time);
+  }
+  function halt() {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    write(play, "Play");
+  }
+  function run(moment) {
+    time = Math.min(end, Math.max(0, (moment - from) / 1000));
+    draw();
+    if (time < end) frame = requestAnimationFrame(run);
+    else halt();
+  }
+  function start(at) {
+    halt();
+    from = performance.now() - 1000 * at;
+    write(play, "Pause");
+    frame = requestAnimationFrame(run);
+  }
+  play.addEventListener("click", () => (frame ? halt() : start(time < end ? time : 0)));
+  slider.addEventListener("input", () => {
+    halt();
+    time = Number(slider.value);
+    draw();
+  });
+
+  // What is seen, in words
+  const span = (rate) => {
+    const seconds = Math.LN2 / Math.abs(rate);
+    return `${seconds < 10 ? seconds.toFixed(2) : Math.round(seconds)}\u00a0s`;
+  };
+  const degrees = Math.round((loop.most * 180) / Math.PI);
+  function words() {
+    const { growth, log, seconds } = view.now;
+    const linear =
+      growth < 0
+        ? `The linear loop is stable: what lasts longest halves in ${span(growth)}.`
+        : `The linear loop is unstable: a disturbance doubles in ${span(growth)}.`;
+    if (log.stopped === null) return linear;
+    return `${linear} Run stopped at ${(log.stopped * seconds).toFixed(2)}\u00a0s: an error passed ${degrees}°.`;
+  }
+  view.words = () => [words().slice(0, -1)];
+
+  const ask = asking(view, loop.questions, (change) => {
+    model.set("before", change[0]);
+    view.keeps = true;
+    view.set(change[1]);
+    view.schedule();
+    time = 0;
+    if (calm.matches) time = end;
+    else start(0);
+  });
+  view.top.before(ask);
+
+  const follow = () => {
+    write(verdict, words());
+    el.toggleAttribute("data-stopped", view.now.log.stopped !== null);
+    draw();
+  };
+  view.after.push(follow);
+  el.tuner = view; // for tests
+  const redraw = () => view.schedule();
+  model.on("change:before", redraw);
+  follow();
+  return () => {
+    halt();
+    model.off("change:before", redraw);
+  };
+});
+
+// A question at a time: the reader predicts, then it is shown.
+function asking(view, questions, show) {
+  let at = 0;
+  const question = make("p", { class: "question" });
+  const choices = make("div", { class: "choices" });
+  const told = make("p", { class: "told", role: "status" });
+  const button = (text, act) => {
+    const made = make("button", { type: "button" }, text);
+    made.addEventListener("click", act);
+    return made;
+  };
+  const tryIt = button("Try it", () => {
+    const { right, why, settings, choices: texts } = questions[at];
+    const chosen = choices.querySelector("input:checked");
+    if (!chosen) return;
+    const good = Number(chosen.value) === right;
+    show(settings);
+    write(told, `${good ? "As you said." : "Not what you said."} ${texts[right]} ${why}`);
+    for (const input of choices.querySelectorAll("input")) input.disabled = true;
+    tryIt.disabled = true;
+  });
+  const next = button("Next question", () => {
+    at = (at + 1) % questions.length;
+    pose();
+  });
+  function pose() {
+    const { text, choices: texts } = questions[at];
+    write(question, `… ${text}?`);
+    write(told, "");
+    tryIt.disabled = true;
+    choices.replaceChildren(
+      ...texts.map((choice, k) => {
+        const id = `${view.id}-choice-${k}`;
+        const input = make("input", { id, type: "radio", name: `${view.id}-choice`, value: k });
+        input.addEventListener("change", () => (tryIt.disabled = false));
+        return make("div", {}, input, make("label", { for: id }, choice));
+      }),
+    );
+  }
+  pose();
+  const legend = make("legend", {}, "First predict: what happens if");
+  const buttons = make("div", { class: "buttons" }, tryIt, next);
+  return make("fieldset", { class: "ask" }, legend, question, choices, buttons, told);
+}
