@@ -13,12 +13,16 @@ from ddlib._check import integer, number, one_of
 from ddlib.widgets.baking.baked import Baked
 from ddlib.widgets.baking.sampled import evaluate
 from ddlib.widgets.baking.still import Still, still_picture
+from ddlib.widgets.parts.common import checked_presets, default_code, filled, key_of
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
 STATIC = Path(__file__).with_name("static")
 
-SCRIPT = ("baked.js", "elements.js", "charts.js", "controls.js", "curves.js")
+FRAME = ("elements.js", "frame.js")
+"""Files of the script that give a widget of its own kind what all have; see ``frame.js``."""
+
+SCRIPT = ("baked.js", *FRAME, "reading.js", "charts.js", "controls.js", "curves.js")
 """Files of the script that every widget has; a subclass adds its own after them."""
 
 STYLE = ("curves.css",)
@@ -85,6 +89,14 @@ class CurveWidget(anywidget.AnyWidget):
         Sets two parameters at once.
     note : str
         A sentence below the controls.
+    code : str
+        Python code with the same result as the widget's state, for readers to copy; names of
+        parameters in braces stand for their values. Default: it makes the widget, if that
+        needs no arguments.
+    presets : mapping, optional
+        Label -> value by name of a parameter: buttons that set several parameters at once.
+    presets_title : str
+        What stands before these buttons.
     many : callable, optional
         The function for many settings at once, for baking and checking where single calls
         are slow: gets one array of length n per parameter, returns arrays of shape
@@ -130,6 +142,9 @@ class CurveWidget(anywidget.AnyWidget):
         scalars: Sequence[Scalar] = (),
         pad: Pad | None = None,
         note: str = "",
+        code: str = "",
+        presets: Mapping[str, Mapping] | None = None,
+        presets_title: str = "Go to",
         many: Callable[..., dict] | None = None,
         depends: Mapping[str, Sequence[str]] | None = None,
         interpolation: str = "cubic",
@@ -159,9 +174,12 @@ class CurveWidget(anywidget.AnyWidget):
                 "take more grid points or a larger tolerance",
                 error,
             )
+        self._code = code or default_code(type(self), self._parameters)
+        self._presets = checked_presets(presets, self._parameters)
         start = evaluate(function, {p.name: p.value for p in parameters})
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
-        self.set_trait("spec", self._spec(title, note, scalars, error, checks))
+        told = {"title": title, "note": note, "presets_title": presets_title}
+        self.set_trait("spec", self._spec(told, scalars, error, checks))
         self.set_trait("baked", self._baked.tobytes())
         self.set_trait("still", still_picture(start, panels, self._parameters, pad, alt))
         self.set_trait("still_alt", alt)
@@ -182,6 +200,11 @@ class CurveWidget(anywidget.AnyWidget):
     def curves(self) -> dict[str, np.ndarray]:
         """The function's exact result at the parameters as they stand."""
         return evaluate(self._function, self.values)
+
+    @property
+    def code(self) -> str:
+        """Python code with the same result as the present state."""
+        return filled(self._code, self.values)
 
     @property
     def baked_bytes(self) -> int:
@@ -219,15 +242,20 @@ class CurveWidget(anywidget.AnyWidget):
             for name in (self._pad.x, self._pad.y):
                 one_of("parameter of the pad", name, tuple(ranged))
 
-    def _spec(self, title, note, scalars, error, checks) -> dict:
+    def _spec(self, told, scalars, error, checks) -> dict:
         baked = self._baked
         curves = [
             {"name": name, "length": n, "low": float(low), "high": float(high)}
             for (name, n), low, high in zip(baked.lengths.items(), baked.low, baked.high)
         ]
         return {
-            "title": title or "; ".join(p.y_label for p in self._panels),
-            "note": note,
+            "key": key_of(type(self)),
+            "title": told["title"] or "; ".join(p.y_label for p in self._panels),
+            "note": told["note"],
+            "code": self._code,
+            "presets": {"title": told["presets_title"], "options": self._presets}
+            if self._presets
+            else None,
             "parameters": [p.description() for p in baked.parameters],
             "curves": curves,
             "panels": [p.description() for p in self._panels],

@@ -14,7 +14,8 @@ PICTURE = """
 }
 """
 FRAMES = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
-DRAWING, SLIDER = 'svg[tabindex="0"], svg [tabindex="0"]', 'input[type="range"]'
+DRAWING = 'svg[tabindex="0"]:not(.chart > svg), svg [tabindex="0"]'  # charts only tell values
+SLIDER = 'input[type="range"]'
 
 
 def handles(root) -> list[Handle]:

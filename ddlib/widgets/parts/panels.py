@@ -37,6 +37,8 @@ class Panel:
         ends of a shaded interval.
     ticks : sequence of (float, str), optional
         Places and texts in place of numbers on the x axis.
+    x_texts : sequence of str, optional
+        A text for each sample, told instead of the number on x where values are read.
     y_range : pair of float or str, optional
         Lowest and highest y, or names of numbers in the function's result; default: all
         that the curves reach on the grid.
@@ -54,6 +56,7 @@ class Panel:
     fixed: Mapping[str, Sequence[float]] | None = None
     cursor: str | tuple[str, str] | None = None
     ticks: Sequence[tuple[float, str]] | None = None
+    x_texts: Sequence[str] = ()
     y_range: tuple[float | str, float | str] | None = None
     y_fit: bool = False
 
@@ -83,6 +86,9 @@ class Panel:
         ticks = [(number(f"ticks {what}", place), str(text)) for place, text in self.ticks or ()]
         checked = {"curves": legend, "x": x, "fixed": fixed, "cursor": cursor, "ticks": ticks}
         checked["y_range"] = self._checked_range(what)
+        checked["x_texts"] = texts = tuple(map(str, self.x_texts))
+        if texts and len(texts) != x.size:
+            raise ValueError(f"x_texts {what} must be {x.size} like x, got {len(texts)}")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -113,6 +119,7 @@ class Panel:
             "fixed": [[name, _short(values)] for name, values in self.fixed.items()],
             "cursor": list(self.cursor),
             "ticks": [list(tick) for tick in self.ticks],
+            "x_texts": list(self.x_texts),
             "y_range": self.y_range and list(self.y_range),
             "y_fit": bool(self.y_fit),
         }

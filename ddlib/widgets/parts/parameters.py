@@ -125,7 +125,7 @@ class Parameter:
 
     def description(self) -> dict:
         """What the page needs to know."""
-        fields = ("name", "label", "low", "high", "unit", "grid", "scale", "crowd")
+        fields = ("name", "label", "value", "low", "high", "unit", "grid", "scale", "crowd")
         return {f: getattr(self, f) for f in fields}
 
 
@@ -210,7 +210,7 @@ class Choice:
     def description(self) -> dict:
         """What the page needs to know."""
         options = [[key, label] for key, label in self.options.items()]
-        fields = {f: getattr(self, f) for f in ("name", "label", "display", "grid")}
+        fields = {f: getattr(self, f) for f in ("name", "label", "value", "display", "grid")}
         return {**fields, "options": options}
 
 

@@ -12,13 +12,13 @@ function crc32(bytes) {
 
 // What there must be in each part of a description, separated by spaces.
 const FIELDS = {
-  spec: "title note parameters curves panels scalars pad cubic groups checksum error checks",
+  spec: "key title note code presets parameters curves panels scalars pad cubic groups checksum error checks",
   group: "parameters curves rank wide scale",
-  parameter: "name label grid",
+  parameter: "name label grid value",
   choice: "display",
   range: "low high unit scale crowd",
   curve: "name length low high",
-  panel: "y_label curves x_label x x_scale y_scale kind fixed cursor ticks y_range y_fit",
+  panel: "y_label curves x_label x x_texts x_scale y_scale kind fixed cursor ticks y_range y_fit",
   scalar: "name label unit",
   pad: "x y marks region region_label",
 };

@@ -1,4 +1,4 @@
-// Draws charts. Follows baked.js and elements.js in every widget's module.
+// Draws charts. Follows baked.js, elements.js and reading.js in every widget's module.
 
 const COLOURS = 6; // classes c0 to c5
 
@@ -99,7 +99,7 @@ function chart(view, panel) {
   const paths = [...fixed, ...moving].flatMap((curve) => curve.paths);
   for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
   const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
-  const svg = make("svg", { role: "img" }, defs, span, grid, cursor, ...paths);
+  const svg = make("svg", {}, defs, span, grid, cursor, ...paths);
   const legend = make("div", { class: "legend" });
   if (curves.length > 1) {
     for (const curve of curves) {
@@ -115,6 +115,32 @@ function chart(view, panel) {
   let low, high, x, y, xs, left, right, bottom, base, width, height;
   const whole = wholeRange();
   [low, high] = whole;
+  let shown = {}; // what was drawn last
+  const valueOf = (curve, i) => (curve.values ?? shown[curve.name])?.[i] ?? NaN;
+  const [, unit] = unitOf(panel.y_label);
+  const follow = readerOf({
+    ...{ el, svg, panel, curves },
+    samples: () => xs,
+    top: () => 6,
+    bottom: () => bottom,
+    left: () => left,
+    right: () => right,
+    across: (curve, i) => short(xs[i] + (curve.kind === "line" ? 0 : shiftOf(curve)[0])),
+    place: (curve, i) => y.place(log ? Math.max(valueOf(curve, i), low) : valueOf(curve, i)),
+    text: (curve, i) => textOf(valueOf(curve, i), unit),
+  });
+
+  // Enough digits for the axis as it stands; on a logarithmic one, three.
+  function textOf(value, unit) {
+    if (!log) return format(value, low, high, unit);
+    return `${Number(value.toPrecision(3))}`.replace("-", "−") + (unit && `\u00a0${unit}`);
+  }
+  // Where a bar or stem stands beside its sample, and how wide it is, in px.
+  function shiftOf(curve) {
+    const count = kind === "bars" ? curves.length : moving.length;
+    const pitch = kind === "bars" ? (0.8 * Math.abs(x.place(ends[0] + gap) - x.place(ends[0]))) / count : 6;
+    return [(curve.k - (count - 1) / 2) * pitch, pitch];
+  }
 
   function wholeRange() {
     let [a, b] = extremes([ranges.flatMap((r) => [r.low, r.high]), ...fixed.map((c) => c.values)]);
@@ -132,11 +158,9 @@ function chart(view, panel) {
   }
 
   function draw(curve, values) {
-    const count = kind === "bars" ? curves.length : moving.length;
-    const shown = log ? values.map((v) => Math.max(v, low)) : values;
-    const pitch = kind === "bars" ? (0.8 * Math.abs(x.place(ends[0] + gap) - x.place(ends[0]))) / count : 6;
-    const shift = (curve.k - (count - 1) / 2) * pitch;
-    const drawn = DRAW[curve.kind]({ xs, y: y.place, values: shown, base, shift, width: pitch });
+    const visible = log ? values.map((v) => Math.max(v, low)) : values;
+    const [shift, width] = shiftOf(curve);
+    const drawn = DRAW[curve.kind]({ xs, y: y.place, values: visible, base, shift, width });
     drawn.forEach((d, i) => curve.paths[i].setAttribute("d", d));
   }
 
@@ -174,7 +198,7 @@ function chart(view, panel) {
 
   function resize() {
     width = Math.max(160, Math.floor(el.clientWidth));
-    height = Math.round(Math.min(230, Math.max(150, width * 0.6)));
+    height = Math.round(Math.min(260, Math.max(160, width * 0.6)));
     svg.setAttribute("width", width);
     svg.setAttribute("height", height);
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
@@ -182,6 +206,7 @@ function chart(view, panel) {
   }
 
   function redraw(all) {
+    shown = all;
     const [a, b] = presentRange(all);
     if (a !== low || b !== high) {
       [low, high] = a < b ? [a, b] : [a - 1, a + 1];
@@ -191,6 +216,7 @@ function chart(view, panel) {
     const places = panel.cursor.map((name) => all[name][0]);
     if (places.length === 1) point(places[0]);
     if (places.length === 2) shade(...places);
+    follow();
   }
 
   // A vertical line; nothing where it would lie beyond the axis.

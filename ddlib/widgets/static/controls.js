@@ -1,4 +1,4 @@
-// Sliders, menus, switches and the pad. Follows charts.js in every widget's module.
+// Sliders, menus, switches, presets and the pad. Follows charts.js in every widget's module.
 
 function slider(view, p, k) {
   const id = `${view.id}-${p.name}`;
@@ -45,6 +45,61 @@ function choice(view, p, k) {
   };
   const order = { menu: [label, input], switch: [input, label, output], slider: [label, output, input] };
   return { el: make("div", { class: `${p.display} choice` }, ...order[p.display]), update };
+}
+
+// Buttons that set several parameters at once; pressed where they stand so.
+function presetsOf(view) {
+  const { title, options } = view.spec.presets;
+  const buttons = options.map(([label, values]) => {
+    const button = make("button", { type: "button" }, label);
+    button.addEventListener("click", () => view.set(values));
+    return button;
+  });
+  const update = () => {
+    options.forEach(([, values], i) => {
+      const stands = Object.entries(values).every(([name, value]) => view.get(name) === value);
+      buttons[i].setAttribute("aria-pressed", String(stands));
+    });
+  };
+  const words = { class: "presets", role: "group", "aria-label": title };
+  const heading = make("span", { "aria-hidden": "true" }, title);
+  return { el: make("div", words, heading, ...buttons), update };
+}
+
+const GRIP = 24; // px around a handle in which a finger takes hold of it
+
+// Dragging in a drawing with a handle: by mouse or pen anywhere; by touch from the handle, or
+// sideways, or by a tap, so that a vertical swipe from beside the handle scrolls the page.
+//   move(event)  is called at every place that the pointer reaches
+function draggable(svg, handle, move) {
+  const near = ({ clientX, clientY }) => {
+    const box = handle.getBoundingClientRect();
+    const away = [clientX - box.x - box.width / 2, clientY - box.y - box.height / 2];
+    return Math.hypot(...away) <= Math.max(GRIP, box.width / 2);
+  };
+  let begun = null; // a touch beside the handle, until it is known what it becomes
+  svg.style.touchAction = "pan-y";
+  svg.addEventListener("touchstart", (event) => near(event.touches[0]) && event.preventDefault(), { passive: false });
+  svg.addEventListener("pointerdown", (event) => {
+    if (event.button) return;
+    svg.focus({ preventScroll: true });
+    begun = event.pointerType === "touch" && !near(event) ? event : null;
+    if (begun) return;
+    svg.setPointerCapture(event.pointerId);
+    move(event);
+  });
+  svg.addEventListener("pointermove", (event) => {
+    if (begun && Math.abs(event.clientX - begun.clientX) > 8) {
+      begun = null;
+      svg.setPointerCapture(event.pointerId);
+    }
+    if (!begun && event.buttons && svg.hasPointerCapture(event.pointerId)) move(event);
+  });
+  svg.addEventListener("pointerup", (event) => {
+    if (begun) move(event); // a tap
+    begun = null;
+  });
+  svg.addEventListener("pointercancel", () => (begun = null));
 }
 
 const SHAPES = [
@@ -115,15 +170,7 @@ function padOf(view) {
     const box = frame.getBoundingClientRect();
     move((event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height);
   };
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button) return;
-    svg.setPointerCapture(event.pointerId);
-    svg.focus({ preventScroll: true });
-    drag(event);
-  });
-  svg.addEventListener("pointermove", (event) => {
-    if (svg.hasPointerCapture(event.pointerId)) drag(event);
-  });
+  draggable(svg, handle, drag);
   svg.addEventListener("keydown", (event) => {
     const way = WAYS[event.key];
     if (!way || event.ctrlKey || event.altKey || event.metaKey) return;

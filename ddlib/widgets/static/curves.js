@@ -1,5 +1,5 @@
-// Shows a CurveWidget (base.py). Follows baked.js, charts.js and controls.js in every widget's
-// module. With a kernel the exact curves replace the interpolated ones.
+// Shows a CurveWidget (base.py). Follows baked.js, frame.js, charts.js and controls.js in every
+// widget's module. With a kernel the exact curves replace the interpolated ones.
 
 const PATIENCE = 2000; // ms to wait for a kernel
 const GONE = ["dead", "terminating", "restarting", "autorestarting"]; // states of a kernel
@@ -8,7 +8,9 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
 // The view has: model, spec, el, id, values (in the order of spec.parameters), curves (by name),
 // get(name), set({name: value}), after (called with the curves after each redraw), charts,
-// controls, top, numbers (a list below the charts), words (returns texts to be spoken), schedule() (redraws in the next frame).
+// controls, top, numbers (a list between controls and charts), words (returns texts to be spoken),
+// schedule() (redraws in the next frame), keep(name, read, write) (a part of the state that is no
+// parameter, see frame.js) with changed(), and resets (called by Reset).
 const extras = [];
 
 // What a widget that computes in the page sets (engine/live.py): the view's curves by name; they end
@@ -21,11 +23,28 @@ function build({ model, el }) {
   const tables = spec?.live ? null : readTables(spec, model.get("baked"));
   const names = spec.parameters.map((p) => p.name);
   const view = { model, el, spec, id: `dd${Math.random().toString(36).slice(2, 10)}` };
+  view.resets = [];
+  const frame = frameOf({
+    ...{ el, key: spec.key, title: spec.title, linked: Boolean(model.kernelless) },
+    reset: () => view.resets.forEach((callback) => callback()),
+    code: () => codeOf(spec, names.map((name) => model.get(name))),
+  });
+  Object.assign(view, { keep: frame.keep, changed: frame.changed });
   const read = () => {
     const values = names.map((name) => model.get(name));
     spec.parameters.forEach((p, k) => checkValue(p, values[k]));
     view.values = values;
   };
+  read();
+  for (const p of spec.parameters) {
+    const now = () => String(model.get(p.name));
+    const put = (text) => {
+      const change = { [p.name]: valueOfText(p, text) };
+      if (view.set) view.set(change);
+      else model.set(change); // from the address, before anything is drawn
+    };
+    frame.keep(p.name, now, put, model.kernelless ? now() : String(p.value));
+  }
   read();
   el.classList.add("ddlib-widget", "ddlib-curves");
   el.setAttribute("role", "group");
@@ -34,11 +53,12 @@ function build({ model, el }) {
   view.charts = spec.panels.map((panel) => chart(view, panel));
   const controls = spec.parameters.map((p, k) => (p.options ? choice : slider)(view, p, k));
   if (spec.pad) controls.push(padOf(view));
+  if (spec.presets) controls.push(presetsOf(view));
   view.controls = make("div", { class: "controls" });
   view.controls.append(...controls.slice(0, names.length).map((control) => control.el));
-  if (spec.note) view.controls.append(make("p", { class: "remark" }, spec.note));
   view.top = make("div", { class: "top" }, view.controls);
-  if (spec.pad) view.top.prepend(controls.at(-1).el);
+  if (spec.presets) view.controls.prepend(controls.at(-1).el);
+  if (spec.pad) view.top.prepend(controls[names.length].el);
   const charts = make("div", { class: "charts" }, ...view.charts.map((c) => c.el));
   const scalars = spec.scalars.map((s) => ({ ...s, output: make("output") }));
   view.numbers = make("dl", { class: "scalars" });
@@ -47,7 +67,9 @@ function build({ model, el }) {
   const problem = make("p", { class: "problem", role: "alert", hidden: "" });
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
   const footer = make("p", { class: "footer" }, footerText(model, spec));
-  el.replaceChildren(view.top, charts, ...(scalars.length ? [view.numbers] : []), note, problem, footer, spoken);
+  const told = scalars.length ? [view.numbers] : [];
+  const remark = spec.note ? [make("p", { class: "remark" }, spec.note)] : [];
+  el.replaceChildren(frame.el, view.top, ...told, charts, ...remark, note, problem, footer, spoken);
 
   // The curves for the values as they stand: exact ones if the kernel has sent them.
   function current() {
@@ -63,11 +85,11 @@ function build({ model, el }) {
   }
 
   view.after = [];
-  let frame = 0;
+  let due = 0;
   let speaking = 0;
   // Everything but the charts.
   function update() {
-    frame = 0;
+    due = 0;
     view.curves = spec.live ? live(view) : split(spec, current());
     controls.forEach((control) => control.update());
     for (const { name, output, unit, digits } of scalars) {
@@ -84,7 +106,7 @@ function build({ model, el }) {
     clearTimeout(speaking);
     speaking = setTimeout(speak, QUIET);
   }
-  view.schedule = () => (frame ||= requestAnimationFrame(guarded(redraw)));
+  view.schedule = () => (due ||= requestAnimationFrame(guarded(redraw)));
 
   let moved = false; // nothing is spoken before the reader does something
   const describe = () => view.charts.forEach((c) => c.describe(view.curves));
@@ -136,6 +158,7 @@ function build({ model, el }) {
     moved = true;
     for (const [k, value] of Object.entries(changes)) model.set(names[k] ?? k, value);
     ask();
+    frame.changed();
   };
   const follow = guarded(() => {
     read();
@@ -149,7 +172,7 @@ function build({ model, el }) {
   const size = new ResizeObserver(
     guarded(() => {
       view.charts.forEach((c) => c.resize());
-      cancelAnimationFrame(frame);
+      cancelAnimationFrame(due);
       redraw(); // in the same frame: axes and curves never differ
     }),
   );
@@ -165,9 +188,10 @@ function build({ model, el }) {
   function stop() {
     for (const [event, callback] of events) model.off(event, callback);
     stops.forEach((clean) => clean?.());
+    frame.stop();
     size.disconnect();
     for (const signal of [statusChanged, disposed]) signal?.disconnect(watch);
-    cancelAnimationFrame(frame);
+    cancelAnimationFrame(due);
     clearTimeout(waiting);
     clearTimeout(speaking);
   }
@@ -183,6 +207,19 @@ function build({ model, el }) {
     };
   }
   return stop;
+}
+
+// A parameter's value from its text in the address, or an error.
+function valueOfText(p, text) {
+  const value = p.options ? p.options.find(([key]) => String(key) === text)?.[0] : Number(text);
+  checkValue(p, value);
+  return value;
+}
+
+// The state as Python code: names in braces stand for values.
+function codeOf(spec, values) {
+  const named = Object.fromEntries(spec.parameters.map((p, k) => [p.name, python(values[k])]));
+  return spec.code.replace(/\{(\w+)\}/g, (whole, name) => named[name] ?? whole);
 }
 
 function footerText(model, spec) {

@@ -1,0 +1,78 @@
+"""What every widget has: its name in the page's address, its state as code, and presets."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import re
+from collections.abc import Mapping
+
+from ddlib.widgets.parts.parameters import Choice, Parameter
+
+
+def key_of(kind: type) -> str:
+    """A class's name in the page's address: ``TrajectoryPicker`` is "trajectory-picker"."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", kind.__name__).lower()
+
+
+def default_code(kind: type, names) -> str:
+    """Code that makes a widget with its state, or none if the class needs arguments.
+
+    Parameters
+    ----------
+    kind : type
+    names : iterable of str
+        Its parameters.
+
+    Returns
+    -------
+    str
+        Names in braces stand for values.
+    """
+    given = list(inspect.signature(kind).parameters.values())
+    variadic = (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+    if any(p.default is p.empty and p.kind not in variadic for p in given):
+        return ""
+    module = kind.__module__
+    if (parts := module.split("."))[:2] == ["ddlib", "widgets"] and len(parts) == 3:
+        module = "ddlib.widgets"
+    lines = [f"from {module} import {kind.__name__}", "", f"widget = {kind.__name__}()"]
+    return "\n".join([*lines, *(f"widget.{name} = {{{name}}}" for name in names), "widget"])
+
+
+def filled(code: str, values: Mapping) -> str:
+    """`code` with the values in place of their names in braces, as the page's script does it."""
+    named = {name: literal(value) for name, value in values.items()}
+    return re.sub(r"\{(\w+)\}", lambda found: named.get(found[1], found[0]), code)
+
+
+def literal(value: str | int | float | bool) -> str:
+    """A parameter's value as Python writes it, numbers with six digits."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    return str(value) if isinstance(value, (bool, int)) else f"{value:.6g}"
+
+
+def checked_presets(presets: Mapping | None, parameters: Mapping[str, Parameter | Choice]) -> list:
+    """Labels and values of presets, each value checked by its parameter.
+
+    Parameters
+    ----------
+    presets : mapping
+        Label -> value by name of a parameter.
+    parameters : mapping
+        Those of the widget by name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such parameter, or if a value does not fit.
+    """
+    checked = []
+    for label, values in (presets or {}).items():
+        for name in values:
+            if name not in parameters:
+                known = ", ".join(parameters)
+                raise ValueError(f"preset {label!r} must set some of {known}, got {name}")
+        checked.append([str(label), {n: parameters[n].check(v) for n, v in values.items()}])
+    return checked

@@ -1,0 +1,93 @@
+// Values of a chart: at the sample nearest to the pointer, or with focus at one that the arrow
+// keys choose. Follows elements.js.
+
+// A label such as "time, s" as a quantity and what follows a number.
+function unitOf(label) {
+  const cut = label.lastIndexOf(", ");
+  const unit = label.slice(cut + 2);
+  return cut > 0 && unit.length <= 10 ? [label.slice(0, cut), unit] : [label, ""];
+}
+
+// `plot` has: el, svg, panel, curves, samples (places in px), top(), bottom(), left(), right(),
+// text(curve, i) and place(curve, i) of a value, in words and in px.
+function readerOf(plot) {
+  const { el, svg, panel, curves } = plot;
+  const [quantity, unit] = unitOf(panel.x_label);
+  const [low, high] = [panel.x[0], panel.x.at(-1)];
+  const dots = curves.map(({ k }) => make("circle", { class: `c${k % COLOURS}`, r: 4 }));
+  const line = make("line", {});
+  const marks = make("g", { class: "reading", visibility: "hidden", "aria-hidden": "true" }, line, ...dots);
+  const where = make("div", { class: "where" });
+  const outputs = curves.map(() => make("b"));
+  const rows = curves.map((curve, i) =>
+    make("div", {}, swatch(curve.kind, curve.k), ...(curves.length > 1 ? [`${curve.legend} `] : []), outputs[i]),
+  );
+  const box = make("div", { class: "readout", "aria-hidden": "true", hidden: "" }, where, ...rows);
+  svg.append(marks);
+  el.append(box);
+  let index = null;
+
+  function nameOf(i) {
+    if (panel.x_texts.length) return `${quantity} ${panel.x_texts[i]}`;
+    const tick = panel.ticks.find(([at]) => at === panel.x[i]);
+    return tick ? tick[1] : `${quantity} ${format(panel.x[i], low, high, unit)}`;
+  }
+  function show(i) {
+    index = Math.min(panel.x.length - 1, Math.max(0, i));
+    const x = plot.samples()[index];
+    const ends = { x1: x, x2: x, y1: plot.top(), y2: plot.bottom() };
+    for (const [name, value] of Object.entries(ends)) line.setAttribute(name, value);
+    curves.forEach((curve, k) => {
+      const y = plot.place(curve, index);
+      const inside = y >= plot.top() - 4 && y <= plot.bottom() + 4;
+      dots[k].setAttribute("transform", `translate(${plot.across(curve, index)} ${short(y)})`);
+      dots[k].setAttribute("visibility", inside ? "inherit" : "hidden");
+      write(outputs[k], plot.text(curve, index));
+    });
+    write(where, nameOf(index));
+    marks.setAttribute("visibility", "visible");
+    box.hidden = false;
+    // away from what is read
+    const right = x < (plot.left() + plot.right()) / 2;
+    box.style.left = right ? "auto" : `${plot.left() + 6}px`;
+    box.style.right = right ? "0" : "auto";
+    box.style.top = `${Math.round(svg.getBoundingClientRect().top - el.getBoundingClientRect().top)}px`;
+    const told = curves.map((curve, k) => `${curves.length > 1 ? `${curve.legend} ` : ""}${outputs[k].textContent}`);
+    svg.setAttribute("aria-valuenow", index);
+    svg.setAttribute("aria-valuetext", `${where.textContent}: ${told.join(", ")}`);
+  }
+  function hide() {
+    index = null;
+    marks.setAttribute("visibility", "hidden");
+    box.hidden = true;
+  }
+  const at = (event) => {
+    const x = event.clientX - svg.getBoundingClientRect().left;
+    const away = plot.samples().map((place) => Math.abs(place - x));
+    show(away.indexOf(Math.min(...away)));
+  };
+  svg.addEventListener("pointermove", at);
+  svg.addEventListener("pointerdown", at);
+  svg.addEventListener("pointercancel", hide); // the page is being scrolled
+  svg.addEventListener("pointerleave", (event) => {
+    if (event.pointerType !== "touch" && document.activeElement !== svg) hide();
+  });
+  svg.addEventListener("blur", hide);
+  svg.addEventListener("focus", () => index ?? show(Math.floor(panel.x.length / 2)));
+  svg.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const step = event.shiftKey ? 10 : 1;
+    const now = index ?? 0;
+    const next = { ArrowRight: now + step, ArrowLeft: now - step, Home: 0, End: panel.x.length - 1 };
+    if (event.key === "Escape") hide();
+    if (next[event.key] === undefined) return;
+    event.preventDefault();
+    event.stopPropagation(); // a notebook has its own arrow keys
+    show(next[event.key]);
+  });
+  const fixed = { tabindex: 0, role: "slider", "aria-roledescription": "chart", "aria-readonly": "true" };
+  const range = { "aria-valuemin": 0, "aria-valuemax": panel.x.length - 1 };
+  const start = { "aria-valuenow": 0, "aria-valuetext": "arrow keys read values" };
+  for (const [name, value] of Object.entries({ ...fixed, ...range, ...start })) svg.setAttribute(name, value);
+  return () => index === null || show(index);
+}
