@@ -55,7 +55,7 @@ async ([widget, kind, moves]) => {
     el.value = value === Number(el.value) ? (value < high ? value + 1 : value - 1) : value;
     el.dispatchEvent(new Event("input", { bubbles: true }));
   };
-  const drawing = widget.querySelector('svg[tabindex="0"]');
+  const drawing = widget.querySelector('svg[tabindex="0"]:not(.chart > svg)');
   const box = drawing?.getBoundingClientRect();
   const drag = (k) => {
     drawing.setPointerCapture = () => {}; // of a pointer that is not there
@@ -88,7 +88,7 @@ async ([widget, kind, moves]) => {
 """
 KINDS = {
     "sliders": 'input[type="range"]',
-    "drawing": 'svg[tabindex="0"]',
+    "drawing": 'svg[tabindex="0"]:not(.chart > svg)',
     "frames": "button[data-runs]",
 }
 

@@ -189,12 +189,11 @@ def test_hover_and_keys_read_values(tmp_path, visit, widget):
     assert not box.is_visible()
     chart.focus()
     page.keyboard.press("Home")
-    assert chart.get_attribute("aria-valuetext").startswith("time 0.00\u00a0s: ")
+    page.wait_for_function("document.querySelector('.spoken').textContent.startsWith('time 0.00')")
     page.keyboard.press("Shift+ArrowRight")
     assert box.locator(".where").inner_text() == "time 0.25\u00a0s"
-    assert box.is_visible() and chart.get_attribute("aria-valuenow") == "10"
+    assert box.is_visible() and "Arrow keys" in chart.get_attribute("aria-label")
     before = box.locator("b").inner_text()
-    page.evaluate("document.querySelector('input[type=range]').dispatchEvent(new Event('input'))")
     page.get_by_label("Gain").evaluate(
         "(el) => { el.value = el.max; el.dispatchEvent(new Event('input')); }"
     )

@@ -204,7 +204,7 @@ def test_cursors_ticks_and_ranges(tmp_path, visit, waves):
     assert begin + width == pytest.approx(place(1, 0.5), abs=0.6)
     assert charts.nth(2).locator("text.x").all_text_contents() == ["a", "c", "x"]
     ys = charts.nth(3).locator("text.y").all_text_contents()
-    assert [float(y.replace("−", "-")) for y in ys] == [-2, -1, 0]  # up to 0.5
+    assert [float(y.replace("−", "-")) for y in ys] == [-2, -1.5, -1, -0.5, 0, 0.5]
     clip = charts.nth(3).locator(".curve").get_attribute("clip-path")
     assert charts.nth(3).locator(f"clipPath[id='{clip[5:-1]}']").count() == 1
     page.get_by_label("Gain").press("End")
@@ -220,7 +220,7 @@ def test_axes_follow_curves_where_asked(tmp_path, visit, waves):
         page.evaluate(NEXT_FRAME)
         tops.append([c.locator("text.y").last.text_content() for c in page.locator(".chart").all()])
     (fitted, kept, *_), (larger, same, *_) = tops
-    assert float(fitted) == 1 and float(larger) >= 5 and kept == same
+    assert float(fitted) == 1 and float(larger) >= 4 and kept == same
 
 
 def test_pad_by_keyboard(tmp_path, visit, widget):
@@ -238,7 +238,7 @@ def test_pad_by_keyboard(tmp_path, visit, widget):
     assert "Now 1.98\u00a01/s, −0.80\u00a0rad" in name
     assert pad.evaluate("(el) => el.matches(':focus-visible')")
     assert pad.evaluate("(el) => getComputedStyle(el).outlineWidth") == "2px"
-    assert pad.evaluate("(el) => getComputedStyle(el).touchAction") == "none"
+    assert pad.evaluate("(el) => getComputedStyle(el).touchAction") == "pan-y"
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -99,7 +99,7 @@ function chart(view, panel) {
   const paths = [...fixed, ...moving].flatMap((curve) => curve.paths);
   for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
   const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
-  const svg = make("svg", {}, defs, span, grid, cursor, ...paths);
+  const svg = make("svg", { role: "img", tabindex: 0 }, defs, span, grid, cursor, ...paths);
   const legend = make("div", { class: "legend" });
   if (curves.length > 1) {
     for (const curve of curves) {
@@ -127,6 +127,7 @@ function chart(view, panel) {
     right: () => right,
     across: (curve, i) => short(xs[i] + (curve.kind === "line" ? 0 : shiftOf(curve)[0])),
     place: (curve, i) => y.place(log ? Math.max(valueOf(curve, i), low) : valueOf(curve, i)),
+    say: (text) => view.say(text),
     text: (curve, i) => textOf(valueOf(curve, i), unit),
   });
 
@@ -247,7 +248,7 @@ function chart(view, panel) {
       const [min, max] = extremes([values]);
       return `${curve.legend} from ${format(min, a, b)} to ${format(max, a, b)}`;
     });
-    svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}`);
+    svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}. Arrow keys read values`);
   }
 
   return { el, panel, resize, redraw, describe, point };

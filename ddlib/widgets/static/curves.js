@@ -8,7 +8,7 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
 // The view has: model, spec, el, id, values (in the order of spec.parameters), curves (by name),
 // get(name), set({name: value}), after (called with the curves after each redraw), charts,
-// controls, top, numbers (a list between controls and charts), words (returns texts to be spoken),
+// controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
 // schedule() (redraws in the next frame), keep(name, read, write) (a part of the state that is no
 // parameter, see frame.js) with changed(), and resets (called by Reset).
 const extras = [];
@@ -66,6 +66,7 @@ function build({ model, el }) {
   const note = make("p", { class: "note", role: "status", hidden: "" });
   const problem = make("p", { class: "problem", role: "alert", hidden: "" });
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
+  view.say = (text) => (spoken.textContent = text);
   const footer = make("p", { class: "footer" }, footerText(model, spec));
   const told = scalars.length ? [view.numbers] : [];
   const remark = spec.note ? [make("p", { class: "remark" }, spec.note)] : [];
@@ -114,7 +115,7 @@ function build({ model, el }) {
     describe();
     const parts = spec.parameters.map((p, k) => `${p.label} ${show(p, view.values[k])}`);
     parts.push(...scalars.map((s) => `${s.label} ${s.output.textContent}`), ...(view.words?.() ?? []));
-    if (moved) spoken.textContent = `${parts.join(". ")}.`;
+    if (moved) view.say(`${parts.join(". ")}.`);
   }
 
   // One request at a time; what changes meanwhile goes with the next one.

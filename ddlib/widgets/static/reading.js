@@ -9,7 +9,7 @@ function unitOf(label) {
 }
 
 // `plot` has: el, svg, panel, curves, samples (places in px), top(), bottom(), left(), right(),
-// text(curve, i) and place(curve, i) of a value, in words and in px.
+// text(curve, i) and place(curve, i) of a value, in words and in px, and say(text).
 function readerOf(plot) {
   const { el, svg, panel, curves } = plot;
   const [quantity, unit] = unitOf(panel.x_label);
@@ -53,8 +53,7 @@ function readerOf(plot) {
     box.style.right = right ? "0" : "auto";
     box.style.top = `${Math.round(svg.getBoundingClientRect().top - el.getBoundingClientRect().top)}px`;
     const told = curves.map((curve, k) => `${curves.length > 1 ? `${curve.legend} ` : ""}${outputs[k].textContent}`);
-    svg.setAttribute("aria-valuenow", index);
-    svg.setAttribute("aria-valuetext", `${where.textContent}: ${told.join(", ")}`);
+    return `${where.textContent}: ${told.join(", ")}`;
   }
   function hide() {
     index = null;
@@ -73,7 +72,12 @@ function readerOf(plot) {
     if (event.pointerType !== "touch" && document.activeElement !== svg) hide();
   });
   svg.addEventListener("blur", hide);
-  svg.addEventListener("focus", () => index ?? show(Math.floor(panel.x.length / 2)));
+  let speaking = 0;
+  function speak(text) {
+    clearTimeout(speaking);
+    speaking = setTimeout(() => plot.say(text), 200); // not every sample of a key held down
+  }
+  svg.addEventListener("focus", () => index ?? speak(show(Math.floor(panel.x.length / 2))));
   svg.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const step = event.shiftKey ? 10 : 1;
@@ -83,11 +87,7 @@ function readerOf(plot) {
     if (next[event.key] === undefined) return;
     event.preventDefault();
     event.stopPropagation(); // a notebook has its own arrow keys
-    show(next[event.key]);
+    speak(show(next[event.key]));
   });
-  const fixed = { tabindex: 0, role: "slider", "aria-roledescription": "chart", "aria-readonly": "true" };
-  const range = { "aria-valuemin": 0, "aria-valuemax": panel.x.length - 1 };
-  const start = { "aria-valuenow": 0, "aria-valuetext": "arrow keys read values" };
-  for (const [name, value] of Object.entries({ ...fixed, ...range, ...start })) svg.setAttribute(name, value);
   return () => index === null || show(index);
 }
