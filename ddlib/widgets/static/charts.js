@@ -133,6 +133,7 @@ function chart(view, panel) {
 
   // Enough digits for the axis as it stands; on a logarithmic one, three.
   function textOf(value, unit) {
+    if (Number.isNaN(value)) return "none";
     if (!log) return format(value, low, high, unit);
     return `${Number(value.toPrecision(3))}`.replace("-", "−") + (unit && `\u00a0${unit}`);
   }

@@ -40,8 +40,8 @@ function readerOf(plot) {
     curves.forEach((curve, k) => {
       const y = plot.place(curve, index);
       const inside = y >= plot.top() - 4 && y <= plot.bottom() + 4;
-      dots[k].setAttribute("transform", `translate(${plot.across(curve, index)} ${short(y)})`);
-      dots[k].setAttribute("visibility", inside ? "inherit" : "hidden");
+      dots[k].setAttribute("visibility", inside ? "inherit" : "hidden"); // a run may be over
+      if (inside) dots[k].setAttribute("transform", `translate(${plot.across(curve, index)} ${short(y)})`);
       write(outputs[k], plot.text(curve, index));
     });
     write(where, nameOf(index));
