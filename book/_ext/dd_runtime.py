@@ -1,8 +1,8 @@
 """How long the notebooks of this build took, known once all have been executed, and to read.
 
 The role ``{reading}`page page``` is the time that it takes to read some pages. The role
-``{runtime}`words``` is a page's own time in prose, or the words where none was measured; the
-directive ``{chapter-times}`` is a table of all.
+``{runtime}`words``` is a page's own time in prose, or the words where none was measured; above its
+paragraph it puts the time to read the page. The directive ``{chapter-times}`` is a table of all.
 """
 
 from __future__ import annotations
@@ -72,6 +72,8 @@ class InsertTimes(SphinxPostTransform):
         own = times.get(self.env.docname)
         for node in list(self.document.findall(RunTime)):
             words = node.astext() if own is None else f"{spoken_time(own)} {MEASURED}"
+            if isinstance(node.parent, nodes.paragraph):
+                self.say_before(node.parent)
             node.replace_self(nodes.inline(text=words))
         for node in list(self.document.findall(ChapterTimes)):
             total = sum(times.values())
@@ -80,6 +82,13 @@ class InsertTimes(SphinxPostTransform):
             ]
             head = ("chapter", "time", "share")
             node.replace_self(table([head, *rows, ("all", f"{total:.0f} s", "100%")]))
+
+    def say_before(self, paragraph: nodes.paragraph) -> None:
+        """The time to read this page, in a paragraph before that of its time to run."""
+        path = Path(self.env.doc2path(self.env.docname))
+        told = nodes.Text(f" {minutes([path])}, counted from its words.")
+        new = nodes.paragraph("", "", nodes.strong(text="Time to read"), told)
+        paragraph.parent.insert(paragraph.parent.index(paragraph), new)
 
     def link(self, page: str) -> pending_xref:
         title = self.env.titles[page].astext()
@@ -112,8 +121,12 @@ def reading(name, rawtext, text, lineno, inliner, options=None, content=None):
     paths = [Path(env.doc2path(env.docname)).with_name(f"{page}.ipynb") for page in text.split()]
     for path in paths:
         env.note_dependency(str(path))
-    minutes = 5 * max(1, round(sum(map(words, paths)) / WORDS_A_MINUTE / 5))
-    return [nodes.inline(text=f"{minutes} minutes")], []
+    return [nodes.inline(text=minutes(paths))], []
+
+
+def minutes(paths: list[Path]) -> str:
+    """The time to read some notebooks, to five minutes."""
+    return f"{5 * max(1, round(sum(map(words, paths)) / WORDS_A_MINUTE / 5))} minutes"
 
 
 def setup(app):

@@ -1,0 +1,53 @@
+// One switch in the page's header shows all code, or only what teaches; it is remembered.
+(() => {
+  const KEY = "all-code";
+  const root = document.documentElement;
+  const cells = document.querySelectorAll("article :is(.tag_bookkeeping, .tag_plumbing)");
+  const folds = [...cells].map((cell) => cell.querySelector("details")).filter(Boolean);
+  const place = document.querySelector(".article-header-buttons");
+  if (!folds.length || !place) return;
+
+  // A page opened from a folder, or with cookies off, may have no storage.
+  const recall = () => {
+    try {
+      return localStorage.getItem(KEY) === "1";
+    } catch {
+      return false;
+    }
+  };
+  const remember = (all) => {
+    try {
+      localStorage.setItem(KEY, all ? "1" : "0");
+    } catch {
+      // it is not remembered
+    }
+  };
+
+  const button = document.createElement("button");
+  button.type = "button";
+  button.className = "btn btn-sm btn-all-code";
+  button.textContent = "All code";
+  const show = (all) => {
+    root.dataset.code = all ? "all" : "teaching";
+    for (const fold of folds) fold.open = all;
+    button.setAttribute("aria-pressed", String(all));
+    const lines = folds.reduce((sum, fold) => sum + parseInt(fold.innerText, 10), 0);
+    button.title = `${all ? "Hide" : "Show"} the ${lines} lines of plumbing on this page`;
+  };
+
+  // What the reader looks at stays where it is.
+  const looked = () =>
+    [...document.querySelectorAll("article :is(p, h1, h2, h3, li, figure, table)")].find(
+      (el) => el.getBoundingClientRect().top > 80 && el.checkVisibility(),
+    );
+  button.addEventListener("click", () => {
+    const all = root.dataset.code !== "all";
+    const kept = scrollY > 0 && looked();
+    const before = kept && kept.getBoundingClientRect().top;
+    show(all);
+    if (kept) scrollBy({ top: kept.getBoundingClientRect().top - before, behavior: "instant" });
+    remember(all);
+  });
+  place.prepend(button);
+  show(recall());
+})();

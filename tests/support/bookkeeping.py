@@ -1,0 +1,133 @@
+"""What a piece of code says that is not for a reader: lines that keep books, and raw prints."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+MAX_TEXT = 60  # characters of a literal: longer ones are alternative texts and sentences
+
+# Calls that show something, name a number for the prose, check, or load what was made before.
+CALLS = re.compile(
+    r"quote|glue|stated|display|show|Markdown|Math|Table"
+    r"|(figures|drawn|wall|results|measured|pictures|np\.testing)\..*|.*\bassert_\w+|by_case"
+)
+# What tables, pictures and alternative texts are made of.
+NAMES = {
+    "alt",
+    "captions",
+    "columns",
+    "heads",
+    "head",
+    "labels",
+    "panels",
+    "rows",
+    "titles",
+    "told",
+}
+
+
+def lines_of_bookkeeping(code: str) -> list[str]:
+    """The statements of a cell that keep books rather than teach, as far as their first line.
+
+    Those are imports, assertions, quoted numbers, tables, figures and what they are made of,
+    alternative texts, loaded results, and formatted prints; within functions and loops, too.
+    """
+    found = []
+    for node in statements(ast.parse(code).body):
+        if isinstance(node, (ast.Import, ast.ImportFrom, ast.Assert)) or any(marks(node)):
+            found.append(ast.unparse(node).partition("\n")[0])
+    return found
+
+
+def statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements of a cell; in place of a compound one, those within it."""
+    for node in body:
+        parts = [getattr(node, part, []) for part in ("body", "orelse", "finalbody")]
+        parts += [handler.body for handler in getattr(node, "handlers", ())]
+        if any(parts):
+            for part in parts:
+                yield from statements(part)
+        else:
+            yield node
+
+
+def marks(node: ast.stmt) -> Iterator[bool]:
+    """Whether the parts of a simple statement keep books."""
+    docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    for part in ast.walk(node):
+        if isinstance(part, ast.Call):
+            name = ast.unparse(part.func)
+            prints = name == "print" and any(map(is_formatted, part.args))
+            yield prints or CALLS.fullmatch(name) is not None
+        if isinstance(part, ast.Name):
+            yield part.id in NAMES
+        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+            yield len(part.value) > MAX_TEXT and not docstring
+
+
+def is_formatted(node: ast.expr) -> bool:
+    return isinstance(node, ast.JoinedStr) or isinstance(getattr(node, "value", None), str)
+
+
+def called(node: ast.stmt) -> str:
+    """The function that a statement calls for its own sake, if it is one."""
+    if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        return ast.unparse(node.value.func)
+    return ""
+
+
+def shows_something(code: str) -> bool:
+    """Whether a cell has an output: it prints, or ends with a value."""
+    tree = ast.parse(code)
+    every, last = list(statements(tree.body)), tree.body[-1]
+    silent = called(last) in {"quote", "glue", "stated"} or "assert_" in called(last)
+    return "print" in map(called, every) or (isinstance(last, ast.Expr) and not silent)
+
+
+def only_imports(code: str) -> Iterator[bool]:
+    """Of each statement, whether it imports."""
+    yield from (isinstance(node, (ast.Import, ast.ImportFrom)) for node in ast.parse(code).body)
+
+
+BARE = (ast.Attribute, ast.Subscript, ast.Constant, ast.Tuple, ast.List, ast.Dict)
+BARE += (ast.ListComp, ast.DictComp, ast.BinOp, ast.UnaryOp, ast.Compare, ast.JoinedStr)
+OF_ARRAYS = r"np\..*|float|int|round|abs|max|min|sum|sorted|list|.*\.(max|min|mean|round|sum|std)"
+
+
+def ends_with_a_bare_value(code: str) -> bool:
+    """Whether a cell's output is how Python writes a number, an array or a list.
+
+    What is called otherwise makes a figure, a table or a widget.
+    """
+    *before, last = ast.parse(code).body
+    if not isinstance(last, ast.Expr):
+        return False
+    if isinstance(last.value, ast.Name):  # a widget that was made in the same cell
+        made = [node for node in before if isinstance(node, ast.Assign)]
+        names = {ast.unparse(node.targets[0]): ast.unparse(node.value) for node in made}
+        return not re.match(r"(\w+\.)?[A-Z]\w+\(", names.get(last.value.id, ""))
+    return isinstance(last.value, BARE) or bool(re.fullmatch(OF_ARRAYS, called(last)))
+
+
+def raw_prints(code: str) -> list[str]:
+    """Calls of `print` that show values without a sentence around them."""
+
+    def speaks(node: ast.expr) -> bool:
+        if isinstance(node, ast.Constant):
+            return isinstance(node.value, str)
+        if isinstance(node, ast.JoinedStr):
+            return any(
+                isinstance(n, ast.Constant) and re.search("[a-z]", n.value) for n in node.values
+            )
+        if isinstance(node, ast.BinOp):
+            return speaks(node.left) or speaks(node.right)
+        # texts made elsewhere: a listing, a message, several sentences
+        return (
+            re.fullmatch(r"error|.*\.(source|text|join\(.*\))", ast.unparse(node), re.S) is not None
+        )
+
+    calls = (node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Call))
+    prints = (node for node in calls if ast.unparse(node.func) == "print")
+    return [ast.unparse(node) for node in prints if not all(map(speaks, node.args))]
