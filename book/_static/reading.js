@@ -31,7 +31,7 @@
     root.dataset.code = all ? "all" : "teaching";
     for (const fold of folds) fold.open = all;
     button.setAttribute("aria-pressed", String(all));
-    const lines = folds.reduce((sum, fold) => sum + parseInt(fold.innerText, 10), 0);
+    const lines = folds.reduce((sum, fold) => sum + parseInt(fold.textContent, 10), 0);
     button.title = `${all ? "Hide" : "Show"} the ${lines} lines of plumbing on this page`;
   };
 

@@ -111,6 +111,7 @@ BOOKKEEPING = [
     "rows = []",
     "Table(('a', 'b'), zip(x, y))",
     "figures.curves(x, y)",
+    "PIDTuner()",
     "table = results.read('table-4-1')",
     "print(f'{x:.2f} rad')",
     f"look(x, y, '{'word ' * 20}')",

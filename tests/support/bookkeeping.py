@@ -56,6 +56,7 @@ def statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
 def marks(node: ast.stmt) -> Iterator[bool]:
     """Whether the parts of a simple statement keep books."""
     docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    yield re.fullmatch(r"[A-Z]\w*", called(node)) is not None  # shows a widget
     for part in ast.walk(node):
         if isinstance(part, ast.Call):
             name = ast.unparse(part.func)
