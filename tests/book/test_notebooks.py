@@ -22,9 +22,7 @@ MAX_THESIS = 200  # characters
 CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
 MIN_EXERCISES = 3
 
-BEING_SPLIT = {"book/pid-and-feedforward", "book/feedback", "book/feedforward"}
 NOTEBOOKS = [page for page in PAGES if (path := source(page)) and path.suffix == ".ipynb"]
-READ = [page for page in NOTEBOOKS if page not in BEING_SPLIT]
 
 
 @lru_cache
@@ -81,7 +79,7 @@ def visible(page: str) -> list:
     return [c for c in read(page).cells if c.cell_type == "code" and not tags(c) & HIDDEN]
 
 
-@pytest.mark.parametrize("page", READ)
+@pytest.mark.parametrize("page", NOTEBOOKS)
 def test_visible_code_cells_are_short(page):
     def size(cell):
         lines = [line for line in cell.source.splitlines() if line.strip()]
@@ -95,7 +93,7 @@ def test_visible_code_cells_are_short(page):
     }
 
 
-@pytest.mark.parametrize("page", READ)
+@pytest.mark.parametrize("page", NOTEBOOKS)
 def test_no_visible_cell_has_a_line_of_bookkeeping(page):
     kept = {cell.id: lines_of_bookkeeping(cell.source) for cell in visible(page)}
     assert not {name: lines for name, lines in kept.items() if lines}
@@ -133,7 +131,7 @@ def test_what_teaches_is_not_bookkeeping():
     assert not any(map(lines_of_bookkeeping, (long, refused, "print(two.source)", "f(x, 'ramp')")))
 
 
-@pytest.mark.parametrize("page", READ)
+@pytest.mark.parametrize("page", NOTEBOOKS)
 def test_no_fold_opens_onto_nothing(page):
     """A fold above nothing is a bar in the way; one for the imports of a recipe is allowed."""
     folds = [c for c in read(page).cells if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
@@ -148,7 +146,7 @@ def test_empty_folds_are_seen():
     assert all(map(shows_something, ("x", "if x:\n    print(x)\nassert x", "figures.hinton(x)")))
 
 
-@pytest.mark.parametrize("page", READ)
+@pytest.mark.parametrize("page", NOTEBOOKS)
 def test_what_is_removed_shows_nothing(page):
     """`remove-cell` takes an output away, too, so such a cell has none."""
     removed = [c for c in read(page).cells if "remove-cell" in tags(c)]
@@ -199,7 +197,7 @@ def test_open_answers_are_seen():
 # Outputs
 
 
-@pytest.mark.parametrize("page", READ)
+@pytest.mark.parametrize("page", NOTEBOOKS)
 def test_what_is_shown_is_a_sentence_or_a_table(page):
     code = [cell for cell in read(page).cells if cell.cell_type == "code"]
     raw = {cell.id: raw_prints(cell.source) for cell in code}
