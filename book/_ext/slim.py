@@ -26,6 +26,7 @@ UNUSED_FILES = ("vendor", "locales", "scripts/fontawesome.js*", "**/*.map", "*we
 
 ICON_SCRIPT = "fontawesome.js"  # not needed: the icons are in the page
 SEARCH_SCRIPTS = {"searchtools.js", "language_data.js", "searchindex.js"}
+MATHS_SCRIPT = "tex-svg-full.js"
 
 FIELD = 'field search-button__button pst-js-only"'
 NO_SUMMARY = (  # of search results: fetching their pages fails from a folder
@@ -48,6 +49,7 @@ REPAIRS = (
 SCROLLED = re.compile(
     r'<div( class="pst-scrollable-table-container">\s*<table.*?</table>\s*)</div>', re.DOTALL
 )
+FORMULA = re.compile(r'<\w+ [^>]*class="[^"]*(?<![\w-])math(?![\w-])')
 ICON = re.compile(r'<(i|span) class="([^"]*\bfa-[^"]*)"([^>]*)>\s*</\1>')
 PRELOAD = re.compile(r'<link rel="preload" as="script"[^>]*>\n?')
 SCRIPT = re.compile(r'[ \t]*<script[^>]*\bsrc="[^"]*?([^/"?]+\.js)[^"]*"[^>]*></script>\n?')
@@ -87,6 +89,7 @@ def slim_page(text: str, icons: Icons, store) -> str:
     text = ICON.sub(icons.inline, text)
     text = PRELOAD.sub("", text)  # fails where scripts are off
     unused = {ICON_SCRIPT} if 'id="search-results"' in text else {ICON_SCRIPT, *SEARCH_SCRIPTS}
+    unused |= set() if FORMULA.search(text) else {MATHS_SCRIPT}
     text = SCRIPT.sub(lambda tag: "" if tag[1] in unused else tag[0], text)
     return separate_stills(text, store)
 

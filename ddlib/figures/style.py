@@ -1,4 +1,9 @@
-"""The house style: figures as inline SVG that follow the page's light or dark theme."""
+"""The house style: figures as inline SVG that follow the page's theme and its width.
+
+On a narrow page a figure has a form of its own, with its panels one below the other. Where texts
+would lie on each other in it, there is none: the wide one keeps a width at which it can be read,
+and scrolls in its own box.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +13,16 @@ import io
 import itertools
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import matplotlib as mpl
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpec
+from matplotlib.text import Text
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+from matplotlib.transforms import Bbox
 
 FONT = "'DejaVu Sans',Verdana,sans-serif"
 """Fonts of text in figures: the one they are laid out with, one as wide, the reader's own."""
@@ -35,6 +44,15 @@ JOINTS = ("shoulder", "elbow")
 
 UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
 """What may follow the comma in an axis label, and never stands alone."""
+
+LEAST = 6.75
+"""Size of the smallest text of a figure, in points: 9 pixels on a page."""
+
+NARROW = 3.55
+"""Width of a figure's narrow form in inches: what a screen of 390 pixels leaves it."""
+
+HEAVIEST = 90_000
+"""Letters of SVG up to which a narrow form is worth its weight in the page."""
 
 RC = {
     "axes.edgecolor": INK,
@@ -78,13 +96,28 @@ class Illustration:
         The picture.
     alt : str
         What it shows, for those who cannot see it.
+    draw, height
+        What `illustrate` drew it from, and how high it became, in inches.
     """
 
     svg: str
     alt: str
+    draw: Callable[[Figure], None] | None = field(default=None, compare=False, repr=False)
+    height: float = field(default=0.0, compare=False, repr=False)
+
+    @cached_property
+    def narrow(self) -> str:
+        """The same with its panels one below the other; empty where that cannot be read."""
+        return "" if self.draw is None else _narrow(self.draw, self.alt, self.height)
 
     def _repr_html_(self) -> str:
-        return f'<div class="ddlib-figure">{self.svg}</div>'
+        """Both forms; the page's style sheet shows one of them."""
+        if not self.narrow:
+            return f'<div class="ddlib-figure">{self.svg}</div>'
+        return (
+            f'<div class="ddlib-figure two-forms"><div class="wide">{self.svg}</div>'
+            f'<div class="narrow" hidden>{self.narrow}</div></div>'
+        )
 
     def save(self, path, ink="#1a1a1a", paper="#ffffff") -> None:
         """Write the picture to an ``.svg`` file with fixed colours."""
@@ -116,9 +149,95 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
     with mpl.rc_context({**RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
-        stream = io.StringIO()
-        figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
-    return Illustration(_inline(stream.getvalue(), alt), alt)
+        svg = _written(figure)
+    return Illustration(_inline(svg, alt), alt, draw, height)
+
+
+def _written(figure: Figure, **options) -> str:
+    """A matplotlib figure as the text of an SVG file."""
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None}, **options)
+    return stream.getvalue()
+
+
+def _narrow(draw: Callable[[Figure], None], alt: str, height: float) -> str:
+    """A figure drawn anew for a narrow page, or nothing if its texts do not fit there."""
+    look = {"svg.hashsalt": alt + " narrow", "path.simplify_threshold": 0.3}
+    with mpl.rc_context({**RC, **look}):
+        figure = Figure(figsize=(NARROW, height))
+        draw(figure)
+        rows, stacked = _stack(figure)
+        figure.set_figheight(height if stacked == rows else stacked * min(height / rows, 2.4))
+        figure.draw_without_rendering()
+        if figure.legends:  # they take lines that the wide form has not
+            above = sum(legend.get_window_extent().height for legend in figure.legends)
+            figure.set_figheight(figure.get_figheight() + max(0.0, above / figure.dpi - 0.3))
+            figure.draw_without_rendering()
+        if not _legible(figure):
+            return ""
+        drawn = figure.get_tightbbox()  # maps to scale leave room above and below
+        low, high = max(drawn.y0 - 0.04, 0.0), min(drawn.y1 + 0.04, figure.get_figheight())
+        svg = _written(figure, bbox_inches=Bbox([[0.0, low], [NARROW, high]]))
+    svg = _inline(svg, alt)
+    return svg if len(svg) <= HEAVIEST else ""
+
+
+def _stack(figure: Figure) -> tuple[int, int]:
+    """Put the panels of a figure below each other; returns how many rows it had and has.
+
+    Row by row if every panel has its own title, else column by column.
+    """
+    panels = [axis for axis in figure.axes if axis.get_subplotspec() is not None]
+    if not panels:
+        return 1, 1
+    grid = panels[0].get_gridspec()
+    if grid.ncols == 1:
+        return grid.nrows, grid.nrows
+
+    def place(axis):
+        spec = axis.get_subplotspec()
+        return spec.rowspan.start, spec.colspan.start
+
+    named = all(axis.get_title(loc="left") or axis.get_title() for axis in panels)
+    by_rows = named or grid.nrows == 1
+    first = {place(axis)[0]: axis for axis in reversed(sorted(panels, key=place))}
+    last = max(place(axis)[0] for axis in panels)
+    for axis in panels:
+        row, column = place(axis)
+        if column and not axis.yaxis.get_tick_params().get("labelleft", True):
+            axis.tick_params(labelleft=True)  # it shared those of its neighbour
+            if not axis.get_ylabel():
+                axis.set_ylabel(first[row].get_ylabel())
+        if row == last:
+            axis.tick_params(labelbottom=True)
+    order = sorted(panels, key=lambda axis: place(axis) if by_rows else place(axis)[::-1])
+    rows = GridSpec(len(order), 1, figure=figure)
+    for axis, spec in zip(order, rows):
+        axis.set_subplotspec(spec)
+    return grid.nrows, len(order)
+
+
+def _legible(figure: Figure) -> bool:
+    """Whether the texts of a drawn figure lie within it, none on another, beside wide panels."""
+    hidden = set()
+    for axis in figure.axes:
+        for side in (axis.xaxis, axis.yaxis):
+            low, high = sorted(side.get_view_interval())
+            ticks = (*side.get_major_ticks(), *side.get_minor_ticks())
+            hidden |= {tick.label1 for tick in ticks if not low <= tick.get_loc() <= high}
+    texts = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
+    boxes = [t.get_window_extent() for t in texts if t not in hidden]
+    whole, point = figure.bbox.padded(1), figure.dpi / 72
+    if any(not (whole.x0 <= box.x0 and box.x1 <= whole.x1) for box in boxes):
+        return False
+    if any(not (whole.y0 <= box.y0 and box.y1 <= whole.y1) for box in boxes):
+        return False
+    for one, other in itertools.combinations(boxes, 2):
+        common = Bbox.intersection(one, other)
+        if common is not None and common.width > point and common.height > 4 * point:
+            return False
+    panels = [axis for axis in figure.axes if axis.get_subplotspec() is not None]
+    return all(axis.get_window_extent().width > 0.45 * figure.bbox.width for axis in panels)
 
 
 def check_label(label: str) -> str:
@@ -180,8 +299,12 @@ def _inline(svg: str, alt: str) -> str:
     svg = re.sub(r' (d|x|y|transform)="[^"]*"', _rounded, svg)
     svg = re.sub(r"; font-family: 'DejaVu Sans'", "", svg)  # said once, on the whole picture
     svg = FORMULA.sub(_in_reading_order, svg)
+    svg = re.sub(r"font-size: ([\d.]+)px|font: ([\d.]+)px", _legible_size, svg)
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
-    style = f"width:{float(size[1]) / 72:.2f}in;max-width:100%;height:auto;font-family:{FONT};"
+    smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)), default=None)
+    least = f"--least:{float(size[1]) / smallest * 9:.0f}px;" if smallest else ""
+    style = f"width:{float(size[1]) / 72:.2f}in;{least}max-width:100%;height:auto;"
+    style += f"font-family:{FONT};"
     style += "text-rendering:geometricPrecision;stroke-linejoin:round;stroke-linecap:butt"
     label = html.escape(alt, quote=True)
     attributes = f'role="figure" aria-label="{label}" style="{style}"'
@@ -191,6 +314,11 @@ def _inline(svg: str, alt: str) -> str:
 
 FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
 LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')
+
+
+def _legible_size(size: re.Match) -> str:
+    """A size of text, at least `LEAST`."""
+    return size[0].replace(size[1] or size[2], f"{max(float(size[1] or size[2]), LEAST):g}")
 
 
 def _in_reading_order(formula: re.Match) -> str:

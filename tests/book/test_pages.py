@@ -25,7 +25,7 @@ VIEW_TAG = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
 VIEW = 'script[type="application/vnd.jupyter.widget-view+json"]'
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
-WIDE, NARROW = 1280, 400  # px
+WIDE, NARROW = 1280, 390  # px
 GENERATED = ["search", "genindex", "py-modindex"]
 
 # Runs in the page; returns what a reader would see as wrong.
@@ -73,6 +73,22 @@ CHECKS = r"""
       if (Math.max(...out) > 1) found.push(`a figure cuts its text: ${el.textContent}`);
     }
   }
+  const said = (el) => [...el.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
+  for (const el of all(":is(.ddlib-figure, .ddlib-widget) svg :is(text, tspan)")) {
+    if (!said(el) || !el.getClientRects().length) continue;
+    const { b, d } = el.getScreenCTM();
+    const size = parseFloat(getComputedStyle(el).fontSize) * Math.hypot(b, d);
+    if (size < 8.95) found.push(`text of ${size.toFixed(1)} px: ${el.textContent}`);
+  }
+  for (const el of all("main :is(div, section, pre, mjx-container)")) {
+    if (el.scrollWidth <= el.clientWidth + 1 || el.tabIndex >= 0) continue;
+    if (!["auto", "scroll"].includes(getComputedStyle(el).overflowX)) continue;
+    if (!el.querySelector("a[href], button, input, [tabindex='0']"))
+      found.push(`scrolls, but not by keyboard: ${el.className} ${el.textContent.slice(0, 40)}`);
+  }
+  const loads = document.querySelector('script[src*="mathjax"]') !== null;
+  const formulas = all("mjx-container, mjx-merror").length;
+  if (loads !== formulas > 0) found.push(`MathJax for ${formulas} formulas: ${loads}`);
   for (const el of all("mjx-merror")) found.push(`bad TeX: ${el.textContent}`);
   const prose = document.querySelector("article, main").cloneNode(true);
   const set = "pre, code, script, style, mjx-container";
@@ -104,12 +120,12 @@ def seen(opened, scheme: str, width: int) -> list[str]:
 
 
 def too_heavy(opened) -> list[str]:
-    """More than 450 kB for a page beside MathJax, compressed as hosts send it."""
+    """More than 500 kB for a page beside MathJax, compressed as hosts send it."""
     own = [r for r in opened.responses if r.url.startswith("http") and "/mathjax/" not in r.url]
     sizes = {r.url: len(gzip.compress(r.body(), 6)) for r in own}
     assert sum(sizes.values()) > 20_000
     heaviest = sorted(sizes.items(), key=lambda s: -s[1])[:5]
-    return [f"{sum(sizes.values())} bytes: {heaviest}"] * (sum(sizes.values()) > 450_000)
+    return [f"{sum(sizes.values())} bytes: {heaviest}"] * (sum(sizes.values()) > 500_000)
 
 
 @browser_test
@@ -144,6 +160,11 @@ FAULTS = {
     "twice": "<p>it is is so</p>",
     "a figure cuts its text: label": '<div class="ddlib-figure"><svg width="90" height="90">'
     '<text x="80" y="50">label</text></svg></div>',
+    "text of 8.0 px: small": '<div class="ddlib-figure"><svg width="90" height="90" '
+    'viewBox="0 0 180 180"><text x="9" y="90" font-size="16">small</text></svg></div>',
+    "scrolls, but not by keyboard": '<div style="overflow-x:auto"><p style="width:2000px">a</p>'
+    "</div>",
+    "MathJax for 0 formulas": '<script type="text/x" src="mathjax.js"></script>',
     "of 1 widgets": VIEW_TAG % "{}",
     "theme is light": "",
 }
@@ -205,15 +226,6 @@ def test_root_leads_to_the_book(kind, built, site, visit):
 
 
 @browser_test
-@pytest.mark.parametrize("kind", ["file", "http"])
-def test_search_finds_a_chapter(kind, built, site, visit):
-    opened = visit(address("search", kind, built, site) + "?q=torque")
-    opened.page.wait_for_selector("#search-results li a", timeout=30_000)
-    opened.page.wait_for_load_state("networkidle")
-    assert not opened.problems
-
-
-@browser_test
 @pytest.mark.parametrize("name", WITH_WIDGETS)
 def test_stills_stand_in_where_there_is_no_script(name, site, browser):
     context = browser.new_context(java_script_enabled=False)
@@ -229,37 +241,6 @@ def test_stills_stand_in_where_there_is_no_script(name, site, browser):
         assert still.get_attribute("alt")
     assert not problems
     context.close()
-
-
-@browser_test
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_paper_is_white(scheme, site, visit):
-    opened = visit(f"{site}/{PAGES[1]}.html", scheme=scheme)
-    shown = "getComputedStyle(document.body).backgroundColor"
-    opened.page.evaluate(
-        f"""() => {{
-          window.seen = [{shown}];
-          for (const when of ["beforeprint", "afterprint"])
-            addEventListener(when, () => window.seen.push({shown}));
-        }}"""
-    )
-    opened.page.pdf()
-    before, printed, after = opened.page.evaluate("window.seen")
-    assert printed == "rgb(255, 255, 255)" and before == after
-    assert (before == printed) == (scheme == "light")
-
-
-@browser_test
-def test_answers_are_printed(site, visit):
-    opened = visit(f"{site}/{PAGES[1]}.html")
-    folded = "document.querySelectorAll('article details:not([open])').length"
-    before = opened.page.evaluate(folded)
-    opened.page.evaluate(
-        f"() => addEventListener('beforeprint', () => (window.printed = {folded}))"
-    )
-    opened.page.pdf()
-    assert before > 0 and opened.page.evaluate("window.printed") == 0
-    assert opened.page.evaluate(folded) == before
 
 
 @browser_test

@@ -74,6 +74,11 @@ def test_icons_are_drawn_in_the_page():
         ("../searchindex.js", "", False),
         ("copybutton.js?v=1", "", True),
         ("doctools.js", "", True),
+        ("mathjax/tex-svg-full.js", "", False),
+        ("mathjax/tex-svg-full.js", '<p class="maths">a</p>', False),
+        ("mathjax/tex-svg-full.js", '<span class="math notranslate">x</span>', True),
+        ("mathjax/tex-svg-full.js", '<div id="e" class="math notranslate">x</div>', True),
+        ("mathjax/tex-svg-full.js", '<div class="output text_latex math">x</div>', True),
     ],
 )
 def test_a_page_loads_the_scripts_it_uses(script, body, stays):

@@ -58,7 +58,8 @@ def test_an_illustration_is_sound_svg():
     assert root.tag == f"{SVG}svg"
     assert root.attrib["role"] == "figure"  # with `img` its texts would not be read aloud
     assert root.attrib["aria-label"] == made.alt == "A curve that rises and falls."
-    assert made._repr_html_() == f'<div class="ddlib-figure">{made.svg}</div>'
+    wide, narrow = re.findall(r"<svg .*?</svg>", made._repr_html_(), re.DOTALL)
+    assert (wide, narrow) == (made.svg.strip(), made.narrow.strip())
     tags = {e.tag for e in root.iter()}
     assert not tags & {f"{SVG}{name}" for name in ("style", "script", "metadata", "image")}
     assert "<?xml" not in made.svg and "<!DOCTYPE" not in made.svg
@@ -137,6 +138,85 @@ def test_rounding_and_letters_in_order_are_not_seen(make, browser, monkeypatch):
     assert made != exact and before.shape == after.shape
     assert (before < 128).any(axis=2).mean() > 0.002  # something is drawn
     assert (abs(before - after).max(axis=2) > 64).mean() < 2e-5
+
+
+# The narrow form
+
+
+def side_by_side(figure, columns=2, rows=1, sharey=False):
+    axes = figure.subplots(rows, columns, sharex=True, sharey=sharey, squeeze=False)
+    for k, axis in enumerate(axes.ravel()):
+        axis.plot([0, 1], [0, k + 1], label="a curve")
+        axis.set_title(f"panel {k}")
+    for axis in axes[-1]:
+        axis.set_xlabel("time, s")
+    for row in axes:
+        row[0].set_ylabel("torque, N m")
+    style.legend_above(figure, *axes[0, 0].get_legend_handles_labels())
+
+
+def size(svg):
+    return [float(x) for x in ET.fromstring(svg).attrib["viewBox"].split()[2:]]
+
+
+def sizes_of_text(svg):
+    return [float(a) for a in re.findall(r"font(?:-size)?: ([\d.]+)px", svg)]
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(1, 1), (2, 1), (3, 1), (2, 2)])
+def test_on_a_narrow_page_panels_stand_below_each_other(columns, rows):
+    made = illustrate(lambda figure: side_by_side(figure, columns, rows), "Panels.")
+    assert size(made.narrow)[0] == pytest.approx(72 * style.NARROW)
+    titles = [e for e in ET.fromstring(made.narrow).iter(f"{SVG}text") if "panel" in (e.text or "")]
+    places = [tuple(map(float, (e.attrib["x"], e.attrib["y"]))) for e in titles]
+    assert [e.text for e in titles] == [f"panel {k}" for k in range(rows * columns)]
+    assert len({x for x, _ in places}) == 1 and len({y for _, y in places}) == len(places)
+    assert sorted(y for _, y in places) == [y for _, y in places]
+    assert size(made.narrow)[1] > (rows * columns - 1) * 72
+
+
+def test_what_neighbours_shared_each_panel_has_when_they_stand_apart():
+    made = illustrate(lambda figure: side_by_side(figure, sharey=True), "Panels.")
+    assert words(made).count("torque, N m") == 1
+    assert made.narrow.count("torque, N m") == 2
+
+
+@pytest.mark.parametrize("form", ["svg", "narrow"])
+def test_no_letter_is_too_small(form):
+    def small(figure):
+        figure.subplots().set(title=r"$x_{a_b}$")
+        figure.text(0.5, 0.5, "tiny", fontsize=4)
+
+    svg = getattr(illustrate(small, "Small letters."), form)
+    assert min(sizes_of_text(svg)) == style.LEAST
+    least = float(re.search(r"--least:(\d+)px", svg)[1])
+    assert least * min(sizes_of_text(svg)) / size(svg)[0] == pytest.approx(9, rel=0.01)
+
+
+def crowded(figure):
+    axis = figure.subplots()
+    for x in (0.2, 0.3):
+        axis.text(x, 0.5, "a long label")
+
+
+def beyond(figure):
+    figure.subplots().text(0.5, 0.5, "a label that is longer than a narrow page is wide")
+
+
+def squeezed(figure):
+    figure.subplots().set_yticks([0, 1], ["a name that leaves no room", "to the bars"])
+
+
+def heavy(figure):
+    rng = np.random.default_rng(0)
+    figure.subplots().plot(*rng.random((2, 3000)), ".")
+
+
+@pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy])
+def test_where_it_cannot_be_read_there_is_none(make):
+    made = illustrate(make, "A figure.")
+    assert made.narrow == ""
+    assert made._repr_html_() == f'<div class="ddlib-figure">{made.svg}</div>'
 
 
 # Texts that leave the picture, or lie on another.

@@ -1,0 +1,47 @@
+// What is wider than the page scrolls in its own box: by keyboard, too, and the box says so.
+// A table of sentences becomes cards on a phone; a table of numbers keeps its first column in sight.
+(() => {
+  const TABLES = ".pst-scrollable-table-container, .cell_output .text_html";
+  const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math`;
+  const SENTENCE = 60; // letters of a cell that is read, not compared
+
+  const judge = (box) => {
+    const wide = box.scrollWidth > box.clientWidth + 1;
+    box.classList.toggle("goes-on", wide);
+    if (wide && !box.hasAttribute("tabindex")) {
+      box.tabIndex = 0;
+      box.dataset.stop = "ours";
+    } else if (!wide && box.dataset.stop) {
+      box.removeAttribute("tabindex");
+      delete box.dataset.stop;
+    }
+    if (!box.matches(TABLES) || !wide) return;
+    const first = box.querySelector("tbody tr > :first-child");
+    box.classList.toggle("keeps-first", first?.offsetWidth < 0.5 * box.clientWidth);
+  };
+
+  // Cards need one line of headings in plain words, to be said again in front of each cell.
+  for (const table of document.querySelectorAll("article table")) {
+    const heads = [...(table.tHead?.rows ?? [])];
+    const cells = [...table.querySelectorAll("tbody td")];
+    const sentences = cells.some((cell) => cell.textContent.trim().length > SENTENCE);
+    const spans = table.querySelector("[rowspan], [colspan]");
+    if (!sentences || spans || heads.length !== 1) continue;
+    if (heads[0].cells.length < 3 || heads[0].querySelector(".math, mjx-container")) continue;
+    const names = [...heads[0].cells].map((cell) => cell.textContent.trim());
+    table.classList.add("cards");
+    for (const cell of cells) {
+      if (cell.cellIndex > 0) cell.dataset.name = names[cell.cellIndex];
+    }
+  }
+
+  const watched = new ResizeObserver((seen) => seen.forEach((entry) => judge(entry.target)));
+  const watch = () => {
+    for (const box of document.querySelectorAll("article")) {
+      for (const part of box.querySelectorAll(BOXES)) watched.observe(part);
+    }
+  };
+  watch();
+  window.MathJax?.startup?.promise?.then(() => watch()); // formulas have their width by then
+  addEventListener("load", () => window.MathJax?.startup?.promise?.then(() => watch()));
+})();
