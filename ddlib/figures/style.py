@@ -160,11 +160,20 @@ def _written(figure: Figure, **options) -> str:
     return stream.getvalue()
 
 
+class _NarrowFigure(Figure):
+    """A figure whose legends keep to its width."""
+
+    def legend(self, *args, ncols=1, **options):
+        """As matplotlib's, with as many columns as there is room for."""
+        columns = min(ncols, _columns(self, list(args[1]))) if len(args) > 1 else ncols
+        return super().legend(*args, ncols=columns, **options)
+
+
 def _narrow(draw: Callable[[Figure], None], alt: str, height: float) -> str:
     """A figure drawn anew for a narrow page, or nothing if its texts do not fit there."""
     look = {"svg.hashsalt": alt + " narrow", "path.simplify_threshold": 0.3}
     with mpl.rc_context({**RC, **look}):
-        figure = Figure(figsize=(NARROW, height))
+        figure = _NarrowFigure(figsize=(NARROW, height))
         draw(figure)
         rows, stacked = _stack(figure)
         figure.set_figheight(height if stacked == rows else stacked * min(height / rows, 2.4))
@@ -259,10 +268,15 @@ def legend_above(figure: Figure, handles, names) -> None:
 
     It takes as many columns as the figure's width has room for.
     """
+    columns = _columns(figure, names)
+    figure.legend(handles, names, loc="outside upper left", ncols=columns)
+
+
+def _columns(figure: Figure, names) -> int:
+    """How many columns a legend of these names may have."""
     letters = 12.5 * figure.get_figwidth()  # at the legend's size, a letter for a handle's unit
     widest = 5 + max(map(len, names))
-    columns = max(1, min(len(names), int(letters // widest)))
-    figure.legend(handles, names, loc="outside upper left", ncols=columns)
+    return max(1, min(len(names), int(letters // widest)))
 
 
 def plain_ticks(axis: Axis) -> None:

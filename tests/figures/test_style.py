@@ -181,6 +181,19 @@ def test_what_neighbours_shared_each_panel_has_when_they_stand_apart():
     assert made.narrow.count("torque, N m") == 2
 
 
+def test_a_legend_takes_as_many_lines_as_a_narrow_page_asks_for():
+    names = [f"a curve of many, the {k}th" for k in range(4)]
+
+    def draw(figure):
+        lines = figure.subplots().plot([0, 1], np.arange(8).reshape(2, 4))
+        figure.legend(lines, names, loc="outside upper left", ncols=4)
+
+    made = illustrate(draw, "Four curves.")
+    for svg, lines in ((made.svg, 1), (made.narrow, 4)):
+        texts = [e for e in ET.fromstring(svg).iter(f"{SVG}text") if e.text in names]
+        assert len(texts) == 4 and len({e.attrib["y"] for e in texts}) == lines
+
+
 @pytest.mark.parametrize("form", ["svg", "narrow"])
 def test_no_letter_is_too_small(form):
     def small(figure):
