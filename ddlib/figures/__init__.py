@@ -22,5 +22,5 @@ __getattr__, __dir__, __all__ = hand_on(
     recording="extents_square reached rounding tied",
     maps="COLOUR_MAP intervals plane rmss_by_window",
     states="SYMBOLS error_by_size hinton_states responses torque_along",
-    control="feedforward_loop root_loci",
+    control="feedforward_loop nyquist root_loci",
 )

@@ -23,7 +23,6 @@ __getattr__, __dir__, __all__ = hand_on(
     tuner="PIDTuner",
     window="SlidingWindow",
     **{
-        "engine.sentence": "LoopSentence TorqueSentence",
         "engine.throw": "ThrownArm",
         "parts.panels": "Mark Pad Panel Scalar",
         "parts.parameters": "Choice Parameter",

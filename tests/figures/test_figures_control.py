@@ -1,13 +1,19 @@
 """Figures of control engineering."""
 
+import control
 import numpy as np
 import pytest
 
 from ddlib.control import loop_gain
-from ddlib.figures import root_loci
+from ddlib.figures import nyquist, root_loci
 
 GAINS = np.geomspace(1e-4, 5, 50)
 LOOPS = {"P": loop_gain(4.0, 0.0, 100.0), "PD": loop_gain(4.0, 0.0, 100.0, 0.0, 24.0)}
+
+LOOPS_WITH_FRICTION = {
+    "P": loop_gain(4.0, 1.0, 100.0),
+    "PD": loop_gain(4.0, 1.0, 100.0, 0.0, 24.0),
+}
 
 
 def test_root_loci_name_the_poles():
@@ -30,3 +36,29 @@ def test_root_loci_name_the_poles():
 def test_bad_arguments_are_refused_by_name(arguments, name):
     with pytest.raises(ValueError, match=f"^{name} must"):
         root_loci(*arguments)
+
+
+def test_nyquist_tells_the_largest_sensitivity():
+    """Against python-control's stability margin, the smallest distance from -1."""
+    figure = nyquist(LOOPS_WITH_FRICTION, np.geomspace(0.5, 50, 401))
+    told = []
+    for title, loop in LOOPS_WITH_FRICTION.items():
+        _, _, nearest, _, _, at = control.stability_margins(loop)
+        told.append(f"{title}: {1 / nearest:.3g} at {at:.2g} rad/s")
+    assert figure.alt == f"Nyquist plots. Largest sensitivity: {'; '.join(told)}."
+    assert figure.svg.count("<svg ") == 1
+
+
+@pytest.mark.parametrize(
+    "arguments, name",
+    [
+        (({}, [1.0, 2.0]), "loops"),
+        ((LOOPS, [0.0, 1.0]), "frequencies"),
+        ((LOOPS, [2.0, 1.0]), "frequencies"),
+        ((LOOPS, [1.0]), "frequencies"),
+        ((LOOPS, [1.0, np.nan]), "frequencies"),
+    ],
+)
+def test_bad_frequencies_are_refused(arguments, name):
+    with pytest.raises(ValueError, match=f"^{name} must"):
+        nyquist(*arguments)

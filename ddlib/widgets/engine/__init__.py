@@ -5,7 +5,6 @@
 - ``plain``: arm, effects, controller and network as the plain data that the engine takes
 - ``live``: `CurveWidget` without a table: its script computes the curves
 - ``loops``: PID loops with a late torque: runs that are stopped, growth and margins
-- ``sentence``: sentences whose numbers the reader moves, and whose end is computed
 - ``throw``: the arm that the reader throws, with a window network that tells its torque
 
 The rest of the engine is ``static/engine.js``, the loop and the network, and
