@@ -48,13 +48,16 @@ def book() -> list[dict]:
 
 
 def redraw() -> list[dict]:
-    """Rows of the widgets of the built pages: 95 % of the redraws take less."""
+    """Rows of the widgets of the built pages: redraws, of which 95 % take less, and openings."""
     group = "Redraw of a widget after a move, 95th percentile"
+    module = import_module("redraw")
     try:
-        rows = import_module("redraw").rows()
+        rows, openings = module.rows(), module.openings()
     except (FileNotFoundError, RuntimeError) as error:  # no browser, no built pages
         return [not_measured(group, "all widgets", str(error))]
-    return [limit(group, r["what"], r["p95, ms"], "ms", r["most, ms"]) for r in rows]
+    moves = [limit(group, r["what"], r["p95, ms"], "ms", r["most, ms"]) for r in rows]
+    group = "Opening a page until its widgets answer, median"
+    return moves + [limit(group, r["what"], r["median, s"], "s", module.USABLE) for r in openings]
 
 
 PARTS: dict[str, Callable[[], list[dict]]] = {

@@ -217,6 +217,15 @@ def test_widgets_are_light(name, built):
     assert max(baked.values()) <= 400_000
 
 
+def test_text_on_canvases_can_be_read():
+    """They are drawn in pixels of the page, so their sizes are those of the scripts."""
+    scripts = (ROOT / "ddlib" / "widgets" / "static").glob("*.js")
+    text = "".join(path.read_text(encoding="utf-8") for path in scripts)
+    fonts = re.findall(r"\.font = (.+)", text)
+    sizes = [float(re.match(r'"(?:bold |italic )?([\d.]+)px', font)[1]) for font in fonts]
+    assert sizes and min(sizes) >= 9
+
+
 @browser_test
 @pytest.mark.parametrize("kind", ["file", "http"])
 def test_root_leads_to_the_book(kind, built, site, visit):
