@@ -227,7 +227,7 @@ def _stack(figure: Figure) -> tuple[int, int]:
 
 
 def _legible(figure: Figure) -> bool:
-    """Whether the texts of a drawn figure lie within it, none on another, beside wide panels."""
+    """Whether the texts of a drawn figure lie within it, on nothing else, beside wide panels."""
     hidden = set()
     for axis in figure.axes:
         for side in (axis.xaxis, axis.yaxis):
@@ -244,6 +244,12 @@ def _legible(figure: Figure) -> bool:
     for one, other in itertools.combinations(boxes, 2):
         common = Bbox.intersection(one, other)
         if common is not None and common.width > point and common.height > 4 * point:
+            return False
+    for axis in figure.axes:
+        names = {axis.get_title(), axis.get_title(loc="left")} - {""}
+        titles = [t.get_window_extent() for t in axis.findobj(Text) if t.get_text() in names]
+        others = [other.get_window_extent() for other in figure.axes if other is not axis]
+        if any(box.overlaps(other) for box in titles for other in others):
             return False
     panels = [axis for axis in figure.axes if axis.get_subplotspec() is not None]
     return all(axis.get_window_extent().width > 0.45 * figure.bbox.width for axis in panels)

@@ -225,7 +225,14 @@ def heavy(figure):
     figure.subplots().plot(*rng.random((2, 3000)), ".")
 
 
-@pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy])
+def covered(figure):
+    axes = figure.subplots(1, 2)
+    meshes = [axis.pcolormesh(np.eye(3)) for axis in axes]
+    figure.colorbar(meshes[0], ax=list(axes))
+    axes[1].set_title("a title that lies on the colours' bar")
+
+
+@pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy, covered])
 def test_where_it_cannot_be_read_there_is_none(make):
     made = illustrate(make, "A figure.")
     assert made.narrow == ""
