@@ -229,7 +229,7 @@ def covered(figure):
     axes = figure.subplots(1, 2)
     meshes = [axis.pcolormesh(np.eye(3)) for axis in axes]
     figure.colorbar(meshes[0], ax=list(axes))
-    axes[1].set_title("a title that lies on the colours' bar")
+    axes[1].set_title("a title that lies upon the bar of the colours")
 
 
 @pytest.mark.parametrize("make", [crowded, beyond, squeezed, heavy, covered])
