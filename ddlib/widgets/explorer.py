@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import traitlets as t
 
 from ddlib._check import integer
-from ddlib.analysis import CLASSES, basis, classify, content, decompose, frequency_response, shares
-from ddlib.learning import TorqueModel
+from ddlib.analysis import (
+    CLASSES,
+    basis,
+    classify,
+    content,
+    decompose,
+    frequency_response,
+    purest,
+    shares,
+)
+from ddlib.learning import TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.base import SCRIPT, Panel, module
+from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
 from ddlib.widgets.hinton import (
     EXACT,
     JOINTS,
@@ -28,8 +38,22 @@ from ddlib.widgets.parts.parameters import Choice
 FREQUENCIES = np.geomspace(0.5, 20.0, 31)
 """Where the gain is shown, Hz."""
 
-FLOOR_DB = -60.0
-"""Lowest gain shown, dB below the filter's largest: a zero of the response has none."""
+FLOOR = 1e-3
+"""Lowest gain shown, as a part of the filter's largest: a zero of the response has none."""
+
+CODE = """\
+import numpy as np
+
+from ddlib.analysis import classify, frequency_response, shares
+from ddlib.experiments import results
+from ddlib.widgets.hinton import unit_names, weight_functions
+
+weights = results.networks({width}).weights[{seed}]
+unit, joint = unit_names(weights).index({unit}), ("shoulder", "elbow").index({joint})
+f = weight_functions(weights)[unit, joint]
+print(classify(f), shares(f))
+gain = np.abs(frequency_response(f, np.geomspace(0.5, 20, 31), 0.01))"""
+"""The chosen filter by ddlib's functions."""
 
 
 class FilterExplorer(HintonWidget):
@@ -57,6 +81,7 @@ class FilterExplorer(HintonWidget):
     """
 
     _esm = module(*SCRIPT, "hinton.js", "explorer.js")
+    _css = module(*STYLE, "hinton.css", "explorer.css")
 
     classes = t.List(list(CLASSES), read_only=True, help="names by the rule").tag(sync=True)
 
@@ -75,7 +100,7 @@ class FilterExplorer(HintonWidget):
         gains = {
             "gain": "whole",
             "gain, varying": "without its constant",
-            "gain, ideal": "its main derivative alone",
+            "gain, ideal": "ideal derivative",
         }
         super().__init__(
             some[0],
@@ -99,7 +124,15 @@ class FilterExplorer(HintonWidget):
                     ticks=list(enumerate(("pos.", "vel.", "acc.", "jerk", "rest"))),
                     y_range=(0.0, 1.0),
                 ),
-                Panel("Gain, dB", gains, "frequency, Hz", FREQUENCIES, x_scale="log", y_fit=True),
+                Panel(
+                    "Gain",
+                    gains,
+                    "frequency, Hz",
+                    FREQUENCIES,
+                    x_scale="log",
+                    y_scale="power",
+                    y_range=("lowest gain", "highest gain"),
+                ),
             ],
             title="Filter explorer",
             alt=(
@@ -112,9 +145,14 @@ class FilterExplorer(HintonWidget):
                 **dict.fromkeys(window, ("width",)),
             },
             note=(
-                "20 dB are a factor of 10. From 1 to 10 Hz an ideal velocity filter gains 20 dB, "
-                "an ideal acceleration filter 40 dB."
+                "Both axes of the gain are logarithmic: a derivative is a straight line. From 1 to "
+                "10 Hz the gain of an ideal velocity filter grows by a factor of 10, that of an "
+                "ideal acceleration filter by a factor of 100. The straight line drawn is that of "
+                "the filter's main derivative, as slow signals have it."
             ),
+            presets=named(self._weights, members),
+            presets_title="Named filters",
+            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 
@@ -146,12 +184,48 @@ class FilterExplorer(HintonWidget):
         }
 
 
+def named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, dict]:
+    """The purest hidden filters of the middle window size, by the names that the rule gives.
+
+    Parameters
+    ----------
+    weights : mapping
+        Window size -> weights with a leading axis of members.
+    members : sequence of int
+        Which of them to look at.
+
+    Returns
+    -------
+    dict
+        Name -> the explorer's parameters; names that no filter has are left out.
+    """
+    width = sorted(weights)[len(weights) // 2]
+    every = weights[width].hidden_weights[list(members)]
+    names = classify(every)
+    found = {}
+    for name in CLASSES[:5]:
+        if (names == name).any():
+            place = np.argwhere((every == purest(every, name)).all(-1))[0]
+            member, unit, joint = map(int, place)
+            found[name] = {
+                **{"width": width, "seed": members[member]},
+                **{"unit": f"hidden {unit}", "joint": JOINTS[joint]},
+            }
+    return found
+
+
 def _gains(f) -> dict[str, np.ndarray]:
-    """Gain in dB of a filter, of its varying part, and of its main derivative's part alone."""
-    varying = f - f.mean()
+    """Gains as powers of ten: of a filter, of its varying part, of its main derivative; ends."""
+    gain = np.abs(frequency_response([f, f - f.mean()], FREQUENCIES, LOG_STEP))
+    highest = gain.max()
+    gain = np.log10(np.maximum(gain, FLOOR * highest))
     main = 1 + np.argmax(np.abs(content(f)[1:]))
-    ideal = content(f)[main] * basis(f.size)[main]
-    gain = np.abs(frequency_response([f, varying, ideal], FREQUENCIES, LOG_STEP))
-    lowest = gain[0].max() * 10 ** (FLOOR_DB / 20)
-    decibels = 20 * np.log10(np.maximum(gain, lowest))
-    return dict(zip(("gain", "gain, varying", "gain, ideal"), decibels))
+    samples = np.arange(f.size) - f.size // 2
+    moment = (samples * LOG_STEP) ** main @ basis(f.size)[main] * content(f)[main]
+    ideal = np.abs(moment) / math.factorial(main) * (2 * np.pi * FREQUENCIES) ** main
+    return {
+        **dict(zip(("gain", "gain, varying"), gain)),
+        "gain, ideal": np.log10(np.maximum(ideal, FLOOR * highest)),
+        "lowest gain": np.floor(gain.min()),
+        "highest gain": np.ceil(np.log10(highest)),
+    }

@@ -44,10 +44,49 @@ STEEP = (
 """Said where the finest grid misses the tolerance: which networks are shown is not chosen by how
 easy they are to show."""
 
+SIDE = 31
+"""Points of the map of errors along each axis of the pad."""
+
+STEP = 0.1
+"""Between two shades of the map, RMSS."""
+
+SNAP = 0.035
+"""A drag that comes so near to a trajectory of Appendix I, as a part of the pad, ends on it."""
+
 NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
     "mean square error over the standard deviation of the training torques."
 )
+
+
+MOTION = """\
+import numpy as np
+
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.trajectories import pick_and_place
+
+extents_deg = [{shoulder_deg}, {elbow_deg}]
+motion = pick_and_place(extents_deg, np.linspace(0, 3, 301))
+torque = CMU_DD_ARM_II.inverse_dynamics(*motion)"""
+
+CODE = """\
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, results
+from ddlib.metrics import rmss
+from ddlib.trajectories import APPENDIX_I
+
+quiet = STATE_FEEDBACK.effects.without("encoder", "torque_sensor")
+setup = replace(STATE_FEEDBACK, effects=quiet)
+training = setup.record(APPENDIX_I[:5])
+scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
+
+recording = setup.record([[{shoulder_deg}, {elbow_deg}]])[0]
+for width in WINDOWS:
+    torque = predict(results.median_network(width), recording)
+    print(width, rmss(torque, recording.tau[recording.motion], scale=scale))"""
 
 
 class _Extents(t.TraitType):
@@ -99,6 +138,7 @@ class TrajectoryPicker(CurveWidget):
     extents_deg = _Extents()
     arm = t.Dict(help="lengths in m, curves of the joint angles, times in s", read_only=True)
     arm.tag(sync=True)
+    map = t.Dict(help="errors of each network over the square", read_only=True).tag(sync=True)
     record_status = t.Dict({"text": "", "count": 0}, read_only=True).tag(sync=True)
     recording = t.Any(None)
 
@@ -132,6 +172,12 @@ class TrajectoryPicker(CurveWidget):
             ],
             "pad": _pad(),
             "note": NOTE if models else "",
+            "code": _code(setup, models),
+            "presets": {
+                str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
+                for k, extents in enumerate(APPENDIX_I.tolist(), 1)
+            },
+            "presets_title": "Trajectory",
             "many": many,
         }
         panels = _panels([RIGID, RECORDED, *models] if models else [RIGID])
@@ -149,6 +195,7 @@ class TrajectoryPicker(CurveWidget):
             super().__init__(many.one, _parameters(**grids[-1]), panels, **options)
         angles = [f"{joint} angle" for joint in JOINTS]
         lengths = list(setup.arm.lengths)
+        self.set_trait("map", {"side": SIDE, "step": STEP, "errors": self._map(models)})
         self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
@@ -165,6 +212,18 @@ class TrajectoryPicker(CurveWidget):
         angles = " and ".join(f"{x:.1f}°" for x in self.extents_deg)
         self._say(f"Recorded {angles}: now in the widget's recording.")
         return self.recording
+
+    def _map(self, models) -> dict[str, str]:
+        """RMSS of each network on a grid of extents, the shoulder's fastest.
+
+        In hundredths, each two digits to the base of 36.
+        """
+        axis = np.linspace(0.0, MAX_EXTENT_DEG, SIDE)
+        shown = [self.interpolate(shoulder_deg=s, elbow_deg=e) for e in axis for s in axis]
+        return {
+            name: "".join(_digits(100 * x[f"RMSS, {name}"].item()) for x in shown)
+            for name in models
+        }
 
     def _from_parameters(self, change):
         self.extents_deg = (self.shoulder_deg, self.elbow_deg)
@@ -187,6 +246,12 @@ class TrajectoryPicker(CurveWidget):
             self._say(f"Not recorded. {type(error).__name__}: {error}")
 
 
+def _digits(value: float) -> str:
+    """A number from 0 to 1295, rounded, as two digits to the base of 36."""
+    rounded = min(max(round(value), 0), 36**2 - 1)
+    return "".join("0123456789abcdefghijklmnopqrstuvwxyz"[k] for k in divmod(rounded, 36))
+
+
 def _parameters(**grid) -> list[Parameter]:
     start = APPENDIX_I[TEST_TRAJECTORY - 1].tolist()
     return [
@@ -201,7 +266,15 @@ def _pad() -> Pad:
         for k, (x, y) in enumerate(APPENDIX_I.tolist(), 1)
     ]
     corners = _TRAINING[HULL.vertices].tolist()
-    return Pad("shoulder_deg", "elbow_deg", marks, corners, "hull of the training set")
+    label = "hull of the training set"
+    return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=SNAP)
+
+
+def _code(setup: Setup, models) -> str:
+    """The recording and the errors by ddlib's functions, if it has set-up and networks."""
+    known = {"STATE_FEEDBACK": STATE_FEEDBACK}
+    name = next((name for name, own in known.items() if own == setup), None)
+    return CODE if name and models else MOTION
 
 
 def _panels(lines) -> list[Panel]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import traitlets as t
 
 from ddlib._check import finite_array, integer
 from ddlib.experiments import errors
@@ -19,6 +20,20 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
+MOVED = 0.05
+"""The film begins where the weights have gone this part of their way."""
+
+CODE = """\
+from ddlib.experiments import STATE_FEEDBACK, errors, results
+from ddlib.widgets.hinton import unit_names, weight_functions
+
+epochs, course = results.course(21)
+then = epochs.tolist().index({epoch})
+print(errors(course[then, 0], STATE_FEEDBACK.record()).named())
+weights = course.weights[then, 0]
+filters = weight_functions(weights)[unit_names(weights).index({unit})]"""
+"""The weights and errors at an epoch by ddlib's functions."""
+
 ERRORS = {"training": "training", "test": "trajectory 6"}
 
 
@@ -27,6 +42,7 @@ class TrainingPlayer(HintonWidget):
 
     The slider steps over the recorded epochs, which are equally spaced on a log scale.
     Between them the error of a network trained with momentum swings; nothing is interpolated.
+    The film begins where the weights have gone a twentieth of their way from start to end.
 
     Parameters
     ----------
@@ -52,6 +68,8 @@ class TrainingPlayer(HintonWidget):
     _esm = module(*SCRIPT, "hinton.js", "player.js")
     _css = module(*STYLE, "hinton.css", "player.css")
 
+    begin = t.Int(help="the film's first epoch", read_only=True).tag(sync=True)
+
     def __init__(
         self, epochs, model: TorqueModel, recording: Recording, member: int = 0, **options
     ):
@@ -71,6 +89,8 @@ class TrainingPlayer(HintonWidget):
         self._names = unit_names(self._weights[0])
         self._reach = self._weights.width // 2
         self._functions = weight_functions(self._weights)
+        begin = int(epochs[_moved(self._weights)])
+        self.set_trait("begin", begin)
         places = np.log10(np.maximum(epochs, 1))
         started, last = epochs > 0, places[-1]
         # inside the axis by more than the rounding of baked values
@@ -85,7 +105,7 @@ class TrainingPlayer(HintonWidget):
                     "epoch",
                     "Epoch",
                     {epoch: f"{epoch:,}" for epoch in self._index},
-                    int(epochs[0]),
+                    begin,
                     display="slider",
                 ),
             ],
@@ -102,25 +122,29 @@ class TrainingPlayer(HintonWidget):
                     (),
                     "epoch",
                     places[started],
+                    x_scale="power",
                     y_scale="log",
                     y_range=_decades(list(self._errors.values())),
                     fixed={name: self._errors[n][started] for n, name in ERRORS.items()},
                     cursor="place",
-                    ticks=[(k, f"{10**k:,}") for k in range(int(last) + 1)],
                 ),
             ],
             title="Training player",
             alt=(
-                "The weights of the shoulder torque's unit before training, and the network's "
-                f"RMSS on training runs and trajectory 6 over {epochs[-1]:,} epochs."
+                f"The weights of the shoulder torque's unit after {begin:,} epochs, and the "
+                f"network's RMSS on training runs and trajectory 6 over {epochs[-1]:,} epochs."
             ),
-            scalars=[Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in ERRORS.items()],
+            scalars=[
+                *(Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in ERRORS.items()),
+                Scalar("largest", "Weight of the largest square", digits=2),
+            ],
             depends={
                 **dict.fromkeys(("lowest", "highest"), ("unit",)),
-                **dict.fromkeys(("place", *(f"{n} RMSS" for n in ERRORS)), ("epoch",)),
+                **dict.fromkeys(("place", "largest"), ("epoch",)),
+                **dict.fromkeys((f"{n} RMSS" for n in ERRORS), ("epoch",)),
                 "weights of all units": ("epoch",),
             },
-            largest="ever",
+            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 
@@ -132,8 +156,19 @@ class TrainingPlayer(HintonWidget):
             "highest": self._functions[:, u].max(),
             **{f"{n} RMSS": errors[k] for n, errors in self._errors.items()},
             "place": self._places[k],
+            "largest": np.abs(diagram(self._weights[k], self._reach)).max(),
             "weights of all units": diagram(self._weights[k], self._reach),
         }
+
+
+def _moved(weights) -> int:
+    """Place of the first epoch at which the weights have gone a part `MOVED` of their way."""
+    ways = [
+        (x - x[:1]).reshape(len(x), -1)
+        for x in (weights.hidden_weights, weights.direct_weights, weights.output_weights)
+    ]
+    length = np.linalg.norm(np.hstack(ways), axis=1)
+    return int(np.argmax(length >= MOVED * length[-1]))
 
 
 def _decades(values) -> tuple[float, float]:

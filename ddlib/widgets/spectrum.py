@@ -18,6 +18,21 @@ WHO = ("measured", "predicted")
 FLOOR = -8.0
 """Lowest change shown, as a power of ten of the random start."""
 
+CODE = """\
+from ddlib.experiments import results
+
+study = results.read("span")
+names = list(dict.fromkeys((x["setup"], *x["scaling"]) for x in study["cells"]))
+cell = next(
+    x
+    for x in study["cells"]
+    if (x["setup"], *x["scaling"]) == names[{case}] and x["width"] == {width}
+)
+place, direction = study["epochs"].index({epoch}), {direction} - 1
+for who in ("measured", "predicted"):
+    print(who, cell[who]["change over start"][place][direction])"""
+"""The changes along the direction by ddlib's functions."""
+
 SHARES = ("bias", "position", "velocity", "acceleration", "jerk", "rest")
 
 
@@ -75,7 +90,7 @@ class SpectrumExplorer(CurveWidget):
         places = np.log10(epochs)
         self._places = np.clip(places, 1e-3 * places[-1], (1 - 1e-3) * places[-1])
         time = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
-        over = {"cursor": "place", "ticks": [(k, f"{10**k:,}") for k in range(int(places[-1]) + 1)]}
+        over = {"cursor": "place", "x_scale": "power"}
         cell, per_epoch = ("case", "width", "direction"), ("case", "width", "direction", "epoch")
         shape = [f"{joint} shape" for joint in JOINTS]
         courses = [f"{what} {who}" for what in ("change", "error") for who in WHO]
@@ -109,12 +124,13 @@ class SpectrumExplorer(CurveWidget):
                     y_range=(0.0, 1.0),
                 ),
                 Panel(
-                    "Change over the start, power of ten",
+                    "Change over the start, times",
                     {f"change {who}": who for who in WHO},
                     "epoch",
                     places,
                     fixed={"as large as the start": np.zeros(len(places))},
-                    y_range=(FLOOR, 2.5),
+                    y_scale="power",
+                    y_range=(FLOOR, 3.0),
                     **over,
                 ),
                 Panel(
@@ -133,8 +149,11 @@ class SpectrumExplorer(CurveWidget):
                 "predicted, and what it leaves of the error."
             ),
             scalars=[
-                Scalar("variance", "Variance beside direction 1, power of ten", digits=1),
-                *(Scalar(f"now {who}", f"Change, {who}, power of ten", digits=1) for who in WHO),
+                Scalar("variance", "Variance, times that of direction 1", scale="power"),
+                *(
+                    Scalar(f"now {who}", f"Change, {who}, times the start", scale="power")
+                    for who in WHO
+                ),
             ],
             depends={
                 **dict.fromkeys((*shape, *courses, "shares", "variance"), cell),
@@ -142,10 +161,8 @@ class SpectrumExplorer(CurveWidget):
                 **dict.fromkeys(("first", "last"), ("width",)),
                 "place": ("epoch",),
             },
-            note=(
-                "Power of ten: 1 is ten times, -3 a thousandth. "
-                "Below 0 the random start outweighs what was learnt."
-            ),
+            note="Where the change is below 1, the random start outweighs what was learnt.",
+            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 

@@ -13,6 +13,17 @@ from ddlib.widgets.base import CurveWidget, Panel, Scalar
 from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice
 
+CODE = """\
+from ddlib.experiments import JOINT_DAMPING, results
+from ddlib.learning import sliding_windows
+
+model = results.median_network({width}, JOINT_DAMPING.name)
+run = JOINT_DAMPING.record()[5]
+window = sliding_windows(run.q, {width}, run.motion)[[{sample}]]
+print(model.weights.activity(model.scaled(window)))
+print(model.torque(window), run.tau[run.motion][{sample}])"""
+"""What the network sees and does by ddlib's functions."""
+
 
 class SlidingWindow(CurveWidget):
     """Slide the window along a motion: inputs, activities and torque at every sample.
@@ -94,6 +105,7 @@ class SlidingWindow(CurveWidget):
                     for j, joint in enumerate(JOINTS)
                 ),
             ],
+            code=CODE,
             title="Sliding window",
             alt=(
                 "Torques of a network and measured torques over the motion, with the window "

@@ -14,7 +14,7 @@ from ddlib.analysis import CLASSES, classify, savitzky_golay
 from ddlib.experiments import WINDOWS, results
 from ddlib.learning import TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.explorer import FLOOR_DB, FREQUENCIES, FilterExplorer
+from ddlib.widgets.explorer import FLOOR, FREQUENCIES, FilterExplorer
 from ddlib.widgets.hinton import diagram, zero_padded
 
 CELLS = "weights of all units"
@@ -41,8 +41,8 @@ def weights_of(models, width, seed, unit, joint) -> np.ndarray:
     return weights.direct_weights[seed, ("shoulder", "elbow").index(kind), j]
 
 
-def decibels(f) -> np.ndarray:
-    return 20 * np.log10(np.abs(freqz(f, worN=FREQUENCIES, fs=1 / LOG_STEP)[1]))
+def gain_of(f) -> np.ndarray:
+    return np.abs(freqz(f, worN=FREQUENCIES, fs=1 / LOG_STEP)[1])
 
 
 def test_baked_curves_are_the_exact_ones(explorer):
@@ -85,16 +85,26 @@ def test_gains_are_scipys(explorer, models):
     for values in settings(explorer, 40, seed=3):
         f = weights_of(models, **values)
         shown = explorer.interpolate(**values)
-        lowest = decibels(f).max() + FLOOR_DB
+        lowest = FLOOR * max(gain_of(f).max(), gain_of(f - f.mean()).max())
         for name, g in (("gain", f), ("gain, varying", f - f.mean())):
-            expected = np.maximum(decibels(g), lowest)
-            np.testing.assert_allclose(shown[name], expected, atol=0.01)
+            expected = np.log10(np.maximum(gain_of(g), lowest))
+            np.testing.assert_allclose(shown[name], expected, atol=1e-3)
+            assert shown["lowest gain"][0] <= expected.min() + 1e-3
+            assert shown["highest gain"][0] >= expected.max() - 1e-3
         order = 1 + np.argmax(shown["shares"][1:4])
         textbook = savitzky_golay(len(f), order, LOG_STEP, degree=order)
         scale = np.sqrt(shown["shares"][order] * (f @ f) / (textbook @ textbook))
         if shown["shares"][order] > 0.01:
-            expected = np.maximum(decibels(scale * textbook), lowest)
-            np.testing.assert_allclose(shown["gain, ideal"], expected, atol=0.05)
+            expected = np.log10(scale * (2 * np.pi * FREQUENCIES) ** order)
+            got, shown_ = shown["gain, ideal"], expected > np.log10(lowest)
+            np.testing.assert_allclose(got[shown_], expected[shown_], atol=0.01)
+
+
+def test_named_filters_have_their_names(explorer, models):
+    presets = dict(explorer.spec["presets"]["options"])
+    assert {"velocity", "acceleration"} <= set(presets) and "not analysable" not in presets
+    for name, values in presets.items():
+        assert classify(weights_of(models, **values)) == name
 
 
 def test_diagram_holds_every_weight_once(models):
@@ -230,6 +240,17 @@ def test_pointer_keys_and_menus_choose(tmp_path, visit, explorer, models):
     values |= {"seed": 1}
     assert_shown(page, explorer, models, **values)
     assert not opened.problems
+
+
+@pytest.mark.browser
+def test_a_named_filter_is_a_button(tmp_path, visit, explorer, models):
+    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
+    opened = visit(page_of(tmp_path / "page.html", explorer))
+    for name, values in explorer.spec["presets"]["options"]:
+        opened.page.get_by_role("button", name=name, exact=True).click()
+        assert_shown(opened.page, explorer, models, **values)
+    ticks = opened.page.locator(".chart > svg").nth(3).locator("text.x").all_text_contents()
+    assert ticks[:-1] == ["0.5", "1", "2", "5", "10", "20"] and not opened.problems
 
 
 @pytest.mark.browser

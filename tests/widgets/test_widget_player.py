@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from traitlets import TraitError
@@ -76,7 +78,7 @@ def test_curves_are_the_recorded_ones(player, model, rmss):
 def test_errors_are_those_of_every_recorded_epoch(player, rmss):
     panel = player.spec["panels"][1]
     np.testing.assert_allclose(10 ** np.array(panel["x"]), EPOCHS[1:], rtol=1e-6)
-    assert panel["ticks"] == [[k, f"{10**k:,}"] for k in range(5)]
+    assert panel["x_scale"] == "power"
     drawn = dict(panel["fixed"])
     np.testing.assert_allclose(drawn["training"], rmss["training"][1:], rtol=1e-5)
     np.testing.assert_allclose(drawn["trajectory 6"], rmss["test"][1:], rtol=1e-5)
@@ -106,6 +108,16 @@ def test_bad_arguments_are_refused(model, recording):
         TrainingPlayer(EPOCHS, model, split(recording)[1])
 
 
+def test_the_film_begins_where_the_weights_have_moved(model, recording):
+    """A run that stands still until epoch 100 and then goes straight to its end."""
+    start, end = model.weights[0], model.weights[-1]
+    way = [0, 0, 0, 0, 0, 0.01, 0.04, 0.06, 0.5, 1]
+    ways = {name: (a, getattr(end, name) - a) for name, a in vars(start).items()}
+    points = [Weights(**{name: a + x * b for name, (a, b) in ways.items()}) for x in way]
+    player = TrainingPlayer(EPOCHS, replace(model, weights=Weights.stack(points)), recording)
+    assert player.begin == player.epoch == 300
+
+
 # In a page without a kernel
 
 AT = """Number(
@@ -126,7 +138,9 @@ def assert_shown(page, truth, epoch, unit):
     np.testing.assert_allclose(page.evaluate(READ, 0), course[k], atol=3e-3 * np.ptp(course))
     texts = page.locator(".scalars output").all_inner_texts()
     errors = [rmss[name][k] for name in ("training", "test")]
-    assert [float(x) for x in texts] == pytest.approx(errors, abs=0.051)
+    assert [float(x) for x in texts[:2]] == pytest.approx(errors, abs=0.051)
+    largest = np.abs(diagram(model.weights[k, 1], WIDTH // 2)).max()
+    assert float(texts[2]) == pytest.approx(largest, abs=0.006)
 
 
 @pytest.mark.browser
@@ -162,18 +176,19 @@ def test_slider_diagram_and_menu(tmp_path, visit, player, truth):
 
 
 @pytest.mark.browser
-def test_squares_grow_with_the_weights(tmp_path, visit, player, truth):
+def test_the_largest_weight_fills_its_square_all_along(tmp_path, visit, player, truth):
     player.unit, player.epoch = "hidden 0", 0
     opened = visit(page_of(tmp_path / "page.html", player))
-    page, areas = opened.page, []
+    page = opened.page
     read = "document.querySelector('.hinton .positive').getAttribute('d').match(/h([\\d.]+)v/g)"
     for key, k in (("Home", 0), ("End", -1)):
         page.get_by_role("slider").press(key)
         page.evaluate(NEXT_FRAME)
         drawn = [float(side[1:-1]) ** 2 for side in page.evaluate(read)]
         cells = diagram(truth[0].weights[k, 1], 5)
-        areas.append(sum(drawn) / cells[cells > 0].sum())
-    assert areas[0] == pytest.approx(areas[1], rel=0.02)  # one scale for the whole film
+        parts = np.sort(cells[cells > 0])[::-1] / np.abs(cells).max()
+        got = np.sort(drawn)[::-1][:20] / 13**2
+        np.testing.assert_allclose(got, parts[:20], atol=0.02)
 
 
 @pytest.mark.browser
@@ -192,12 +207,30 @@ def test_film_runs_and_stops(tmp_path, visit, player, truth):
     assert_shown(page, truth, 20_000, 0)
     button.wait_for()  # the film has ended by itself
     button.click()
+    assert shown_epoch(page) < 20_000  # and begins anew
     page.wait_for_timeout(150)
     page.get_by_role("slider").press("End")  # the reader's hand stops it
     button.wait_for()
     page.wait_for_timeout(300)
     assert shown_epoch(page) == 20_000
     assert not opened.problems
+
+
+@pytest.mark.browser
+def test_speed_and_loop(tmp_path, visit, player):
+    player.unit, player.epoch = "hidden 0", 1000
+    opened = visit(page_of(tmp_path / "page.html", player) + "?training-player=speed:fast")
+    page = opened.page
+    assert page.get_by_label("Speed").input_value() == "fast"
+    page.get_by_label("Loop").check()
+    page.wait_for_function("location.search.includes('speed:fast,loop:true')")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '20,000'")
+    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '30'")
+    assert page.get_by_role("button", name="Pause").is_visible()
+    page.get_by_role("button", name="Reset").click()
+    assert shown_epoch(page) == 1000 and not page.get_by_label("Loop").is_checked()
+    assert page.get_by_role("button", name="Play").is_visible() and not opened.problems
 
 
 @pytest.mark.browser

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import traitlets
+from matplotlib.ticker import MultipleLocator
 
 from ddlib.figures import COLOURS, DASHES, illustrate
 from ddlib.widgets.parts.panels import Pad, Panel
@@ -100,7 +101,14 @@ def _draw_panel(ax, panel: Panel, curves):
         ax.axvline(*places, color="#4d5660", linewidth=1)
     elif places:
         ax.axvspan(*sorted(places), color="#4d5660", alpha=0.2, linewidth=0)
-    ax.set(xscale=panel.x_scale, yscale=panel.y_scale)
+    ax.set(
+        xscale=panel.x_scale.replace("power", "linear"),
+        yscale=panel.y_scale.replace("power", "linear"),
+    )
+    for axis, scale in ((ax.xaxis, panel.x_scale), (ax.yaxis, panel.y_scale)):
+        if scale == "power":
+            axis.set_major_locator(MultipleLocator(1))
+            axis.set_major_formatter(lambda power, _: f"{10**power:,.7g}")
     ax.set(title=panel.y_label, xlabel=panel.x_label)
     if panel.ticks:
         ax.set_xticks(*zip(*panel.ticks))

@@ -24,8 +24,9 @@ class Panel:
         Quantity and unit.
     x : array_like
         Where the curves are sampled; increases.
-    x_scale, y_scale : {"linear", "log"}
-        Scales of the axes. Stems and bars stand on zero, so their `y_scale` is linear; bars
+    x_scale, y_scale : {"linear", "log", "power"}
+        Scales of the axes; "power" is a logarithmic one for values that are given as powers of
+        ten: 2 stands at 100. Stems and bars stand on zero, so their `y_scale` is linear; bars
         are equally wide, so their `x_scale` is, too.
     kind : {"line", "stems", "bars"}
         Lines; dots on stalks from zero; bars from zero, side by side where there are several
@@ -68,7 +69,7 @@ class Panel:
         if x.ndim != 1 or x.size < 2 or (np.diff(x) <= 0).any():
             raise ValueError(f"x {what} must increase, got shape {x.shape}")
         one_of(f"kind {what}", self.kind, ("line", "stems", "bars"))
-        both = ("linear", "log")
+        both = ("linear", "log", "power")
         one_of(f"x_scale {what}", self.x_scale, ("linear",) if self.kind == "bars" else both)
         one_of(f"y_scale {what}", self.y_scale, both if self.kind == "line" else ("linear",))
         if self.x_scale == "log":
@@ -141,14 +142,18 @@ class Scalar:
         What the page calls it, and what follows the number.
     digits : int, optional
         Decimals; default: as many as the range on the grid deserves.
+    scale : {"linear", "power"}
+        "power" for a number that is given as a power of ten.
     """
 
     name: str
     label: str
     unit: str = ""
     digits: int | None = None
+    scale: str = "linear"
 
     def __post_init__(self):
+        one_of(f"scale of {self.name}", self.scale, ("linear", "power"))
         if self.digits is not None:
             integer(f"digits of {self.name}", self.digits, 0, 10)
 
@@ -187,6 +192,8 @@ class Pad:
         Corners of a shaded convex polygon; empty for none.
     region_label : str
         What the legend calls it.
+    snap : float
+        How near to a mark, as a part of the pad's side, a drag is drawn to it.
     """
 
     x: str
@@ -194,6 +201,10 @@ class Pad:
     marks: Sequence[Mark] = ()
     region: Sequence[tuple[float, float]] = ()
     region_label: str = ""
+    snap: float = 0.0
+
+    def __post_init__(self):
+        number("snap of the pad", self.snap, 0.0, 0.5)
 
     def description(self) -> dict:
         """What the page needs to know."""

@@ -19,8 +19,8 @@ const FIELDS = {
   range: "low high unit scale crowd",
   curve: "name length low high",
   panel: "y_label curves x_label x x_texts x_scale y_scale kind fixed cursor ticks y_range y_fit",
-  scalar: "name label unit",
-  pad: "x y marks region region_label",
+  scalar: "name label unit scale",
+  pad: "x y marks region region_label snap",
 };
 
 function need(what, object) {

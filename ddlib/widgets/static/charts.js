@@ -2,23 +2,41 @@
 
 const COLOURS = 6; // classes c0 to c5
 
-// Powers of ten among logarithms; with fewer than two of them also twice and five times them.
-function decades(marks, low, high) {
-  const powers = marks.filter((x) => Math.abs(x - Math.round(x)) < 1e-9).map((x) => 10 ** x);
-  if (powers.length > 1) return powers;
-  const first = 10 ** Math.floor(Math.log10(low));
-  const all = [1, 10].flatMap((tens) => [1, 2, 5].map((k) => first * tens * k));
-  return all.filter((x) => x >= low * 0.999 && x <= high * 1.001);
+// Round numbers between two logarithms, as logarithms: powers of ten, or where there are fewer than
+// three also twice and five times them, or all digits, or the ends; at least `room` px apart.
+function decades(low, high, slope, room) {
+  const first = Math.floor(low + 1e-9);
+  const all = Array.from({ length: Math.ceil(high) - first + 1 }, (_, i) => first + i);
+  const times = (digits) =>
+    all.flatMap((x) => digits.map((d) => x + Math.log10(d))).filter((x) => x >= low - 1e-6 && x <= high + 1e-6);
+  const whole = times([1]);
+  const apart = (list) => list.length > 1 && list.every((x, i) => !i || (x - list[i - 1]) * slope >= room);
+  if (whole.length > 2) {
+    const step = Math.ceil(room / slope);
+    return whole.filter((x) => Math.round(x) % step === 0);
+  }
+  const lists = [times([1, 2, 5]), whole, times([1, 2, 3, 4, 5, 6, 7, 8, 9])];
+  return lists.find(apart) ?? [low, high];
 }
 
+// Scales: "linear"; "log", of values; "power", of values that are given as powers of ten.
 function axis(low, high, scale, from, to, room) {
   const log = scale === "log";
   const [a, b] = log ? [Math.log10(low), Math.log10(high)] : [low, high];
   const slope = (to - from) / (b - a);
   const place = (x) => from + ((log ? Math.log10(x) : x) - a) * slope;
-  let marks = ticks(a, b, Math.max(2, Math.floor(Math.abs(to - from) / room)));
-  if (log) marks = decades(marks, low, high);
-  return { place, marks, texts: labels(marks, log) };
+  if (scale === "linear") {
+    const marks = ticks(a, b, Math.max(2, Math.floor(Math.abs(to - from) / room)));
+    return { place, marks, texts: labels(marks) };
+  }
+  const powers = decades(a, b, Math.abs(slope), room);
+  return { place, marks: log ? powers.map((x) => 10 ** x) : powers, texts: powers.map(powerText) };
+}
+
+// A power of ten as text: whole ones with thousands apart, others with three digits.
+function powerText(x) {
+  const value = Number((10 ** x).toPrecision(3));
+  return value >= 1e-4 && value < 1e7 ? value.toLocaleString("en-US", { maximumFractionDigits: 6 }) : String(value).replace("-", "−");
 }
 
 function extremes(lists) {
@@ -99,7 +117,7 @@ function chart(view, panel) {
   const paths = [...fixed, ...moving].flatMap((curve) => curve.paths);
   for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
   const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
-  const svg = make("svg", { role: "img", tabindex: 0 }, defs, span, grid, cursor, ...paths);
+  const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths);
   const legend = make("div", { class: "legend" });
   if (curves.length > 1) {
     for (const curve of curves) {
@@ -131,11 +149,11 @@ function chart(view, panel) {
     text: (curve, i) => textOf(valueOf(curve, i), unit),
   });
 
-  // Enough digits for the axis as it stands; on a logarithmic one, three.
+  // Enough digits for the axis as it stands; three where it is not linear.
   function textOf(value, unit) {
     if (Number.isNaN(value)) return "none";
-    if (!log) return format(value, low, high, unit);
-    return `${Number(value.toPrecision(3))}`.replace("-", "−") + (unit && `\u00a0${unit}`);
+    if (panel.y_scale === "linear") return format(value, low, high, unit);
+    return powerText(log ? Math.log10(value) : value) + (unit && `\u00a0${unit}`);
   }
   // Where a bar or stem stands beside its sample, and how wide it is, in px.
   function shiftOf(curve) {
@@ -156,6 +174,7 @@ function chart(view, panel) {
     if (!panel.y_fit) return whole;
     let [a, b] = extremes(curves.map((curve) => curve.values ?? all[curve.name]));
     if (standing) [a, b] = [Math.min(a, 0), Math.max(b, 0)];
+    if (panel.y_scale === "power") return [Math.floor(a + 1e-6), Math.ceil(b - 1e-6)];
     return around(log ? Math.max(a, b * 1e-12) : a, b, log);
   }
 
@@ -172,7 +191,7 @@ function chart(view, panel) {
     y = axis(low, high, panel.y_scale, bottom, 6, 30);
     left = 10 + 6.6 * Math.max(...y.texts.map((text) => text.length));
     right = width - 10;
-    x = axis(...ends, panel.x_scale, left, right, 52);
+    x = axis(...ends, panel.x_scale, left, right, panel.x_scale === "linear" ? 52 : 34);
     xs = panel.x.map((v) => short(x.place(v)));
     base = short(log ? bottom : y.place(Math.min(high, Math.max(low, 0))));
     const marks = panel.ticks.length ? panel.ticks : x.marks.map((v, i) => [v, x.texts[i]]);
@@ -238,16 +257,17 @@ function chart(view, panel) {
     span.setAttribute("width", short(to - from));
   }
 
+  const told = (v, a, b) => (panel.y_scale === "power" ? powerText(v) : format(v, a, b));
   function describe(all) {
     const parts = curves.map((curve) => {
       const values = [...(curve.values ?? all[curve.name])];
       const [a, b] = curve.values ? extremes([values]) : [ranges[curve.k].low, ranges[curve.k].high];
       if (panel.ticks.length === values.length && values.length <= 8) {
-        const each = values.map((v, i) => `${panel.ticks[i][1]} ${format(v, a, b)}`);
+        const each = values.map((v, i) => `${panel.ticks[i][1]} ${told(v, a, b)}`);
         return `${curve.legend}: ${each.join(", ")}`;
       }
       const [min, max] = extremes([values]);
-      return `${curve.legend} from ${format(min, a, b)} to ${format(max, a, b)}`;
+      return `${curve.legend} from ${told(min, a, b)} to ${told(max, a, b)}`;
     });
     svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}. Arrow keys read values`);
   }

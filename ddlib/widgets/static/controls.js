@@ -134,6 +134,7 @@ function padOf(view) {
     const k = groups.indexOf(group);
     return { d: SHAPES[k % SHAPES.length], class: `mark c${k % 6}` };
   };
+  const under = make("g", { class: "under" }); // for a subclass
   const handle = make("g", { class: "handle" }, make("circle", { r: 10 }), make("circle", { r: 2 }));
   const name = (p) => `${p.label}${p.unit ? `, ${p.unit}` : ""}`;
   const label =
@@ -148,6 +149,7 @@ function padOf(view) {
     "svg",
     { viewBox: `0 0 ${left + size + 14} ${top + size + 40}`, class: "pad", tabindex: 0 },
     frame,
+    under,
     make("polygon", { points: region, class: "region" }),
     ...numbers(px, (v) => ({ x: x(v), y: top + size + 16, class: "x" })),
     ...numbers(py, (v) => ({ x: left - 6, y: y(v), dy: "0.34em", class: "y" })),
@@ -166,9 +168,13 @@ function padOf(view) {
   svg.setAttribute("aria-roledescription", "two-dimensional slider");
 
   const move = (fx, fy) => view.set({ [i]: fromFraction(px, fx), [j]: fromFraction(py, fy) });
+  const away = (mark, fx, fy) => Math.hypot(toFraction(px, mark.x) - fx, toFraction(py, mark.y) - fy);
   const drag = (event) => {
     const box = frame.getBoundingClientRect();
-    move((event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height);
+    const at = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
+    const near = pad.marks.find((mark) => away(mark, ...at) < pad.snap);
+    if (near) view.set({ [i]: near.x, [j]: near.y });
+    else move(...at);
   };
   draggable(svg, handle, drag);
   svg.addEventListener("keydown", (event) => {
@@ -194,6 +200,7 @@ function padOf(view) {
     const now = `${show(px, view.values[i])}, ${show(py, view.values[j])}`;
     svg.setAttribute("aria-label", `${label}. Now ${now}`);
   };
+  view.pad = { svg, under, legend, frame: { left, top, size } };
   return { el: make("div", { class: "pad-box" }, svg, legend), update };
 }
 

@@ -9,7 +9,7 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // The view has: model, spec, el, id, values (in the order of spec.parameters), curves (by name),
 // get(name), set({name: value}), after (called with the curves after each redraw), charts,
 // controls, top, numbers (a list between controls and charts), words (returns texts to be spoken), say(text),
-// schedule() (redraws in the next frame), keep(name, read, write) (a part of the state that is no
+// schedule() (redraws in the next frame), pad (its parts), keep(name, read, write) (a part of the state that is no
 // parameter, see frame.js) with changed(), and resets (called by Reset).
 const extras = [];
 
@@ -93,10 +93,11 @@ function build({ model, el }) {
     due = 0;
     view.curves = spec.live ? live(view) : split(spec, current());
     controls.forEach((control) => control.update());
-    for (const { name, output, unit, digits } of scalars) {
+    for (const { name, output, unit, digits, scale } of scalars) {
       const { low, high } = spec.curves.find((curve) => curve.name === name);
       const [value] = view.curves[name];
-      write(output, Number.isNaN(value) ? "none" : format(value, low, high, unit, digits));
+      const text = scale === "power" ? powerText(value) : format(value, low, high, unit, digits);
+      write(output, Number.isNaN(value) ? "none" : text);
     }
     el.dataset.values = spec.live ? "computed" : view.exact ? "exact" : "interpolated";
   }

@@ -1,9 +1,13 @@
-// What FilterExplorer (explorer.py) adds to a HintonWidget: the name that the rule gives.
+// What FilterExplorer (explorer.py) adds to a HintonWidget: the name that the rule gives, and an
+// order in which the weights of the chosen window stand beside the diagram.
 
 extras.push((view) => {
   const verdict = make("p", { class: "verdict" });
   const words = () => `By the rule: ${view.model.get("classes")[Math.round(view.curves.class[0])]}`;
-  view.controls.append(verdict);
+  const presets = view.controls.querySelector(".presets") ?? "";
+  view.top.append(make("div", { class: "beside" }, presets, verdict, view.charts[0].el));
+  view.top.after(view.controls);
+  view.el.classList.add("ddlib-explorer");
   view.words = () => [words()];
   view.after.push(() => (verdict.textContent = words()));
 });

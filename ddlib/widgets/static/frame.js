@@ -103,7 +103,8 @@ function frameOf({ el, key, title, linked, reset, code }) {
     ...(linked ? [button("Link", "Copy link to this state", () => copy(link(), "Link"))] : []),
     ...(code() ? [button("Code", "Copy this state as Python code", () => copy(code(), "Code"))] : []),
   ];
-  const bar = make("div", { class: "bar" }, make("span", { class: "name" }, title), said, ...buttons);
+  const actions = make("div", { class: "actions" }, ...buttons);
+  const bar = make("div", { class: "bar" }, make("span", { class: "name" }, title), said, actions);
   if (linked) {
     el.id = `${name}-widget`;
     if (location.hash === `#${el.id}`) requestAnimationFrame(() => el.scrollIntoView());

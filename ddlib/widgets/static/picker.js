@@ -1,6 +1,73 @@
-// What TrajectoryPicker (picker.py) adds to a CurveWidget: the arm, its player, the verdict
-// about the hull of the training trajectories, and the button that records. The numbers stand
-// beside the pad.
+// What TrajectoryPicker (picker.py) adds to a CurveWidget: the map of errors under the pad, the arm,
+// its player, the verdict about the hull of the training trajectories, and the button that records.
+// The numbers stand beside the pad.
+
+const FINE = 3; // parts of the map's grid in which it is drawn
+const LEVELS = 10; // the last one is open to above
+
+// The map: for every network its errors on a grid, of which one is drawn, in steps.
+function mapOf(view) {
+  const { side, step, errors } = view.model.get("map");
+  const names = Object.keys(errors);
+  const { under, legend, frame } = view.pad;
+  const layers = Array.from({ length: LEVELS }, (_, k) => make("path", { class: "level", "fill-opacity": short(0.07 * k) }));
+  under.append(...layers);
+  const fine = FINE * (side - 1);
+  const cell = frame.size / fine;
+
+  function levelsOf(digits) {
+    const values = digits.match(/../g).map((two) => parseInt(two, 36) / 100);
+    const between = (x) => [Math.min(Math.floor(x / FINE), side - 2), x / FINE - Math.min(Math.floor(x / FINE), side - 2)];
+    return Array.from({ length: fine }, (_, row) => {
+      const [j, v] = between(row + 0.5);
+      return Array.from({ length: fine }, (_, column) => {
+        const [i, u] = between(column + 0.5);
+        const at = j * side + i;
+        const low = values[at] * (1 - u) + values[at + 1] * u;
+        const high = values[at + side] * (1 - u) + values[at + side + 1] * u;
+        return Math.min(LEVELS - 1, Math.floor((low * (1 - v) + high * v) / step));
+      });
+    });
+  }
+  function draw(name) {
+    const paths = layers.map(() => "");
+    (errors[name] ? levelsOf(errors[name]) : []).forEach((row, k) => {
+      const y = short(frame.top + frame.size - (k + 1) * cell);
+      for (let from = 0, to; from < fine; from = to) {
+        for (to = from + 1; to < fine && row[to] === row[from]; ) to++;
+        paths[row[from]] += `M${short(frame.left + from * cell)} ${y}h${short((to - from) * cell)}v${short(cell)}h${short((from - to) * cell)}z`;
+      }
+    });
+    layers.forEach((layer, k) => layer.setAttribute("d", paths[k]));
+  }
+
+  let shown = "";
+  const buttons = [...names, ""].map((name) => {
+    const button = make("button", { type: "button" }, name || "none");
+    button.addEventListener("click", () => {
+      show(name);
+      view.changed();
+    });
+    return [name, button];
+  });
+  function show(name) {
+    if (name && !errors[name]) throw new Error(`there is no network ${name}`);
+    shown = name;
+    for (const [other, button] of buttons) button.setAttribute("aria-pressed", String(other === name));
+    draw(name);
+    scale.hidden = !name;
+  }
+  const scale = make("div", { class: "scale" }, "RMSS 0");
+  const ramp = make("svg", { width: 12 * LEVELS, height: 12, "aria-hidden": "true" });
+  layers.forEach((_, k) => ramp.append(make("rect", { class: "level", x: 12 * k, width: 12, height: 12, "fill-opacity": short(0.07 * k) })));
+  scale.append(ramp, `${(step * (LEVELS - 1)).toFixed(1)} and more`);
+  const title = "Errors under the pad";
+  const words = { class: "presets", role: "group", "aria-label": title };
+  const choice = make("div", words, make("span", { "aria-hidden": "true" }, title), ...buttons.map(([, b]) => b));
+  show(names[0]);
+  legend.after(choice, scale);
+  view.keep("map", () => shown, show);
+}
 
 // Elbow and hand of two links of given lengths at given joint angles (rad), in pixels.
 function pose([l1, l2], q1, q2, scale) {
@@ -52,6 +119,7 @@ extras.push((view) => {
   const { model, spec } = view;
   const arm = armOf(view);
   view.el.classList.add("ddlib-picker");
+  if (Object.keys(view.model.get("map").errors).length) mapOf(view);
 
   // The player
   const id = `${view.id}-time`;
@@ -93,10 +161,15 @@ extras.push((view) => {
     frame = requestAnimationFrame(run);
   });
   scrub.addEventListener("input", () => {
-    pause();
-    now = (arm.end * scrub.value) / 300;
-    show();
+    stand((arm.end * scrub.value) / 300);
+    view.changed();
   });
+  function stand(time) {
+    if (!(time >= 0 && time <= arm.end)) throw new Error(`time is ${time}`);
+    pause();
+    now = time;
+    show();
+  }
 
   // The verdict
   const verdict = make("p", { class: "verdict" });
@@ -134,6 +207,9 @@ extras.push((view) => {
   }
   model.on("change:record_status", done);
 
+  const goTo = view.controls.querySelector(".presets");
+  view.top.firstChild.append(goTo);
+  view.keep("time", () => now.toFixed(2), (text) => stand(Number(text)));
   view.top.firstChild.after(view.numbers); // beside the pad: seen while it is dragged
   view.controls.append(verdict, make("div", { class: "record" }, record, said));
   view.top.append(make("div", { class: "arm-box" }, arm.svg, player));

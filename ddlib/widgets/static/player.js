@@ -1,8 +1,17 @@
-// What TrainingPlayer (player.py) adds to a HintonWidget: a button that steps over the epochs.
+// What TrainingPlayer (player.py) adds to a HintonWidget: a button that steps over the epochs, its
+// speed, and a loop. The film begins at the trait `begin`, if there is one.
+
+const SPEEDS = { slow: 400, normal: 130, fast: 45 }; // ms a picture
 
 extras.push((view) => {
   const { options } = view.spec.parameters.find((p) => p.name === "epoch");
+  const placeOf = (epoch) => options.findIndex(([key]) => key === epoch);
+  const first = Math.max(0, placeOf(view.model.get("begin")));
   const button = make("button", { type: "button" }, "Play");
+  const select = make("select", { id: `${view.id}-speed` });
+  for (const name of Object.keys(SPEEDS)) select.append(make("option", { value: name }, name));
+  select.value = "normal";
+  const loop = make("input", { id: `${view.id}-loop`, type: "checkbox" });
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   let timer = 0;
   let shown; // the epoch that the film has reached: another one is the reader's doing
@@ -15,19 +24,29 @@ extras.push((view) => {
   function go(index) {
     shown = options[index][0];
     view.set({ epoch: shown });
-    if (index === options.length - 1) return pause();
-    const [step, wait] = calm.matches ? [10, 1500] : [1, 130]; // calm: a few pictures
-    timer = setTimeout(() => go(Math.min(index + step, options.length - 1)), wait);
+    const last = index === options.length - 1;
+    if (last && !loop.checked) return pause();
+    const [step, wait] = calm.matches ? [10, 1500] : [1, SPEEDS[select.value]]; // calm: a few pictures
+    const next = last ? first : Math.min(index + step, options.length - 1);
+    timer = setTimeout(() => go(next), last ? 1200 : wait); // the end stands for a while
   }
   button.addEventListener("click", () => {
     if (timer) return pause();
     button.textContent = "Pause";
-    const now = options.findIndex(([key]) => key === view.get("epoch"));
-    go(now === options.length - 1 ? 0 : now);
+    const now = placeOf(view.get("epoch"));
+    go(now === options.length - 1 ? first : now);
   });
   view.after.push(() => {
     if (timer && view.get("epoch") !== shown) pause();
   });
-  view.controls.append(button);
+  view.resets.push(pause);
+  view.keep("speed", () => select.value, (name) => {
+    if (!SPEEDS[name]) throw new Error(`there is no speed ${name}`);
+    select.value = name;
+  }, "normal");
+  view.keep("loop", () => String(loop.checked), (text) => (loop.checked = text === "true"));
+  for (const el of [select, loop]) el.addEventListener("change", view.changed);
+  const named = (text, el) => make("label", { for: el.id }, text);
+  view.controls.append(make("div", { class: "film" }, button, named("Speed", select), select, loop, named("Loop", loop)));
   return pause;
 });

@@ -30,7 +30,11 @@ function readerOf(plot) {
   function nameOf(i) {
     if (panel.x_texts.length) return `${quantity} ${panel.x_texts[i]}`;
     const tick = panel.ticks.find(([at]) => at === panel.x[i]);
-    return tick ? tick[1] : `${quantity} ${format(panel.x[i], low, high, unit)}`;
+    if (tick) return tick[1];
+    const { x, x_scale } = panel;
+    if (x_scale === "linear") return `${quantity} ${format(x[i], low, high, unit)}`;
+    const text = powerText(x_scale === "log" ? Math.log10(x[i]) : x[i]);
+    return `${quantity} ${text}${unit && `\u00a0${unit}`}`;
   }
   function show(i) {
     index = Math.min(panel.x.length - 1, Math.max(0, i));
