@@ -311,6 +311,24 @@ def test_looking_inside(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
+def test_inside_at_rest_there_is_a_hint_and_a_way_on(tmp_path, visit, widget):
+    """The stems of line and parabola are there, and a button moves the arm, by keyboard, too."""
+    page = visit(page_of(tmp_path / "page.html", widget), **CALM).page
+    page.get_by_role("button", name="Look inside").click()
+    hint = page.locator(".hint")
+    assert not hint.is_visible()  # paused in the middle of a motion
+    page.get_by_role("button", name="Reset").click()
+    hint.wait_for(state="visible")
+    drawn = "() => [2, 4].map((k) => document.querySelectorAll('.inside canvas')[k].toDataURL())"
+    blank = "document.createElement('canvas').toDataURL()"
+    assert page.evaluate(blank) not in page.evaluate(drawn)
+    hint.get_by_role("button").press("Enter")
+    hint.wait_for(state="hidden")
+    assert page.evaluate(STATE)["mode"] == "tossed"
+    assert page.evaluate("document.activeElement.textContent") == "Look inside"
+
+
+@pytest.mark.browser
 def test_colours_follow_the_page(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget), **CALM).page
     painted = "() => document.querySelectorAll('.ddlib-throw canvas')[1].toDataURL()"

@@ -72,11 +72,15 @@ function insideOf(world, spec, id) {
   });
   const label = make("label", { for: slider.id }, "Fold");
   const words = make("p", { class: "remark", role: "status" });
+  // While nothing moves: what one would see, and how to see it.
+  const hint = make("p", { class: "remark hint", hidden: "" });
+  hint.append("At rest velocity and acceleration are zero, and so is what a line and a parabola measure. ");
   const el = make(
     "div",
     { class: "inside", id: `${id}-inside`, hidden: "" },
     make("div", { class: "choices" }, ...choices, make("div", { class: "slider" }, label, said, slider)),
     words,
+    hint,
     ...cells,
   );
 
@@ -127,7 +131,7 @@ function insideOf(world, spec, id) {
     frame = requestAnimationFrame(turn);
   }
 
-  const api = { el, open: false };
+  const api = { el, hint, open: false };
   api.toggle = () => {
     api.open = el.hidden;
     el.hidden = !el.hidden;
@@ -145,6 +149,7 @@ function insideOf(world, spec, id) {
     rows[1].stems.draw(line.map((x) => fold * x), largest, colours);
     rows[2].stems.draw(parabola.map((x) => fold * x), largest, colours);
     rows.forEach((row) => row.chart.draw(samples, phase, colours));
+    hint.hidden = !world.still();
   };
   api.stop = () => cancelAnimationFrame(frame);
   choose(chosen);

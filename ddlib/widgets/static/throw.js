@@ -214,12 +214,17 @@ function build({ model, el }) {
     start();
   });
   play.dataset.runs = ""; // for benchmarks
-  const toss = button("Throw", () => {
+  const thrown = () => {
     several = false;
     world.toss();
     say("Thrown.");
     start();
-  });
+  };
+  const toss = button("Throw", thrown);
+  inside.hint.append(button("Throw the arm", () => {
+    thrown();
+    look.focus(); // the hint goes
+  }));
   const back = button("Reset", () => {
     several = false;
     paused = false;
