@@ -35,17 +35,19 @@
     button.title = `${all ? "Hide" : "Show"} the ${lines} lines of plumbing on this page`;
   };
 
-  // What the reader looks at stays where it is.
+  // What the reader looks at stays where it is; the browser's own guess is a fold that goes.
   const looked = () =>
-    [...document.querySelectorAll("article :is(p, h1, h2, h3, li, figure, table)")].find(
-      (el) => el.getBoundingClientRect().top > 80 && el.checkVisibility(),
+    [...document.querySelectorAll("article :is(p, h1, h2, h3, li, figure)")].find(
+      (el) => el.getBoundingClientRect().top > 60 && !el.closest("details") && el.checkVisibility(),
     );
   button.addEventListener("click", () => {
     const all = root.dataset.code !== "all";
     const kept = scrollY > 0 && looked();
     const before = kept && kept.getBoundingClientRect().top;
+    root.style.overflowAnchor = "none";
     show(all);
     if (kept) scrollBy({ top: kept.getBoundingClientRect().top - before, behavior: "instant" });
+    requestAnimationFrame(() => root.style.removeProperty("overflow-anchor"));
     remember(all);
   });
   place.prepend(button);

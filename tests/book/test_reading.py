@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 
+import chromium
 import pytest
 from axe import violations_in
 from book_pages import CHAPTERS, PAGES, ROOT, source
@@ -134,14 +135,15 @@ def test_one_switch_shows_all_code(kind, built, site, visit):
     assert len(seen) > 2 * len(taught)
     page.reload()
     assert button.get_attribute("aria-pressed") == "true"
+    chromium.settle(page)
+    button.focus()
     page.evaluate("scrollTo({top: 3000, behavior: 'instant'})")
     look = """() => {
       window.looked ??= [...document.querySelectorAll("article :is(p, h2, li)")]
-        .find((el) => el.checkVisibility() && el.getBoundingClientRect().top > 80);
+        .find((el) => !el.closest("details") && el.getBoundingClientRect().top > 80);
       return window.looked.getBoundingClientRect().top;
     }"""
     before = page.evaluate(look)
-    button.focus()
     page.keyboard.press("Space")
     assert button.get_attribute("aria-pressed") == "false"
     assert abs(page.evaluate(look) - before) < 2
@@ -153,7 +155,8 @@ def test_one_switch_shows_all_code(kind, built, site, visit):
 def test_the_page_with_all_its_code_is_accessible(site, visit):
     opened = visit(f"{site}/{CHAPTERS[0]}.html")
     opened.page.locator(BUTTON).click()
-    assert not violations_in(opened.page, "light", "dark") + opened.problems
+    assert not opened.problems  # before axe asks for style sheets itself
+    assert not violations_in(opened.page, "light", "dark")
 
 
 @browser_test
