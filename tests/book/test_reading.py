@@ -182,3 +182,17 @@ def test_a_phone_has_room_for_the_switch(site, visit):
     assert box["x"] > 0 and box["x"] + box["width"] < 390 and box["height"] >= 24
     opened.page.locator(BUTTON).click()
     assert opened.page.locator(BUTTON).get_attribute("aria-pressed") == "true"
+
+
+@browser_test
+def test_paper_has_the_code_that_teaches(site, visit):
+    """With its folds open, as `print.js` leaves them: no plumbing, unless all code is shown."""
+    page = visit(f"{site}/{CHAPTERS[0]}.html").page
+    page.emulate_media(media="print")
+    page.evaluate("document.querySelectorAll('article details').forEach((el) => (el.open = true))")
+    plumbing = page.locator("article :is(.tag_plumbing, .tag_bookkeeping) .cell_input")
+    seen = "(found) => found.filter((el) => el.checkVisibility()).length"
+    assert plumbing.count() > 0 and plumbing.evaluate_all(seen) == 0
+    assert page.locator("article .tag_to-read .cell_input").evaluate_all(seen) > 0
+    page.evaluate("document.documentElement.dataset.code = 'all'")
+    assert plumbing.evaluate_all(seen) == plumbing.count()

@@ -139,6 +139,14 @@ def test_a_chapter_tells_the_time_that_was_measured(name, built):
 
 
 @pytest.mark.built
+@pytest.mark.parametrize("name", CHAPTERS)
+def test_a_chapter_tells_the_time_to_read_it(name, built):
+    page = BeautifulSoup((built / f"{name}.html").read_text("utf-8"), "html.parser").article
+    told = re.search(r"Time to read\s+(\d+) minutes, counted", page.get_text())
+    assert abs(int(told[1]) - dd_runtime.words(source(name)) / dd_runtime.WORDS_A_MINUTE) <= 5
+
+
+@pytest.mark.built
 def test_every_notebook_has_its_time_and_share(built):
     page = BeautifulSoup(
         (built / "book" / "status.html").read_text(encoding="utf-8"), "html.parser"
@@ -164,6 +172,10 @@ def test_words_of_prose_are_counted(tmp_path):
     path = tmp_path / "page.ipynb"
     path.write_text(json.dumps({"cells": cells}))
     assert dd_runtime.words(path) == 3
+    assert dd_runtime.minutes([path]) == "5 minutes"
+    words = [{"cell_type": "markdown", "source": ["word " * 12 * dd_runtime.WORDS_A_MINUTE]}]
+    path.write_text(json.dumps({"cells": words}))
+    assert dd_runtime.minutes([path]) == "10 minutes"
 
 
 @pytest.mark.built
