@@ -23,7 +23,9 @@ __getattr__, __dir__, __all__ = hand_on(
     tuner="PIDTuner",
     window="SlidingWindow",
     **{
+        "engine.builder": "FilterBuilder",
         "engine.throw": "ThrownArm",
+        "engine.trainer": "NetworkTrainer",
         "parts.panels": "Mark Pad Panel Scalar",
         "parts.parameters": "Choice Parameter",
     },

@@ -6,6 +6,8 @@
 - ``live``: `CurveWidget` without a table: its script computes the curves
 - ``loops``: PID loops with a late torque: runs that are stopped, growth and margins
 - ``throw``: the arm that the reader throws, with a window network that tells its torque
+- ``builder``: a window whose weights the reader draws, to measure acceleration
+- ``trainer``: a network that the reader trains from random weights
 
 The rest of the engine is ``static/engine.js``, the loop and the network, and
 ``static/descent.js``, training.

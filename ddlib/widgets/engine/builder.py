@@ -1,0 +1,239 @@
+"""A window whose weights the reader draws, to measure acceleration from an encoder's readings."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import anywidget
+import numpy as np
+import traitlets as t
+
+from ddlib._check import finite_array
+from ddlib.analysis import frequency_response, purest, savitzky_golay, upright
+from ddlib.experiments import JOINT_DAMPING, results, split, true_states
+from ddlib.learning import sliding_windows
+from ddlib.metrics import rmss
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.baking.still import Still, still_picture
+from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.engine.plain import lean
+from ddlib.widgets.parts.panels import Panel
+
+WIDTH = 21
+"""Stems of the window."""
+
+ZEROS = 20
+"""Other zeros of the encoder by which the same motion is read again."""
+
+FREQUENCIES = np.geomspace(0.5, 50.0, 81)
+"""Where the gain is shown, Hz: up to half the sampling rate."""
+
+LEVELS = 600
+"""A stem stands at a whole multiple of one part in so many of its largest height."""
+
+TALL = 0.9
+"""Largest stem of a starting point, of the height there is."""
+
+GAINS = (1.0, 2e5)
+"""Range of the gains shown, 1/s^2."""
+
+HINT = (
+    "Drag the dots, or sweep across them in one stroke; by keyboard the arrow keys go from stem "
+    "to stem and move it, with Shift faster. Only the shape counts: the page multiplies the "
+    "output by the factor and adds the constant that fit best, as the weight and the bias behind "
+    "a unit would; a noisy output gets a small factor. Error: root mean square over the standard "
+    "deviation of the true acceleration. An error of 1 is that of always guessing the mean."
+)
+
+
+@cache
+def readings() -> tuple[np.ndarray, np.ndarray, float]:
+    """The shoulder along trajectory 6 of the set-up with damped joints.
+
+    Returns
+    -------
+    q : ndarray, shape (300 + 20,)
+        True positions, rad, half a window more than the motion at either end.
+    acceleration : ndarray, shape (300,)
+        True accelerations in the motion, rad/s^2.
+    step : float
+        Step of the encoder that reads the positions, rad.
+    """
+    run = split(JOINT_DAMPING.record())[1]
+    half, (encoder,) = WIDTH // 2, JOINT_DAMPING.effects.encoder
+    q = run.q_true[run.motion.start - half : run.motion.stop + half, 0]
+    return q, true_states(run, JOINT_DAMPING)[:, 0, 2], encoder.step
+
+
+def zeros() -> np.ndarray:
+    """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn evenly within a step."""
+    drawn = np.random.default_rng(15).uniform(0.0, readings()[2], ZEROS)
+    return np.concatenate([[0.0], drawn])
+
+
+def windows(zero: float = 0.0) -> np.ndarray:
+    """Windows of the positions as an encoder with this zero (rad) reads them, shape (300, 21)."""
+    q, _, step = readings()
+    read = np.round((q + zero) / step) * step - zero
+    return sliding_windows(read[:, None], WIDTH, slice(WIDTH // 2, len(q) - WIDTH // 2))[:, 0]
+
+
+def fitted(f, zero: float = 0.0) -> np.ndarray:
+    """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,).
+
+    Parameters
+    ----------
+    f : array_like, shape (21,)
+        Weights, oldest sample first.
+    zero : float
+        Zero of the encoder, rad.
+    """
+    f = finite_array("f", f)
+    if f.shape != (WIDTH,):
+        raise ValueError(f"f must have shape ({WIDTH},), got {f.shape}")
+    output, truth = windows(zero) @ f, readings()[1]
+    output = output - output.mean()
+    power = output @ output
+    factor = output @ truth / power if power > 1e-20 else 0.0
+    return truth.mean() + factor * output
+
+
+def score(f, zero: float = 0.0) -> float:
+    """RMSS of `fitted` against the true acceleration: 1 is a constant guess, 0 no error."""
+    return float(rmss(fitted(f, zero)[:, None], readings()[1][:, None]))
+
+
+def least_squares() -> np.ndarray:
+    """The weights with the least `score` there is on the recording, shape (21,)."""
+    seen = windows()
+    seen = np.column_stack([seen, np.ones(len(seen))])
+    return np.linalg.lstsq(seen, readings()[1], rcond=None)[0][:-1]
+
+
+def trained_unit() -> np.ndarray:
+    """Of the 25 networks of this set-up the hidden unit's filter purest in acceleration."""
+    every = results.networks(WIDTH, JOINT_DAMPING.name).weights.hidden_weights
+    return upright(purest(every.reshape(-1, WIDTH), "acceleration"))
+
+
+def starts() -> dict[str, np.ndarray]:
+    """Starting points by name, each with a largest weight of `TALL`, shape (21,) each."""
+    found = {
+        "Second difference": _textbook(3),
+        "Savitzky–Golay, 5": _textbook(5),
+        "Savitzky–Golay, 11": _textbook(11),
+        "Savitzky–Golay, 21": _textbook(21),
+        "Velocity": _textbook(21, 1),
+    }
+    found = {name: TALL * f / np.abs(f).max() for name, f in found.items()}
+    return {**found, "Zero": np.zeros(WIDTH)}
+
+
+def _textbook(width: int, derivative: int = 2) -> np.ndarray:
+    """A filter of Savitzky and Golay with zeros around it."""
+    f = savitzky_golay(width, derivative, LOG_STEP, degree=2 if width == 3 else 3)
+    return np.pad(f, (WIDTH - width) // 2)
+
+
+class FilterBuilder(anywidget.AnyWidget):
+    """Draw 21 weights that measure acceleration; see output, error and gain at once.
+
+    Everything is computed in the page, with a kernel and without. Least squares and a trained
+    unit can be laid over one's own filter once it has been changed.
+    """
+
+    _esm = lean(
+        module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
+        + module("physics.js", "builder.js")
+    )
+    _css = module(*STYLE, "builder.css")
+
+    spec = t.Dict(help="starting points, rivals, charts", read_only=True).tag(sync=True)
+    motion = t.Bytes(help="true positions, then accelerations, as float64", read_only=True)
+    motion.tag(sync=True)
+    still = Still(help="a textbook filter as a picture", read_only=True).tag(sync=True)
+    still_alt = t.Unicode(read_only=True).tag(sync=True)
+
+    def __init__(self):
+        q, truth, step = readings()
+        time = np.arange(truth.size) * LOG_STEP
+        most = 1.25 * np.abs(truth).max()
+        unit = trained_unit()
+        names = {"own": "yours", "unit": "a trained unit", "least": "least squares"}
+        own, *others = names.items()
+
+        def curves(what, aim, label):
+            kinds = [(f"{own[0]} {what}", own[1]), (aim, label)]
+            return dict([*kinds, *((f"{key} {what}", name) for key, name in others)])
+
+        output, gain = (
+            curves("output", "truth", "true"),
+            curves("gain", "ideal", "ideal, (2πν)²"),
+        )
+        panels = [
+            Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
+            Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=GAINS),
+        ]
+        self.set_trait(
+            "spec",
+            {
+                "title": "Be the network: measure acceleration",
+                "hint": HINT,
+                "width": WIDTH,
+                "samples": len(q),
+                "period": LOG_STEP,
+                "step": step,
+                "zeros": zeros().tolist(),
+                "levels": LEVELS,
+                "starts": [[name, f.tolist()] for name, f in starts().items()],
+                "rivals": [
+                    ["unit", "A trained unit", unit.tolist()],
+                    ["bare", "The same without its mean", (unit - unit.mean()).tolist()],
+                    ["least", "Least squares on this recording", least_squares().tolist()],
+                ],
+                "panels": [panel.description() for panel in panels],
+                "curves": [
+                    *({"name": name, "low": -most, "high": most} for name in output),
+                    *({"name": name, "low": GAINS[0], "high": GAINS[1]} for name in gain),
+                ],
+            },
+        )
+        self.set_trait("motion", np.concatenate([q, truth]).astype("<f8").tobytes())
+        picture, alt = _still(time, truth)
+        self.set_trait("still", picture)
+        self.set_trait("still_alt", alt)
+        super().__init__()
+
+
+def _still(time, truth) -> tuple[str, str]:
+    """A textbook filter, its output and its gain, and what the picture shows."""
+    name = "Savitzky–Golay, 11"
+    f = starts()[name]
+    response = frequency_response(f, FREQUENCIES, LOG_STEP)
+    output = windows() @ f
+    factor = np.polyfit(output - output.mean(), truth, 1)[0]
+    half = WIDTH // 2 * LOG_STEP * 1e3
+    curves = {
+        "weights": f,
+        "output": fitted(f),
+        "gain": np.clip(np.abs(factor * response), GAINS[0], None),
+    }
+    ideal = {"ideal": (2 * np.pi * FREQUENCIES) ** 2}
+    panels = [
+        Panel(
+            "Weights", {"weights": name}, "time from the centre, ms",
+            np.linspace(-half, half, WIDTH), kind="stems",
+        ),
+        Panel(
+            "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth}
+        ),
+        Panel(
+            "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", FREQUENCIES, "log", "log",
+            fixed=ideal, y_range=GAINS,
+        ),
+    ]  # fmt: skip
+    alt = (
+        "A window of 21 weights as stems; its output over the true acceleration of the shoulder "
+        "along trajectory 6; its gain over frequency beside that of an ideal second derivative."
+    )
+    return still_picture(curves, panels, {}, None, alt), alt

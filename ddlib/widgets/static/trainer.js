@@ -1,0 +1,519 @@
+// Shows NetworkTrainer (engine/trainer.py): a network that learns in the page. Follows charts.js,
+// frame.js, and the engine with descent.js.
+
+const BUDGET = 7; // ms of a frame that may be spent on epochs
+const REST = 2500; // ms between two runs of the loop
+const SPEEDS = { slow: [10, "10 epochs a second"], even: [60, "60 epochs a second"], fast: [1e9, "as fast as it goes"] };
+const SHORT = { velocity: "v", acceleration: "a", jerk: "j", "velocity + acceleration": "v + a", "acceleration + jerk": "a + j", "other mix": "mix" };
+
+// Numbers between 0 and 1, the same for the same seed: the generator mulberry32.
+function uniform(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let x = Math.imul(state ^ (state >>> 15), state | 1);
+    x ^= x + Math.imul(x ^ (x >>> 7), x | 61);
+    return ((x ^ (x >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+function randomNetwork({ layout, initial }, seed) {
+  const { hidden, outputs, joints, width } = layout;
+  const count = hidden * (joints * width + 1) + outputs * (hidden + joints * width + 1);
+  const draw = uniform(seed);
+  return networkOf(layout, Float64Array.from({ length: count }, () => initial * (2 * draw() - 1)));
+}
+
+// The scaled cases: every fifth window of the training runs, all of the last run.
+function casesOf(spec, positions, torques, { inputs, shift }) {
+  const { runs, samples, every, layout, outputs } = spec;
+  const { joints, width } = layout;
+  const { low, gain, ranges } = spec.inputs;
+  const [first, last] = ranges[inputs];
+  const around = samples + width - 1;
+  if (positions.length !== runs * around * joints || torques.length !== runs * samples * joints) {
+    throw new Error(`${positions.length} positions and ${torques.length} torques`);
+  }
+  const windowAt = (run, t) =>
+    Float64Array.from({ length: joints * width }, (_, i) => {
+      const j = Math.floor(i / width);
+      const q = positions[(run * around + t + (i % width)) * joints + j] * spec.encoder;
+      return first + (q - low[j]) * gain[j] * (last - first);
+    });
+  const targetAt = (run, t) =>
+    JOINTS.map((j) => {
+      const moved = shift === null || run === runs - 1 ? t : (t + spec.shifts[shift][run]) % samples;
+      return outputs.first + (torques[(run * samples + moved) * joints + j] - outputs.low[j]) * outputs.gain[j];
+    });
+  const gather = (list, apart) => {
+    const made = { windows: [], targets: [] };
+    for (const run of list) {
+      for (let t = 0; t < samples; t += apart) {
+        made.windows.push(windowAt(run, t));
+        made.targets.push(targetAt(run, t));
+      }
+    }
+    made.variances = JOINTS.map((j) => {
+      const mean = made.targets.reduce((sum, y) => sum + y[j], 0) / made.targets.length;
+      return made.targets.reduce((sum, y) => sum + (y[j] - mean) ** 2, 0) / made.targets.length;
+    });
+    return made;
+  };
+  const training = gather(Array.from({ length: runs - 1 }, (_, run) => run), every);
+  return { training, test: gather([runs - 1], 1) };
+}
+
+// Outputs of a network and their RMSS, both joints pooled.
+function judged(net, { windows, targets, variances }) {
+  const sums = [0, 0];
+  const outputs = windows.map((x, n) => {
+    const { output } = activity(net, x);
+    for (const j of JOINTS) sums[j] += (output[j] - targets[n][j]) ** 2;
+    return output;
+  });
+  const relative = JOINTS.map((j) => sums[j] / windows.length / variances[j]);
+  return { outputs, error: Math.sqrt((relative[0] + relative[1]) / 2) };
+}
+
+// The name of a filter by the rule of ddlib's `classify`, as a place among its classes.
+function classOf(f, basis) {
+  const energy = f.reduce((sum, w) => sum + w * w, 0);
+  const share = basis.map((p) => p.reduce((sum, b, i) => sum + b * f[i], 0) ** 2 / energy);
+  const varying = 1 - share[0];
+  const total = share[1] + share[2] + share[3] || 1;
+  const [v, a, j] = share.slice(1).map((x) => x / total);
+  if (1 - share[0] - share[1] - share[2] - share[3] > 0.2 * varying || varying < 1e-12) return 6;
+  const k = [v, a, j, v + a, a + j].findIndex((x) => x >= 0.8);
+  return k < 0 ? 5 : k;
+}
+
+// All filters of a network: direct ones first, then unit by unit, one for each joint.
+function filtersOf({ directWeights, hiddenWeights, width }) {
+  const cut = (all) => Array.from({ length: all.length / width }, (_, k) => all.subarray(k * width, (k + 1) * width));
+  return { direct: cut(directWeights), hidden: cut(hiddenWeights) };
+}
+
+// A run of the training, with what has been seen of it every few epochs.
+function schoolOf(spec, positions, torques, choice) {
+  const { training, test } = casesOf(spec, positions, torques, choice);
+  const net = choice.net ?? randomNetwork(spec, choice.seed);
+  const eps = (spec.rate * choice.step) / training.windows.length;
+  const epoch = descent(net, training.windows, training.targets, eps, choice.momentum);
+  const looks = spec.epochs / spec.check + 1;
+  const school = { net, epoch: 0, events: [null, null, null], names: null };
+  school.training = new Float64Array(looks).fill(NaN);
+  school.test = new Float64Array(looks).fill(NaN);
+  school.judge = () => judged(net, test);
+  school.look = () => {
+    const at = school.epoch / spec.check;
+    const { direct, hidden } = filtersOf(net);
+    const named = (list) => list.map((f) => classOf(f, spec.basis));
+    school.names = { direct: named(direct), hidden: named(hidden) };
+    if (at !== Math.floor(at)) return;
+    school.training[at] = judged(net, training).error;
+    school.test[at] = school.judge().error;
+    const acceleration = spec.classes.indexOf("acceleration");
+    const none = spec.classes.indexOf("not analysable");
+    const seen = [
+      school.training[at] < spec.level,
+      school.names.direct.includes(acceleration),
+      school.names.hidden.some((k) => k !== none),
+    ];
+    seen.forEach((yes, k) => yes && (school.events[k] ??= school.epoch));
+  };
+  school.advance = () => {
+    if (school.epoch >= spec.epochs) return false;
+    epoch();
+    school.epoch++;
+    if (school.epoch % spec.check === 0) school.look();
+    return true;
+  };
+  school.look();
+  return school;
+}
+
+// All filters as stems, two joints below each other in a cell; what has a name is coloured.
+function unitSheet(spec) {
+  const el = make("canvas", { role: "img" });
+  const pen = el.getContext("2d");
+  const cells = [...["shoulder", "elbow"].map((name) => `to ${name}`), ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
+  const sheet = { el, width: 0 };
+  const columns = () => (sheet.width < 480 ? 4 : 6);
+  sheet.resize = () => {
+    const ratio = window.devicePixelRatio || 1;
+    sheet.width = el.clientWidth;
+    sheet.high = sheet.width < 480 ? 72 : 86;
+    sheet.height = sheet.high * Math.ceil(cells.length / columns());
+    el.style.height = `${sheet.height}px`;
+    el.width = Math.round(sheet.width * ratio);
+    el.height = Math.round(sheet.height * ratio);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  };
+  sheet.draw = (school, colours) => {
+    const { direct, hidden } = filtersOf(school.net);
+    const all = [...direct, ...hidden];
+    const names = [...school.names.direct, ...school.names.hidden];
+    const wide = sheet.width / columns();
+    const room = (sheet.high - 20) / 2;
+    pen.clearRect(0, 0, sheet.width, sheet.height);
+    pen.font = "12px system-ui, sans-serif";
+    pen.textBaseline = "middle";
+    cells.forEach((cell, c) => {
+      const [left, top] = [(c % columns()) * wide + 3, Math.floor(c / columns()) * sheet.high];
+      pen.fillStyle = colours.ink;
+      pen.textAlign = "left";
+      pen.fillText(cell, left, top + 9);
+      for (const j of JOINTS) {
+        const f = all[2 * c + j];
+        const name = SHORT[spec.classes[names[2 * c + j]]];
+        const tallest = f.reduce((most, w) => Math.max(most, Math.abs(w)), 1e-9);
+        const base = top + 18 + room * (j + 0.5);
+        const pitch = (wide - 12) / f.length;
+        pen.beginPath();
+        pen.moveTo(left, base);
+        pen.lineTo(left + wide - 12, base);
+        pen.strokeStyle = colours.line;
+        pen.lineWidth = 1;
+        pen.stroke();
+        pen.beginPath();
+        f.forEach((w, i) => {
+          const x = left + (i + 0.5) * pitch;
+          pen.moveTo(x, base);
+          pen.lineTo(x, base - (w / tallest) * (room / 2 - 2));
+        });
+        pen.strokeStyle = name ? colours[j ? "c2" : "c0"] : colours.soft;
+        pen.lineWidth = name ? 2.4 : 1.2;
+        pen.stroke();
+        if (!name) continue;
+        pen.textAlign = "right";
+        pen.fillStyle = colours[j ? "c2" : "c0"];
+        pen.fillText(name, left + wide - 10, j ? top + sheet.high - 5 : top + 9);
+      }
+    });
+    const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
+    el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
+  };
+  return sheet;
+}
+
+function build({ model, el }) {
+  const spec = model.get("spec");
+  const read = (name, size, get) => {
+    const bytes = model.get(name);
+    const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    return Array.from({ length: Math.floor(data.byteLength / size) }, (_, i) => data[get](size * i, true));
+  };
+  const positions = read("positions", 2, "getInt16");
+  const torques = read("torques", 4, "getFloat32");
+  el.classList.add("ddlib-widget", "ddlib-curves", "ddlib-trainer");
+  el.setAttribute("role", "group");
+  el.setAttribute("aria-label", spec.title);
+
+  const start = { seed: 1, torques: "real", inputs: "centred", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
+  const state = { ...start };
+  const shift = () => (state.torques === "real" ? null : state.seed % spec.shifts.length);
+  let school;
+  const enrol = () => {
+    school = schoolOf(spec, positions, torques, {
+      ...{ inputs: state.inputs, shift: shift(), seed: state.seed },
+      ...{ step: Number(state.step), momentum: Number(state.momentum) },
+    });
+    el.school = school; // for tests
+  };
+  enrol();
+
+  const view = { id: `dd${Math.random().toString(36).slice(2, 10)}`, spec: { curves: spec.curves } };
+  const frame = frameOf({ el, key: "trainer", title: spec.title, linked: Boolean(model.kernelless), reset: restart, code });
+  function code() {
+    const shifted = shift() === null ? "" : `, shifted=${shift()}`;
+    return [
+      "from ddlib.learning import train_ensemble",
+      "from ddlib.widgets.engine import trainer",
+      "",
+      `data, test = trainer.training_set("${state.inputs}"${shifted})`,
+      `start = trainer.first_weights(${state.seed})`,
+      `rate, momentum = ${Number((spec.rate * state.step).toPrecision(12))}, ${state.momentum}`,
+      "model, history, _ = train_ensemble(",
+      `    start, data, test=test, rate=rate, momentum=momentum, epochs=${school.epoch || spec.epochs}`,
+      ")",
+      "print(history.training[-1, 0], history.test[-1, 0])",
+    ].join("\n");
+  }
+
+  // Controls
+  const button = (text, act) => {
+    const made = make("button", { type: "button" }, text);
+    made.addEventListener("click", act);
+    return made;
+  };
+  const guesses = ["The error is small", "Direct weights measure acceleration", "A hidden filter has a name"];
+  const guessed = guesses.map((text, k) =>
+    button(text, () => {
+      state.guess = String(k);
+      go();
+      frame.changed();
+    }),
+  );
+  const guess = make("div", { class: "guess", role: "group", "aria-label": "Guess first" }, make("span", {}, "Guess to begin. What comes first?"), ...guessed);
+  const play = button("Train", () => (running ? pause() : go()));
+  const once = button("Step", () => {
+    pause();
+    school.advance();
+    school.look();
+    draw();
+    told();
+    frame.changed();
+  });
+  const anew = button("New weights", () => {
+    state.seed = (state.seed % 9999) + 1;
+    restart();
+    frame.changed();
+  });
+  const menus = [];
+  const menu = (name, label, options) => {
+    const id = `${view.id}-${name}`;
+    const select = make("select", { id }, ...options.map(([value, text]) => make("option", { value }, text)));
+    const fits = (value) => options.some(([key]) => key === value);
+    select.addEventListener("change", () => {
+      state[name] = select.value;
+      if (name === "torques") state.guess = ""; // another question
+      if (name !== "speed") restart();
+      frame.changed();
+    });
+    menus.push({ name, fits, show: () => (select.value = state[name]) });
+    return make("div", { class: "menu choice" }, make("label", { for: id }, label), select);
+  };
+  const times = (x) => (x === 1 ? "the book's" : `${x} times the book's`);
+  const settings = [
+    menu("torques", "Torques", [["real", "the arm's"], ["shifted", "shifted in time"]]),
+    menu("inputs", "Inputs", [["centred", "−1 to 1"], ["printed", "0 to 1, as printed"]]),
+    menu("step", "Step size", spec.steps.map((x) => [String(x), times(x)])),
+    menu("momentum", "Momentum", spec.momenta.map((x) => [String(x), String(x)])),
+    menu("speed", "Speed", Object.entries(SPEEDS).map(([key, [, text]]) => [key, text])),
+  ];
+  const loop = make("input", { type: "checkbox", role: "switch", id: `${view.id}-loop` });
+  loop.addEventListener("input", () => {
+    state.loop = loop.checked ? "1" : "";
+    if (loop.checked && school.epoch >= spec.epochs) later();
+    frame.changed();
+  });
+  settings.push(make("div", { class: "switch choice" }, make("label", { for: loop.id }, "Loop, with new weights"), loop));
+
+  const status = make("p", { class: "status" });
+  const said = make("p", { class: "verdict", role: "status" });
+  const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
+  const events = labels.map((text) => ({ text, output: make("dd") }));
+  const list = make("dl", { class: "events" }, ...events.map(({ text, output }) => make("div", {}, make("dt", {}, text), output)));
+  const sheet = unitSheet(spec);
+  const drawn = spec.panels.map((panel) => chart(view, panel));
+  const runs = make("div", { class: "runs", hidden: "" });
+  const history = [];
+  el.replaceChildren(
+    frame.el,
+    guess,
+    make(
+      "div",
+      { class: "bench" },
+      make(
+        "div",
+        { class: "hands" },
+        make("div", { class: "buttons" }, play, once, anew),
+        status,
+        make("div", { class: "title" }, "Weights: direct, then ten hidden units; shoulder's window above elbow's"),
+        sheet.el,
+        list,
+        said,
+      ),
+      make("div", { class: "results" }, make("div", { class: "charts" }, ...drawn.map((one) => one.el))),
+      make("div", { class: "settings" }, ...settings, runs),
+    ),
+    make("p", { class: "remark" }, spec.hint),
+  );
+
+  // Time
+  let running = false;
+  let due = 0;
+  let waiting = 0;
+  let last = 0;
+  let owed = 0;
+  const plain = (x) => (Number.isFinite(x) ? x.toFixed(x < 0.0995 ? 3 : 2) : "none");
+  function draw() {
+    const { outputs, error } = school.judge();
+    const { low, gain, first } = spec.outputs;
+    const torque = (list, j) => list.map((y) => low[j] + (y[j] - first) / gain[j]);
+    const curves = { training: school.training, test: school.test };
+    ["shoulder", "elbow"].forEach((joint, j) => {
+      curves[`${joint} network`] = torque(outputs, j);
+      curves[`${joint} true`] = truth[j];
+    });
+    drawn.forEach((one) => one.redraw(curves));
+    sheet.draw(school, colours);
+    const seen = school.training[Math.floor(school.epoch / spec.check)];
+    write(status, `Epoch ${school.epoch}. Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
+    events.forEach(({ output }, k) => write(output, school.events[k] === null ? "not yet" : `epoch ${school.events[k]}`));
+    if (!running) drawn.forEach((one) => one.describe(curves));
+  }
+  function run(now) {
+    due = 0;
+    owed = Math.min(1e6, owed + (SPEEDS[state.speed][0] * Math.min(100, now - last)) / 1000);
+    last = now;
+    const end = performance.now() + BUDGET;
+    let more = true;
+    while (more && owed >= 1 && performance.now() < end) {
+      more = school.advance();
+      owed--;
+    }
+    owed = Math.min(owed, 2);
+    if (!more || school.epoch >= spec.epochs) return ended();
+    draw();
+    due = requestAnimationFrame(run);
+  }
+  function go() {
+    if (state.guess === "" || goal) return;
+    if (school.epoch >= spec.epochs) restart();
+    running = true;
+    owed = 1;
+    last = performance.now();
+    cancelAnimationFrame(due);
+    due = requestAnimationFrame(run);
+    write(said, "");
+    show();
+  }
+  function pause() {
+    running = false;
+    clearTimeout(waiting);
+    cancelAnimationFrame(due);
+    due = 0;
+    show();
+    draw();
+    frame.changed();
+  }
+  function ended() {
+    pause();
+    told();
+    history.unshift({ ...state, events: [...school.events], error: school.test.at(-1) });
+    history.length = Math.min(5, history.length);
+    const cells = (kind, texts) => make("tr", {}, ...texts.map((text) => make(kind, {}, text)));
+    const heads = ["weights", "torques", "small error", "direct", "hidden", "error on 6"];
+    const rows = history.map((h) => [String(h.seed), h.torques, ...h.events.map((e) => (e === null ? "never" : String(e))), plain(h.error)]);
+    runs.replaceChildren(make("table", {}, make("caption", {}, "Your last runs: first epoch of each event"), make("thead", {}, cells("th", heads)), make("tbody", {}, ...rows.map((row) => cells("td", row)))));
+    runs.hidden = false;
+    if (state.loop) later();
+  }
+  function later() {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => {
+      anew.click();
+      go();
+    }, REST);
+  }
+  // What came first, once the run is over.
+  function told() {
+    if (school.epoch < spec.epochs || state.guess === "") return write(said, "");
+    const at = school.events.map((e) => e ?? Infinity);
+    const first = Math.min(...at);
+    const came = labels.filter((_, k) => at[k] === first).join(" and ");
+    const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `First, at epoch ${first}: ${came}.`;
+    write(said, `Your guess: ${labels[state.guess]}. ${verdict}`);
+  }
+  function restart() {
+    running = false;
+    clearTimeout(waiting);
+    [goal, waiting] = [0, 0];
+    cancelAnimationFrame(due);
+    enrol();
+    truth = measured();
+    write(said, "");
+    show();
+    draw();
+  }
+  function show() {
+    const ready = state.guess !== "";
+    guessed.forEach((one, k) => {
+      one.setAttribute("aria-pressed", String(k) === state.guess);
+      one.disabled = ready && school.epoch > 0;
+    });
+    for (const one of [play, once]) one.disabled = !ready;
+    write(play, running ? "Pause" : "Train");
+    for (const one of menus) one.show();
+    loop.checked = state.loop === "1";
+  }
+  const measured = () => {
+    const { samples } = spec;
+    const from = (spec.runs - 1) * samples;
+    return JOINTS.map((j) => Array.from({ length: samples }, (_, t) => torques[2 * (from + t) + j]));
+  };
+  let truth = measured();
+  let colours = {};
+  const recolour = () => {
+    const style = getComputedStyle(el);
+    colours = Object.fromEntries(["ink", "soft", "line", "c0", "c2"].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+    draw();
+  };
+
+  const part = (name, fits) =>
+    frame.keep(name, () => String(state[name]), (text) => {
+      if (!fits(text)) throw new Error("no such choice");
+      state[name] = name === "seed" ? Number(text) : text;
+    });
+  part("seed", (text) => /^[1-9]\d{0,3}$/.test(text));
+  for (const { name, fits } of menus) part(name, fits);
+  part("loop", (text) => ["", "1"].includes(text));
+  part("guess", (text) => ["", "0", "1", "2"].includes(text));
+  enrol();
+  // A link restores the epoch, too: it is reached again without a show.
+  let goal = 0;
+  frame.keep("epoch", () => String(school.epoch), (text) => {
+    const epoch = Math.round(Number(text));
+    if (!(epoch >= 0)) throw new Error("no such epoch");
+    goal = Math.min(spec.epochs, epoch);
+  });
+  function reach() {
+    const end = performance.now() + 30;
+    while (school.epoch < goal && performance.now() < end) school.advance();
+    school.look();
+    draw();
+    show();
+    if (school.epoch < goal) waiting = setTimeout(reach, 0);
+    else {
+      goal = 0;
+      told();
+    }
+  }
+  show();
+
+  const resize = new ResizeObserver(() => {
+    drawn.forEach((one) => one.resize());
+    sheet.resize();
+    recolour();
+    if (goal && !waiting) reach();
+  });
+  resize.observe(el);
+  const themes = new MutationObserver(recolour);
+  for (const root of [document.documentElement, document.body]) {
+    themes.observe(root, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] });
+  }
+  const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
+  media.forEach((list) => list.addEventListener("change", recolour));
+  const sight = new IntersectionObserver(([entry]) => !entry.isIntersecting && running && pause());
+  sight.observe(el);
+  return () => {
+    cancelAnimationFrame(due);
+    clearTimeout(waiting);
+    frame.stop();
+    for (const observer of [resize, themes, sight]) observer.disconnect();
+    media.forEach((list) => list.removeEventListener("change", recolour));
+  };
+}
+
+function render({ model, el }) {
+  try {
+    return build({ model, el });
+  } catch (error) {
+    el.className = "ddlib-widget-error";
+    el.setAttribute("role", "alert");
+    el.textContent = `The data of this interactive figure are damaged: ${error.message}.`;
+  }
+}
+
+export default { render };
