@@ -85,7 +85,8 @@ extras.push((view) => {
         `be stretched. It must stay within ${metres(reach[1])}.`
       : `Within reach: the hand comes as far as ${metres(far())} from the shoulder.`;
   view.words = () => [words().slice(0, -1)];
-  view.top.prepend(make("div", { class: "pad-box" }, svg, verdict));
+  const hands = view.charts.at(-1); // the hand's errors: beside what is dragged
+  view.top.prepend(make("div", { class: "pad-box" }, svg, verdict, hands.el));
   view.el.classList.add("ddlib-stirring");
 
   const follow = (curves) => {
@@ -101,6 +102,7 @@ extras.push((view) => {
     put(hand, { cx: x(b[0]), cy: y(b[1]) });
     for (const el of [...links, elbow, hand]) el.style.display = not ? "none" : "";
     view.charts[0].el.parentElement.hidden = not;
+    hands.el.hidden = not;
     write(verdict, words());
     const now = places.map((p) => `${p.label} ${show(p, view.get(p.name))}`).join(", ");
     svg.setAttribute(
