@@ -56,7 +56,7 @@ def network_diagram(weights: Weights) -> Illustration:
             for x1 in top:
                 axis.plot([x0, x1], [1.25, 2.5], color=INK, lw=0.6, alpha=0.7, zorder=1)
         for j in range(joints):
-            text = f"{JOINTS[j]} positions\n{width} samples"
+            text = f"{JOINTS[j]}:\n{width} positions"
             axis.text(5.2 * j + 2.1, -0.28, text, ha="center", va="top")
         axis.text(-0.2, 1.25, f"{hidden} hidden\nunits", ha="right", va="center")
         axis.text(9.1, 2.72, "torques: shoulder, elbow", ha="center", va="bottom")
