@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import traitlets as t
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
@@ -24,7 +25,10 @@ from ddlib.experiments import KD, KP
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.engine.live import LiveWidget
+from ddlib.widgets.engine.loops import LOOPS
+from ddlib.widgets.engine.plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 
@@ -60,26 +64,44 @@ CLOSE_UP = _T[_CLOSE]
 """Times of the close-up, s: every control period around the turn."""
 
 
-class RealArmSwitches(CurveWidget):
+RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
+"""Axes of the charts: they stay, whatever is switched on. All combinations lie within."""
+
+CODE = """\
+from ddlib.widgets import RealArmSwitches
+
+RealArmSwitches().interpolate(
+    friction={friction}, dead_zone={dead_zone}, saturation={saturation},
+    quantisation={quantisation}, delay={delay},
+)"""
+"""What the page copies as code."""
+
+
+class RealArmSwitches(LiveWidget):
     """Switch friction, dead zone, saturation, quantisation and delay on and off.
 
     The arm follows trajectory 6 under the PD law of `ddlib.experiments.setups.STATE_FEEDBACK`, with
-    the difference of two encoder readings as its velocity. All 243 combinations are simulated
-    beforehand and none is interpolated. The charts show the shoulder; the elbow's effects
-    have 0.3 times the strength of the shoulder's, as its gains have.
+    the difference of two encoder readings as its velocity. The page computes every combination by
+    the live engine. The charts show the shoulder; the elbow's effects have 0.3 times the strength
+    of the shoulder's, as its gains have.
 
     Parameters
     ----------
     arm : Arm
         The arm that moves.
     **options
-        Passed on to `CurveWidget`: ``checks``, ``tolerance``.
+        Passed on to `LiveWidget`.
     """
+
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "switches.js"))
+    _css = module(*STYLE, "switches.css")
+
+    loop = t.Dict(help="plant, gains, reference and strengths", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
         ideal = _ideal(arm)
         super().__init__(
-            lambda **levels: _curves(arm, levels),
+            lambda **levels: _curves(arm, **levels),
             _choices(),
             [
                 _panel("Shoulder error, °", "error", TIMES, ideal),
@@ -93,16 +115,38 @@ class RealArmSwitches(CurveWidget):
                 "ideal arm's."
             ),
             scalars=[
-                Scalar(f"{joint} {what}", f"{joint.title()} {what} deviation, RMS", unit)
-                for what, unit in (("position", "°"), ("torque", "N m"))
+                Scalar(f"{joint} {what}", f"{joint.title()} {what} deviation, RMS", unit, digits)
+                for what, unit, digits in (("position", "°", 3), ("torque", "N m", 2))
                 for joint in JOINTS
             ],
+            code=CODE,
             note=(
                 "Strengths are the shoulder's; the elbow's are 0.3 times as large. Friction is dry "
                 "friction and, at 1 rad/s, as much viscous friction."
             ),
-            many=lambda **levels: _many(arm, levels),
-            **{"tolerance": 1e-4, **options},  # nothing is interpolated, so nothing need be lost
+            **options,
+        )
+        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in QUANTISATION.items()}
+        self.set_trait(
+            "loop",
+            {
+                "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
+                "gains": gains(pd(KP, KD)),
+                "share": SHARE.tolist(),
+                "levels": {
+                    "friction": FRICTION,
+                    "dead_zone": DEAD_ZONE,
+                    "saturation": SATURATION,
+                    "quantisation": steps,
+                    "delay": DELAY,
+                },
+                "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
+                "motion": MOTION_SECONDS,
+                "step": CONTROL_STEP,
+                "periods": len(_T),
+                "whole": 16,
+                "close": [int(_CLOSE[0]), int(_CLOSE[-1]) + 1],
+            },
         )
 
 
@@ -120,12 +164,13 @@ def _choices() -> list[Choice]:
         options = {key: text.format(level) for key, level in levels.items()}
         options |= {key: f"{options[key]}, as assumed" for key in options if key == "assumed"}
         start = "assumed" if "assumed" in options else "off"
-        choices.append(Choice(name, label, options | {"off": "off"}, start, "slider"))
+        choices.append(Choice(name, label, options | {"off": "off"}, start))
     return choices
 
 
 def _panel(title, what, times, ideal) -> Panel:
-    return Panel(title, {what: "real"}, "time, s", times, fixed={"ideal": ideal[what]}, y_fit=True)
+    lines = {"fixed": {"ideal": ideal[what]}, "y_range": RANGES[what]}
+    return Panel(title, {what: "real"}, "time, s", times, **lines)
 
 
 @dataclass(frozen=True)
@@ -203,7 +248,8 @@ def _ideal(arm) -> dict[str, np.ndarray]:
     return {name: rows[0] for name, rows in _shown(_ideal_recording(arm)).items()}
 
 
-def _curves(arm, levels) -> dict:
+@lru_cache(maxsize=64)
+def _curves(arm, **levels) -> dict:
     rows = _many(arm, {name: [key] for name, key in levels.items()})
     return {name: row[0] for name, row in rows.items()}
 

@@ -6,6 +6,7 @@ import itertools
 
 import numpy as np
 import pytest
+from axe import violations_in
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 
@@ -15,10 +16,14 @@ from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
 from ddlib.experiments import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
+from ddlib.widgets import module
+from ddlib.widgets.engine import plain
+from ddlib.widgets.engine.loops import LOOPS
 from ddlib.widgets.switches import (
     CLOSE_UP,
     DELAY,
     QUANTISATION,
+    RANGES,
     SATURATION,
     TIMES,
     RealArmSwitches,
@@ -45,11 +50,18 @@ def recorded(effects, times):
     return np.rad2deg(recording.tracking_error[at, 0]), recording.tau_true[at, 0]
 
 
-def test_every_combination_is_baked_exactly(switches):
-    """To half a step of 16 bits: nothing is interpolated."""
-    assert switches.spec["error"] < 1e-5
-    assert switches.interpolation_error(60, seed=4) < 1e-5
-    assert switches.baked_bytes < 150_000
+def test_no_table_and_axes_that_stay(switches):
+    assert switches.baked_bytes == 0 and switches.spec["live"]
+    for panel, name in zip(switches.spec["panels"], RANGES):
+        assert panel["y_range"] == list(RANGES[name]) and not panel["y_fit"]
+    levels = itertools.product(*(p.points() for p in switches._parameters.values()))
+    batch = _many(ARM, dict(zip(NAMES, map(list, zip(*levels)))))
+    for name, (low, high) in RANGES.items():
+        assert len(batch[name]) == 243
+        assert low <= batch[name].min() and batch[name].max() <= high
+    for level in ("assumed", "strong"):
+        script = module(*plain.ENGINE, LOOPS, "switches.js")
+        assert level in switches.loop["levels"]["friction"] and script.count("`") % 2 == 0
 
 
 @pytest.mark.parametrize(
@@ -147,42 +159,75 @@ def test_bad_values_are_refused(switches, name, bad):
 def assert_shown(page, switches, **levels):
     page.evaluate(NEXT_FRAME)
     exact = switches._function(**{**switches.values, **levels})
-    for panel, name in enumerate(("error", "torque", "close-up")):
-        ideal, real = page.evaluate(READ, panel)  # what stays is drawn below
-        low, high = (f(np.concatenate([exact[name], ideal])) for f in (np.min, np.max))
-        np.testing.assert_allclose(real, exact[name], atol=1e-3 * (high - low))
+    for panel, name in enumerate(RANGES):
+        _, real = page.evaluate(READ, panel)  # what stays is drawn below
+        np.testing.assert_allclose(real, exact[name], atol=1e-3 * np.ptp(RANGES[name]))
     texts = page.locator(".scalars output").all_inner_texts()
     shown = [float(text.replace("°", " ").split()[0]) for text in texts]
     assert shown == pytest.approx([exact[name] for name in DEVIATIONS], abs=0.0051)
 
 
+SEEN = """() => {
+  const { found } = document.querySelector(".ddlib-switches").switches;
+  return Object.fromEntries(Object.entries(found).map(([name, values]) => [name, [...values]]));
+}"""
+
+
 @pytest.mark.browser
-def test_drag_and_keys(tmp_path, visit, switches):
+@pytest.mark.parametrize(
+    "levels",
+    [
+        {},
+        {"dead_zone": "strong", "delay": "weak"},
+        {"friction": "strong", "saturation": "strong", "quantisation": "strong", "delay": "strong"},
+        {"friction": "assumed", "dead_zone": "weak", "saturation": "weak", "delay": "weak"},
+    ],
+    ids=["off", "two", "strong", "weak"],
+)
+def test_the_page_computes_what_ddlib_does(tmp_path, visit, switches, levels):
+    """To 1e-6 rad, of every combination of effects that is tried."""
+    query = ",".join(f"{name}:{level}" for name, level in (OFF | levels).items())
+    page = visit(f"{page_of(tmp_path / 'page.html', switches)}?real-arm-switches={query}").page
+    page.evaluate(NEXT_FRAME)
+    seen, known = page.evaluate(SEEN), switches._function(**OFF | levels)
+    assert set(seen) == set(known)
+    for name, tolerance in (("error", np.rad2deg(1e-6)), ("torque", 1e-3), ("close-up", 1e-3)):
+        np.testing.assert_allclose(seen[name], known[name], atol=tolerance)
+    for name in DEVIATIONS:
+        assert seen[name] == [pytest.approx(known[name], abs=1e-5)]
+
+
+@pytest.mark.browser
+def test_switches_alone_and_all(tmp_path, visit, switches):
+    """By mouse and keyboard; the axes stay as they are."""
     opened = visit(page_of(tmp_path / "page.html", switches))
     page = opened.page
     page.evaluate(NEXT_FRAME)
     assert_shown(page, switches)
+    axes = page.locator(".chart svg text.y").all_inner_texts()
     before = page.evaluate(PATHS)
-    box = page.locator("input[id$=saturation]").bounding_box()
-    y = box["y"] + box["height"] / 2
-    page.mouse.move(box["x"] + 8, y)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 0.95 * box["width"], y, steps=5)
-    page.mouse.up()
-    page.evaluate(NEXT_FRAME)
-    assert page.locator("output[for$=saturation]").inner_text() == "±15 N m"
-    dragged = page.evaluate(PATHS)
-    real = [k for k in range(6) if k % 2]
-    assert len(before) == 6 and all(before[k] != dragged[k] for k in real)
+    page.get_by_role("switch", name="Torque limit").press("Space")
+    assert_shown(page, switches, saturation="weak")
+    page.get_by_role("combobox", name="Strength: Torque limit").select_option("strong")
     assert_shown(page, switches, saturation="strong")
-    page.locator("input[id$=friction]").press("ArrowRight")
-    page.locator("input[id$=quantisation]").press("Home")
-    page.locator("input[id$=delay]").press("End")
-    page.locator("input[id$=dead_zone]").press("ArrowRight")
-    levels = {"friction": "strong", "dead_zone": "weak", "quantisation": "off", "delay": "strong"}
-    assert_shown(page, switches, saturation="strong", **levels)
-    assert page.locator("input[id$=delay]").get_attribute("aria-valuetext") == "20 ms"
-    assert not opened.problems
+    assert len(before) == 6 and before != page.evaluate(PATHS)
+    page.get_by_role("combobox", name="Strength: Delay").select_option("strong")  # switches on
+    assert page.get_by_role("switch", name="Delay").is_checked()
+    page.get_by_role("button", name="Delay alone").press("Enter")
+    assert_shown(page, switches, **OFF | {"delay": "strong"})
+    assert page.get_by_role("switch", checked=True).count() == 1
+    page.get_by_role("button", name="All off").click()
+    assert_shown(page, switches, **OFF)
+    ideal, real = page.evaluate(READ, 0)
+    np.testing.assert_allclose(real, ideal, atol=1e-3)
+    page.get_by_role("switch", name="Delay").check()  # as strong as it was
+    assert_shown(page, switches, **OFF | {"delay": "strong"})
+    page.get_by_role("button", name="As assumed").click()
+    assert_shown(page, switches)
+    page.get_by_role("button", name="All on").click()
+    assert page.get_by_role("switch", checked=True).count() == 5
+    assert page.locator(".chart svg text.y").all_inner_texts() == axes
+    assert not opened.problems + violations_in(page, "light", "dark")
 
 
 @pytest.mark.browser
@@ -193,11 +238,8 @@ def test_touch(tmp_path, browser, switches):
     page.wait_for_selector(".chart")
     page.evaluate(NEXT_FRAME)
     assert page.evaluate("document.documentElement.scrollWidth") <= 380
-    before = page.evaluate(PATHS)
-    box = page.locator("input[id$=delay]").bounding_box()
-    page.touchscreen.tap(box["x"] + 0.97 * box["width"], box["y"] + box["height"] / 2)
-    page.evaluate(NEXT_FRAME)
-    assert page.locator("output[for$=delay]").inner_text() == "20 ms"
-    assert page.evaluate(PATHS) != before
-    assert_shown(page, switches, delay="strong")
+    page.get_by_role("button", name="Dead zone alone").tap()
+    assert_shown(page, switches, **OFF | {"dead_zone": "weak"})
+    page.get_by_role("switch", name="Encoder").tap()
+    assert_shown(page, switches, **OFF | {"dead_zone": "weak", "quantisation": "assumed"})
     context.close()
