@@ -35,10 +35,14 @@ def picture() -> None:
 
 
 def make(name: str, code: str) -> None:
-    """Run one study and write its result with the hash `code` of what made it."""
-    started = time.monotonic()
+    """Run one study and write its result with the hash `code` of what made it.
+
+    The time beside it is the processor's: what else a machine does must not decide the order
+    in which studies start the next time.
+    """
+    started = time.process_time()
     content = PARTS[name]()
-    made_by = {"code": code, **results.stamp(time.monotonic() - started)}
+    made_by = {"code": code, **results.stamp(time.process_time() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 
 
@@ -74,7 +78,7 @@ def side_by_side(names: list[str], jobs: int) -> None:
 
 
 def _seconds(name: str) -> float:
-    """How long a result took to make the last time, s; a minute if it is not there."""
+    """Processor time that a result took the last time, s; a minute if it is not there."""
     path = results.FOLDER / f"{name}.json"
     return results.read(name)["made by"]["seconds"] if path.is_file() else 60.0
 

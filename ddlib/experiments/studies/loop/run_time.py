@@ -41,6 +41,7 @@ from ddlib.experiments.studies.loop.run_time_parts import (
     score,
     through_loop,
     through_window,
+    time_first,
     told,
     with_impulse,
 )
@@ -55,7 +56,7 @@ from ddlib.rivals import (
     LagrangianNetwork,
     Linear,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
 
 READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
@@ -173,19 +174,18 @@ def _by_run(model: WindowFeedforward, reference: Trajectory) -> np.ndarray:
 def _course(setup: Setup) -> dict:
     """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
     reference = rounded(APPENDIX_I[5:], 0.0)
-    found = {}
-    for name, models in _lines(setup).items():
-        log = drive(
-            setup, given(planned(models, reference), setup.controller), reference, _days(models)
-        )
-        shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
-        gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
-        found[name] = {
-            "hand": np.median(gap, (0, 1))[shown],
-            "joints": np.rad2deg(np.median(log.tracking_error, (0, 1)))[shown],
+    log, parts = _driven(setup, _made(_lines(setup), reference), reference)
+    shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
+    gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
+    joints = np.rad2deg(log.tracking_error)
+    found = {
+        name: {
+            "hand": np.median(gap[part], (0, 1))[shown],
+            "joints": np.median(joints[part], (0, 1))[shown],
         }
-        found["time"] = log.t[shown]
-    return found
+        for name, part in parts.items()
+    }
+    return {**found, "time": log.t[shown]}
 
 
 def _made(lines: dict, reference) -> dict:
@@ -193,13 +193,22 @@ def _made(lines: dict, reference) -> dict:
     return {name: (planned(models, reference), _days(models)) for name, models in lines.items()}
 
 
+def _driven(setup: Setup, made: dict, reference, **changed) -> tuple[Recording, dict]:
+    """All lines simulated as one batch, and which part of it belongs to each line."""
+    every, days, parts = [], [], {}
+    for name, (torque, own) in made.items():
+        parts[name] = slice(len(days), len(days) + len(own))
+        days += own
+        every.append(np.broadcast_to(torque, (len(own), *torque.shape[1:])))
+    law = given(time_first(np.concatenate(every)), setup.controller)
+    return drive(setup, law, reference, days, **changed), parts
+
+
 def _errors(setup: Setup, made: dict, reference, **changed) -> dict:
     """Median end-point error over the square of each member, for each line."""
-    found = {}
-    for name, (torque, days) in made.items():
-        log = drive(setup, given(torque, setup.controller), reference, days, **changed)
-        found[name] = np.median(score(setup.arm, log).whole, -1)
-    return found
+    log, parts = _driven(setup, made, reference, **changed)
+    middle = np.median(score(setup.arm, log).whole, -1)
+    return {name: middle[part] for name, part in parts.items()}
 
 
 def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:

@@ -196,8 +196,11 @@ def planned(models, reference: Trajectory) -> np.ndarray:
     models : sequence of callable
     reference : Trajectory
     """
-    torque = np.stack([model(*reference) for model in models])
-    # one sample of all runs lies together in memory
+    return time_first(np.stack([model(*reference) for model in models]))
+
+
+def time_first(torque) -> np.ndarray:
+    """Torques unchanged, but one sample of all runs lies together in memory."""
     return np.moveaxis(np.ascontiguousarray(np.moveaxis(torque, -2, 0)), 0, -2)
 
 
