@@ -106,7 +106,12 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
         folder(name, {"made by": made})
     folder("verdicts", {})  # of other results
     rows = status.made_results().rows
-    assert [row[0] for row in rows] == ["a", "b", "sum", "make reproduce, 2 at a time, by the clock"]
+    assert [row[0] for row in rows] == [
+        "a",
+        "b",
+        "sum",
+        "make reproduce, 2 at a time, by the clock",
+    ]
     assert rows[-2][1] == "850 s" and rows[-1][1].endswith(verdict)
     (tmp_path / "reproduce.json").unlink()
     assert status.made_results().rows[-1][0] == "sum"

@@ -9,6 +9,7 @@ from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import Unreachable
 from ddlib.experiments import JOINT_DAMPING, results
 from ddlib.experiments.studies.loop import motions, stirring
+from ddlib.experiments.studies.loop.runs import days
 from ddlib.learning import TorqueModel, Weights
 from ddlib.rivals import Cases
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
@@ -131,7 +132,7 @@ def test_pace_is_time_with_its_derivatives():
 
 
 def test_as_many_cases_of_each_family():
-    runs = motions.training(JOINT_DAMPING, 1)
+    runs = days.training(JOINT_DAMPING, [1])[0]
     found = motions.learnt(runs, 11)
     assert list(found) == list(motions.FAMILIES)
     assert {len(cases) for cases in found.values()} == {1500}
@@ -226,3 +227,31 @@ def test_what_was_committed_is_whole():
     with np.load(stirring.PICKER) as kept:
         shape = tuple(map(len, stirring.PLACES.values()))
         assert kept["reached"].shape == shape and kept["torque"].shape[1:6] == shape
+
+
+def test_recordings_of_days_do_not_depend_on_one_another():
+    three = days.training(JOINT_DAMPING, [4, 0, 7])
+    alone = days.training(JOINT_DAMPING, [0])[0]
+    for name, run in alone.items():
+        np.testing.assert_array_equal(three[1][name].q, run.q)
+        np.testing.assert_array_equal(three[1][name].tau, run.tau)
+        assert len(run.q) == days.TRAINED
+    one, other = three[0]["pick and place"], three[2]["pick and place"]
+    np.testing.assert_array_equal(one.reference.q, other.reference.q)
+    assert (one.tau != other.tau).mean() > 0.9 and (one.q != other.q).any()
+    apart = (one.tau - one.tau_true) - (other.tau - other.tau_true)
+    assert abs(np.corrcoef((one.tau - one.tau_true).ravel(), apart.ravel())[0, 1]) < 0.8
+
+
+def test_a_day_is_recorded_as_alone():
+    today = JOINT_DAMPING.repeated(3)
+    batch = days.training(JOINT_DAMPING, [3])[0]["pick and place"]
+    single = today.record(APPENDIX_I[:5])
+    np.testing.assert_array_equal(batch.q_true, single.q_true)
+    np.testing.assert_array_equal(batch.q, single.q)
+
+
+def test_days_need_a_reference_each():
+    t = motions.times()
+    with pytest.raises(ValueError, match="days"):
+        days.recorded(JOINT_DAMPING, [pick_and_place(APPENDIX_I[:5], t)], [1, 2])

@@ -264,30 +264,13 @@ def recorded(
     )
 
 
-def training(setup: Setup, day: int) -> dict[str, Recording]:
-    """Recordings of five motions of each family, on one day.
-
-    Parameters
-    ----------
-    setup : Setup
-    day : int
-        As in `Setup.repeated`; the seed of circles and via points, too.
-    """
-    today, t = setup.repeated(day), times()
-    return {
-        "pick and place": today.record(APPENDIX_I[:5]),
-        "circles": recorded(today, stirred(setup.arm, random_circles(5, day), t)),
-        "via points": recorded(today, via_points(random_points(5, VIA, day), t)),
-    }
-
-
 def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
     """Windows of each of `FAMILIES`: the same number of cases.
 
     Parameters
     ----------
     runs : dict
-        As from `training`.
+        As from `ddlib.experiments.studies.loop.runs.days.training`.
     width : int
         Samples of a window.
     """

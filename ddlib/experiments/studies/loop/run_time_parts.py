@@ -271,17 +271,14 @@ def score(arm: Arm, recording: Recording) -> Score:
     recording : Recording
     """
     moving = recording.motion
-    t, (wanted, wanted_rate, _) = (
-        recording.t[moving],
-        (x[..., moving, :] for x in recording.reference),
-    )
+    wanted, wanted_rate, _ = (x[..., moving, :] for x in recording.reference)
     q = recording.q_true[..., moving, :]
     gap = 1e3 * end_point_error(arm, wanted, q)
     way = np.einsum("...ij,...j->...i", jacobian(arm, wanted), wanted_rate)
     way = way / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-12)
     along = (gap * way).sum(-1)
     across = gap[..., 1] * way[..., 0] - gap[..., 0] * way[..., 1]
-    size2, early = (gap**2).sum(-1), t < START
+    size2, early = (gap**2).sum(-1), recording.t[moving] < START
     joints = np.rad2deg(np.sqrt(((wanted - q) ** 2).mean(-2)))
 
     def root(x):

@@ -33,8 +33,8 @@ from ddlib.experiments.studies.loop.motions import (
     recorded,
     stirred,
     times,
-    training,
 )
+from ddlib.experiments.studies.loop.runs.days import training
 from ddlib.experiments.two_harmonics import true_states
 from ddlib.learning import NotConverged, TorqueModel, related, surrogate
 from ddlib.metrics import rmss
@@ -365,7 +365,7 @@ def stirring(days: int = DAYS, members: int = MEMBERS, few: int = 5) -> dict:
     for setup, used, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
-        runs = [training(setup, day) for day in range(used)]
+        runs = training(setup, range(used))
         tests = asked(setup, members, vias=main)
         if not main:
             names = (*names, "identified")

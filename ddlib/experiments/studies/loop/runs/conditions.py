@@ -17,10 +17,17 @@ from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Set
 from ddlib.experiments.studies.loop import joints, learners, learning, motions, stirring
 from ddlib.experiments.studies.loop import run_time_parts as run_time
 from ddlib.experiments.studies.loop.chain import Sample, chain, extents, recorded
+from ddlib.experiments.studies.loop.runs.days import recorded as recorded_days
 from ddlib.learning import NotConverged
 from ddlib.rivals import BySolver, Cases, Estimating, Identified
 from ddlib.simulation import smooth_pick_and_place
-from ddlib.trajectories import MOTION_SECONDS, OutsideFamilyWarning, Trajectory, pick_and_place
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MOTION_SECONDS,
+    OutsideFamilyWarning,
+    Trajectory,
+    pick_and_place,
+)
 from ddlib.trajectories import random_extents as random_members
 
 COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)
@@ -92,39 +99,42 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
         "circles": motions.stirred(setup.arm, motions.random_circles(MEMBERS, TEST), t),
         "pick and place": pick_and_place(random_members(MEMBERS, TEST), t),
     }
-    models: dict = {"chosen": [], "60": [], "identified": []}
-    if circles:
-        models["twenty circles"] = []
-    steps = []
-    for day in days:
-        run = motions.training(setup, day)["pick and place"]
+    steps, models = [], {"chosen": [], "60": [], "identified": []}
+    for day, run in zip(days, recorded_days(setup, [_five(t)] * len(days), days)):
         whole = _cases(run, 1)
         steps.append(_chosen_steps(run, day))
         models["60"].append(_fitted(STEPS[-1], whole, day))
         stops = steps[-1] < STEPS[-1]
         models["chosen"].append(_fitted(steps[-1], whole, day) if stops else models["60"][-1])
-        known = Estimating(Identified())
-        known.fit(whole)
-        models["identified"].append(known)
-        if circles:
-            many = motions.stirred(setup.arm, motions.random_circles(20, day), t)
-            log = motions.recorded(setup.repeated(day), many)
-            models["twenty circles"].append(_fitted(STEPS[-1], _cases(log, 4), day))
-    today, found = setup.repeated(TEST), {}
-    for motion, reference in asked.items():
-        found[motion] = {"none": _hand(today, [lambda q, qd, qdd: 0 * q], reference)}
-        for name, several in models.items():
-            boxes = [WindowFeedforward(m._torque, stirring.WIDTH) for m in several]
-            found[motion][name] = _hand(today, boxes, reference)
-    return {"steps": steps, "hands": found}
+        models["identified"].append(Estimating(Identified()).fit(whole))
+    if circles:
+        drawn = [motions.stirred(setup.arm, motions.random_circles(20, day), t) for day in days]
+        models["twenty circles"] = [
+            _fitted(STEPS[-1], _cases(run, 4), day)
+            for day, run in zip(days, recorded_days(setup, drawn, days))
+        ]
+    today = setup.repeated(TEST)
+    hands = {motion: _hands(today, models, reference) for motion, reference in asked.items()}
+    return {"steps": steps, "hands": hands}
 
 
-def _hand(setup: Setup, models, reference: Trajectory) -> np.ndarray:
-    """Median over a family of the hand's error, one for each model, mm."""
+def _five(t) -> Trajectory:
+    return pick_and_place(APPENDIX_I[:5], t)
+
+
+def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
+    """Median over a family of the hand's error, one for each model of each name, mm."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideFamilyWarning)
-        torques = np.stack([model(*reference) for model in models])
-    return np.median(stirring.off(setup, stirring.through(setup, torques, reference)), -1)
+        torques = {
+            name: [WindowFeedforward(m._torque, stirring.WIDTH)(*reference) for m in several]
+            for name, several in models.items()
+        }
+    torques = {"none": [0 * reference.q], **torques}
+    every = np.stack([torque for several in torques.values() for torque in several])
+    middle = np.median(stirring.off(setup, stirring.through(setup, every, reference)), -1)
+    ends = np.cumsum([len(several) for several in torques.values()])[:-1]
+    return dict(zip(torques, np.split(middle, ends)))
 
 
 def _windows(seeds: int) -> dict:
@@ -226,7 +236,7 @@ def loop_conditions(days: int = 10, seeds: int = 8) -> dict:
     Parameters
     ----------
     days : int
-        Of recordings; half as many with state feedback on circles.
+        Of recordings.
     seeds : int
         Draws of four joints, and of practised motions.
     """
