@@ -131,7 +131,7 @@ def test_shuffling_finds_what_is_used():
 
 
 def test_the_study_cut_short(monkeypatch):
-    for name, value in {"STEPS": 2, "SEEDS": 2, "FEWER": 2, "CASES": 60}.items():
+    for name, value in {"STEPS": 2, "SEEDS": 2, "CASES": 60}.items():
         monkeypatch.setattr(study, name, value)
     rows = study.by_motions("joint damping", {2: (5, 10)}, 2)
     assert [r["motions"] for r in rows] == [5, 10] and len(rows[0]["test"]) == 2

@@ -57,8 +57,8 @@ MOTIONS_OF = {
 }
 """Training motions by number of joints."""
 
-SEEDS, FEWER = 10, 5
-"""Draws of motions, noise and weights; of arms of more than four joints."""
+SEEDS = 10
+"""Draws of motions, noise and weights."""
 
 TEST_MOTIONS, TEST_SEED = 20, 1000
 """Motions on which all is tested, never in a training set, and the seed of their draw."""
@@ -150,7 +150,7 @@ def equations(made: Chain, windows, degree: int) -> np.ndarray:
 def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     """Errors of networks and of a linear filter in a reading of the controller.
 
-    ``ladder`` has the motions for each number of joints; ``seeds`` are at most so many.
+    ``ladder`` has the motions for each number of joints; ``seeds`` are draws of each.
     """
     rows = []
     for joints, motions in ladder.items():
@@ -159,7 +159,7 @@ def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
         for count_of in motions:
             row = {"joints": joints, "motions": count_of}
             row |= {"training": [], "test": [], "by joint": [], "linear": []}
-            for seed in range(1, 1 + (seeds if joints < 5 else min(seeds, FEWER))):
+            for seed in range(1, 1 + seeds):
                 training = sets(made, count_of, seed)
                 found = solved(
                     training.windows, training.torque, (test.windows, test.torque), seed=seed
@@ -204,10 +204,9 @@ def closed_loops(seeds: int = SEEDS) -> list[dict]:
                         parts = [tested(made, **options)]
                         parts += [sets(made, motions, s, **options) for s in range(1, 1 + seeds)]
                     test, *trained = parts
-                    used = trained if spacing > 1 else trained[:FEWER]
                     errors = [
                         solved(x.windows, x.torque, (test.windows, test.torque), seed=s).history
-                        for s, x in enumerate(used, 1)
+                        for s, x in enumerate(trained, 1)
                     ]
                     rows.append(
                         {
@@ -271,7 +270,7 @@ def random_states() -> list[dict]:
     rows = []
     for joints in MOTIONS_OF:
         test = random_cube(joints, STATE_TEST, TEST_SEED)
-        plan = [(10, n, FEWER) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
+        plan = [(10, n, SEEDS) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
         plan += [(20, n, 3) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
         for hidden, samples, seeds in plan:
             found = []
@@ -374,10 +373,9 @@ def joints() -> dict:
         "cases": CASES,
         "steps": STEPS,
         "seeds": SEEDS,
-        "fewer": FEWER,
         "test motions": TEST_MOTIONS,
         "windows": by_motions(JOINT_DAMPING.name, MOTIONS_OF, SEEDS),
-        "windows, state feedback": by_motions(STATE_FEEDBACK.name, second, FEWER),
+        "windows, state feedback": by_motions(STATE_FEEDBACK.name, second, SEEDS),
         "known structure": known_structure(),
         "closed loops": closed_loops(),
         "units": units(),

@@ -61,8 +61,8 @@ from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
 
 READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
 
-MEMBERS, SOME, FEW = 25, 10, 5
-"""Networks: of each cell of Table 4-1, of those in the side experiments, and inside the loop.
+MEMBERS, FEW = 25, 10
+"""Networks: of each cell of Table 4-1, and in the side experiments and inside the loop.
 Every one runs on a day of its own; feedforwards without networks run on `FEW` days."""
 
 RIVALS: dict[str, Callable] = {
@@ -123,7 +123,7 @@ def _few(setup: Setup) -> dict[str, list]:
         "none": [_nothing],
         "exact": [exact(setup)],
         "exact, window": [through_window(exact(setup))],
-        "network": networks(setup, SOME),
+        "network": networks(setup, FEW),
     }
 
 
@@ -234,7 +234,7 @@ def _rates(setup: Setup, reference) -> dict:
     """What is done between the samples of the log, and windows at the wrong period."""
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
-    lines = {name: networks(setup, SOME, **how) for name, how in options.items()}
+    lines = {name: networks(setup, FEW, **how) for name, how in options.items()}
     return _errors(setup, _made(lines, reference), reference)
 
 

@@ -52,8 +52,8 @@ DAYS, MEMBERS = 10, 40
 """Days, each with its own noise, its own five training circles and its own initial weights;
 members of each family in a test."""
 
-WIDTH, WIDER = 21, {11: 10, 41: 5}
-"""Samples of the windows; other window sizes, with the number of networks of each."""
+WIDTH, WIDER = 21, (11, 41)
+"""Samples of the windows; other window sizes."""
 
 NAMES = ("network", "two units", "linear filter", "identified")
 """Who learns: the network with ten and with two hidden units, and the best of *Rivals*."""
@@ -143,13 +143,13 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
 def _wider(setup: Setup, runs: list, tests: dict) -> dict:
     """Networks of other windows: those of Table 4-1, and as many that learnt circles."""
     found = {}
-    for width, count in WIDER.items():
+    for width in WIDER:
         answers, table = _answers(tests, width), results.networks(width, setup.name)
         mine: dict = {}
-        for k in range(count):
+        for k in range(len(runs)):
             for part, error in errors(table[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, NAMES[:1], width, FAMILIES[1:2], runs[:count], tests)[1]
+        other = _transfer(setup, NAMES[:1], width, FAMILIES[1:2], runs, tests)[1]
         found[str(width)] = {"pick and place": mine, **other["network"]}
     return found
 
@@ -239,7 +239,7 @@ def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     }
 
 
-def _hands(setup: Setup, rivals: dict, members: int, few: int) -> dict:
+def _hands(setup: Setup, rivals: dict, members: int) -> dict:
     """End-point errors (mm) on circles and on pick-and-place, shape (models, runs)."""
     t, today = times(), setup.repeated(TEST_DAY)
     motions = {
@@ -247,7 +247,7 @@ def _hands(setup: Setup, rivals: dict, members: int, few: int) -> dict:
         "pick and place": pick_and_place(random_extents(members, TEST_DAY), t),
     }
     models = {
-        f"{name}, {family}": [r._torque for r in (trained if name == "network" else trained[:few])]
+        f"{name}, {family}": [r._torque for r in trained]
         for (name, family), trained in rivals.items()
         if name != "two units"
     }
@@ -346,7 +346,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
     os.replace(part, PICKER)
 
 
-def stirring(days: int = DAYS, members: int = MEMBERS, few: int = 5) -> dict:
+def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
     """What section 7.1 plans about other families of trajectories, done.
 
     Networks and rivals of each family on all others; which states the families visit; the hand's
@@ -357,15 +357,13 @@ def stirring(days: int = DAYS, members: int = MEMBERS, few: int = 5) -> dict:
     ----------
     days, members : int
         Training days; members of a family in each test.
-    few : int
-        Days of what is dear: state feedback, rivals as feedforward.
     """
     found: dict = {"days": days, "members": members, "width": WIDTH, "setups": {}}
-    every = (JOINT_DAMPING, days, NAMES, FAMILIES), (STATE_FEEDBACK, few, NAMES[::2], FAMILIES[:3])
-    for setup, used, names, families in every:
+    every = (JOINT_DAMPING, NAMES, FAMILIES), (STATE_FEEDBACK, NAMES[::2], FAMILIES[:3])
+    for setup, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
-        runs = training(setup, range(used))
+        runs = training(setup, range(days))
         tests = asked(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
@@ -374,7 +372,7 @@ def stirring(days: int = DAYS, members: int = MEMBERS, few: int = 5) -> dict:
             "deviations": {n: Cases.windows(r, WIDTH).torque.std(0) for n, r in tests.items()},
             "errors": table,
             "coverage": coverage(setup, tests, members),
-            "hands": _hands(setup, rivals, members // 2, few),
+            "hands": _hands(setup, rivals, members // 2),
         }
         if main:
             row["wider"] = _wider(setup, runs, tests)
