@@ -74,8 +74,9 @@ class Listed(SphinxDirective):
         return path.read_text(encoding="utf-8")
 
     def line(self, each: Exercise) -> nodes.paragraph:
-        target = dict(refdomain="std", reftype="doc", reftarget=f"/book/{each.page}")
-        link = pending_xref("", nodes.inline(), refdoc=self.env.docname, refexplicit=False, **target)
+        target = dict(refdomain="std", reftype="doc", refexplicit=False)
+        target |= dict(reftarget=f"/book/{each.page}", refdoc=self.env.docname)
+        link = pending_xref("", nodes.inline(), **target)
         return nodes.paragraph("", "", link, nodes.Text(f", {each.number}: {each.title}"))
 
 
