@@ -43,7 +43,7 @@ class Computed:
         return 0.0
 
     def tobytes(self) -> bytes:
-        """Nothing."""
+        """No table: nothing is baked."""
         return b""
 
     def checksum(self) -> int:

@@ -149,5 +149,5 @@ def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> Line
 
 
 def controller(arm: Arm, law: dict, ahead: bool) -> Controller:
-    """A `PID`, or one that corrects the torques of the rigid arm at what is wanted."""
+    """A `PID` with the gains ``law``; with ``ahead`` it corrects the rigid ``arm``'s torques."""
     return Feedforward(arm, PID(**law)) if ahead else PID(**law)

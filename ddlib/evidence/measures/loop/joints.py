@@ -91,9 +91,8 @@ def by_group(motions: int, joints: int = 4) -> Measured:
 
     first = np.median(np.sqrt((found[:, :2] ** 2).mean(-1)))
     each = np.sqrt((found[:, FURTHER] ** 2).mean(-1))
-    text = (
-        f"RMSS {_spread(each)} at joints 3 and 4, {significant(float(first), 2)} at joints 1 and 2"
-    )
+    less = significant(float(first), 2)
+    text = f"RMSS {_spread(each)} at joints 3 and 4, {less} at joints 1 and 2"
     return judged(pooled, found, text=text)
 
 
