@@ -56,15 +56,7 @@ extras.push((view) => {
     const down = (event.clientY - frame.top) / frame.height;
     view.set(nearest(x0 + across * (x1 - x0), y1 - down * (y1 - y0)));
   };
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button) return;
-    svg.setPointerCapture(event.pointerId);
-    svg.focus({ preventScroll: true });
-    drag(event);
-  });
-  svg.addEventListener("pointermove", (event) => {
-    if (svg.hasPointerCapture(event.pointerId)) drag(event);
-  });
+  draggable(svg, handle, drag);
   const steps = { ArrowRight: [1, 1], ArrowLeft: [1, -1], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   svg.addEventListener("keydown", (event) => {
     const step = steps[event.key];
