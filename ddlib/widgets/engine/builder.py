@@ -188,7 +188,7 @@ class FilterBuilder(anywidget.AnyWidget):
                 "starts": [[name, f.tolist()] for name, f in starts().items()],
                 "rivals": [
                     ["unit", "A trained unit", unit.tolist()],
-                    ["bare", "The same without its mean", (unit - unit.mean()).tolist()],
+                    ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
                     ["least", "Least squares on this recording", least_squares().tolist()],
                 ],
                 "panels": [panel.description() for panel in panels],

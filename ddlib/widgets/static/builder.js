@@ -1,7 +1,7 @@
 // Shows FilterBuilder (engine/builder.py): a window of stems that the reader draws, its output
 // over the truth, its gain. Follows charts.js and frame.js; the encoder is physics.js's.
 
-const NEAR = 28; // px from a dot within which a touch takes it; elsewhere a swipe scrolls
+const NEAR = 28; // px from a stem within which a touch takes it; elsewhere a swipe scrolls
 const MINUS = (text) => text.replace("-", "−");
 
 // Outputs of a filter over readings, one for each sample of the truth, without their mean.
@@ -126,9 +126,14 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     stems.forEach((stem, i) => stem.setAttribute("tabindex", i === k ? 0 : -1));
     stems[k].focus({ preventScroll: true });
   };
-  const onDot = (event) => {
+  stems.forEach((stem) => {
+    stem.addEventListener("focus", () => stem.setAttribute("class", "stem now"));
+    stem.addEventListener("blur", () => stem.setAttribute("class", "stem"));
+  });
+  const onStem = (event) => {
     const { k, py } = at(event);
-    return Math.abs(py - y(levels[k])) < NEAR;
+    const ends = [y(0), y(levels[k])];
+    return py > Math.min(...ends) - NEAR && py < Math.max(...ends) + NEAR;
   };
   const paint = (to) => {
     const from = last ?? to;
@@ -140,7 +145,7 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     last = to;
   };
   svg.addEventListener("pointerdown", (event) => {
-    if (event.button || (event.pointerType === "touch" && !onDot(event))) return;
+    if (event.button || (event.pointerType === "touch" && !onStem(event))) return;
     event.preventDefault();
     svg.setPointerCapture(event.pointerId);
     painter = event.pointerId;
@@ -152,7 +157,7 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     if (event.pointerId === painter) paint(at(event));
   });
   for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => (painter = null));
-  svg.addEventListener("touchstart", (event) => onDot(event.touches[0]) && event.preventDefault(), { passive: false });
+  svg.addEventListener("touchstart", (event) => onStem(event.touches[0]) && event.preventDefault(), { passive: false });
   svg.addEventListener("keydown", (event) => {
     const k = stems.indexOf(event.target);
     if (k < 0 || event.ctrlKey || event.altKey || event.metaKey) return;

@@ -4,7 +4,8 @@
 const BUDGET = 7; // ms of a frame that may be spent on epochs
 const REST = 2500; // ms between two runs of the loop
 const SPEEDS = { slow: [10, "10 epochs a second"], even: [60, "60 epochs a second"], fast: [1e9, "as fast as it goes"] };
-const SHORT = { velocity: "v", acceleration: "a", jerk: "j", "velocity + acceleration": "v + a", "acceleration + jerk": "a + j", "other mix": "mix" };
+const SHORT = { velocity: "v", acceleration: "a", jerk: "j", "velocity + acceleration": "v+a", "acceleration + jerk": "a+j", "other mix": "mix" };
+const SEEDS = 50; // sets of initial weights that can be chosen
 
 // Numbers between 0 and 1, the same for the same seed: the generator mulberry32.
 function uniform(seed) {
@@ -94,8 +95,7 @@ function filtersOf({ directWeights, hiddenWeights, width }) {
 }
 
 // A run of the training, with what has been seen of it every few epochs.
-function schoolOf(spec, positions, torques, choice) {
-  const { training, test } = casesOf(spec, positions, torques, choice);
+function schoolOf(spec, positions, torques, choice, { training, test } = casesOf(spec, positions, torques, choice)) {
   const net = choice.net ?? randomNetwork(spec, choice.seed);
   const eps = (spec.rate * choice.step) / training.windows.length;
   const epoch = descent(net, training.windows, training.targets, eps, choice.momentum);
@@ -136,13 +136,13 @@ function schoolOf(spec, positions, torques, choice) {
 function unitSheet(spec) {
   const el = make("canvas", { role: "img" });
   const pen = el.getContext("2d");
-  const cells = [...["shoulder", "elbow"].map((name) => `to ${name}`), ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
+  const cells = ["shoulder", "elbow", ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
   const sheet = { el, width: 0 };
   const columns = () => (sheet.width < 480 ? 4 : 6);
   sheet.resize = () => {
     const ratio = window.devicePixelRatio || 1;
     sheet.width = el.clientWidth;
-    sheet.high = sheet.width < 480 ? 72 : 86;
+    sheet.high = sheet.width < 480 ? 82 : 96;
     sheet.height = sheet.high * Math.ceil(cells.length / columns());
     el.style.height = `${sheet.height}px`;
     el.width = Math.round(sheet.width * ratio);
@@ -154,7 +154,7 @@ function unitSheet(spec) {
     const all = [...direct, ...hidden];
     const names = [...school.names.direct, ...school.names.hidden];
     const wide = sheet.width / columns();
-    const room = (sheet.high - 20) / 2;
+    const room = (sheet.high - 34) / 2;
     pen.clearRect(0, 0, sheet.width, sheet.height);
     pen.font = "12px system-ui, sans-serif";
     pen.textBaseline = "middle";
@@ -167,7 +167,7 @@ function unitSheet(spec) {
         const f = all[2 * c + j];
         const name = SHORT[spec.classes[names[2 * c + j]]];
         const tallest = f.reduce((most, w) => Math.max(most, Math.abs(w)), 1e-9);
-        const base = top + 18 + room * (j + 0.5);
+        const base = top + 16 + j * (room + 14) + room / 2;
         const pitch = (wide - 12) / f.length;
         pen.beginPath();
         pen.moveTo(left, base);
@@ -187,7 +187,7 @@ function unitSheet(spec) {
         if (!name) continue;
         pen.textAlign = "right";
         pen.fillStyle = colours[j ? "c2" : "c0"];
-        pen.fillText(name, left + wide - 10, j ? top + sheet.high - 5 : top + 9);
+        pen.fillText(name, left + wide - 12, base - room / 2 - 7);
       }
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
@@ -213,11 +213,13 @@ function build({ model, el }) {
   const state = { ...start };
   const shift = () => (state.torques === "real" ? null : state.seed % spec.shifts.length);
   let school;
+  const cases = new Map();
   const enrol = () => {
-    school = schoolOf(spec, positions, torques, {
-      ...{ inputs: state.inputs, shift: shift(), seed: state.seed },
-      ...{ step: Number(state.step), momentum: Number(state.momentum) },
-    });
+    const choice = { inputs: state.inputs, shift: shift() };
+    const key = JSON.stringify(choice);
+    if (!cases.has(key)) cases.set(key, casesOf(spec, positions, torques, choice));
+    Object.assign(choice, { seed: state.seed, step: Number(state.step), momentum: Number(state.momentum) });
+    school = schoolOf(spec, positions, torques, choice, cases.get(key));
     el.school = school; // for tests
   };
   enrol();
@@ -264,11 +266,16 @@ function build({ model, el }) {
     told();
     frame.changed();
   });
-  const anew = button("New weights", () => {
-    state.seed = (state.seed % 9999) + 1;
+  const anew = button("New weights", () => seeded((state.seed % SEEDS) + 1));
+  const seed = make("input", { id: `${view.id}-seed`, type: "range", min: 1, max: SEEDS, step: 1 });
+  const drawing = make("output", { for: seed.id });
+  seed.addEventListener("input", () => seeded(Number(seed.value)));
+  const first = make("div", { class: "slider" }, make("label", { for: seed.id }, "Random initial weights"), drawing, seed);
+  function seeded(value) {
+    state.seed = value;
     restart();
     frame.changed();
-  });
+  }
   const menus = [];
   const menu = (name, label, options) => {
     const id = `${view.id}-${name}`;
@@ -319,13 +326,13 @@ function build({ model, el }) {
         { class: "hands" },
         make("div", { class: "buttons" }, play, once, anew),
         status,
-        make("div", { class: "title" }, "Weights: direct, then ten hidden units; shoulder's window above elbow's"),
+        make("div", { class: "title" }, "Weights: direct to each output, then ten hidden units; the shoulder's window above the elbow's"),
         sheet.el,
         list,
         said,
       ),
       make("div", { class: "results" }, make("div", { class: "charts" }, ...drawn.map((one) => one.el))),
-      make("div", { class: "settings" }, ...settings, runs),
+      make("div", { class: "settings" }, first, ...settings, runs),
     ),
     make("p", { class: "remark" }, spec.hint),
   );
@@ -436,6 +443,9 @@ function build({ model, el }) {
     for (const one of [play, once]) one.disabled = !ready;
     write(play, running ? "Pause" : "Train");
     for (const one of menus) one.show();
+    seed.value = state.seed;
+    write(drawing, `draw ${state.seed}`);
+    seed.setAttribute("aria-valuetext", drawing.textContent);
     loop.checked = state.loop === "1";
   }
   const measured = () => {
@@ -456,7 +466,7 @@ function build({ model, el }) {
       if (!fits(text)) throw new Error("no such choice");
       state[name] = name === "seed" ? Number(text) : text;
     });
-  part("seed", (text) => /^[1-9]\d{0,3}$/.test(text));
+  part("seed", (text) => /^[1-9]\d?$/.test(text) && Number(text) <= SEEDS);
   for (const { name, fits } of menus) part(name, fits);
   part("loop", (text) => ["", "1"].includes(text));
   part("guess", (text) => ["", "0", "1", "2"].includes(text));
