@@ -12,8 +12,8 @@ pytestmark = pytest.mark.browser
 HEADER = 64
 """What the page keeps for itself at the top, px."""
 
-RESULTS = (".scalars", ".chart > svg", "canvas, svg")
-"""What shows a widget's result: its numbers, otherwise its charts, otherwise what it draws."""
+RESULTS = (".scalars", ".chart > svg", "canvas, svg", ".sentence")
+"""What shows a widget's result: its numbers, otherwise its charts, what it draws, what it says."""
 
 LEAST = 20
 """Height from which something is a result and not the sample of a legend, px."""

@@ -231,7 +231,23 @@ def reacts_alone(page, handle: Handle):
     wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
 
 
-def is_pulled(page, handle: Handle):
+def way_of(handle: Handle):
+    """What to ask of a widget with a kernel, and without one."""
+    if handle.root.evaluate("(root) => Boolean(root.world)"):
+        return is_pulled, is_pulled
+    if handle.root.get_attribute("data-values") in ("exact", "interpolated"):
+        return reacts, reacts_alone
+    return is_computed, is_computed
+
+
+def is_computed(page, handle: Handle, model: str = ""):
+    """A change is drawn by a widget that computes in the page, whether there is a kernel."""
+    picture = handle.picture()
+    handle.press()
+    wait(page, "a redraw", lambda: handle.picture() != picture, ANSWER)
+
+
+def is_pulled(page, handle: Handle, model: str = ""):
     """A key pulls the hand in a widget that computes in the page, whether there is a kernel."""
     mode = "(root) => root.world.mode"
     handle.handle.focus()
@@ -298,10 +314,10 @@ def widgets_live(page, lab):
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
     wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)
     firsts = [handles(roots.nth(k))[0] for k in range(len(models))]
-    baked = [handle.root.get_attribute("data-values") is not None for handle in firsts]
-    for handle, model, known in zip(firsts, models, baked):
-        reacts(page, handle, model) if known else is_pulled(page, handle)
+    ways = [way_of(handle) for handle in firsts]
+    for handle, model, (with_kernel, _) in zip(firsts, models, ways):
+        with_kernel(page, handle, model)
     kernel = page.evaluate("window.panel.sessionContext.session.kernel.id")
     request(f"{lab}api/kernels/{kernel}", "DELETE")
-    for handle, known in zip(firsts, baked):
-        reacts_alone(page, handle) if known else is_pulled(page, handle)
+    for handle, (_, alone) in zip(firsts, ways):
+        alone(page, handle)

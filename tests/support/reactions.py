@@ -10,18 +10,27 @@ PICTURE = """
   const shapes = [...widget.querySelectorAll("svg *")].map(
     (el) => places.map((name) => el.getAttribute(name) ?? "").join(" "));
   const pixels = [...widget.querySelectorAll("canvas")].map((el) => el.toDataURL());
-  return [...shapes, ...pixels].join("\\n");
+  const words = [...widget.querySelectorAll(".sentence output")].map((el) => el.textContent);
+  return [...shapes, ...pixels, ...words].join("\\n");
 }
 """
 FRAMES = "() => new Promise((f) => requestAnimationFrame(() => requestAnimationFrame(f)))"
 DRAWING = 'svg[tabindex="0"]:not(.chart > svg), svg [tabindex="0"]'  # charts only tell values
 SLIDER = 'input[type="range"]'
+SWITCH = 'input[role="switch"]'
+NUMBER = '[role="spinbutton"]'
 
 
 def handles(root) -> list[Handle]:
-    """The first drawing (or part of one) that can be dragged and the first slider of a widget."""
-    found = [root.locator(kind).locator("visible=true") for kind in (DRAWING, SLIDER)]
-    return [Handle(root, kind.first) for kind in found if kind.count()]
+    """The first drawing (or part of one) that can be dragged and the first slider of a widget.
+
+    Where there is neither, the first switch or number.
+    """
+    for kinds in ((DRAWING, SLIDER), (SWITCH, NUMBER)):
+        found = [root.locator(kind).locator("visible=true") for kind in kinds]
+        if some := [Handle(root, kind.first) for kind in found if kind.count()]:
+            return some
+    return []
 
 
 class Handle:
@@ -63,6 +72,8 @@ class Handle:
 
     def press(self) -> None:
         """A key that goes to where there is room."""
+        if self.handle.get_attribute("role") == "switch":
+            return self.handle.press("Space")
         stands, before = self._stands(), self.picture()
         keys = ("ArrowRight", "ArrowLeft") if stands is None else ("End", "Home")
         self.handle.focus()
@@ -73,3 +84,6 @@ class Handle:
     def tap(self) -> None:
         """With a finger."""
         self.page.touchscreen.tap(*self._point(self._far()))
+        plus = self.handle.locator("xpath=following-sibling::*//button").last
+        if self.handle.get_attribute("role") == "spinbutton" and plus.is_visible():
+            plus.tap()

@@ -82,11 +82,12 @@ function logRadius(A, n) {
   for (let k = 0; k < 40; k++) {
     const size = A.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
     sum += Math.log(size) / 2 ** k;
+    const now = A.map((x) => x / size);
     const next = new Float64Array(n * n);
     for (let i = 0; i < n; i++) {
       for (let m = 0; m < n; m++) {
-        const x = A[i * n + m] / size;
-        if (x) for (let j = 0; j < n; j++) next[i * n + j] += x * (A[m * n + j] / size);
+        const x = now[i * n + m];
+        if (x) for (let j = 0; j < n; j++) next[i * n + j] += x * now[m * n + j];
       }
     }
     A = next;
@@ -125,7 +126,7 @@ function openLoop(modes, { kp, ki, kd }, step, late, joint, omega) {
 function marginOf(modes, gains, step, late, joint) {
   const loop = (x) => openLoop(modes, gains, step, late, joint, Math.exp(x));
   const loud = (x) => Math.hypot(...loop(x)) > 1;
-  const [low, high, parts] = [Math.log(0.01), Math.log(Math.PI / step), 400];
+  const [low, high, parts] = [Math.log(0.01), Math.log(Math.PI / step), 160];
   const found = { phase: NaN, crossover: NaN };
   const at = (k) => low + ((high - low) * k) / parts;
   let before = loud(low);

@@ -8,11 +8,7 @@ function tuned(loop, setting) {
   const { plant, modes, elbow, step, every, periods, motion } = loop;
   const gains = { integral_limit: 1e6 };
   for (const name of ["kp", "ki", "kd"]) gains[name] = [setting[name], setting[name] * elbow[name]];
-  const reference = { q: [], qd: [], qdd: [] };
-  for (let k = 0; k < periods; k++) {
-    const wanted = pickAndPlace(loop.extents, k * step, motion);
-    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
-  }
+  const { reference } = loop;
   const feedback = pid(gains, step);
   const law = behind(setting.late, setting.feedforward ? feedforward(plant.arm, feedback) : feedback);
   const log = guarded(plant, law, reference, step, every, loop.most);
@@ -32,6 +28,11 @@ function tuned(loop, setting) {
 
 // Runs by their settings, the newest last.
 function memory(loop, most = 4) {
+  loop = { ...loop, reference: { q: [], qd: [], qdd: [] } };
+  for (let k = 0; k < loop.periods; k++) {
+    const wanted = pickAndPlace(loop.extents, k * loop.step, loop.motion);
+    for (const name of Object.keys(loop.reference)) loop.reference[name].push(wanted[name]);
+  }
   const kept = new Map();
   return (setting) => {
     const key = JSON.stringify(setting);
