@@ -24,6 +24,7 @@ __getattr__, __dir__, __all__ = hand_on(
     window="SlidingWindow",
     **{
         "engine.builder": "FilterBuilder",
+        "engine.sentence": "LoopSentence TorqueSentence",
         "engine.throw": "ThrownArm",
         "engine.trainer": "NetworkTrainer",
         "parts.panels": "Mark Pad Panel Scalar",

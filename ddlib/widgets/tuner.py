@@ -45,6 +45,17 @@ START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}
 """The book's gains."""
 
 
+CODE = """\
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.widgets.tuner import tuned
+
+run = tuned(
+    CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward}
+)
+run["shoulder error"], run["growth"], run["stopped"]"""
+"""What the page copies as code."""
+
+
 @dataclass(frozen=True)
 class Question:
     """What happens if: asked before it is shown.
@@ -213,6 +224,7 @@ class PIDTuner(LiveWidget):
                 *(Scalar(f"{j} phase margin", f"{j.title()} phase margin", "°", 1) for j in JOINTS),
                 Scalar("crossover", "Shoulder crossover", "rad/s", 1),
             ],
+            code=CODE,
             note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
             **options,
         )

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 from traitlets import TraitError
+from widget_pages import NEXT_FRAME, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.experiments import JOINT_DAMPING
 from ddlib.experiments.studies.loop.runs import adaptive as runs
+from ddlib.widgets import Choice, CurveWidget, Panel
 from ddlib.widgets.baking.baked import MAX_BYTES
 from ddlib.widgets.beyond import loop
 
@@ -51,6 +53,64 @@ def test_estimates_begin_at_the_unloaded_arm_and_nobody_learns_without_a_learner
     np.testing.assert_array_equal(curves["error"], curves["nobody"])
     assert np.ptp(curves["a"]) == 0 and curves["F_v1"][0] == 0
     assert curves["a"][0] == pytest.approx(runs.TRUTH[0] / with_load(CMU_DD_ARM_II, 5).a)
+
+
+def test_what_goes_beyond_the_charts_is_cut_off_and_marked(widget):
+    limits = [panel["limits"] for panel in widget.spec["panels"]]
+    assert limits == [[None, loop.MOST_ERROR], list(loop.BOUNDS)]
+    assert "a hundred times" in loop.SPEEDS
+    cut = 0
+    for load in loop.LOADS:
+        for name, (errors, estimates) in loop.learned(load).items():
+            relative = estimates[..., list(loop.SHOWN.values())] / truths(load)
+            gone = (relative <= loop.BOUNDS[0]) | (relative >= loop.BOUNDS[1])
+            cut += gone.sum() + (errors >= loop.MOST_ERROR).sum()
+            assert np.isfinite(errors).all() and np.isfinite(estimates).all()
+            if name == "none":
+                assert not gone.any() and (errors < loop.MOST_ERROR).all()
+    assert cut > 0
+    for curve in widget.spec["curves"]:
+        low, high = limits[curve["name"] not in ("error", "nobody")]
+        assert curve["high"] <= high + 1e-9 and (low is None or curve["low"] >= low - 1e-9)
+
+
+def truths(load):
+    return loop.truth(load)[list(loop.SHOWN.values())]
+
+
+@pytest.mark.browser
+def test_a_triangle_marks_what_was_cut_off(tmp_path, visit):
+    """On a small figure with known values: one beyond above, one below, the others within."""
+    x, values = np.arange(5), np.array([0.0, 6.0, 1.0, -2.0, 3.0])
+    widget = CurveWidget(
+        lambda on: {"y": values * (1 if on else 0.4)},
+        [Choice("on", "Whole", {False: "off", True: "on"}, True, "switch")],
+        [Panel("y, m", "y", "x", x, y_fit=True, limits=(-2, 6))],
+        alt="A line",
+    )
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page = opened.page
+    page.evaluate(NEXT_FRAME)
+    drawn = "document.querySelector('path.beyond').getAttribute('d').match(/M/g)?.length ?? 0"
+    assert page.evaluate(drawn) == 2
+    chart = page.locator(".chart > svg")
+    chart.press("Home")
+    readout = page.locator(".readout")
+    assert "0" in readout.inner_text() and "beyond" not in readout.inner_text()
+    chart.press("ArrowRight")
+    assert "beyond 6" in readout.inner_text()
+    page.get_by_role("switch").press("Space")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(drawn) == 0
+    assert not opened.problems
+
+
+@pytest.mark.parametrize("limits", [(1, 1), (2, 1), (0,), (np.nan, 1)])
+def test_bad_limits_are_refused(limits):
+    with pytest.raises(ValueError, match="limits of 'y, m' must"):
+        Panel("y, m", "y", "x", [0, 1], limits=limits)
+    with pytest.raises(ValueError, match="must be of lines"):
+        Panel("y, m", "y", "x", [0, 1], kind="bars", limits=(0, 1))
 
 
 def test_what_is_not_offered_is_refused(widget):

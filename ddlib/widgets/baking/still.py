@@ -74,10 +74,14 @@ def still_picture(
         for ax, panel in zip(axes, panels):
             _draw_panel(ax, panel, curves)
 
-    svg = illustrate(draw, alt, width=2.9 * columns, height=2.6 * rows).svg
+    return START + encoded(illustrate(draw, alt, width=2.9 * columns, height=2.6 * rows).svg)
+
+
+def encoded(svg: str) -> str:
+    """A figure's SVG with fixed, light colours, in base64: what follows `START`."""
     svg = svg.replace("currentColor", "#1a1a1a")
     svg = svg.replace('style="', 'style="background:#fff;', 1)
-    return START + base64.b64encode(svg.encode()).decode()
+    return base64.b64encode(svg.encode()).decode()
 
 
 def _draw_panel(ax, panel: Panel, curves):

@@ -28,7 +28,12 @@ from ddlib.widgets.parts.parameters import Choice
 LOADS = (0, 5)
 """Loads in the hand, kg."""
 
-SPEEDS = {"a tenth": 0.1, "as in the chapter": 1.0, "ten times": 10.0}
+SPEEDS = {
+    "a tenth": 0.1,
+    "as in the chapter": 1.0,
+    "ten times": 10.0,
+    "a hundred times": 100.0,
+}
 """Rates of adaptation, as multiples of the chapter's."""
 
 LEARNERS = ("none", "Slotine & Li", "Craig, Hsu & Sastry", "feedback-error learning")
@@ -40,10 +45,17 @@ MOTIONS = 6
 SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}
 """Estimates that are shown, and their places among the parameters."""
 
+MOST_ERROR = 20.0
+"""Largest error that is shown, mm; a run that the guard stopped has a larger one, too."""
+
+BOUNDS = (-2.0, 6.0)
+"""Smallest and largest multiple of a true value that is shown."""
+
 NOTE = (
     "Damped joints, an encoder of 12.5 bits, a tachometer; it begins with the base parameters of "
     "the arm without a load, and no friction. The hand's error is its root mean square over a "
-    "motion, without the first third."
+    "motion, without the first third. A triangle: the error is larger, or the guard stopped the "
+    "motion, or the estimate has left the chart."
 )
 
 
@@ -115,7 +127,7 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     for extents in drawn(1, MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
         laws = done.laws
-        errors.append(np.minimum(done.settled, 1e3))
+        errors.append(np.minimum(done.settled, 1e3))  # of a stopped run it is infinite
         estimates.append(
             np.stack([np.broadcast_to(x.estimate, (runs, len(FULL))) for x in laws.values()])
         )
@@ -161,6 +173,7 @@ class LoopLearner(CurveWidget):
                     "motion, number",
                     motions,
                     y_fit=True,
+                    limits=(None, MOST_ERROR),
                 ),
                 Panel(
                     "Estimates over true values",
@@ -168,6 +181,7 @@ class LoopLearner(CurveWidget):
                     "motions done, number",
                     np.arange(MOTIONS + 1),
                     y_fit=True,
+                    limits=BOUNDS,
                 ),
             ],
             **{
@@ -197,6 +211,7 @@ def _curves(load, friction, learner, rate) -> dict:
     found, k = learned(load), list(SPEEDS).index(rate)
     errors, estimates = found[learner]
     relative = estimates[int(friction), k] / truth(load)
-    curves = {name: np.clip(relative[:, place], -2.0, 6.0) for name, place in SHOWN.items()}
+    curves = {name: np.clip(relative[:, place], *BOUNDS) for name, place in SHOWN.items()}
     nobody = found[LEARNERS[0]][0][int(friction), 0]
-    return {"error": errors[int(friction), k], "nobody": nobody, **curves}
+    shown = np.minimum(errors[int(friction), k], MOST_ERROR)
+    return {"error": shown, "nobody": nobody, **curves}

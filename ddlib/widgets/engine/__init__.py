@@ -5,6 +5,7 @@
 - ``plain``: arm, effects, controller and network as the plain data that the engine takes
 - ``live``: `CurveWidget` without a table: its script computes the curves
 - ``loops``: PID loops with a late torque: runs that are stopped, growth and margins
+- ``sentence``: sentences whose numbers the reader moves, and whose end is computed
 - ``throw``: the arm that the reader throws, with a window network that tells its torque
 - ``builder``: a window whose weights the reader draws, to measure acceleration
 - ``trainer``: a network that the reader trains from random weights

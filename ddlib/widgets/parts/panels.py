@@ -45,6 +45,9 @@ class Panel:
         that the curves reach on the grid.
     y_fit : bool
         The y axis follows the curves as they stand.
+    limits : pair of float or None, optional
+        Values at which curves were cut off, lowest and highest: where a curve lies there, a
+        triangle says that it goes on beyond. Lines only.
     """
 
     y_label: str
@@ -60,6 +63,7 @@ class Panel:
     x_texts: Sequence[str] = ()
     y_range: tuple[float | str, float | str] | None = None
     y_fit: bool = False
+    limits: tuple[float | None, float | None] = (None, None)
 
     def __post_init__(self):
         names = (self.curves,) if isinstance(self.curves, str) else self.curves
@@ -90,6 +94,7 @@ class Panel:
         checked["x_texts"] = texts = tuple(map(str, self.x_texts))
         if texts and len(texts) != x.size:
             raise ValueError(f"x_texts {what} must be {x.size} like x, got {len(texts)}")
+        checked["limits"] = self._checked_limits(what)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
 
@@ -104,6 +109,14 @@ class Panel:
             raise ValueError(f"y_range {what} must increase, got {self.y_range}")
         if self.y_scale == "log" and min(numbers, default=1) <= 0:
             raise ValueError(f"y_range {what} must be positive, got {self.y_range}")
+        return ends
+
+    def _checked_limits(self, what):
+        ends = tuple(x if x is None else number(f"limits {what}", x) for x in self.limits)
+        if len(ends) != 2 or (None not in ends and ends[0] >= ends[1]):
+            raise ValueError(f"limits {what} must be a pair that increases, got {self.limits}")
+        if ends != (None, None) and self.kind != "line":
+            raise ValueError(f"limits {what} must be of lines, got kind {self.kind!r}")
         return ends
 
     @property
@@ -123,6 +136,7 @@ class Panel:
             "x_texts": list(self.x_texts),
             "y_range": self.y_range and list(self.y_range),
             "y_fit": bool(self.y_fit),
+            "limits": list(self.limits),
         }
 
 

@@ -109,6 +109,13 @@ function chart(view, panel) {
     curve.paths = classes[curve.kind].map((c) => make("path", { class: `${c} c${curve.k % COLOURS}` }));
   }
 
+  // Triangles where a curve was cut off and goes on beyond: they lie on its end of the range.
+  const [least, most] = panel.limits;
+  const near = 1e-3 * (most !== null && least !== null ? most - least : Math.abs(most ?? least ?? 0));
+  const beyond = (v) => (most !== null && v > most - near) - (least !== null && v < least + near);
+  const cut = least !== null || most !== null ? moving : [];
+  for (const curve of cut) curve.beyond = make("path", { class: `beyond c${curve.k % COLOURS}` });
+
   const clip = make("rect", {});
   const clipId = `${view.id}-clip${(view.clips = (view.clips ?? 0) + 1)}`;
   const grid = make("g", { class: "grid" });
@@ -117,7 +124,8 @@ function chart(view, panel) {
   const paths = [...fixed, ...moving].flatMap((curve) => curve.paths);
   for (const el of paths) el.setAttribute("clip-path", `url(#${clipId})`);
   const defs = make("defs", {}, make("clipPath", { id: clipId }, clip));
-  const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths);
+  const beyonds = cut.map((c) => c.beyond);
+  const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths, ...beyonds);
   const legend = make("div", { class: "legend" });
   if (curves.length > 1) {
     for (const curve of curves) {
@@ -152,6 +160,8 @@ function chart(view, panel) {
   // Enough digits for the axis as it stands; three where it is not linear.
   function textOf(value, unit) {
     if (Number.isNaN(value)) return "none";
+    const side = beyond(value);
+    if (side) return `beyond ${format(side > 0 ? most : least, low, high, unit)}`;
     if (panel.y_scale === "linear") return format(value, low, high, unit);
     return powerText(log ? Math.log10(value) : value) + (unit && `\u00a0${unit}`);
   }
@@ -183,6 +193,9 @@ function chart(view, panel) {
     const [shift, width] = shiftOf(curve);
     const drawn = DRAW[curve.kind]({ xs, y: y.place, values: visible, base, shift, width });
     drawn.forEach((d, i) => curve.paths[i].setAttribute("d", d));
+    if (!curve.beyond) return;
+    const triangle = (v, i) => `M${xs[i] - 6} ${short(y.place(v) + 5 * beyond(v))}h12l-6 ${-10 * beyond(v)}z`;
+    curve.beyond.setAttribute("d", Array.from(values, (v, i) => (beyond(v) ? triangle(v, i) : "")).join(""));
   }
 
   // Axes, and the curves that stay, for the range and size as they are.

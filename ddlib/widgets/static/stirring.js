@@ -93,8 +93,7 @@ extras.push((view) => {
     put(elbow, { cx: x(a[0]), cy: y(a[1]) });
     put(hand, { cx: x(b[0]), cy: y(b[1]) });
     for (const el of [...links, elbow, hand]) el.style.display = not ? "none" : "";
-    view.charts[0].el.parentElement.hidden = not;
-    hands.el.hidden = not;
+    for (const el of [view.charts[0].el.parentElement, hands.el]) el.classList.toggle("refused", not); // their place stays
     write(verdict, words());
     const now = places.map((p) => `${p.label} ${show(p, view.get(p.name))}`).join(", ");
     svg.setAttribute(

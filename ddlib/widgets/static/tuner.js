@@ -79,7 +79,7 @@ extras.push((view) => {
   // The arm, and time
   const far = lengths[0] + lengths[1];
   const kinds = ["ghost", "wanted", "now"];
-  const box = [-0.06 * far, -0.72 * far, 1.05 * far, 0.36 * far];
+  const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
   const stage = armsOf(lengths, kinds, box, "The arm from above, over the arm of the setting before");
   const end = (loop.periods - 1) * loop.step;
   const id = `${view.id}-time`;
@@ -172,6 +172,12 @@ extras.push((view) => {
     else start(0);
   });
   view.top.before(ask);
+
+  view.resets.push(() => {
+    model.set("before", Object.fromEntries(spec.parameters.map((p) => [p.name, p.value])));
+    view.keeps = true;
+    view.schedule();
+  });
 
   const follow = () => {
     write(verdict, words());

@@ -1,0 +1,189 @@
+"""Sentences whose numbers the reader moves, and whose end the page computes."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+
+import anywidget
+import numpy as np
+import traitlets as t
+
+from ddlib._check import one_of
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import IDEAL
+from ddlib.experiments import KD, KP
+from ddlib.figures import illustrate
+from ddlib.simulation import CONTROL_STEP
+from ddlib.widgets.baking.still import START, Still, encoded
+from ddlib.widgets.base import FRAME, STYLE, module
+from ddlib.widgets.engine.loops import LOOPS, linear, modes
+from ddlib.widgets.engine.plain import ENGINE, lean, plant
+from ddlib.widgets.parts.common import key_of
+from ddlib.widgets.parts.parameters import Parameter
+
+SHARE = np.array([1.0, KP[1] / KP[0]])
+"""Friction of shoulder and elbow relative to the shoulder's, as the gains."""
+
+
+class LiveSentence(anywidget.AnyWidget):
+    """A sentence with numbers to drag or to step, and the consequence in the same sentence.
+
+    Parameters
+    ----------
+    parts : sequence of str
+        The sentence in pieces: plain text, a name of a parameter in braces, and once or more a
+        name of a result in angle brackets.
+    parameters : sequence of Parameter
+        The numbers.
+    steps : mapping
+        Name -> how far an arrow key or six pixels move it.
+    data : mapping
+        What the script's function needs (static/sentence.js), with the name of it in ``kind``.
+    code : str
+        Python code with the same result; names of numbers in braces stand for their values.
+    """
+
+    _esm = lean(module(*FRAME, *ENGINE, LOOPS, "sentence.js"))
+    _css = module(*STYLE, "sentence.css")
+
+    spec = t.Dict(help="the sentence, its numbers and what computes its end", read_only=True)
+    spec.tag(sync=True)
+    values = t.Dict(help="the numbers by name").tag(sync=True)
+    still = Still(help="the sentence as it begins", read_only=True).tag(sync=True)
+    still_alt = t.Unicode(read_only=True).tag(sync=True)
+
+    def __init__(
+        self,
+        parts: Sequence[str],
+        parameters: Sequence[Parameter],
+        steps: Mapping[str, float],
+        data: Mapping,
+        code: str,
+    ):
+        self._parameters = {p.name: p for p in parameters}
+        numbers = [{**p.description(), "step": steps[p.name]} for p in parameters]
+        told = {"key": key_of(type(self)), "code": code, "parts": list(parts), "numbers": numbers}
+        self.set_trait("spec", {**told, **data})
+        super().__init__(values={p.name: p.value for p in parameters})
+        text = self.text()
+        self.set_trait("still", _picture(text))
+        self.set_trait("still_alt", text)
+
+    @t.validate("values")
+    def _checked(self, proposal):
+        given = dict(proposal["value"])
+        for name, value in given.items():
+            one_of("number", name, tuple(self._parameters))
+            given[name] = self._parameters[name].check(value)
+        return {**{name: p.value for name, p in self._parameters.items()}, **given}
+
+    def results(self, **values) -> dict[str, str]:
+        """The texts that end the sentence, by ddlib; what the page must show."""
+        raise NotImplementedError
+
+    def text(self) -> str:
+        """The whole sentence as it stands."""
+        shown = {f"{{{name}}}": self.number(name, value) for name, value in self.values.items()}
+        shown |= {f"<{name}>": text for name, text in self.results(**self.values).items()}
+        return "".join(shown.get(part, part) for part in self.spec["parts"])
+
+    def number(self, name, value) -> str:
+        """A number with its unit, with as many decimals as its step has."""
+        step = next(n["step"] for n in self.spec["numbers"] if n["name"] == name)
+        digits = max(0, -int(np.floor(np.log10(step) + 1e-9)))
+        unit = self._parameters[name].unit
+        return f"{_signed(value, digits)}{'' if unit == '°' else ' '}{unit}"
+
+
+class TorqueSentence(LiveSentence):
+    """Joints that turn at constant speeds, and the torques that this takes."""
+
+    def __init__(self):
+        data = {"kind": "torque", "arm": plant(CMU_DD_ARM_II, IDEAL)["arm"]}
+        super().__init__(
+            [
+                "With the elbow bent by ", "{elbow}", ", the shoulder turning at ", "{first}",
+                " and the elbow at ", "{second}", ", neither of them speeding up, the shoulder's "
+                "motor must give ", "<shoulder>", " and the elbow's ", "<forearm>", ".",
+            ],
+            [
+                Parameter("elbow", "Elbow angle", -180, 180, 90, "°"),
+                Parameter("first", "Speed of the shoulder", -4, 4, 1, "rad/s"),
+                Parameter("second", "Speed of the elbow", -4, 4, 2, "rad/s"),
+            ],
+            {"elbow": 5, "first": 0.1, "second": 0.1},
+            data,
+            "import numpy as np\n\nfrom ddlib.dynamics import CMU_DD_ARM_II\n\n"
+            "q, qd = [0, np.deg2rad({elbow})], [{first}, {second}]\n"
+            "CMU_DD_ARM_II.inverse_dynamics(q, qd, [0, 0])",
+        )  # fmt: skip
+
+    def results(self, **values) -> dict[str, str]:
+        """Torques of both motors, by `ddlib.dynamics.Arm.inverse_dynamics`."""
+        q, qd = [0.0, np.deg2rad(values["elbow"])], [values["first"], values["second"]]
+        torque = CMU_DD_ARM_II.inverse_dynamics(q, qd, [0.0, 0.0])
+        return dict(zip(("shoulder", "forearm"), (f"{_signed(x, 2)} N m" for x in torque)))
+
+
+class LoopSentence(LiveSentence):
+    """Friction, a period and two gains, and whether the sampled loop is stable.
+
+    The loop is the linear one of the stretched arm, as in `ddlib.widgets.tuner`; friction and gains
+    are the shoulder's, the elbow's in the ratio of the book's.
+    """
+
+    FRICTION = 0.5
+    """Viscous friction of the shoulder at which the modes are given, N m s/rad."""
+
+    def __init__(self):
+        super().__init__(
+            [
+                "With a computer that reads the arm every ", "{period}", ", a spring of ", "{kp}",
+                ", a damper of ", "{kd}", " and, in the joint itself, ", "{friction}",
+                " of friction, the loop is ", "<verdict>", ".",
+            ],
+            [
+                Parameter("period", "Control period", 0.5, 40, 1e3 * CONTROL_STEP, "ms"),
+                Parameter("kp", "Proportional gain", 50, 1200, KP[0], "N m/rad"),
+                Parameter("kd", "Derivative gain", 0, 80, 0, "N m s/rad"),
+                Parameter("friction", "Viscous friction", 0.1, 2, self.FRICTION, "N m s/rad"),
+            ],
+            {"period": 0.5, "kp": 10, "kd": 0.5, "friction": 0.05},
+            {
+                "kind": "loop",
+                "modes": modes(CMU_DD_ARM_II, self.FRICTION * SHARE),
+                "friction": self.FRICTION,
+                "ratios": {"kp": KP[1] / KP[0], "kd": KD[1] / KD[0]},
+            },
+            "from ddlib.widgets import LoopSentence\n\n"
+            "LoopSentence().growth(period={period}, kp={kp}, kd={kd}, friction={friction})",
+        )  # fmt: skip
+
+    def growth(self, *, period, kp, kd, friction) -> float:
+        """Growth of the slowest or least stable motion, 1/s, by python-control."""
+        ratios = self.spec["ratios"]
+        law = {"kp": [kp, kp * ratios["kp"]], "ki": [0.0, 0.0], "kd": [kd, kd * ratios["kd"]]}
+        return linear(CMU_DD_ARM_II, friction * SHARE, law, 0, 1e-3 * period).growth
+
+    def results(self, **values) -> dict[str, str]:
+        """Whether the loop is stable, and how soon a disturbance has halved or doubled."""
+        growth = self.growth(**values)
+        seconds = np.log(2) / abs(growth)
+        time = f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.0f} s"
+        stable = f"stable, and what lasts longest halves in {time}"
+        return {"verdict": stable if growth < 0 else f"unstable, and a swing doubles in {time}"}
+
+
+def _signed(value, digits) -> str:
+    text = f"{value:.{digits}f}"
+    return text.removeprefix("-") if not float(text) else text.replace("-", "−")
+
+
+def _picture(text) -> str:
+    lines = textwrap.wrap(text, 90)
+
+    def draw(figure):
+        figure.text(0.02, 0.5, "\n".join(lines), va="center", fontsize=10)
+
+    return START + encoded(illustrate(draw, text, width=7.0, height=0.15 + 0.2 * len(lines)).svg)

@@ -1,0 +1,139 @@
+"""Sentences with numbers to move: their ends against ddlib, by keys, pointer and touch."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from axe import violations_in
+from traitlets import TraitError
+from widget_pages import page_of
+
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.widgets import LoopSentence, TorqueSentence, module
+from ddlib.widgets.engine import loops, plain
+
+SPACE = "\u00a0"
+ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
+
+
+@pytest.fixture(scope="module")
+def ends(browser):
+    """`ends(sentence, settings)`: what the page's function says at each of them."""
+    page = browser.new_page()
+    script = module("sentence.js").replace("export default", "window.shown =")
+    page.add_script_tag(content=plain.source() + module(loops.LOOPS) + script)
+    yield lambda sentence, settings: page.evaluate(ENDS, [sentence.spec, settings])
+    page.close()
+
+
+def drawn(sentence, n, seed):
+    """Random settings on the steps of the numbers, the corners among them."""
+    rng = np.random.default_rng(seed)
+    numbers = sentence.spec["numbers"]
+    rows = [{k["name"]: k[end] for k in numbers} for end in ("low", "high", "value")]
+    for _ in range(n):
+        row = {}
+        for k in numbers:
+            steps = rng.integers(0, round((k["high"] - k["low"]) / k["step"]) + 1)
+            row[k["name"]] = float(k["low"] + k["step"] * steps)
+        rows.append(row)
+    return rows
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("kind, n", [(TorqueSentence, 200), (LoopSentence, 60)])
+def test_the_page_says_what_ddlib_says(ends, kind, n):
+    sentence = kind()
+    settings = drawn(sentence, n, 3)
+    if kind is LoopSentence:  # not where rounding decides
+        settings = [s for s in settings if abs(sentence.growth(**s)) > 1e-6]
+    said = ends(sentence, settings)
+    assert len({str(x) for x in said}) > n / 4
+    for values, texts in zip(settings, said):
+        known = sentence.results(**values)
+        assert {k: v.replace(SPACE, " ") for k, v in texts.items()} == known
+
+
+def test_torques_are_those_of_the_arm():
+    sentence = TorqueSentence()
+    b = CMU_DD_ARM_II.b  # elbow at a right angle: -2 b qd1 qd2 - b qd2^2, and b qd1^2
+    known = [f"{x:.2f} N m".replace("-", "−") for x in (-4 * b - 4 * b, b)]
+    assert list(sentence.results(elbow=90, first=1, second=2).values()) == known
+    assert known[0] in sentence.text() and sentence.still_alt == sentence.text()
+
+
+def test_the_limit_of_a_spring_is_that_of_the_chapter():
+    """Twice the friction over the period: above it the loop is unstable, below it is not."""
+    sentence = LoopSentence()
+    for friction, period in ((0.5, 2.0), (0.3, 1.0)):
+        limit = 2 * friction / (1e-3 * period)
+        growth = [
+            sentence.growth(period=period, kp=share * limit, kd=0, friction=friction)
+            for share in (0.99, 1.01)
+        ]
+        assert growth[0] < 0 < growth[1]
+    assert "stable, and what" in sentence.results(**sentence.values)["verdict"]
+
+
+@pytest.mark.parametrize("bad", [{"elbow": 181}, {"first": np.nan}, {"speed": 1}, {"first": "1"}])
+def test_bad_numbers_are_refused(bad):
+    sentence = TorqueSentence()
+    with pytest.raises((TraitError, ValueError, TypeError), match="must"):
+        sentence.values = bad
+    assert sentence.values == {"elbow": 90, "first": 1, "second": 2}
+
+
+READ = """() => {
+  const copy = document.querySelector(".sentence").cloneNode(true);
+  copy.querySelectorAll(".stepper").forEach((el) => el.remove());
+  return copy.textContent;
+}"""
+
+
+def end_of(page):
+    return page.evaluate(READ).replace(SPACE, " ")
+
+
+@pytest.mark.browser
+def test_keys_and_pointer(tmp_path, visit):
+    sentence = TorqueSentence()
+    opened = visit(page_of(tmp_path / "page.html", sentence))
+    page = opened.page
+    assert end_of(page) == sentence.text()
+    number = page.get_by_role("spinbutton", name="Speed of the shoulder")
+    number.press("ArrowUp")
+    number.press("PageDown")
+    sentence.values = {"first": 0.1}
+    assert end_of(page) == sentence.text() and number.get_attribute("aria-valuenow") == "0.1"
+    number.press("End")
+    elbow = page.get_by_role("spinbutton", name="Elbow angle")
+    box = elbow.bounding_box()
+    page.mouse.move(box["x"] + 5, box["y"] + 5)
+    page.mouse.down()
+    page.mouse.move(box["x"] - 55, box["y"] + 5, steps=3)  # ten steps of five degrees
+    page.mouse.up()
+    sentence.values = {"first": 4, "elbow": 40}
+    assert end_of(page) == sentence.text()
+    page.get_by_role("button", name="Reset").click()
+    assert end_of(page) == TorqueSentence().text()
+    assert not opened.problems + violations_in(page, "light", "dark")
+
+
+@pytest.mark.browser
+def test_touch(tmp_path, browser):
+    """A number that is tapped shows a minus and a plus; dragged sideways it moves."""
+    context = browser.new_context(viewport={"width": 390, "height": 700}, has_touch=True)
+    page, sentence = context.new_page(), LoopSentence()
+    page.goto(page_of(tmp_path / "page.html", sentence))
+    page.wait_for_selector(".sentence")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    number = page.get_by_role("spinbutton", name="Derivative gain")
+    plus = page.locator(".movable", has=number).locator("button").nth(1)
+    assert not plus.is_visible()
+    number.tap()
+    plus.tap()
+    plus.tap()
+    sentence.values = {"kd": 1.0}
+    assert end_of(page) == sentence.text()
+    assert page.evaluate("getComputedStyle(document.activeElement).touchAction") == "pan-y"
+    context.close()
