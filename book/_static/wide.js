@@ -2,17 +2,22 @@
 // A table of sentences becomes cards on a phone; a table of numbers keeps its first column in sight.
 (() => {
   const TABLES = ".pst-scrollable-table-container, .cell_output .text_html";
-  const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math`;
+  const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math, pre`;
   const SENTENCE = 60; // letters of a cell that is read, not compared
 
+  let stops = 0; // each region has a name of its own
   const judge = (box) => {
     const wide = box.scrollWidth > box.clientWidth + 1;
     box.classList.toggle("goes-on", wide);
-    if (wide && !box.hasAttribute("tabindex")) {
+    if (wide && box.getAttribute("tabindex") !== "0") {
       box.tabIndex = 0;
       box.dataset.stop = "ours";
+      if (box.tagName !== "SECTION") {
+        box.setAttribute("role", "region");
+        box.setAttribute("aria-label", `Scrolls sideways, ${(stops += 1)}`);
+      }
     } else if (!wide && box.dataset.stop) {
-      box.removeAttribute("tabindex");
+      for (const name of ["tabindex", "role", "aria-label"]) box.removeAttribute(name);
       delete box.dataset.stop;
     }
     if (!box.matches(TABLES) || !wide) return;
