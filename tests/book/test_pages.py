@@ -78,7 +78,8 @@ CHECKS = r"""
     if (!said(el) || !el.getClientRects().length) continue;
     const { b, d } = el.getScreenCTM();
     const size = parseFloat(getComputedStyle(el).fontSize) * Math.hypot(b, d);
-    if (size < (width < 600 ? 8.95 : 8)) found.push(`text of ${size.toFixed(1)} px: ${el.textContent}`);
+    if (size < (width < 600 ? 8.95 : 8))
+      found.push(`text of ${size.toFixed(1)} px: ${el.textContent}`);
   }
   for (const el of all("main :is(div, section, pre, mjx-container)")) {
     const inside = el.scrollWidth <= el.clientWidth + 1;
