@@ -152,6 +152,17 @@ def test_page_is_clean_as_a_file(name, built, visit):
     assert not problems + opened.problems
 
 
+@browser_test
+def test_cards_on_a_phone_are_headed_like_their_table(site, visit):
+    page = visit(f"{site}/book/ledger.html", "light", NARROW).page
+    cells = page.evaluate("""() => [...document.querySelectorAll("table.cards")].flatMap((table) =>
+      [...table.querySelectorAll("tbody td")].filter((cell) => cell.cellIndex > 0).map((cell) => [
+        table.tHead.rows[0].cells[cell.cellIndex].textContent.trim(),
+        getComputedStyle(cell, "::before").content]))""")
+    assert len(cells) > 20
+    assert all(shown.strip('"') == f"{head}: " for head, shown in cells)
+
+
 FAULTS = {
     "overflows": '<p style="width:2000px">wide</p>',
     "no alternative text": '<img src="favicon.svg" alt="">',

@@ -329,12 +329,6 @@ def test_the_claims_that_are_left_out():
     assert ledger_tables.left_out([make()]).rows == []
 
 
-def test_cards_on_a_phone_are_headed_like_the_table():
-    css = (claims.FILE.parent / "_static" / "book.css").read_text(encoding="utf-8")
-    heads = re.findall(r"td:nth-child\((\d)\)::before \{\s*content: (.*?);", css)
-    header = ledger_tables.findings().header
-    assert heads == [(str(k), f'"{head}: "') for k, head in enumerate(header[1:], 2)]
-
 
 def test_printed_numbers_keep_their_digits(tmp_path):
     path = tmp_path / "claims.yml"
