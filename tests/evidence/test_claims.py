@@ -329,7 +329,6 @@ def test_the_claims_that_are_left_out():
     assert ledger_tables.left_out([make()]).rows == []
 
 
-
 def test_printed_numbers_keep_their_digits(tmp_path):
     path = tmp_path / "claims.yml"
     entry = "- {id: a, where: section 1, chapter: dynamics, claim: x, printed: %s, "
