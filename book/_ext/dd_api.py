@@ -1,6 +1,15 @@
-"""The API pages: fields of a named tuple stand in its docstring, not once more below it."""
+"""The API pages: no field of a named tuple twice; source beside what measures claims.
+
+Every claim leads to the lines that measure it. A page for every other module as well would take
+more time than all chapters' pages together.
+"""
 
 from __future__ import annotations
+
+from pathlib import Path
+
+SHOWN = "ddlib.evidence.measures"
+"""Package whose source has pages."""
 
 
 def skip_field(app, what, name, obj, skip, options):
@@ -8,6 +17,24 @@ def skip_field(app, what, name, obj, skip, options):
     return True if type(obj).__name__ == "_tuplegetter" else None
 
 
+def leave_sources(app, env, docnames):
+    """Tell `sphinx.ext.viewcode` that there is no source of any other module."""
+    root = Path(app.srcdir)
+    paths = (path.relative_to(root).with_suffix("") for path in root.glob("ddlib/**/*.py"))
+    names = (".".join(path.parts).removesuffix(".__init__") for path in paths)
+    known = getattr(env, "_viewcode_modules", {})
+    env._viewcode_modules = known | {name: False for name in names if not name.startswith(SHOWN)}
+
+
+def forget_others(app):
+    """Before the pages are collected: what has no page is nobody's parent."""
+    known = getattr(app.env, "_viewcode_modules", {})
+    app.env._viewcode_modules = {name: entry for name, entry in known.items() if entry}
+    return []
+
+
 def setup(app):
     app.connect("autodoc-skip-member", skip_field)
+    app.connect("env-before-read-docs", leave_sources)
+    app.connect("html-collect-pages", forget_others, priority=100)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
