@@ -225,7 +225,7 @@ def test_switches_alone_and_all(tmp_path, visit, switches):
     page.get_by_role("button", name="As assumed").click()
     assert_shown(page, switches)
     page.get_by_role("button", name="All on").click()
-    assert page.get_by_role("switch", checked=True).count() == 5
+    page.wait_for_function("document.querySelectorAll('[role=switch]:checked').length === 5")
     assert page.locator(".chart svg text.y").all_inner_texts() == axes
     assert not opened.problems + violations_in(page, "light", "dark")
 
