@@ -119,18 +119,15 @@ def rows() -> list[dict]:
     FileNotFoundError
         If there is no Chromium.
     """
-    if not (chromium.HTML / ".built-from").is_file():
-        raise RuntimeError("there is no clean build of the book: run `make book` first")
     measured = []
-    with chromium.serve(chromium.HTML) as site, chromium.launch() as browser:
-        for name in WITH_WIDGETS:
-            page = browser.new_page(viewport={"width": 1280, "height": 800})
-            page.goto(f"{site}/{name}.html")
-            chromium.settle(page)
-            widgets = page.locator(".ddlib-widget")
-            for number in range(widgets.count()):
-                measured += of_widget(widgets.nth(number), f"{Path(name).name} {number + 1}")
-            page.close()
+    for browser, name, url in _pages():
+        page = browser.new_page(viewport={"width": 1280, "height": 800})
+        page.goto(url)
+        chromium.settle(page)
+        widgets = page.locator(".ddlib-widget")
+        for number in range(widgets.count()):
+            measured += of_widget(widgets.nth(number), f"{name} {number + 1}")
+        page.close()
     return measured
 
 
@@ -149,15 +146,20 @@ def openings() -> list[dict]:
     FileNotFoundError
         If there is no Chromium.
     """
+    measured = []
+    for browser, name, url in _pages():
+        times = [opening(browser, url) for _ in range(OPENINGS)]
+        measured.append({"what": f"opening, {name}", "median, s": float(np.median(times))})
+    return measured
+
+
+def _pages():
+    """A browser, the name and the address of each page with widgets."""
     if not (chromium.HTML / ".built-from").is_file():
         raise RuntimeError("there is no clean build of the book: run `make book` first")
-    measured = []
     with chromium.serve(chromium.HTML) as site, chromium.launch() as browser:
         for name in WITH_WIDGETS:
-            times = [opening(browser, f"{site}/{name}.html") for _ in range(OPENINGS)]
-            row = {"what": f"opening, {Path(name).name}", "median, s": float(np.median(times))}
-            measured.append(row)
-    return measured
+            yield browser, Path(name).name, f"{site}/{name}.html"
 
 
 def opening(browser, url: str) -> float:

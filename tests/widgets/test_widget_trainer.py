@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 from axe import violations_in
-from reactions import handles
+from reactions import first_answers
 from widget_pages import NEXT_FRAME, page_of
 
 from ddlib.analysis import CLASSES, classify
@@ -288,11 +288,5 @@ def test_damage_is_reported_in_place(tmp_path, visit, widget):
 def test_its_first_handle_answers(tmp_path, visit, widget, touch):
     options = {"width": 400, "has_touch": True, "is_mobile": True} if touch else {}
     here = opened(tmp_path, visit, widget, **options)
-    (handle, *_) = handles(here.page.locator(".ddlib-trainer"))
-    before = handle.picture()
-    for act in (handle.tap,) if touch else (handle.drag, handle.press):
-        act()
-        after = handle.picture()
-        assert after != before
-        before = after
+    first_answers(here.page.locator(".ddlib-trainer"), touch)
     assert not here.problems

@@ -239,19 +239,5 @@ function footerText(model, spec) {
     : `Exact values from the kernel; until they come, interpolated ones. Their error: ${measured}.`;
 }
 
-function report(el, error) {
-  el.className = "ddlib-widget-error";
-  el.setAttribute("role", "alert");
-  el.removeAttribute("aria-label");
-  el.textContent = `The data of this interactive figure are damaged: ${error.message}.`;
-}
-
-function render({ model, el }) {
-  try {
-    return build({ model, el });
-  } catch (error) {
-    report(el, error);
-  }
-}
-
+const render = safely(build);
 export default { render };

@@ -20,3 +20,22 @@ function write(el, text) {
 
 // A number for a path, to hundredths of a pixel; quicker than toFixed.
 const short = (x) => Math.round(x * 100) / 100;
+
+// Says in place of a figure what is wrong with it.
+function report(el, error) {
+  el.className = "ddlib-widget-error";
+  el.setAttribute("role", "alert");
+  el.removeAttribute("aria-label");
+  el.textContent = `The data of this interactive figure are damaged: ${error.message}.`;
+}
+
+// `build` as a script's `render`.
+function safely(build) {
+  return ({ model, el }) => {
+    try {
+      return build({ model, el });
+    } catch (error) {
+      report(el, error);
+    }
+  };
+}

@@ -516,14 +516,5 @@ function build({ model, el }) {
   };
 }
 
-function render({ model, el }) {
-  try {
-    return build({ model, el });
-  } catch (error) {
-    el.className = "ddlib-widget-error";
-    el.setAttribute("role", "alert");
-    el.textContent = `The data of this interactive figure are damaged: ${error.message}.`;
-  }
-}
-
+const render = safely(build);
 export default { render };
