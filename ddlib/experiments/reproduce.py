@@ -115,6 +115,7 @@ def main(arguments=None) -> None:
             print(f"==> {name}: {_seconds(name):.0f} s", flush=True)
     if len(stale) == len(PARTS):
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
+        made_by["parts"] = len(PARTS)
         results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
     if "table-4-1" in stale:  # the picture shows two of its networks
         picture()

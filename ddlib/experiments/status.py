@@ -81,9 +81,9 @@ def made_results() -> Table:
     times = {name: by["seconds"] for name, by in made.items() if "code" in by}
     rows = [(name, f"{seconds:.1f} s") for name, seconds in times.items()]
     rows.append(("sum", f"{sum(times.values()):.0f} s"))
-    if "reproduce" in made:
-        seconds, jobs = made["reproduce"]["seconds"], made["reproduce"]["jobs"]
-        verdict = "met" if seconds <= REPRODUCE_SECONDS else "missed"
-        words = f"{seconds:.0f} s; target ≤ {REPRODUCE_SECONDS} s: {verdict}"
-        rows.append((f"make reproduce, {jobs} at a time, by the clock", words))
+    if whole := made.get("reproduce"):
+        fewer = "" if whole.get("parts") == len(times) else ", before results were added"
+        verdict = "met" if whole["seconds"] <= REPRODUCE_SECONDS else "missed"
+        words = f"{whole['seconds']:.0f} s{fewer}; target ≤ {REPRODUCE_SECONDS} s: {verdict}"
+        rows.append((f"make reproduce, {whole['jobs']} at a time, by the clock", words))
     return Table(("result", "processor time to make it"), rows)

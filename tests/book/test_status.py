@@ -101,7 +101,7 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
         "a": {"code": "1", "seconds": 100.0},
         "b": {"code": "2", "seconds": 750.0},
         "benchmarks": {"seconds": 900.0},  # not of make reproduce
-        "reproduce": {"seconds": seconds, "jobs": 2},
+        "reproduce": {"seconds": seconds, "jobs": 2, "parts": 2},
     }.items():
         folder(name, {"made by": made})
     folder("verdicts", {})  # of other results
@@ -113,6 +113,9 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
         "make reproduce, 2 at a time, by the clock",
     ]
     assert rows[-2][1] == "850 s" and rows[-1][1].endswith(verdict)
+    folder("c", {"made by": {"code": "3", "seconds": 1.0}})
+    told = status.made_results().rows[-1][1]
+    assert told.endswith(verdict) and "before results were added" in told
     (tmp_path / "reproduce.json").unlink()
     assert status.made_results().rows[-1][0] == "sum"
 

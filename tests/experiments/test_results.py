@@ -285,7 +285,7 @@ def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
     reproduce.main(["--jobs", "2"])
     assert order == ["clean", "longer"]
     made_by = results.read("reproduce")["made by"]
-    assert made_by["jobs"] == 2 and 0 <= made_by["seconds"] < 600
+    assert made_by["jobs"] == made_by["parts"] == 2 and 0 <= made_by["seconds"] < 600
     assert "==> clean: 9 s" in capfd.readouterr().out
 
 

@@ -63,8 +63,8 @@ SEEDS = 10
 TEST_MOTIONS, TEST_SEED = 20, 1000
 """Motions on which all is tested, never in a training set, and the seed of their draw."""
 
-UNITS = {5: 5, 20: 5, 40: 3}
-"""Hidden units besides the report's ten, at four joints, and draws of each."""
+UNITS = (5, 20, 40)
+"""Hidden units besides the report's ten, at four joints."""
 
 STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000
 """Random states: sizes of the training sets, steps of the solver, states of the test set."""
@@ -173,7 +173,7 @@ def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     return rows
 
 
-def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=3) -> list[dict]:
+def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> list[dict]:
     """Errors of the identified equations, by joints and motions, one for each of the seeds."""
     rows = []
     for n in joints:
@@ -241,10 +241,10 @@ def units() -> list[dict]:
     made = chain(4)
     test = tested(made)
     rows = []
-    for hidden, seeds in UNITS.items():
+    for hidden in UNITS:
         for motions in (5, MAIN) if hidden < 40 else (MAIN,):
             found = []
-            for seed in range(1, 1 + seeds):
+            for seed in range(1, 1 + SEEDS):
                 x = sets(made, motions, seed)
                 asked = test.windows, test.torque
                 found.append(solved(x.windows, x.torque, asked, hidden, seed).history)
@@ -270,11 +270,11 @@ def random_states() -> list[dict]:
     rows = []
     for joints in MOTIONS_OF:
         test = random_cube(joints, STATE_TEST, TEST_SEED)
-        plan = [(10, n, SEEDS) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
-        plan += [(20, n, 3) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
-        for hidden, samples, seeds in plan:
+        plan = [(10, n) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
+        plan += [(20, n) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
+        for hidden, samples in plan:
             found = []
-            for seed in range(1, 1 + seeds):
+            for seed in range(1, 1 + SEEDS):
                 states, torque = random_cube(joints, samples, seed)
                 options = {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
                 found.append(solved(states, torque, test, hidden, seed, **options).history)

@@ -41,10 +41,10 @@ from ddlib.experiments.studies.loop.run_time_parts import (
     score,
     through_loop,
     through_window,
-    time_first,
     told,
     with_impulse,
 )
+from ddlib.experiments.studies.loop.runs import lines as batch
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.rivals import (
@@ -56,7 +56,7 @@ from ddlib.rivals import (
     LagrangianNetwork,
     Linear,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow, smooth_pick_and_place
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
 
 READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
@@ -174,7 +174,7 @@ def _by_run(model: WindowFeedforward, reference: Trajectory) -> np.ndarray:
 def _course(setup: Setup) -> dict:
     """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
     reference = rounded(APPENDIX_I[5:], 0.0)
-    log, parts = _driven(setup, _made(_lines(setup), reference), reference)
+    log, parts = batch.driven(setup, _made(_lines(setup), reference), reference)
     shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
     gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
     joints = np.rad2deg(log.tracking_error)
@@ -193,30 +193,12 @@ def _made(lines: dict, reference) -> dict:
     return {name: (planned(models, reference), _days(models)) for name, models in lines.items()}
 
 
-def _driven(setup: Setup, made: dict, reference, **changed) -> tuple[Recording, dict]:
-    """All lines simulated as one batch, and which part of it belongs to each line."""
-    every, days, parts = [], [], {}
-    for name, (torque, own) in made.items():
-        parts[name] = slice(len(days), len(days) + len(own))
-        days += own
-        every.append(np.broadcast_to(torque, (len(own), *torque.shape[1:])))
-    law = given(time_first(np.concatenate(every)), setup.controller)
-    return drive(setup, law, reference, days, **changed), parts
-
-
-def _errors(setup: Setup, made: dict, reference, **changed) -> dict:
-    """Median end-point error over the square of each member, for each line."""
-    log, parts = _driven(setup, made, reference, **changed)
-    middle = np.median(score(setup.arm, log).whole, -1)
-    return {name: middle[part] for name, part in parts.items()}
-
-
 def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:
     """The same, and computed torque."""
     days = range(1, 1 + FEW)
     log = drive(setup, computed_torque(setup), reference, days, **changed)
     middle = np.median(score(setup.arm, log).whole, -1)
-    return _errors(setup, made, reference, **changed) | {"computed torque": middle}
+    return batch.errors(setup, made, reference, **changed) | {"computed torque": middle}
 
 
 def _corner(setup: Setup) -> dict:
@@ -224,7 +206,7 @@ def _corner(setup: Setup) -> dict:
     lines = _few(setup)
 
     def along(reference):
-        return _errors(setup, _made(lines, reference), reference)
+        return batch.errors(setup, _made(lines, reference), reference)
 
     found = {f"{seconds:g}": along(rounded(FEWER, seconds)) for seconds in ROUNDED}
     return {"rounded": found, "smooth": along(smooth_pick_and_place(FEWER, T))}
@@ -235,7 +217,7 @@ def _rates(setup: Setup, reference) -> dict:
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
     lines = {name: networks(setup, FEW, **how) for name, how in options.items()}
-    return _errors(setup, _made(lines, reference), reference)
+    return batch.errors(setup, _made(lines, reference), reference)
 
 
 def _changed(setup: Setup, made: dict, reference) -> dict:
@@ -265,7 +247,7 @@ def _gains(setup: Setup, made: dict, reference) -> dict:
     for factor in GAINS:
         kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
         other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
-        found[f"{factor:g}"] = _errors(other, made, reference)
+        found[f"{factor:g}"] = batch.errors(other, made, reference)
     return found
 
 

@@ -2,5 +2,6 @@
 
 - ``conditions``: on what four findings of these studies hang
 - ``days``: recordings of several days
+- ``lines``: feedforwards side by side
 - ``adaptive``: adaptive controllers side by side, one motion after another
 """

@@ -17,6 +17,7 @@ from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Set
 from ddlib.experiments.studies.loop import joints, learners, learning, motions, stirring
 from ddlib.experiments.studies.loop import run_time_parts as run_time
 from ddlib.experiments.studies.loop.chain import Sample, chain, extents, recorded
+from ddlib.experiments.studies.loop.runs import lines as batch
 from ddlib.experiments.studies.loop.runs.days import recorded as recorded_days
 from ddlib.learning import NotConverged
 from ddlib.rivals import BySolver, Cases, Estimating, Identified
@@ -46,17 +47,11 @@ LATER, MEMBERS, TEST = 500, 12, 4711
 def _copies(setup: Setup, days) -> dict:
     """End-point errors on the paper's own plan, equations given a smoothed copy of it, mm."""
     plan, equations = run_time.rounded(run_time.FEWER, 0.0), run_time.exact(setup)
-    lines = {"none": 0 * plan.q}
-    lines |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s)) for s in COPIES}
-    found = {}
-    for name, torque in lines.items():
-        controller = run_time.given(torque[None], setup.controller)
-        log = run_time.drive(setup, controller, plan, days)
-        found[name] = np.median(run_time.score(setup.arm, log).whole, -1)
-    torque = run_time.planned(run_time.networks(setup, len(days)), plan)
-    log = run_time.drive(setup, run_time.given(torque, setup.controller), plan, days)
-    found["network"] = np.median(run_time.score(setup.arm, log).whole, -1)
-    return found
+    torques = {"none": 0 * plan.q[None]}
+    torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in COPIES}
+    torques["network"] = run_time.planned(run_time.networks(setup, len(days)), plan)
+    made = {name: (torque, days) for name, torque in torques.items()}
+    return batch.errors(setup, made, plan)
 
 
 def _cases(run, every: int) -> Cases:
@@ -230,7 +225,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
     return found
 
 
-def loop_conditions(days: int = 10, seeds: int = 8) -> dict:
+def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
     """Four findings under other conditions, both set-ups where they were found in both.
 
     Parameters
