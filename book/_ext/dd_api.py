@@ -27,9 +27,13 @@ def leave_sources(app, env, docnames):
 
 
 def forget_others(app):
-    """Before the pages are collected: what has no page is nobody's parent."""
+    """Before the pages are collected: what has no page is nobody's parent.
+
+    Nor have other libraries, whose names ours hand on.
+    """
     known = getattr(app.env, "_viewcode_modules", {})
-    app.env._viewcode_modules = {name: entry for name, entry in known.items() if entry}
+    own = {name: entry for name, entry in known.items() if entry and name.startswith(SHOWN)}
+    app.env._viewcode_modules = own
     return []
 
 

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import shutil
 import sys
+from functools import wraps
 from importlib.metadata import files
 from pathlib import Path
 
 import joblib
+from sphinx import addnodes
+from sphinx.environment.adapters import toctree
 
 from slim import slim
 
@@ -69,6 +72,23 @@ def read_side_by_side(app, env, names):
             app.extensions[name].parallel_read_safe = True
 
 
+def copy_titles_alone(app):
+    """The sidebar shows titles of pages: do not copy all their sections for it, on every page.
+
+    Sphinx copies them and drops them afterwards, which takes longer than to write the page.
+    """
+    usual = getattr(toctree, "_toctree_standard_entry", None)
+    if usual is None:  # another Sphinx: as right, and slower
+        return
+
+    @wraps(usual)
+    def entry(title, ref, maxdepth, toc, *options):
+        depth = maxdepth if any(toc.findall(addnodes.toctree)) else 1
+        return usual(title, ref, depth, toc, *options)
+
+    toctree._toctree_standard_entry = entry
+
+
 def slim_pages(app, exception):
     """Trim what was written, once all of it is there."""
     if app.builder.format == "html" and exception is None:
@@ -78,6 +98,7 @@ def slim_pages(app, exception):
 def setup(app):
     app.connect("config-inited", set_cache_path)
     app.connect("builder-inited", copy_mathjax)
+    app.connect("builder-inited", copy_titles_alone)
     app.connect("env-before-read-docs", read_side_by_side)
     app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
