@@ -26,6 +26,11 @@ PRELOADED = (
     "matplotlib.figure",
     "sympy",
     "torch",
+    "ddlib.experiments.studies",
+    "ddlib.evidence.measures",
+    "ddlib.evidence.wall",
+    "ddlib.figures.style",
+    "ddlib.widgets.base",
 )
 
 

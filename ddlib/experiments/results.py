@@ -19,7 +19,7 @@ import hashlib
 import json
 import os
 import platform
-from functools import cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -275,8 +275,11 @@ def course(width: int) -> tuple[np.ndarray, TorqueModel]:
     return np.array(COURSE), TorqueModel.load(course_path(width))
 
 
+_parsed = lru_cache(maxsize=8)(json.loads)  # a chapter asks for a large one hundreds of times
+
+
 def read(name: str) -> dict:
-    """The committed result `name`.
+    """The committed result `name`; all who read it share what comes back, so leave it as it is.
 
     Parameters
     ----------
@@ -298,6 +301,6 @@ def read(name: str) -> dict:
             f"no result {name!r} in {FOLDER}: run `make reproduce` first"
         ) from error
     try:
-        return json.loads(text)
+        return _parsed(text)
     except ValueError as error:
         raise ValueError(f"result {name!r} in {FOLDER} is damaged: {error}") from error

@@ -149,12 +149,17 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
     with mpl.rc_context({**RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
+        figure.draw_without_rendering()
         svg = _written(figure)
     return Illustration(_inline(svg, alt), alt, draw, height)
 
 
 def _written(figure: Figure, **options) -> str:
-    """A matplotlib figure as the text of an SVG file."""
+    """A matplotlib figure that is laid out, as the text of an SVG file.
+
+    Its layout stays: saving would make it twice more, which takes as long as the drawing.
+    """
+    figure.set_layout_engine("none")
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None}, **options)
     return stream.getvalue()

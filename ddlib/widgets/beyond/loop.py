@@ -64,7 +64,7 @@ class _FeedbackError:
     """Feedback-error learning with the terms of the other laws; `estimate` are its weights."""
 
     estimate: np.ndarray
-    factor: float
+    factor: np.ndarray
 
     def start(self, reference, step):
         # with one gain for all joints it would be Slotine & Li's law at the desired state
@@ -117,10 +117,7 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         LEARNERS[0]: make("with friction", setup, factor=0.0),
         LEARNERS[1]: make("with friction", setup, factor=factor),
         LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        **{
-            f"{LEARNERS[3]} {k}": Behind(_FeedbackError(laws_start(), f), SMOOTH)
-            for k, f in enumerate(speeds)
-        },
+        LEARNERS[3]: Behind(_FeedbackError(laws_start(), factor), SMOOTH),
     }
     begin = laws_start()
     errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(FULL)))]
@@ -133,13 +130,10 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         )
     errors, estimates = np.stack(errors, -1), np.stack(estimates, -2)
     shape = (2, len(speeds))
-    found = {
+    return {
         name: (errors[k].reshape(*shape, -1), estimates[k].reshape(*shape, MOTIONS + 1, -1))
-        for k, name in enumerate(LEARNERS[:3])
+        for k, name in enumerate(LEARNERS)
     }
-    own = np.stack([errors[3 + k].reshape(*shape, -1)[:, k] for k in range(len(speeds))], 1)
-    each = [estimates[3 + k].reshape(*shape, MOTIONS + 1, -1)[:, k] for k in range(len(speeds))]
-    return {**found, LEARNERS[3]: (own, np.stack(each, 1))}
 
 
 def laws_start() -> np.ndarray:
