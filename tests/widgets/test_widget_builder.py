@@ -282,7 +282,7 @@ def test_error_and_output_are_beside_the_stems(tmp_path, browser, widget, width,
 
 
 @pytest.mark.browser
-def test_touch_draws_on_the_dots_and_scrolls_elsewhere(tmp_path, browser, widget):
+def test_touch_draws_anywhere_and_scrolls_upwards_beside_the_dots(tmp_path, browser, widget):
     context = browser.new_context(
         viewport={"width": 390, "height": 600}, has_touch=True, is_mobile=True
     )
@@ -305,8 +305,17 @@ def test_touch_draws_on_the_dots_and_scrolls_elsewhere(tmp_path, browser, widget
     swipe(place(page, 3, 0.0), place(page, 3, 0.7))
     assert heights(page)[3] == pytest.approx(0.7, abs=0.03)
     assert page.evaluate("scrollY") == 0
+    page.get_by_role("button", name="Zero", exact=True).click()
+    page.evaluate(NEXT_FRAME)
+    start, end = place(page, 2, 0.9), place(page, 14, -0.9)  # far from every dot
+    swipe(start, end)
+    np.testing.assert_allclose(heights(page)[2:15], np.linspace(0.9, -0.9, 13), atol=0.05)
+    assert page.evaluate("scrollY") == 0
+    page.touchscreen.tap(*place(page, 18, 0.8))
+    page.evaluate(NEXT_FRAME)
+    assert heights(page)[18] == pytest.approx(0.8, abs=0.03)
     before = heights(page)
-    x, y = place(page, 15, 0.8)
+    x, y = place(page, 16, 0.8)
     swipe((x, y), (x, y - 150))
     np.testing.assert_array_equal(heights(page), before)
     assert page.evaluate("scrollY") > 50

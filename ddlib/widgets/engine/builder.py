@@ -38,11 +38,12 @@ GAINS = (1.0, 2e5)
 """Range of the gains shown, 1/s^2."""
 
 HINT = (
-    "Drag the dots, or sweep across them in one stroke; by keyboard the arrow keys go from stem "
-    "to stem and move it, with Shift faster. Only the shape counts: the page multiplies the "
-    "output by the factor and adds the constant that fit best, as the weight and the bias behind "
-    "a unit would; a noisy output gets a small factor. Error: root mean square over the standard "
-    "deviation of the true acceleration. An error of 1 is that of always guessing the mean."
+    "Drag the dots, or sweep across them in one stroke that begins anywhere (by touch beside the "
+    "dots: sideways); by keyboard the arrow keys go from stem to stem and move it, with Shift "
+    "faster. Only the shape counts: the page multiplies the output by the factor and adds the "
+    "constant that fit best, as the weight and the bias behind a unit would; a noisy output gets "
+    "a small factor. Error: root mean square over the standard deviation of the true "
+    "acceleration. An error of 1 is that of always guessing the mean."
 )
 
 

@@ -1,7 +1,8 @@
 // Shows FilterBuilder (engine/builder.py): a window of stems that the reader draws, its output
 // over the truth, its gain. Follows charts.js and frame.js; the encoder is physics.js's.
 
-const NEAR = 28; // px from a stem within which a touch takes it; elsewhere a swipe scrolls
+const NEAR = 28; // px from a stem within which a touch takes it; elsewhere a swipe up or down scrolls
+const ASIDE = 8; // px sideways after which a touch elsewhere is a stroke
 const MINUS = (text) => text.replace("-", "−");
 
 // Outputs of a filter over readings, one for each sample of the truth, without their mean.
@@ -111,9 +112,11 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     );
   }
 
-  // A stroke. A touch is captured wherever it begins, so who draws is remembered.
+  // A stroke begins anywhere. A touch beside the stems may also become a swipe that scrolls the page:
+  // it draws once it has gone sideways, or if it was a tap.
   let last = null;
   let painter = null;
+  let waiting = null; // such a touch, until it is known what it becomes
   const at = (event) => {
     const box = svg.getBoundingClientRect();
     const [px, py] = [event.clientX - box.left, event.clientY - box.top];
@@ -144,19 +147,35 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     }
     last = to;
   };
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button || (event.pointerType === "touch" && !onStem(event))) return;
-    event.preventDefault();
-    svg.setPointerCapture(event.pointerId);
-    painter = event.pointerId;
+  const dab = (event) => {
     focus(at(event).k);
     last = null;
     paint(at(event));
+  };
+  const begin = (event) => {
+    waiting = null;
+    svg.setPointerCapture(event.pointerId);
+    painter = event.pointerId;
+    dab(event);
+  };
+  svg.style.touchAction = "pan-y";
+  svg.addEventListener("pointerdown", (event) => {
+    if (event.button || painter !== null) return;
+    if (event.pointerType === "touch" && !onStem(event)) return void (waiting = event);
+    event.preventDefault();
+    begin(event);
   });
   svg.addEventListener("pointermove", (event) => {
+    if (event.pointerId === waiting?.pointerId && Math.abs(event.clientX - waiting.clientX) > ASIDE) begin(waiting);
     if (event.pointerId === painter) paint(at(event));
   });
-  for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => (painter = null));
+  for (const end of ["pointerup", "pointercancel"]) {
+    svg.addEventListener(end, (event) => {
+      if (end === "pointerup" && event.pointerId === waiting?.pointerId) dab(waiting); // a tap
+      if (event.pointerId === painter) painter = null;
+      if (event.pointerId === waiting?.pointerId) waiting = null;
+    });
+  }
   svg.addEventListener("touchstart", (event) => onStem(event.touches[0]) && event.preventDefault(), { passive: false });
   svg.addEventListener("keydown", (event) => {
     const k = stems.indexOf(event.target);

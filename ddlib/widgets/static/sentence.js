@@ -21,6 +21,9 @@ const ENDS = {
 
 const PIXELS = 6; // of a drag for a step
 
+// Sign, number and unit: on one line.
+const together = (...parts) => make("span", { class: "together" }, ...parts);
+
 function signed(value, digits) {
   const text = value.toFixed(digits);
   return Number(text) ? text.replace("-", "−") : text.replace("-", "");
@@ -87,16 +90,24 @@ function render({ model, el }) {
   }
 
   const results = {};
-  const words = spec.parts.map((part) => {
+  const words = [];
+  for (const part of spec.parts) {
     const [, name, result] = part.match(/^(?:\{(\w+)\}|<(\w+)>)$/) ?? [];
-    if (name) return numberOf(spec.numbers.find((number) => number.name === name));
-    if (!result) return part;
-    return (results[result] = make("output", {}));
-  });
+    if (name) words.push(together(numberOf(spec.numbers.find((number) => number.name === name))));
+    else if (result) words.push((results[result] = make("output", {})));
+    else if (/^[,.;]/.test(part) && words.at(-1)?.className === "together") {
+      words.at(-1).append(part[0]); // no line begins with it
+      words.push(part.slice(1));
+    } else words.push(part);
+  }
   const update = () => {
     updates.forEach((show) => show());
     const texts = ENDS[spec.kind](spec, model.get("values"));
-    for (const [name, output] of Object.entries(results)) write(output, texts[name]);
+    for (const [name, output] of Object.entries(results)) {
+      if (output.textContent === texts[name]) continue;
+      const pieces = texts[name].split(" ").map((piece) => together(piece));
+      output.replaceChildren(...pieces.flatMap((piece, k) => (k ? [" ", piece] : [piece])));
+    }
   };
   const code = () =>
     spec.code.replace(/\{(\w+)\}/g, (whole, name) => {
