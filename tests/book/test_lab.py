@@ -1,4 +1,8 @@
-"""Chapters with widgets in a real JupyterLab: run all, move a control, kill the kernel, go on."""
+"""Chapters with widgets in a real JupyterLab: run them, move a control, kill the kernel, go on.
+
+One chapter is run whole, as a reader does; of the others the cells that their widgets need, since
+every notebook is executed elsewhere, too.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, source
+from needed import needed
 from reactions import Handle, handles
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -20,6 +25,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 TOKEN = "token-of-the-test"
 STARTING, RUNNING, ANSWER = 120, 300, 60  # seconds, on a busy machine
 NOTE = "The kernel does not answer"
+WHOLE = "book/hinton-diagrams"
 # Kernels are forked, which saves each chapter some seconds.
 SERVER = f"""
 import sys
@@ -130,13 +136,21 @@ ANSWERS = """
 }
 """
 RUN = """
-async () => {
+async (places) => {
   const { panel } = window;
+  const { commands } = window.jupyterapp;
+  const { content } = panel;
   await panel.sessionContext.ready;
   while (panel.sessionContext.session?.kernel?.status !== "idle") {
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
-  window.jupyterapp.commands.execute("notebook:run-all-cells");
+  if (places === null) return void commands.execute("notebook:run-all-cells");
+  const codes = content.widgets.filter(({ model }) => model.type === "code");
+  for (const place of places) {
+    content.activeCellIndex = content.widgets.indexOf(codes[place]);
+    content.deselectAll();
+    await commands.execute("notebook:run-cell");
+  }
 }
 """
 # Without a question whether to keep what was changed. The session ends first: what still listens
@@ -150,10 +164,11 @@ async () => {
   panel.close();
 }
 """
-# Every code cell has its prompt number, or one has failed.
+# Every code cell to run has its prompt number, or one has failed.
 RAN = """
-() => {
-  const cells = [...window.panel.content.model.cells].filter((cell) => cell.type === "code");
+(places) => {
+  const codes = [...window.panel.content.model.cells].filter((cell) => cell.type === "code");
+  const cells = places?.map((place) => codes[place]) ?? codes;
   const errors = cells.flatMap((cell) => cell.outputs.toJSON())
     .filter((output) => output.output_type === "error" || output.name === "stderr");
   const todo = cells.filter((cell) => cell.executionCount === null);
@@ -200,12 +215,15 @@ def values(page, model: str) -> dict:
     return json.loads(page.evaluate(ASK, code))
 
 
-def run_all(page):
+def run(page, places: list[int] | None):
+    """Run the code cells at those places, or all."""
+
     def done():
-        state = page.evaluate(RAN)
+        state = page.evaluate(RAN, places)
         assert not state["errors"]
         return state["todo"] == 0
 
+    page.evaluate(RUN, places)
     wait(page, "the last prompt number", done, RUNNING)
 
 
@@ -291,6 +309,9 @@ def test_a_chapter_in_the_lab(name, lab, opened):
     if name in ANSWERED:
         answers_are_folded(page, source(name).read_text(encoding="utf-8"))
     if name in WITH_WIDGETS:
+        cells = json.loads(source(name).read_text(encoding="utf-8"))["cells"]
+        codes = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        run(page, None if name == WHOLE else needed(codes))
         widgets_live(page, lab)
 
 
@@ -308,8 +329,6 @@ def answers_are_folded(page, text: str):
 
 
 def widgets_live(page, lab):
-    page.evaluate(RUN)
-    run_all(page)
     models = page.evaluate(SHOWN)
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
     wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)

@@ -1,0 +1,66 @@
+"""Which cells of a notebook must run so that its widgets are there."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+
+def needed(cells: list[str]) -> list[int]:
+    """Places of the cells that make widgets, and of those whose names they need.
+
+    By names alone: a cell counts that gives, or gives something in, a name that is needed further
+    down. A cell whose only effect is inside what another one has made does not.
+
+    Parameters
+    ----------
+    cells : list of str
+        Sources of the code cells, in order.
+    """
+    trees = [ast.parse(re.sub(r"^\s*[%!].*$", "pass", source, flags=re.M)) for source in cells]
+    makers = set().union(*map(widgets_named, trees))
+    found, wanted = [], set()
+    for place in reversed(range(len(cells))):
+        gives, uses = names(trees[place])
+        if makes(trees[place], makers) or gives & wanted:
+            found.append(place)
+            wanted |= uses
+    return found[::-1]
+
+
+def widgets_named(tree: ast.AST) -> set[str]:
+    """What is imported from the package of widgets."""
+    return {
+        alias.asname or alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib.widgets")
+        for alias in node.names
+    }
+
+
+def makes(tree: ast.AST, makers: set[str]) -> bool:
+    """Whether one of those is called."""
+    calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
+    return any(
+        (isinstance(f, ast.Name) and f.id in makers)
+        or (isinstance(f, ast.Attribute) and getattr(f.value, "id", "") == "widgets")
+        for f in calls
+    )
+
+
+def names(tree: ast.AST) -> tuple[set[str], set[str]]:
+    """Names that a cell gives, and those that it uses."""
+    gives, uses = set(), set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            (uses if isinstance(node.ctx, ast.Load) else gives).add(node.id)
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            gives.add(node.name)
+        elif isinstance(node, ast.Import | ast.ImportFrom):
+            gives |= {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.Subscript | ast.Attribute) and isinstance(node.ctx, ast.Store):
+            inner = node
+            while isinstance(inner, ast.Subscript | ast.Attribute):
+                inner = inner.value
+            gives |= {inner.id} if isinstance(inner, ast.Name) else set()
+    return gives, uses
