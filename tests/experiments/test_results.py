@@ -2,11 +2,12 @@
 
 import ast
 import json
+import os
 import random
 import re
 import shutil
-import subprocess
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -273,12 +274,12 @@ def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
 
 
 def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
-    order, codes = [], hashes()  # here: Python 3.11 cannot parse in two threads at once
+    order = []
 
-    def apart(name):
+    def apart(name, code):
         order.append(name)
-        reproduce.make(name, codes[name])
-        return subprocess.CompletedProcess([], 0, "", "")
+        reproduce.make(name, code)
+        return ""
 
     monkeypatch.setattr(reproduce, "make_apart", apart)
     monkeypatch.setattr(reproduce, "_seconds", {"longer": 1.0, "clean": 9.0}.get)
@@ -290,13 +291,11 @@ def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
 
 
 def test_a_part_that_fails_apart_is_told(parts, monkeypatch):
-    codes = hashes()
-
-    def apart(name):
+    def apart(name, code):
         if name == "clean":
-            return subprocess.CompletedProcess([], 1, "", "ZeroDivisionError: in clean")
-        reproduce.make(name, codes[name])
-        return subprocess.CompletedProcess([], 0, "", "")
+            return "ZeroDivisionError: in clean"
+        reproduce.make(name, code)
+        return ""
 
     monkeypatch.setattr(reproduce, "make_apart", apart)
     with pytest.raises(RuntimeError, match="failed: clean; the others are written") as told:
@@ -305,21 +304,31 @@ def test_a_part_that_fails_apart_is_told(parts, monkeypatch):
     assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
 
 
-def test_apart_is_the_same_command_with_one_thread(monkeypatch):
-    seen = {}
-    monkeypatch.setattr(
-        reproduce.subprocess, "run", lambda command, **k: seen.update(command=command, **k)
-    )
-    reproduce.make_apart("clean")
-    assert seen["command"][1:] == [
-        "-m",
-        "ddlib.experiments.reproduce",
-        "--force",
-        "--jobs",
-        "1",
-        "clean",
-    ]
-    assert seen["env"]["OMP_NUM_THREADS"] == "1" and seen["env"]["PATH"]
+def _written(path, threads):
+    Path(path).write_text(f"{os.getpid()} {torch.get_num_threads()} {threads}")
+    print("not seen")
+
+
+def _wrong(name, code):
+    raise ZeroDivisionError(f"in {name}")
+
+
+def _gone(name, code):
+    os._exit(3)
+
+
+def test_apart_is_a_process_of_its_own_with_one_thread(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")  # as `side_by_side` has it
+    path = tmp_path / "said"
+    assert reproduce.make_apart(str(path), "asked", do=_written) == ""
+    process, threads, asked = path.read_text().split()
+    assert int(process) != os.getpid() and (threads, asked) == ("1", "asked")
+    assert "not seen" not in capfd.readouterr().out
+
+
+def test_what_goes_wrong_apart_is_told():
+    assert "ZeroDivisionError: in clean" in reproduce.make_apart("clean", "", do=_wrong)
+    assert "ended" in reproduce.make_apart("clean", "", do=_gone)
 
 
 def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
