@@ -98,8 +98,8 @@ def inertial_parameters(link: SpatialLink) -> np.ndarray:
 def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     """Matrix Y with ``tau = Y p``, p the `inertial_parameters` of all links in their order.
 
-    A column is the torque of an arm that has one parameter and no other. A first moment comes
-    from two unit masses on opposite sides of the origin, of which one is taken away.
+    Force and moment of a link are linear in its parameters, and each joint feels the moments of
+    all links beyond it about its axis.
 
     Parameters
     ----------
@@ -114,27 +114,56 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
         Many columns depend on others, or are zero: only some combinations of parameters move a
         joint (Khosla 1986).
     """
-    empty = [replace(k, mass=0.0, com=np.zeros(3), inertia=np.zeros((3, 3))) for k in arm.links]
-    still = np.zeros((3, 3))
+    q, qd, qdd = (finite_array(n, x, arm.joints) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
+    q, qd, qdd = np.broadcast_arrays(q, qd, qdd)
+    placed = frames(arm, q)
+    axes, places = placed[..., :3, 2], placed[..., :3, 3]
+    found = np.zeros((*q.shape, PER_LINK * arm.joints))
+    spin, spin_rate = np.zeros((2, *q.shape[:-1], 3))
+    fall = spin - np.array(arm.gravity)  # acceleration of the frame, as a weight feels it
+    for j in range(arm.joints):
+        axis, tip = axes[..., j, :], places[..., j + 1, :] - places[..., j, :]
+        own = axis * qd[..., j, None]
+        spin_rate = spin_rate + axis * qdd[..., j, None] + np.cross(spin, own)
+        spin = spin + own
+        fall = fall + np.cross(spin_rate, tip) + np.cross(spin, np.cross(spin, tip))
+        turn = placed[..., j + 1, :3, :3]
+        force, moment = _wrenches(
+            *((x[..., None, :] @ turn)[..., 0, :] for x in (spin, spin_rate, fall))
+        )
+        force, moment = turn @ force, turn @ moment
+        for i in range(j + 1):
+            lever = np.cross(axes[..., i, :], places[..., j + 1, :] - places[..., i, :])
+            row = axes[..., i, None, :] @ moment + lever[..., None, :] @ force
+            found[..., i, PER_LINK * j : PER_LINK * (j + 1)] = row[..., 0, :]
+    return found
 
-    def torque(i, mass, com, inertia):
-        links = [
-            *empty[:i],
-            replace(empty[i], mass=mass, com=com, inertia=inertia),
-            *empty[i + 1 :],
-        ]
-        return SerialArm(links, arm.gravity).inverse_dynamics(q, qd, qdd)
 
-    columns = []
-    for i in range(arm.joints):
-        columns.append(torque(i, 1.0, np.zeros(3), still))
-        for side in np.eye(3):
-            columns.append((torque(i, 1.0, side, still) - torque(i, 1.0, -side, still)) / 2)
-        for row, column in _SECOND:
-            inertia = np.zeros((3, 3))
-            inertia[row, column] = inertia[column, row] = 1.0
-            columns.append(torque(i, 0.0, np.zeros(3), inertia))
-    return np.stack(columns, -1)
+def _wrenches(spin, spin_rate, fall) -> tuple[np.ndarray, np.ndarray]:
+    """Force and moment at a link's origin for each of its parameters, ``(..., 3, 10)`` both.
+
+    From the link's angular velocity and acceleration and its origin's acceleration ``(..., 3)``,
+    all in its own frame.
+    """
+    swing = _across(spin_rate) + _across(spin) @ _across(spin)
+    force = np.concatenate([fall[..., None], swing, np.zeros((*spin.shape, 6))], -1)
+    second = _tensor_times(spin_rate) + _across(spin) @ _tensor_times(spin)
+    moment = np.concatenate([np.zeros((*spin.shape, 1)), -_across(fall), second], -1)
+    return force, moment
+
+
+def _across(x) -> np.ndarray:
+    """The matrix that multiplies by the vector product with x ``(..., 3)``, from the left."""
+    return np.cross(x[..., None, :], np.eye(3)).swapaxes(-1, -2)
+
+
+def _tensor_times(x) -> np.ndarray:
+    """The matrix by which a tensor's six elements give its product with x, ``(..., 3, 6)``."""
+    found = np.zeros((*x.shape, 6))
+    for k, (row, column) in enumerate(_SECOND):
+        found[..., row, k] = x[..., column]
+        found[..., column, k] = x[..., row]
+    return found
 
 
 def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
