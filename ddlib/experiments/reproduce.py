@@ -57,7 +57,7 @@ def make_apart(name: str, code: str, do=make) -> str:
     forked = sys.platform == "linux"
     processes = multiprocessing.get_context("forkserver" if forked else "spawn")
     if forked:
-        processes.set_forkserver_preload([__spec__.name])
+        processes.set_forkserver_preload(["ddlib.experiments.studies", "ddlib.figures.style"])
     told, tell = processes.Pipe(duplex=False)
     process = processes.Process(target=_quietly, args=(tell, do, name, code))
     process.start()
