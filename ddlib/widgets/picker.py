@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import traitlets as t
 
 from ddlib._check import finite_array, number
+from ddlib.effects import IDEAL
 from ddlib.experiments import HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
+from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
-from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, TooCoarse, module
+from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.engine.live import LiveWidget
+from ddlib.widgets.engine.plain import ENGINE, SLIDING, gains, lean, networks, plant
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 
@@ -25,27 +30,10 @@ RECORDED = "recorded"
 TIMES = np.linspace(0.0, MOTION_SECONDS, 76)
 """Where the curves are sampled, s."""
 
-# at 3 s the reference is back at rest: the last sample is the motion's limit from inside
-_INSIDE = np.append(TIMES[:-1], np.nextafter(MOTION_SECONDS, 0.0))
-
 _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
 
-GRIDS = (44, 56)
-"""Baked extents per joint where networks are shown, the second if the first are too few:
-some networks change their torque within a few degrees. The motion alone needs few points."""
-
-CROWD = 1.15
-"""Near zero they change it within less (see `Parameter`)."""
-
-STEEP = (
-    "These networks change their torque faster than the finest grid that fits into a page can "
-    "follow: the error told below is larger than in the other figures."
-)
-"""Said where the finest grid misses the tolerance: which networks are shown is not chosen by how
-easy they are to show."""
-
-SIDE = 31
-"""Points of the map of errors along each axis of the pad."""
+AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)
+"""Extents at which the map of errors is computed, degrees."""
 
 STEP = 0.1
 """Between two shades of the map, RMSS."""
@@ -55,9 +43,9 @@ SNAP = 0.035
 
 NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
-    "mean square error over the standard deviation of the training torques."
+    "mean square error over the standard deviation of the training torques. The shades were "
+    f"computed beforehand, at {AXIS.size} × {AXIS.size} places."
 )
-
 
 MOTION = """\
 import numpy as np
@@ -103,26 +91,27 @@ class _Extents(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
-class TrajectoryPicker(CurveWidget):
+class TrajectoryPicker(LiveWidget):
     """Pick a trajectory of the paper's family; see arm, joint angles and torques; record it.
 
     The pad is the square of extents from 0 to 45 degrees with the trajectories of Appendix I.
     The Lagrange-Euler torques are those of the reference motion itself: no controller, no
     friction. With `models` the trajectory is also recorded, without quantisation and noise of
-    the sensors, and the networks see the recorded positions.
+    the sensors, and the networks see the recorded positions. The page computes all of it by the
+    live engine; only the map of errors under the pad is computed here.
 
     Parameters
     ----------
     models : mapping
         Legend name -> a single trained network, as from `ddlib.experiments.results.median_network`.
     setup : Setup
-        Arm, effects and controller that record.
+        Arm, effects and controller that record; with `models` the engine must have them, and the
+        controller must be a `PID`.
     on_record : callable, optional
         Called with the extents when the reader records; default ``setup.record``, sensors
         included. Its result is kept in `recording`.
     **options
-        Passed on to `CurveWidget`: ``checks``, ``tolerance``, ``interpolation``. Without a
-        tolerance of the caller, networks that no grid follows are shown with the error stated.
+        Passed on to `LiveWidget`.
 
     Attributes
     ----------
@@ -130,14 +119,19 @@ class TrajectoryPicker(CurveWidget):
         Extents of shoulder and elbow in degrees; starts as the test trajectory.
     recording : object
         What `on_record` returned last, or None.
+    numbers : dict
+        The numbers beside the pad over the whole square: name -> ndarray, shape
+        ``(shoulder, elbow)``, at the extents `AXIS` of both joints.
     """
 
-    _esm = module(*SCRIPT, "picker.js")
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "picker.js"))
     _css = module(*STYLE, "picker.css")
 
     extents_deg = _Extents()
     arm = t.Dict(help="lengths in m, curves of the joint angles, times in s", read_only=True)
     arm.tag(sync=True)
+    loop = t.Dict(help="what the page computes with", read_only=True).tag(sync=True)
+    weights = t.Bytes(help="the networks' weights as float32", read_only=True).tag(sync=True)
     map = t.Dict(help="errors of each network over the square", read_only=True).tag(sync=True)
     record_status = t.Dict({"text": "", "count": 0}, read_only=True).tag(sync=True)
     recording = t.Any(None)
@@ -178,25 +172,22 @@ class TrajectoryPicker(CurveWidget):
                 for k, extents in enumerate(APPENDIX_I.tolist(), 1)
             },
             "presets_title": "Trajectory",
-            "many": many,
         }
+        square = many(*(x.ravel() for x in np.meshgrid(AXIS, AXIS, indexing="ij")))
+        options["ranges"] = {name: (x.min(), x.max()) for name, x in square.items()}
+        self.numbers = {n: x.reshape(2 * AXIS.shape) for n, x in square.items() if x.ndim == 1}
         panels = _panels([RIGID, RECORDED, *models] if models else [RIGID])
-        grids = [{"grid": n, "crowd": CROWD} for n in GRIDS] if models else [{}]
-        for grid in grids:
-            try:
-                super().__init__(many.one, _parameters(**grid), panels, **options)
-                break
-            except TooCoarse as coarse:
-                missed = coarse
-        else:
-            if not models or "tolerance" in options:
-                raise missed
-            options |= {"note": f"{NOTE} {STEEP}", "tolerance": 2 * missed.error}
-            super().__init__(many.one, _parameters(**grids[-1]), panels, **options)
+        super().__init__(many.one, _parameters(), panels, **options)
+        errors = {name: self.numbers[f"RMSS, {name}"] for name in models}
+        errors = {name: "".join(map(_digits, 100 * x.T.ravel())) for name, x in errors.items()}
+        self.set_trait("map", {"side": AXIS.size, "step": STEP, "errors": errors})
         angles = [f"{joint} angle" for joint in JOINTS]
         lengths = list(setup.arm.lengths)
-        self.set_trait("map", {"side": SIDE, "step": STEP, "errors": self._map(models)})
         self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})
+        layouts, weights = networks(models.values())
+        told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
+        self.set_trait("loop", {**many.plain(), "models": told})
+        self.set_trait("weights", weights)
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
         self.on_msg(self._on_message)
@@ -212,18 +203,6 @@ class TrajectoryPicker(CurveWidget):
         angles = " and ".join(f"{x:.1f}°" for x in self.extents_deg)
         self._say(f"Recorded {angles}: now in the widget's recording.")
         return self.recording
-
-    def _map(self, models) -> dict[str, str]:
-        """RMSS of each network on a grid of extents, the shoulder's fastest.
-
-        In hundredths, each two digits to the base of 36.
-        """
-        axis = np.linspace(0.0, MAX_EXTENT_DEG, SIDE)
-        shown = [self.interpolate(shoulder_deg=s, elbow_deg=e) for e in axis for s in axis]
-        return {
-            name: "".join(_digits(100 * x[f"RMSS, {name}"].item()) for x in shown)
-            for name in models
-        }
 
     def _from_parameters(self, change):
         self.extents_deg = (self.shoulder_deg, self.elbow_deg)
@@ -247,15 +226,18 @@ class TrajectoryPicker(CurveWidget):
 
 
 def _digits(value: float) -> str:
-    """A number from 0 to 1295, rounded, as two digits to the base of 36."""
+    """A number from 0 to 1295, rounded, as two digits to the base of 36.
+
+    The map has the errors of each network so, in hundredths, the shoulder's extents fastest.
+    """
     rounded = min(max(round(value), 0), 36**2 - 1)
     return "".join("0123456789abcdefghijklmnopqrstuvwxyz"[k] for k in divmod(rounded, 36))
 
 
-def _parameters(**grid) -> list[Parameter]:
+def _parameters() -> list[Parameter]:
     start = APPENDIX_I[TEST_TRAJECTORY - 1].tolist()
     return [
-        Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, MAX_EXTENT_DEG, x, "°", **grid)
+        Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, MAX_EXTENT_DEG, x, "°")
         for joint, x in zip(JOINTS, start)
     ]
 
@@ -298,35 +280,61 @@ class _Curves:
     def __init__(self, setup: Setup, models: Mapping[str, TorqueModel]):
         silent = setup.effects.without("encoder", "torque_sensor")
         self.setup, self.models = replace(setup, effects=silent), models
+        self.one = lru_cache(maxsize=16)(self._one)
         if models:
             training = self.setup.record(_TRAINING)
             # near zero extents a motion's own deviation vanishes: that of the training set
             self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
+            self.t, self.during = training.t, training.motion
+            every = round(TIMES[1] / np.diff(training.t).mean())
+            start, stop = training.motion.start, training.motion.stop
+            self.shown = np.append(np.arange(start, stop, every), stop - 1)
 
-    def one(self, **extents) -> dict:
+    def _one(self, **extents) -> dict:
         """The curves at one pair of extents."""
         return {name: x[0] for name, x in self(**extents).items()}
 
     def __call__(self, shoulder_deg, elbow_deg) -> dict:
         extents_deg = np.stack(np.broadcast_arrays(shoulder_deg, elbow_deg), -1).reshape(-1, 2)
-        motion = pick_and_place(extents_deg, _INSIDE)
+        motion = pick_and_place(extents_deg, TIMES)
         rigid = self.setup.arm.inverse_dynamics(*motion)
         numbers = {f"peak {joint}": np.abs(rigid[..., j]).max(-1) for j, joint in enumerate(JOINTS)}
         torques = {RIGID: rigid}
         if self.models:
             recording = self.setup.record(extents_deg)
-            during = recording.motion
-            every = round(TIMES[1] / np.diff(recording.t).mean())
-            shown = np.append(np.arange(during.start, during.stop, every), during.stop - 1)
-            recorded = recording.tau[:, during]
-            torques[RECORDED] = recording.tau[:, shown]
+            recorded = recording.tau[:, self.during]
+            torques[RECORDED] = recording.tau[:, self.shown]
             for name, model in self.models.items():
-                windows = sliding_windows(recording.q, model.weights.width, during)
+                windows = sliding_windows(recording.q, model.weights.width, self.during)
                 torque = np.stack([model.torque(run) for run in windows])
-                torques[name] = torque[:, shown - during.start]
+                torques[name] = torque[:, self.shown - self.during.start]
                 numbers[f"RMSS, {name}"] = rmss(torque, recorded, scale=self.scale)
         curves = {}
         for j, joint in enumerate(JOINTS):
             curves[f"{joint} angle"] = np.rad2deg(motion.q[..., j])
             curves.update({f"{joint} torque, {line}": x[..., j] for line, x in torques.items()})
         return {**curves, **numbers}
+
+    def plain(self) -> dict:
+        """What the page needs to compute the same."""
+        motion = {
+            "arm": plant(self.setup.arm, IDEAL)["arm"],
+            "times": TIMES.tolist(),
+            "motion": MOTION_SECONDS,
+            "lines": {"rigid": RIGID, "recorded": RECORDED},
+        }
+        if not self.models:
+            return motion
+        every = round(np.diff(self.t).mean() / CONTROL_STEP)
+        return {
+            **motion,
+            "plant": plant(self.setup.arm, self.setup.effects),
+            "gains": gains(self.setup.controller),
+            "step": CONTROL_STEP,
+            "every": every,
+            "periods": every * self.t.size,
+            "rest": every * self.during.start,
+            "during": [self.during.start, self.during.stop],
+            "shown": self.shown.tolist(),
+            "scale": self.scale.tolist(),
+        }

@@ -35,7 +35,7 @@ def test_code_runs(name, capsys):
 def test_code_gives_what_the_picker_shows(capsys):
     found = {}
     exec(filled(picker.MOTION, {"shoulder_deg": 30.0, "elbow_deg": 10.0}), found)
-    shown = picker.TrajectoryPicker(checks=5).interpolate(shoulder_deg=30, elbow_deg=10)
+    shown = picker.TrajectoryPicker().interpolate(shoulder_deg=30, elbow_deg=10)
     for j, joint in enumerate(("shoulder", "elbow")):
         peak = np.abs(found["torque"][:, j]).max()
         assert peak == pytest.approx(shown[f"peak {joint}"][0], abs=0.05)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import torch
@@ -30,6 +32,10 @@ SCHOOL = """([spec, positions, torques, choice, epochs]) => {
 STATE = """() => {
   const { school } = document.querySelector(".ddlib-trainer");
   return { epoch: school.epoch, weight: school.net.all[0], events: school.events };
+}"""
+NAMED = """() => {
+  const { direct, hidden } = document.querySelector(".ddlib-trainer").school.names;
+  return [direct, hidden].map((names) => names.filter((k) => k < 6).length);
 }"""
 CALM = {"reduced_motion": "reduce"}
 
@@ -214,7 +220,21 @@ def test_the_end_of_a_run_answers_the_guess(tmp_path, visit, widget):
     assert "Your guess: Direct weights measure acceleration" in verdict
     assert f"at epoch {first}" in verdict
     assert page.locator(".runs tbody tr").count() == 1
-    assert not here.problems
+    assert "Training is over, 90 epochs" in page.locator(".status").inner_text()
+    assert page.evaluate(NAMED) == [
+        int(n) if n != "None" else 0 for n in re.findall(r"(\d+|None) of the (?:4|20)", verdict)
+    ]
+    ends = page.locator(".events dd").all_inner_texts()
+    assert ends == ["never" if e is None else f"epoch {e}" for e in state["events"]]
+    assert not here.problems + violations_in(page, "light", "dark")
+    step = page.get_by_role("button", name="Step")
+    assert step.get_attribute("aria-disabled") == "true"
+    step.click(force=True)
+    assert page.evaluate(STATE)["epoch"] == 90
+    page.get_by_role("button", name="Begin anew").click()
+    page.wait_for_function("document.querySelector('.ddlib-trainer').school.epoch < 90")
+    assert not page.locator(".verdict").inner_text()
+    assert step.get_attribute("aria-disabled") == "false"
 
 
 @pytest.mark.browser

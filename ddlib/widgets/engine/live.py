@@ -21,11 +21,15 @@ class Computed:
     examples : sequence of mappings
         Settings, each with the parameters that differ from the start. The ranges of the curves
         over them decide with how many decimals numbers are written.
+    ranges : mapping, optional
+        Curve -> its lowest and highest value, where they are known without examples.
     """
 
     cubic, groups = False, ()
 
-    def __init__(self, function, parameters, examples: Sequence[Mapping] = ()):
+    def __init__(
+        self, function, parameters, examples: Sequence[Mapping] = (), ranges: Mapping | None = None
+    ):
         self.function, self.parameters = function, tuple(parameters)
         start = {p.name: p.value for p in self.parameters}
         found = [self.interpolate(**start, **{})]
@@ -33,6 +37,9 @@ class Computed:
         self.lengths = {name: curve.size for name, curve in found[0].items()}
         ends = [[(np.nanmin(x), np.nanmax(x)) for x in row.values()] for row in found]
         self.low, self.high = np.nanmin(ends, 0)[:, 0], np.nanmax(ends, 0)[:, 1]
+        for name, (low, high) in (ranges or {}).items():
+            k = list(self.lengths).index(name)
+            self.low[k], self.high[k] = low, high
 
     def interpolate(self, **values) -> dict[str, np.ndarray]:
         """The function's curves; nothing is interpolated."""
@@ -62,7 +69,7 @@ class LiveWidget(CurveWidget):
         The same in Python, for `curves`, for tests and for the still picture.
     parameters : sequence of Parameter or Choice
     panels : sequence of Panel
-    examples : sequence of mappings
+    examples, ranges
         As for `Computed`.
     **options
         Passed on to `CurveWidget`.
@@ -75,9 +82,10 @@ class LiveWidget(CurveWidget):
         panels,
         *,
         examples: Sequence[Mapping] = (),
+        ranges: Mapping | None = None,
         **options,
     ):
-        self._examples = examples
+        self._known = examples, ranges
         super().__init__(function, parameters, panels, **options)
 
     @property
@@ -86,7 +94,7 @@ class LiveWidget(CurveWidget):
         return self._baked.interpolate(**self.values)
 
     def _bake(self, function, parameters, *_):
-        return Computed(function, parameters, self._examples)
+        return Computed(function, parameters, *self._known)
 
     def _spec(self, *given) -> dict:
         return {**super()._spec(*given), "live": True}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ddlib.control import PID
@@ -15,6 +17,9 @@ ENGINE = ("physics.js", "engine.js")
 
 TRAINING = "descent.js"
 """What a widget has after them if it trains."""
+
+SLIDING = "sliding.js"
+"""What a widget has after them if its networks see a recording."""
 
 FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 """Order of the weights in `weight_bytes`."""
@@ -104,6 +109,12 @@ def weight_bytes(model: TorqueModel) -> bytes:
     """All weights of one network as little-endian float32, as committed, in the order `FIELDS`."""
     parts = [np.ravel(getattr(model.weights, name)) for name in FIELDS]
     return np.concatenate(parts).astype("<f4").tobytes()
+
+
+def networks(models: Iterable[TorqueModel]) -> tuple[list[dict], bytes]:
+    """What ``static/sliding.js`` takes: `network` of each model, and the weights of all."""
+    models = list(models)
+    return [network(model) for model in models], b"".join(map(weight_bytes, models))
 
 
 def _scaling(scaler: Scaler) -> dict:

@@ -1,6 +1,58 @@
-// What TrajectoryPicker (picker.py) adds to a CurveWidget: the map of errors under the pad, the arm,
-// its player, the verdict about the hull of the training trajectories, and the button that records.
-// The numbers stand beside the pad.
+// What TrajectoryPicker (picker.py) computes, and what it adds to a CurveWidget: the map of errors
+// under the pad, the arm, its player, the verdict about the hull of the training trajectories, and
+// the button that records. The numbers stand beside the pad. Follows sliding.js.
+
+const NAMES = ["shoulder", "elbow"];
+
+// The recording of a trajectory to extents in rad, from the rest before it to the rest after it.
+function recordingOf({ plant, gains, step, every, periods, rest, motion }, extents) {
+  const reference = { q: [], qd: [], qdd: [] };
+  const moving = Math.round(motion / step);
+  for (let k = 0; k < periods; k++) {
+    const wanted = pickAndPlace(extents, ((k - rest) * motion) / moving, motion);
+    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
+  }
+  return follow(plant, pid(gains, step), reference, step, every, "tachometer");
+}
+
+// All curves and numbers of a trajectory.
+function picked(loop, models, extents) {
+  const { arm, times, motion, lines, during, shown, scale } = loop;
+  const wanted = times.map((t) => pickAndPlace(extents, t, motion));
+  const rigid = wanted.map(({ q, qd, qdd }) => armTorque(arm, ...q, ...qd, ...qdd));
+  const curves = {};
+  const put = (line, torques) =>
+    NAMES.forEach((joint, j) => (curves[`${joint} torque, ${line}`] = torques.map((tau) => tau[j])));
+  put(lines.rigid, rigid);
+  NAMES.forEach((joint, j) => {
+    curves[`${joint} angle`] = wanted.map(({ q }) => (q[j] * 180) / Math.PI);
+    curves[`peak ${joint}`] = [Math.max(...rigid.map((tau) => Math.abs(tau[j])))];
+  });
+  if (!models.length) return { curves };
+  const log = recordingOf(loop, extents);
+  const recorded = log.tau.slice(...during);
+  const sampled = (torques) => shown.map((k) => torques[k - during[0]]);
+  put(lines.recorded, sampled(recorded));
+  const positions = JOINTS.map((j) => Float64Array.from(log.reading, (q) => q[j]));
+  for (const model of models) {
+    const told = toldTorques(model, positions, ...during);
+    let sum = 0;
+    told.forEach((tau, k) => tau.forEach((x, j) => (sum += ((x - recorded[k][j]) / scale[j]) ** 2)));
+    curves[`RMSS, ${model.name}`] = [Math.sqrt(sum / (2 * told.length))];
+    put(model.name, sampled(told));
+  }
+  return { curves, log };
+}
+
+live = (view) => {
+  const loop = view.model.get("loop");
+  view.networks ??= modelsOf(loop.models, view.model.get("weights"));
+  const extents = NAMES.map((joint) => (view.get(`${joint}_deg`) * Math.PI) / 180);
+  if (view.picked?.key !== String(extents)) {
+    view.picked = { key: String(extents), ...picked(loop, view.networks, extents) };
+  }
+  return view.picked.curves;
+};
 
 const FINE = 3; // parts of the map's grid in which it is drawn
 const LEVELS = 10; // the last one is open to above
@@ -119,6 +171,7 @@ extras.push((view) => {
   const { model, spec } = view;
   const arm = armOf(view);
   view.el.classList.add("ddlib-picker");
+  view.el.picker = view; // for tests
   if (Object.keys(view.model.get("map").errors).length) mapOf(view);
 
   // The player

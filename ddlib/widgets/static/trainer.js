@@ -149,7 +149,7 @@ function unitSheet(spec) {
     el.height = Math.round(sheet.height * ratio);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   };
-  sheet.draw = (school, colours) => {
+  sheet.draw = (school, colours, over) => {
     const { direct, hidden } = filtersOf(school.net);
     const all = [...direct, ...hidden];
     const names = [...school.names.direct, ...school.names.hidden];
@@ -184,10 +184,10 @@ function unitSheet(spec) {
         pen.strokeStyle = name ? colours[j ? "c2" : "c0"] : colours.soft;
         pen.lineWidth = name ? 2.4 : 1.2;
         pen.stroke();
-        if (!name) continue;
+        if (!name && !over) continue;
         pen.textAlign = "right";
-        pen.fillStyle = colours[j ? "c2" : "c0"];
-        pen.fillText(name, left + wide - 12, base - room / 2 - 7);
+        pen.fillStyle = name ? colours[j ? "c2" : "c0"] : colours.soft;
+        pen.fillText(name ?? "none", left + wide - 12, base - room / 2 - 7);
       }
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
@@ -259,9 +259,11 @@ function build({ model, el }) {
   const guess = make("div", { class: "guess", role: "group", "aria-label": "Guess first" }, make("span", {}, "Guess to begin. What comes first?"), ...guessed);
   const play = button("Train", () => (running ? pause() : go()));
   const once = button("Step", () => {
+    if (over()) return;
     pause();
     school.advance();
     school.look();
+    show();
     draw();
     told();
     frame.changed();
@@ -301,12 +303,13 @@ function build({ model, el }) {
   const loop = make("input", { type: "checkbox", role: "switch", id: `${view.id}-loop` });
   loop.addEventListener("input", () => {
     state.loop = loop.checked ? "1" : "";
-    if (loop.checked && school.epoch >= spec.epochs) later();
+    if (loop.checked && over()) later();
     frame.changed();
   });
   settings.push(make("div", { class: "switch choice" }, make("label", { for: loop.id }, "Loop, with new weights"), loop));
 
-  const status = make("p", { class: "status" });
+  const status = make("p", { class: "status", id: `${view.id}-status` });
+  for (const one of [play, once]) one.setAttribute("aria-describedby", status.id);
   const said = make("p", { class: "verdict", role: "status" });
   const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
@@ -343,6 +346,7 @@ function build({ model, el }) {
   let waiting = 0;
   let last = 0;
   let owed = 0;
+  const over = () => school.epoch >= spec.epochs;
   const plain = (x) => (Number.isFinite(x) ? x.toFixed(x < 0.0995 ? 3 : 2) : "none");
   function draw() {
     const { outputs, error } = school.judge();
@@ -354,10 +358,11 @@ function build({ model, el }) {
       curves[`${joint} true`] = truth[j];
     });
     drawn.forEach((one) => one.redraw(curves));
-    sheet.draw(school, colours);
+    sheet.draw(school, colours, over());
     const seen = school.training[Math.floor(school.epoch / spec.check)];
-    write(status, `Epoch ${school.epoch}. Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
-    events.forEach(({ output }, k) => write(output, school.events[k] === null ? "not yet" : `epoch ${school.events[k]}`));
+    const when = over() ? `Training is over, ${spec.epochs} epochs are done.` : `Epoch ${school.epoch}.`;
+    write(status, `${when} Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
+    events.forEach(({ output }, k) => write(output, school.events[k] === null ? (over() ? "never" : "not yet") : `epoch ${school.events[k]}`));
     if (!running) drawn.forEach((one) => one.describe(curves));
   }
   function run(now) {
@@ -371,13 +376,13 @@ function build({ model, el }) {
       owed--;
     }
     owed = Math.min(owed, 2);
-    if (!more || school.epoch >= spec.epochs) return ended();
+    if (!more || over()) return ended();
     draw();
     due = requestAnimationFrame(run);
   }
   function go() {
     if (state.guess === "" || goal) return;
-    if (school.epoch >= spec.epochs) restart();
+    if (over()) restart();
     running = true;
     owed = 1;
     last = performance.now();
@@ -414,14 +419,23 @@ function build({ model, el }) {
       go();
     }, REST);
   }
-  // What came first, once the run is over.
+  // What came first and what came out, once the run is over.
   function told() {
-    if (school.epoch < spec.epochs || state.guess === "") return write(said, "");
+    if (!over()) return write(said, "");
     const at = school.events.map((e) => e ?? Infinity);
     const first = Math.min(...at);
     const came = labels.filter((_, k) => at[k] === first).join(" and ");
     const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `First, at epoch ${first}: ${came}.`;
-    write(said, `Your guess: ${labels[state.guess]}. ${verdict}`);
+    const mine = state.guess === "" ? "" : `Your guess: ${labels[state.guess]}. `;
+    write(said, `${mine}${verdict} ${named("direct")} ${named("hidden")}`);
+  }
+  // How many filters of a layer have a name, and that the others have none.
+  function named(layer) {
+    const all = school.names[layer];
+    const none = all.filter((k) => SHORT[spec.classes[k]] === undefined).length;
+    const some = none === all.length ? "None" : String(all.length - none);
+    const left = none ? `, ${none} ${none === 1 ? "stays" : "stay"} without` : "";
+    return `${some} of the ${all.length} ${layer} filters ${all.length - none === 1 ? "has" : "have"} a name at the end${left}.`;
   }
   function restart() {
     running = false;
@@ -441,7 +455,8 @@ function build({ model, el }) {
       one.disabled = ready && school.epoch > 0;
     });
     for (const one of [play, once]) one.disabled = !ready;
-    write(play, running ? "Pause" : "Train");
+    once.setAttribute("aria-disabled", String(over()));
+    write(play, running ? "Pause" : over() ? "Begin anew" : "Train");
     for (const one of menus) one.show();
     seed.value = state.seed;
     write(drawing, `draw ${state.seed}`);
