@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import tempfile
@@ -24,6 +25,12 @@ def pytest_configure(config):
     if SHARED not in os.environ:
         os.environ[SHARED] = tempfile.mkdtemp(prefix="measured-")
         config.add_cleanup(lambda: shutil.rmtree(os.environ.pop(SHARED), ignore_errors=True))
+
+
+def pytest_collection_finish(session):
+    """Modules and ten thousand tests stay: they need not be looked through for garbage."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 50)
 
 
 @pytest.fixture(autouse=True)

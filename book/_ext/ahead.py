@@ -6,6 +6,7 @@ libraries, which saves the two or three seconds that a fresh one needs for them.
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 import sys
@@ -143,4 +144,5 @@ def kernel(connection_file: str, env: dict, cwd: str, ready) -> None:
     sys.path[:] = [folder for folder in sys.path if folder != str(Path(__file__).parent)]
     from ipykernel.kernelapp import launch_new_instance
 
+    gc.freeze()  # what was imported is never garbage
     launch_new_instance()
