@@ -20,20 +20,19 @@ live = (view) => {
   const reach = (strip.x.length - 1) / 2;
   view.networks ??= modelsOf(model.get("layouts"), model.get("weights"));
   view.recorded ??= recordedOf(model.get("recorded"), times.length, reach);
-  view.told ??= new Map(); // torques of the widths that were chosen
+  view.told ??= new Map(); // of the widths that were chosen
   const { positions, torques } = view.recorded;
   const [width, sample] = ["width", "sample"].map(view.get);
   const network = view.networks.find(({ net }) => net.width === width);
   if (!view.told.has(width)) {
-    view.told.set(width, toldTorques(network, positions, reach, reach + times.length));
+    const scaled = scaledOf(network, positions);
+    view.told.set(width, { scaled, told: toldTorques(network, scaled, reach, reach + times.length) });
   }
-  const told = view.told.get(width);
-  const { hidden, output } = activity(network.net, windowAt(network, positions, reach + sample));
+  const { scaled, told } = view.told.get(width);
+  const { hidden, output } = activity(network.net, windowAt(network, scaled, reach + sample));
   const curves = { activity: [...hidden, ...output] };
-  const { low, gain, first } = network.inputs;
   NAMES.forEach((name, j) => {
-    const around = positions[j].subarray(sample, sample + 2 * reach + 1);
-    curves[`${name} position`] = around.map((x) => first + (x - low[j]) * gain[j]);
+    curves[`${name} position`] = scaled[j].subarray(sample, sample + 2 * reach + 1);
     curves[`${name} torque`] = told.map((tau) => tau[j]);
     curves[`${name} network`] = [told[sample][j]];
     curves[`${name} measured`] = [torques[j][sample]];
