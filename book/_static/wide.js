@@ -1,9 +1,13 @@
 // What is wider than the page scrolls in its own box: by keyboard, too, and the box says so.
 // A table of sentences becomes cards on a phone; a table of numbers keeps its first column in sight.
+// Lines break where a reader would: in a name after a dot, never before a unit or a comma.
 (() => {
   const TABLES = ".pst-scrollable-table-container, .cell_output .text_html";
   const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math, pre`;
   const SENTENCE = 60; // letters of a cell that is read, not compared
+  const SHORT = 12; // letters of a cell that is a number with its unit
+  const NAMES = "dt.sig .pre, .indextable a, .modindextable code .pre, article h1, \
+.prev-next-title, .bd-sidebar-secondary a, .bd-sidebar-secondary .pre";
 
   let stops = 0; // each region has a name of its own
   const judge = (box) => {
@@ -24,6 +28,30 @@
     const first = box.querySelector("tbody tr > :first-child");
     box.classList.toggle("keeps-first", first?.offsetWidth < 0.5 * box.clientWidth);
   };
+
+  for (const name of document.querySelectorAll(NAMES)) {
+    for (const text of [...name.childNodes].filter((node) => node.nodeType === 3)) {
+      const parts = text.data.replace(/([._])(?=[a-z])/gi, "$1\0").split("\0");
+      if (parts.length > 1) {
+        text.replaceWith(...parts.flatMap((part) => [part, document.createElement("wbr")]));
+      }
+    }
+  }
+
+  for (const formula of document.querySelectorAll("article span.math")) {
+    const after = formula.nextSibling;
+    const mark = after?.nodeType === 3 && after.data.match(/^[,.;:?!)]+/)?.[0];
+    if (!mark) continue;
+    const kept = document.createElement("span");
+    kept.className = "kept";
+    formula.replaceWith(kept);
+    kept.append(formula, mark);
+    after.data = after.data.slice(mark.length);
+  }
+
+  for (const cell of document.querySelectorAll("article td")) {
+    if (cell.textContent.trim().length <= SHORT) cell.classList.add("short");
+  }
 
   // Cards need one line of headings in plain words, to be said again in front of each cell.
   for (const table of document.querySelectorAll("article table")) {

@@ -86,9 +86,11 @@ def plane(
             axis.clabel(lines, fmt="%g", fontsize=8)
         if training is not None:
             axis.add_patch(Polygon(_hull(training), fill=False, ec="white", ls="--", lw=1.2))
-            axis.plot(*np.transpose(training), "o", color="white", mec=INK, ms=7, label="training")
+            axis.plot(*np.transpose(training), "o", color="white", mec=INK, ms=7, label="training",
+                      clip_on=False, zorder=3)  # fmt: skip
         if test is not None:
-            axis.plot(*np.transpose(test), "D", color=COLOURS[1], mec="white", ms=8, label="test")
+            axis.plot(*np.transpose(test), "D", color=COLOURS[1], mec="white", ms=8, label="test",
+                      clip_on=False, zorder=3)  # fmt: skip
         axis.set(xlabel=labels[0], ylabel=labels[1])
         axis.grid(False)
         _finish(figure.colorbar(mesh, ax=axis, label=labels[2]))

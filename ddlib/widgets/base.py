@@ -48,21 +48,6 @@ class _Checked(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
-class TooCoarse(ValueError):
-    """A grid misses the tolerance of a widget.
-
-    Parameters
-    ----------
-    message : str
-    error : float
-        Largest deviation found, relative to the range of the curve.
-    """
-
-    def __init__(self, message: str, error: float):
-        super().__init__(message)
-        self.error = error
-
-
 class CurveWidget(anywidget.AnyWidget):
     """Curves of a function of a few parameters, with a control for each.
 
@@ -114,9 +99,8 @@ class CurveWidget(anywidget.AnyWidget):
     Raises
     ------
     ValueError
-        If arguments do not fit together, or if the grid needs more than 400 kB.
-    TooCoarse
-        If the grid is too coarse for the tolerance; a ValueError.
+        If arguments do not fit together, if the grid needs more than 400 kB, or if it is too
+        coarse for the tolerance.
     """
 
     _esm = module(*SCRIPT)
@@ -169,10 +153,9 @@ class CurveWidget(anywidget.AnyWidget):
         self._check_names(scalars)
         error = self._baked.error(checks)
         if error > tolerance:
-            raise TooCoarse(
+            raise ValueError(
                 f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
-                "take more grid points or a larger tolerance",
-                error,
+                "take more grid points or a larger tolerance"
             )
         self._code = code or default_code(type(self), self._parameters)
         self._presets = checked_presets(presets, self._parameters)

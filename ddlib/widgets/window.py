@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import traitlets as t
 
 from ddlib._check import finite_array
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.simulation import LOG_STEP, Recording
-from ddlib.widgets.base import CurveWidget, Panel, Scalar
-from ddlib.widgets.hinton import EXACT, JOINTS, check_models, width_choice
+from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
+from ddlib.widgets.engine.live import LiveWidget
+from ddlib.widgets.engine.plain import ENGINE, SLIDING, lean, networks
+from ddlib.widgets.hinton import JOINTS, check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice
 
 CODE = """\
@@ -25,10 +28,11 @@ print(model.torque(window), run.tau[run.motion][{sample}])"""
 """What the network sees and does by ddlib's functions."""
 
 
-class SlidingWindow(CurveWidget):
+class SlidingWindow(LiveWidget):
     """Slide the window along a motion: inputs, activities and torque at every sample.
 
-    Everything is computed for every sample of the motion; nothing is interpolated.
+    The page has the recording and the weights; the live engine computes what the networks make
+    of it.
 
     Parameters
     ----------
@@ -37,7 +41,7 @@ class SlidingWindow(CurveWidget):
     recording : Recording
         One run, with rests long enough for the largest window.
     **options
-        Passed on to `CurveWidget`.
+        Passed on to `LiveWidget`.
 
     Attributes
     ----------
@@ -47,27 +51,35 @@ class SlidingWindow(CurveWidget):
         The window's centre, counted from the beginning of the motion.
     """
 
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "window.js"))
+
+    layouts = t.List(help="the networks' layouts and scalings", read_only=True).tag(sync=True)
+    weights = t.Bytes(help="the networks' weights as float32", read_only=True).tag(sync=True)
+    recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
+    recorded.tag(sync=True)
+
     def __init__(self, models: Mapping[int, TorqueModel], recording: Recording, **options):
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
-        self._models, self._measured = check_models(models, 0), recording.tau[recording.motion]
-        self._reach = max(self._models) // 2
+        models = check_models(models, 0)
+        self._measured = recording.tau[recording.motion]
+        reach = max(models) // 2
         self._time = recording.t[recording.motion]
         self._seen, self._activity, self._torque = {}, {}, {}
-        around = sliding_windows(recording.q, 2 * self._reach + 1, recording.motion)
-        for width, model in self._models.items():
+        around = sliding_windows(recording.q, 2 * reach + 1, recording.motion)
+        for width, model in models.items():
             windows = sliding_windows(recording.q, width, recording.motion)
             self._seen[width] = model.inputs.scale(around, joint_axis=-2)
             self._activity[width] = np.hstack(model.weights.activity(model.scaled(windows)))
             self._torque[width] = model.torque(windows)
         hidden = self._activity[max(models)].shape[-1] - len(JOINTS)
         units = [*map(str, range(hidden)), *(joint[0] for joint in JOINTS)]
-        centre = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
+        centre = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
         super().__init__(
             self._curves,
             [
-                width_choice(self._models),
+                width_choice(models),
                 Choice(
                     "sample",
                     "Centre of the window",
@@ -117,13 +129,24 @@ class SlidingWindow(CurveWidget):
                 for joint in JOINTS
                 for what in ("network", "measured")
             ],
-            depends={
-                **{f"{joint} torque": ("width",) for joint in JOINTS},
-                **{f"{joint} measured": ("sample",) for joint in JOINTS},
-                **dict.fromkeys(("first", "last"), ("width",)),
-            },
-            **{"tolerance": EXACT, **options},
+            ranges=self._ranges(),
+            **options,
         )
+        layouts, weights = networks(models.values())
+        self.set_trait("layouts", layouts)
+        self.set_trait("weights", weights)
+        whole = slice(recording.motion.start - reach, recording.motion.stop + reach)
+        parts = recording.q[whole].T.ravel(), self._measured.T.ravel()
+        self.set_trait("recorded", np.concatenate(parts).astype("<f8").tobytes())
+
+    def _ranges(self) -> dict:
+        """Lowest and highest value of the curves over all widths and samples."""
+        seen, torque = (np.concatenate(list(x.values())) for x in (self._seen, self._torque))
+        ranges = {"activity": np.concatenate([x.ravel() for x in self._activity.values()])}
+        for j, joint in enumerate(JOINTS):
+            ranges |= {f"{joint} position": seen[:, j], f"{joint} measured": self._measured[:, j]}
+            ranges |= dict.fromkeys((f"{joint} torque", f"{joint} network"), torque[:, j])
+        return {name: (x.min(), x.max()) for name, x in ranges.items()}
 
     def _curves(self, width, sample) -> dict:
         half = (width // 2 + 0.5) * LOG_STEP

@@ -13,6 +13,7 @@ PAPER = 718  # px: A4 between margins of 1 cm
 
 # As the browser's own print does it: before the pages are laid out.
 PRINTED = r"""() => {
+  document.getElementById("pst-back-to-top").style.display = "block"; // as after scrolling
   dispatchEvent(new Event("beforeprint"));
   const all = (selector) => [...document.querySelectorAll(selector)];
   const seen = (el) => el.checkVisibility() && el.getBoundingClientRect().height > 0;
@@ -22,6 +23,9 @@ PRINTED = r"""() => {
     titles: words(all("h1")),
     headings: words(all("article h2")),
     clicks: words(all("body :is(button, select, input, nav, .bd-header, .copybtn, .headerlink)")),
+    told: words(all(".ddlib-widget :is(.remark, .footer)")),
+    signs: all("details.claim > summary").filter(
+      (el) => getComputedStyle(el, "::after").display !== "none").length,
     bars: words(all("article details:not(.answer, .claim) > summary")),
     closed: all("article details:not([open])").filter(seen).length,
     answers: all("article .tag_hide-cell .cell_input pre, article details.answer p").map(seen),
@@ -74,6 +78,7 @@ def test_a_chapter_on_paper(name, site, visit):
     assert len(printed["headings"]) > 3
     assert all(re.match(rf"{number}\.\d+\. ", heading) for heading in printed["headings"])
     assert not printed["clicks"] and not printed["bars"]
+    assert not printed["told"] and not printed["signs"]
     assert not printed["closed"] and not printed["moving"] and not printed["cut"]
     assert printed["answers"] and all(printed["answers"])
     assert printed["figures"] and all(printed["figures"])

@@ -329,6 +329,34 @@ def test_inside_at_rest_there_is_a_hint_and_a_way_on(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
+def test_link_and_code_take_the_motion_along(tmp_path, visit, widget, capsys):
+    url = page_of(tmp_path / "page.html", widget)
+    opened = visit(f"{url}?thrown-arm=motion:2&other=1", **CALM)
+    page = opened.page
+    shown = "document.querySelector('.ddlib-throw').world.shown"
+    assert page.evaluate(shown) == 2 and "trajectory 2" in said(page)
+    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    page.get_by_role("button", name="Look inside").click()
+    page.get_by_role("button", name="Link").click()
+    page.wait_for_function("window.copied")
+    assert said(page) == "Link copied."
+    link = page.evaluate("window.copied")
+    assert link == f"{url}?other=1&thrown-arm=motion:2,inside:1"
+    again = visit(link, **CALM).page
+    assert again.evaluate(shown) == 2 and again.locator(".inside").is_visible()
+    page.get_by_role("button", name="Code").click()
+    page.wait_for_function("window.copied.startsWith('from')")
+    found = {}
+    exec(page.evaluate("window.copied"), found)
+    assert capsys.readouterr().out
+    assert (
+        found["run"].q_true[:, 0] == JOINT_DAMPING.record(APPENDIX_I[[1]])[0].q_true[:, 0]
+    ).all()
+    assert found["told"].shape == (300, 2)
+    assert not opened.problems
+
+
+@pytest.mark.browser
 def test_colours_follow_the_page(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget), **CALM).page
     painted = "() => document.querySelectorAll('.ddlib-throw canvas')[1].toDataURL()"

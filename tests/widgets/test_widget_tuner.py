@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import numpy as np
@@ -309,10 +310,98 @@ def test_a_prediction_comes_first(tmp_path, visit, tuner):
         assert page.evaluate(SEEN)["setting"] == then
         stopped = "Run stopped at" in page.locator(".verdict").inner_text()
         assert stopped == (k in (1, 2, 4))
-        assert page.get_by_role("radio").first.is_disabled()
+        assert not page.get_by_role("radio").count()  # the answer stands in their place
         page.get_by_role("button", name="Next question").click()
     assert QUESTIONS[0].text in page.locator(".question").inner_text()
     assert not opened.problems + violations_in(page, "light", "dark")
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(
+    "setting",
+    [{"kd": 0.0, "late": 10}, {"kd": 80.0, "late": 20}, {"kd": 0.0, "late": 1, "kp": 1200.0}],
+    ids=str,
+)
+def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner, setting):
+    """In the page's own per cent: a little less is stable, a little more is not."""
+    query = ",".join(f"{name}:{value:g}" for name, value in setting.items())
+    page = visit(f"{page_of(tmp_path / 'page.html', tuner)}?pidtuner={query}", **CALM).page
+    text = told_remedy(page)
+    assert text.startswith("An unstable loop has no margin: to be stable, all three gains")
+    part = float(re.search(r"([\d.]+)\s%", text)[1]) / 100
+    whole = {**START, **setting}
+    signs = []
+    for share in (0.96, 1.04):
+        law = gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
+        signs.append(is_stable(law, whole["late"]))
+    assert signs == [True, False]
+    numbers = page.locator(".scalars dd").all_inner_texts()
+    assert numbers[2:] == ["none, unstable"] * 3
+    page.locator("input[id$=-late]").press("Home")
+    page.locator("input[id$=-kd]").press("End")
+    page.evaluate(NEXT_FRAME)
+    assert not page.locator(".remedy").inner_text()
+    assert "none" not in " ".join(page.locator(".scalars dd").all_inner_texts())
+
+
+@pytest.mark.browser
+def test_too_much_of_an_integral_is_no_matter_of_all_gains(tmp_path, visit, tuner):
+    page = visit(f"{page_of(tmp_path / 'page.html', tuner)}?pidtuner=kd:0,ki:600", **CALM).page
+    text = told_remedy(page)
+    assert "all three gains together does not make it stable, the integral gain alone" in text
+    part = float(re.search(r"([\d.]+)\s%", text)[1]) / 100
+    less, more = (gains(START["kp"], 600 * part * share, 0.0) for share in (0.96, 1.04))
+    assert is_stable(less) and not is_stable(more)
+    for share in (1e-3, 0.01, 0.1, 0.5, 1):
+        assert not is_stable(gains(START["kp"] * share, 600 * share, 0.0))
+    assert page.locator(".scalars dd").first.inner_text() == "none, stopped"
+
+
+def told_remedy(page):
+    page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
+    page.wait_for_timeout(600)  # and stays
+    return page.locator(".remedy").inner_text()
+
+
+def is_stable(law, late=0):
+    joints = plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS)
+    loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=late)
+    return np.abs(loop.poles()).max() < 1
+
+
+COLUMN = "<style>main { max-width: 688px; margin: 0 auto }</style>"
+"""The book's column on a laptop."""
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("setting", ["", "?pidtuner=kd:0,late:10"])
+@pytest.mark.parametrize("width, height", [(1280, 800), (390, 844)])
+def test_sliders_picture_and_verdict_are_seen_together(
+    tmp_path, visit, tuner, width, height, setting
+):
+    url = page_of(tmp_path / "page.html", tuner, extra=COLUMN)
+    page = visit(f"{url}{setting}", width=width, **CALM).page
+    page.set_viewport_size({"width": width, "height": height})
+    if setting:
+        told_remedy(page)
+    page.evaluate(NEXT_FRAME)
+    seen = [".controls", ".stage", ".verdict", *[".ddlib-tuner .chart > svg"] * (width > 1000)]
+    boxes = [page.locator(place).first.bounding_box() for place in seen]
+    assert max(b["y"] + b["height"] for b in boxes) - min(b["y"] for b in boxes) < height - 64
+    assert page.locator(".ask").bounding_box()["height"] < (140 if width > 1000 else 190)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+@pytest.mark.browser
+def test_margins_are_linked_to_the_nyquist_plot(tmp_path, visit, tuner):
+    plot = '<figure id="fig-feedback-nyquist" style="margin-top: 3000px">plot</figure>'
+    page = visit(page_of(tmp_path / "page.html", tuner, extra=plot), **CALM).page
+    page.get_by_role("link", name="the Nyquist plot").click()
+    page.wait_for_function("scrollY > 1000")
+    assert page.evaluate("location.hash") == "#fig-feedback-nyquist"
+    page = visit(page_of(tmp_path / "alone.html", tuner), **CALM).page
+    assert not page.get_by_role("link").count()
+    assert "Nyquist plot in the chapter" in page.locator(".told-so").inner_text()
 
 
 @pytest.mark.browser

@@ -36,6 +36,15 @@ HINT = (
     "torque: from each window of positions it tells the torque at the window's centre."
 )
 
+CODE = """\
+from ddlib.experiments import JOINT_DAMPING, predict, results
+from ddlib.trajectories import APPENDIX_I
+
+run = JOINT_DAMPING.record(APPENDIX_I[[{motion}]])[0]
+told = predict(results.median_network(21, JOINT_DAMPING.name), run)
+print(told - run.tau_true[run.motion])  # N m, shape (300, 2)"""
+"""What the page copies as code: the motion that is shown and what the network makes of it."""
+
 
 class ThrownArm(anywidget.AnyWidget):
     """Throw a simulated arm; a window network tells the torque from positions alone.
@@ -69,6 +78,7 @@ class ThrownArm(anywidget.AnyWidget):
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(self, model: TorqueModel | None = None, setup: Setup = JOINT_DAMPING):
+        code = CODE if model is None and setup is JOINT_DAMPING else ""
         model = results.median_network(21, setup.name) if model is None else model
         layout = network(model)
         if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
@@ -82,6 +92,7 @@ class ThrownArm(anywidget.AnyWidget):
             {
                 "title": "Throw the arm: a network tells its torque",
                 "hint": HINT,
+                "code": code,
                 "plant": plant(setup.arm, setup.effects),
                 "gains": gains(setup.controller),
                 "network": layout,
@@ -107,7 +118,7 @@ class ThrownArm(anywidget.AnyWidget):
 def _trajectory(k: int) -> dict:
     test = k == TEST_TRAJECTORY
     name = f"trajectory {k}, which the network {'never saw' if test else 'was trained on'}"
-    return {"name": name, "extents": np.deg2rad(APPENDIX_I[k - 1]).tolist()}
+    return {"name": name, "number": k, "extents": np.deg2rad(APPENDIX_I[k - 1]).tolist()}
 
 
 def _units(model: TorqueModel) -> list[dict]:

@@ -95,6 +95,23 @@ function logRadius(A, n) {
   return sum;
 }
 
+// The largest part of a loop's gains, together or its integral alone, with which it is stable; NaN if
+// none is, down to a thousandth.
+function calmPart(modes, gains, step, late, names = ["kp", "ki", "kd"]) {
+  const stable = (part) => {
+    const less = names.map((name) => [name, gains[name].map((x) => part * x)]);
+    return growthOf(modes, { ...gains, ...Object.fromEntries(less) }, step, late) < 0;
+  };
+  let [low, high] = [Math.log(1e-3), 0];
+  if (!stable(Math.exp(low))) return NaN;
+  for (let k = 0; k < 12; k++) {
+    const middle = (low + high) / 2;
+    if (stable(Math.exp(middle))) low = middle;
+    else high = middle;
+  }
+  return Math.exp(low);
+}
+
 const times = ([a, b], [c, d]) => [a * c - b * d, a * d + b * c];
 const over = (x, [c, d]) => times(x, [c / (c * c + d * d), -d / (c * c + d * d)]);
 const plus = ([a, b], [c, d]) => [a + c, b + d];

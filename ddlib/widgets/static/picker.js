@@ -35,9 +35,9 @@ function picked(loop, models, extents) {
   put(lines.recorded, sampled(recorded));
   const positions = JOINTS.map((j) => Float64Array.from(log.reading, (q) => q[j]));
   for (const model of models) {
-    const told = toldTorques(model, positions, ...during);
+    const told = toldTorques(model, scaledOf(model, positions), ...during);
     let sum = 0;
-    told.forEach((tau, k) => tau.forEach((x, j) => (sum += ((x - recorded[k][j]) / scale[j]) ** 2)));
+    for (const j of JOINTS) told.forEach((tau, k) => (sum += ((tau[j] - recorded[k][j]) / scale[j]) ** 2));
     curves[`RMSS, ${model.name}`] = [Math.sqrt(sum / (2 * told.length))];
     put(model.name, sampled(told));
   }

@@ -16,21 +16,23 @@ function modelsOf(layouts, view) {
   return models;
 }
 
-// Positions (rad), joint by joint: the window around a sample, for the input units.
-function windowAt(model, positions, k) {
-  const { width } = model.net;
-  const window = new Float64Array(model.net.inputs);
-  const first = k - (width >> 1);
-  positions.forEach((x, j) => window.set(x.subarray(first, first + width), j * width));
-  return scaledWindow(model, window);
+// Positions (rad), joint by joint, scaled for a network's input units.
+const scaledOf = ({ inputs: { low, gain, first } }, positions) =>
+  positions.map((x, j) => x.map((q) => first + (q - low[j]) * gain[j]));
+
+// The window around a sample of scaled positions.
+function windowAt({ net }, scaled, k, window = new Float64Array(net.inputs)) {
+  const first = k - (net.width >> 1);
+  scaled.forEach((x, j) => window.set(x.subarray(first, first + net.width), j * net.width));
+  return window;
 }
 
 // Torques (N m) that a network tells at the samples `from` to `to`, a pair for each.
-function toldTorques(model, positions, from, to) {
-  const hidden = new Float64Array(model.net.hidden);
-  const output = new Float64Array(model.net.outputs);
+function toldTorques(model, scaled, from, to) {
+  const { net } = model;
+  const [window, hidden, output] = [net.inputs, net.hidden, net.outputs].map((n) => new Float64Array(n));
   return Array.from({ length: to - from }, (_, k) => {
-    activity(model.net, windowAt(model, positions, from + k), hidden, output);
+    activity(net, windowAt(model, scaled, from + k, window), hidden, output);
     return torqueOfOutput(model, output);
   });
 }

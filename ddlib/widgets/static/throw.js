@@ -83,7 +83,8 @@ function build({ model, el }) {
   const motions = spec.trajectories.length;
   world.play(motions - 1);
   while (world.mode === "play") world.period();
-  world.play(0);
+  const [, given, open] = location.search.match(/[?&]thrown-arm=motion:(\d)(,inside:1)?/) ?? [];
+  world.play(Number(given ?? 0));
   for (let k = (spec.rest + 0.6 * spec.motion) / spec.step; k > 0; k--) world.period();
 
   const stage = stageOf(world, spec);
@@ -240,6 +241,27 @@ function build({ model, el }) {
   look.setAttribute("aria-expanded", "false");
   look.setAttribute("aria-controls", inside.el.id);
 
+  // The state to take along; the common frame is too heavy for the first page.
+  const address = () => {
+    const url = new URL(location.href);
+    url.searchParams.delete("thrown-arm");
+    const state = `thrown-arm=motion:${world.shown}${inside.open ? ",inside:1" : ""}`;
+    return `${url.origin === "null" ? "file://" : url.origin}${url.pathname}${url.search ? `${url.search}&` : "?"}${state}`;
+  };
+  const copies = (text, what, write) =>
+    button(text, () => {
+      const copied = write();
+      navigator.clipboard.writeText(copied).then(
+        () => say(`${what} copied.`),
+        () => prompt("Press Ctrl+C", copied),
+      );
+    });
+  const code = () => spec.code.replace("{motion}", spec.trajectories[world.shown].number - 1);
+  const taken = [
+    ...(model.kernelless ? [copies("Link", "Link", address)] : []),
+    ...(spec.code ? [copies("Code", "Code", code)] : []),
+  ];
+
   // The hand
   const { handle } = stage;
   const take = (pull) => {
@@ -319,8 +341,10 @@ function build({ model, el }) {
     make("div", { class: "words" }, said, outside),
     errors,
     hint,
+    make("div", { class: "buttons" }, ...taken),
     inside.el,
   );
+  if (open) look.click();
   world.changed = () => frame || draw();
   say(`Paused on ${named()}. Grab the hand and let go, or press Play.`);
 

@@ -2,6 +2,8 @@
 
 const NAMES = ["shoulder", "elbow"];
 const PAUSE = 800; // ms without a change after which a setting is the one before the next
+const THOUGHT = 250; // ms without a change after which it is sought what would make a loop stable
+const NYQUIST = "fig-feedback-nyquist"; // figure of the chapter that explains margins
 
 // Everything about one setting.
 function tuned(loop, setting) {
@@ -23,7 +25,8 @@ function tuned(loop, setting) {
   const margins = JOINTS.map((j) =>
     growth < 0 ? marginOf(modes, gains, step, setting.late, j) : { phase: NaN, crossover: NaN },
   );
-  return { setting, log, wanted, error, torque, rms, growth, margins, seconds: step * every };
+  const calm = (names) => calmPart(modes, gains, step, setting.late, names);
+  return { setting, log, wanted, error, torque, rms, growth, margins, calm, seconds: step * every };
 }
 
 // Runs by their settings, the newest last.
@@ -87,6 +90,12 @@ extras.push((view) => {
   const slider = make("input", { id, type: "range", min: 0, max: end, step: loop.step * loop.every });
   const play = make("button", { type: "button" }, "Play");
   const verdict = make("p", { class: "verdict", role: "status" });
+  const remedy = make("p", { class: "remedy", role: "status" });
+  const chapter = "How close to instability?";
+  const figure = document.getElementById(NYQUIST)
+    ? make("a", { href: `#${NYQUIST}` }, `the Nyquist plot under “${chapter}”`)
+    : `the Nyquist plot in the chapter What feedback does, under “${chapter}”`;
+  const pointer = make("p", { class: "remark" }, "What a margin is: ", figure, ".");
   const key = (kind, text) => {
     const line = make("path", { class: "links", d: "M2 6H24" });
     const icon = make("svg", { width: 26, height: 12, "aria-hidden": "true" });
@@ -97,7 +106,8 @@ extras.push((view) => {
   legend.append(key("now", "now"), key("ghost", "the setting before"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, play);
   row.append(make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider));
-  view.top.prepend(make("div", { class: "scene" }, stage.svg, legend, row, verdict));
+  view.top.append(make("div", { class: "told-so" }, verdict, remedy, pointer));
+  view.top.append(make("div", { class: "scene" }, stage.svg, legend, row));
 
   let time = 1.0;
   let frame = 0;
@@ -160,7 +170,35 @@ extras.push((view) => {
     if (log.stopped === null) return linear;
     return `${linear} Run stopped at ${(log.stopped * seconds).toFixed(2)}\u00a0s: an error passed ${degrees}°.`;
   }
-  view.words = () => [words().slice(0, -1)];
+  view.words = () => [words().slice(0, -1), ...(remedy.textContent ? [remedy.textContent.slice(0, -1)] : [])];
+
+  // An unstable loop has no margin: what would make it stable instead.
+  let thinking = 0;
+  const percent = (part) => `${Number((100 * part).toPrecision(2))}\u00a0%`;
+  function remedied() {
+    const { now } = view;
+    const begin = "An unstable loop has no margin";
+    clearTimeout(thinking);
+    write(remedy, now.growth < 0 ? "" : (now.remedy ?? `${begin}.`));
+    if (now.growth < 0 || now.remedy) return;
+    thinking = setTimeout(() => {
+      now.remedy = `${begin}: ${calming(now)}`;
+      write(remedy, now.remedy);
+    }, THOUGHT);
+  }
+  function calming({ calm }) {
+    const part = calm();
+    if (part === part) return `to be stable, all three gains would have to fall to ${percent(part)}.`;
+    const alone = calm(["ki"]);
+    const rest = alone === alone ? `, the integral gain alone would have to fall to ${percent(alone)}.` : ", nor the integral gain alone.";
+    return `lowering all three gains together does not make it stable${rest}`;
+  }
+  const outputs = [...view.numbers.querySelectorAll("output")];
+  function numbered() {
+    spec.scalars.forEach(({ name }, k) => {
+      if (outputs[k].textContent === "none") write(outputs[k], name.endsWith("RMS") ? "none, stopped" : "none, unstable");
+    });
+  }
 
   const ask = asking(view, loop.questions, (change) => {
     model.set("before", change[0]);
@@ -181,6 +219,8 @@ extras.push((view) => {
 
   const follow = () => {
     write(verdict, words());
+    remedied();
+    numbered();
     el.toggleAttribute("data-stopped", view.now.log.stopped !== null);
     draw();
   };
@@ -191,6 +231,7 @@ extras.push((view) => {
   follow();
   return () => {
     halt();
+    clearTimeout(thinking);
     model.off("change:before", redraw);
   };
 });
@@ -198,7 +239,7 @@ extras.push((view) => {
 // A question at a time: the reader predicts, then it is shown.
 function asking(view, questions, show) {
   let at = 0;
-  const question = make("p", { class: "question" });
+  const question = make("span", { class: "question" });
   const choices = make("div", { class: "choices" });
   const told = make("p", { class: "told", role: "status" });
   const button = (text, act) => {
@@ -213,7 +254,7 @@ function asking(view, questions, show) {
     const good = Number(chosen.value) === right;
     show(settings);
     write(told, `${good ? "As you said." : "Not what you said."} ${texts[right]} ${why}`);
-    for (const input of choices.querySelectorAll("input")) input.disabled = true;
+    choices.hidden = true; // the answer stands in its place
     tryIt.disabled = true;
   });
   const next = button("Next question", () => {
@@ -224,6 +265,7 @@ function asking(view, questions, show) {
     const { text, choices: texts } = questions[at];
     write(question, `… ${text}?`);
     write(told, "");
+    choices.hidden = false;
     tryIt.disabled = true;
     choices.replaceChildren(
       ...texts.map((choice, k) => {
@@ -235,7 +277,7 @@ function asking(view, questions, show) {
     );
   }
   pose();
-  const legend = make("legend", {}, "First predict: what happens if");
+  const legend = make("legend", {}, "First predict: what happens if ", question);
   const buttons = make("div", { class: "buttons" }, tryIt, next);
-  return make("fieldset", { class: "ask" }, legend, question, choices, buttons, told);
+  return make("fieldset", { class: "ask" }, legend, choices, told, buttons);
 }

@@ -1,0 +1,49 @@
+// What SlidingWindow (window.py) computes. Follows sliding.js.
+
+const NAMES = ["shoulder", "elbow"];
+
+// Positions (rad), joint by joint, and torques (N m) of the motion, from their bytes; positions reach
+// `reach` samples beyond it on either side.
+function recordedOf(view, samples, reach) {
+  const wanted = 8 * JOINTS.length * (2 * samples + 2 * reach);
+  if (view?.byteLength !== wanted) throw new Error(`${view?.byteLength} bytes in place of ${wanted}`);
+  let at = 0;
+  const next = (count) => Float64Array.from({ length: count }, () => view.getFloat64(8 * at++, true));
+  const positions = JOINTS.map(() => next(samples + 2 * reach));
+  return { positions, torques: JOINTS.map(() => next(samples)) };
+}
+
+live = (view) => {
+  const { model, spec } = view;
+  const [strip, , chart] = spec.panels;
+  const times = chart.x;
+  const reach = (strip.x.length - 1) / 2;
+  view.networks ??= modelsOf(model.get("layouts"), model.get("weights"));
+  view.recorded ??= recordedOf(model.get("recorded"), times.length, reach);
+  view.told ??= new Map(); // of the widths that were chosen
+  const { positions, torques } = view.recorded;
+  const [width, sample] = ["width", "sample"].map(view.get);
+  const network = view.networks.find(({ net }) => net.width === width);
+  if (!view.told.has(width)) {
+    const scaled = scaledOf(network, positions);
+    view.told.set(width, { scaled, told: toldTorques(network, scaled, reach, reach + times.length) });
+  }
+  const { scaled, told } = view.told.get(width);
+  const { hidden, output } = activity(network.net, windowAt(network, scaled, reach + sample));
+  const curves = { activity: [...hidden, ...output] };
+  NAMES.forEach((name, j) => {
+    curves[`${name} position`] = scaled[j].subarray(sample, sample + 2 * reach + 1);
+    curves[`${name} torque`] = told.map((tau) => tau[j]);
+    curves[`${name} network`] = [told[sample][j]];
+    curves[`${name} measured`] = [torques[j][sample]];
+  });
+  const step = (times.at(-1) - times[0]) / (times.length - 1);
+  const half = step * ((width >> 1) + 0.5);
+  const inside = (t) => [Math.min(times.at(-1), Math.max(times[0], t))];
+  Object.assign(curves, { from: inside(times[sample] - half), to: inside(times[sample] + half) });
+  return Object.assign(curves, { first: [-1000 * half], last: [1000 * half] });
+};
+
+extras.push((view) => {
+  view.el.sliding = view; // for tests
+});

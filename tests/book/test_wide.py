@@ -1,0 +1,91 @@
+"""What does not fit a line: names, numbers, formulas and tables on screens wide and narrow."""
+
+from __future__ import annotations
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+# Pieces of text that are cut in the middle although a line would hold them.
+CUT = r"""([selector, ends]) => {
+  const lines = (text) => {
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    return new Set([...range.getClientRects()].map((box) => Math.round(box.top))).size;
+  };
+  const found = [];
+  let seen = 0;
+  for (const el of document.querySelectorAll(selector)) {
+    if (!el.checkVisibility()) continue;
+    for (const node of el.childNodes) {
+      if (node.nodeType !== 3 || !new RegExp(ends).test(node.data)) continue;
+      seen += 1;
+      if (lines(node) > 1) found.push(node.data);
+    }
+  }
+  return [seen, found];
+}"""
+WORD = r"^[^\s,(]{2,}$"
+NUMBER = r"^[≤≥]? ?[\d.]+ (s|ms|µs|×|GiB)$"
+
+
+@pytest.mark.parametrize(
+    ("name", "width", "selector", "ends"),
+    [
+        ("book/notation", 1280, "td code .pre", WORD),
+        ("book/provenance", 1280, ":is(td, th) code .pre", WORD),
+        ("book/provenance", 390, "th code .pre", WORD),
+        ("book/status", 390, "td, td > p", NUMBER),
+        ("book/api/control", 390, "dt.sig .pre", WORD),
+        ("book/use-it-on-your-arm", 390, ".prev-next-title", r"^\w+$"),
+        ("book/api/dynamics", 390, ".prev-next-title", r"\w"),
+        ("genindex", 390, ".indextable a", r"^[\w.]+$"),
+    ],
+)
+def test_names_and_numbers_are_whole(name, width, selector, ends, site, visit):
+    page = visit(f"{site}/{name}.html", width=width).page
+    seen, cut = page.evaluate(CUT, [selector, ends])
+    assert seen and not cut
+
+
+def test_a_comma_stays_with_its_formula(site, visit):
+    """At any width of a column."""
+    page = visit(f"{site}/book/notation.html").page
+    ends = page.evaluate(
+        """() => [...document.querySelectorAll("article span.math")]
+          .map((formula) => {
+            const after = formula.nextSibling;
+            if (after?.nodeType !== 3 || !/^[,.;:]/.test(after.data)) return null;
+            const range = document.createRange();
+            range.setStart(after, 0);
+            range.setEnd(after, 1);
+            const [mark, own] = [range, formula].map((x) => x.getBoundingClientRect());
+            return mark.left >= own.left && mark.top < own.bottom + 4;
+          }).filter((stays) => stays !== null)"""
+    )
+    assert len(ends) > 20 and all(ends)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_column_that_stays_looks_like_its_row(scheme, site, visit):
+    page = visit(f"{site}/book/status.html", scheme, 390).page
+    grounds = page.evaluate(
+        """() => [...document.querySelectorAll(".keeps-first tr")].map((row) =>
+          [row, row.firstElementChild].map((el) => getComputedStyle(el).backgroundColor))"""
+    )
+    assert len(grounds) > 5
+    assert all(row == cell and row.startswith("rgb(") for row, cell in grounds)
+
+
+def test_the_contents_of_a_long_page_are_not_cut(site, visit):
+    page = visit(f"{site}/book/api/evidence.html").page
+    page.evaluate("document.getElementById('measures').scrollIntoView()")  # its part unfolds
+    page.wait_for_selector(".bd-sidebar-secondary a:text('real_arm_filters')")
+    cut = page.evaluate(
+        """() => [...document.querySelectorAll(".bd-sidebar-secondary a")].filter((link) => {
+          const range = document.createRange();
+          range.selectNodeContents(link);
+          return range.getBoundingClientRect().right > document.documentElement.clientWidth;
+        }).map((link) => link.innerText)"""
+    )
+    assert not cut
