@@ -53,6 +53,13 @@ def make_apart(name: str, code: str, do=make) -> str:
     """`make` in a process of its own with one thread; what went wrong, or nothing.
 
     On Linux it is forked from a process that has imported everything, which saves four seconds.
+
+    Parameters
+    ----------
+    name, code : str
+        As of `make`.
+    do : callable
+        What is called with them there.
     """
     forked = sys.platform == "linux"
     processes = multiprocessing.get_context("forkserver" if forked else "spawn")
