@@ -1,5 +1,5 @@
 // What Sphinx's search asks for: how much a hit counts, and what its excerpt is taken from.
-// Chapters come in their order before the package's reference; no formula is shown as its source.
+// Chapters come in their order before the package's reference.
 const REFERENCE = 1000; // points: more than any hit gets
 var Scorer = {
   score([page, title, , , score]) {
@@ -16,14 +16,53 @@ var Scorer = {
   partialTerm: 2,
 };
 
+// A page opened from a folder may not read others: excerpts come from a script, here as everywhere.
 addEventListener("DOMContentLoaded", () => {
-  const unread = ".headerlink, script, style, noscript, summary, .cell_input, .ddlib-figure, svg";
-  Search.htmlToText = (source, anchor) => {
-    const page = new DOMParser().parseFromString(source, "text/html");
-    const main = page.querySelector("article");
-    const part = (anchor && main?.querySelector(anchor)) || main;
-    for (const gone of part?.querySelectorAll(unread) ?? []) gone.remove();
-    for (const formula of part?.querySelectorAll(".math") ?? []) formula.replaceWith("…");
-    return part?.textContent.replace(/\s+/g, " ") ?? "";
+  const [LENGTH, BEFORE] = [240, 120]; // letters of an excerpt, and before the word
+  const root = document.documentElement.dataset.content_root;
+  const script = document.createElement("script");
+  let texts = {};
+  const loaded = new Promise((done) => {
+    globalThis.searchTexts = (all) => done((texts = all));
+  });
+  script.src = `${root}_static/search-texts.js`;
+  document.head.append(script);
+  globalThis.fetch = async (address) => {
+    await loaded;
+    return { text: async () => address.slice(root.length).replace(/\.html$/, "") };
+  };
+  Search.makeSearchSummary = (page, words, anchor) => {
+    const sections = texts[page] ?? {};
+    const text = sections[anchor?.slice(1)] ?? Object.values(sections).join(" ");
+    const lower = text.toLowerCase();
+    const at = [...words].map((word) => lower.indexOf(word)).filter((place) => place >= 0);
+    const wanted = Math.min(...at) - BEFORE;
+    const from = at.length && wanted > 0 ? text.indexOf(" ", wanted) + 1 : 0;
+    const summary = document.createElement("p");
+    summary.className = "context";
+    const more = [from > 0, from + LENGTH < text.length].map((cut) => (cut ? "…" : ""));
+    summary.textContent = more.join(text.slice(from, from + LENGTH).trim());
+    return summary;
+  };
+
+  // The glossary by its words, each once; what the package defines once, with what it is.
+  const GLOSSARY = "book/glossary";
+  const TERM = "#term-";
+  const named = (anchor) => {
+    const spelt = anchor.slice(TERM.length).split("-");
+    const entries = Object.entries(Search._index.indexentries);
+    const [entry] = entries.find(([, at]) => at.some(([, id]) => `#${id}` === anchor)) ?? [""];
+    return entry.replace(/\p{L}+/gu, (word) => spelt.find((w) => w.toLowerCase() === word) ?? word);
+  };
+  const search = Search._performSearch;
+  Search._performSearch = (...asked) => {
+    const hits = search(...asked);
+    const place = ([page, , anchor]) => page + anchor;
+    const isTerm = ([page, , anchor]) => page === GLOSSARY && anchor.startsWith(TERM);
+    const told = new Set(hits.filter((hit) => hit[3]).map(place));
+    const terms = hits.some(isTerm);
+    const kept = hits.filter((hit) => (hit[3] || !told.has(place(hit)))
+      && (!terms || hit[0] !== GLOSSARY || isTerm(hit)));
+    return kept.map((hit) => (isTerm(hit) ? [hit[0], `Glossary > ${named(hit[2])}`, ...hit.slice(2)] : hit));
   };
 }, { capture: true });

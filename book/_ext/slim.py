@@ -29,9 +29,6 @@ SEARCH_SCRIPTS = {"searchtools.js", "language_data.js", "searchindex.js"}
 MATHS_SCRIPT = "tex-svg-full.js"
 
 FIELD = 'field search-button__button pst-js-only"'
-NO_SUMMARY = (  # of search results: fetching their pages fails from a folder
-    '<script>DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY &&= location.protocol !== "file:"</script>'
-)
 HEAD = (  # for the page that only leads to the first one: without an icon, browsers look for it
     '<!doctype html><html lang="en"><meta charset="utf-8"><title>To the first page</title>'
     '<link rel="icon" href="_static/favicon.svg">'
@@ -39,7 +36,6 @@ HEAD = (  # for the page that only leads to the first one: without an icon, brow
 # What Sphinx, the theme and myst-nb write, and what assistive technology needs instead.
 REPAIRS = (
     ('<div id="pst-primary-sidebar"', '<div id="pst-primary-sidebar" role="complementary"'),
-    ('<div id="search-results">', NO_SUMMARY + '<div id="search-results">'),
     ('role="doc-biblioentry"', 'role="listitem"'),  # that role is deprecated
     ('<summary aria-label="Toggle hidden content">', "<summary>"),  # its text says more
     ('field search-button__button pst-js-only" title="Search" aria-label="Search"', FIELD),

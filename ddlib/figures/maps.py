@@ -218,7 +218,8 @@ def intervals(
                     axis.plot([low, high], [y, y], color=COLOURS[k], lw=1.6)
                     axis.plot([middle], [y], SIGNS[k], color=COLOURS[k], ms=5, label=name)
             for row, x in (marks or {}).get(title, {}).items():
-                axis.plot([x], [own.index(row)], "D", mfc="none", mec=COLOURS[3], ms=7, mew=1.5)
+                axis.plot([x], [own.index(row)], "D", mfc="none", mec=COLOURS[3], ms=7, mew=1.5,
+                          clip_on=False)  # fmt: skip
             axis.set_yticks(range(len(own)), own)
             axis.set_ylim(len(own) - 0.5, -0.5)
             axis.set(xlabel=x_label, title=title, xscale="log" if log else "linear")

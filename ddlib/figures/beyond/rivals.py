@@ -20,7 +20,7 @@ from ddlib.figures.style import (
 )
 
 MARKERS = "os^Dv"
-LOWEST, HIGHEST = 0.009, 25.0
+LOWEST, HIGHEST = 0.009, 20.0
 """Ends of the axis of errors: room for noise below, for the legends above."""
 
 WIDTH = 5.2
@@ -97,7 +97,7 @@ def costs(
         }
         legend_above(figure, [Line2D([], [], **look) for look in looks.values()], list(looks))
 
-    return illustrate(draw, alt, WIDTH, 2.4 * rows + 0.6)
+    return illustrate(draw, alt, WIDTH, 2.9 * rows + 0.6)
 
 
 def _curve(axis, curve, colour, marker, width, name="") -> None:

@@ -1,0 +1,85 @@
+"""What excerpts of search results are taken from: the pages' prose as a script.
+
+A page opened from a folder may not read other pages, and over a network each would have to come
+whole. So the prose of all sections lies in one file, which `search-order.js` loads. Sentences that
+bring no long word which the page has not had before are left out, as are tables, code and outputs:
+compressed, it is below 100 kB. Formulas are dots.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+from docutils import nodes
+from sphinx import addnodes
+
+FILE = "search-texts.js"
+SENTENCE = re.compile(r"(?<=[.?!:;]) ")
+FIRST = 2  # sentences of a section that are kept in any case
+WORD = re.compile(r"[^\W\d_]{8,}")
+STEM = 7  # letters by which words are told apart
+
+OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block)
+"""What is found by itself, or is no prose."""
+
+
+def prose(node: nodes.Node) -> str:
+    """Words of a node, without what stands by itself."""
+    if isinstance(node, (nodes.math, nodes.math_block)):
+        return "… " if isinstance(node, nodes.math_block) else "…"
+    if isinstance(node, nodes.Text):
+        return str(node)
+    if isinstance(node, (*OWN, nodes.title, nodes.comment, nodes.raw, nodes.image)):
+        return ""
+    inner = "".join(prose(child) for child in node.children)
+    return inner if isinstance(node, nodes.Inline) else f"{inner} "
+
+
+def shortened(text: str, known: set[str]) -> str:
+    """Text on one line: its first sentences, and those with a long word that is not known yet."""
+    kept = []
+    for k, sentence in enumerate(SENTENCE.split(" ".join(text.split()))):
+        stems = {word[:STEM] for word in WORD.findall(sentence.lower())}
+        if k < FIRST or stems - known:
+            kept.append(sentence)
+            known |= stems
+        elif kept[-1] != "…":
+            kept.append("…")
+    return " ".join(kept)
+
+
+def texts_of(doctree: nodes.document) -> dict[str, str]:
+    """Text by anchor: of sections, and of what a glossary explains."""
+    found = {}
+    known = set()
+    for section in doctree.findall(nodes.section):
+        inside = "".join(prose(child) for child in section.children)
+        found[section["ids"][0]] = shortened(inside, known)
+    for item in doctree.findall(nodes.definition_list_item):
+        for name in (anchor for term in item.findall(nodes.term) for anchor in term["ids"]):
+            found[name] = shortened("".join(map(prose, item.findall(nodes.definition))), known)
+    for glossary in doctree.findall(addnodes.glossary):  # its terms say it all
+        found.pop(glossary.parent["ids"][0], None)
+    return {anchor: text for anchor, text in found.items() if text}
+
+
+def gather(app, doctree, page):
+    """Keep a page's texts; pages are resolved in this process, whoever writes them."""
+    app.env.dd_search_texts = {**getattr(app.env, "dd_search_texts", {}), page: texts_of(doctree)}
+
+
+def write(app, exception):
+    """Write the texts of all pages that there are."""
+    if app.builder.format == "html" and exception is None:
+        texts = getattr(app.env, "dd_search_texts", {})
+        kept = {page: texts[page] for page in sorted(texts) if page in app.env.found_docs}
+        said = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
+        Path(app.outdir, "_static", FILE).write_text(f"searchTexts({said})\n", encoding="utf-8")
+
+
+def setup(app):
+    app.connect("doctree-resolved", gather, priority=900)
+    app.connect("build-finished", write)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
