@@ -1,4 +1,4 @@
-"""The API pages: no field of a named tuple twice; source beside what measures claims.
+"""The API pages: no field of a named tuple twice, constants whole; source beside measures.
 
 Every claim leads to the lines that measure it. A page for every other module as well would take
 more time than all chapters' pages together.
@@ -15,6 +15,12 @@ SHOWN = "ddlib.evidence.measures"
 def skip_field(app, what, name, obj, skip, options):
     """Whether autodoc leaves a member out; None where it decides by itself."""
     return True if type(obj).__name__ == "_tuplegetter" else None
+
+
+def keep_first_line(app, what, name, obj, options, lines):
+    """What a constant's docstring says before a colon is no type, as napoleon has it."""
+    if what == "data":
+        lines.insert(0, "")
 
 
 def leave_sources(app, env, docnames):
@@ -39,6 +45,7 @@ def forget_others(app):
 
 def setup(app):
     app.connect("autodoc-skip-member", skip_field)
+    app.connect("autodoc-process-docstring", keep_first_line, priority=100)  # before napoleon
     app.connect("env-before-read-docs", leave_sources)
     app.connect("html-collect-pages", forget_others, priority=100)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -7,6 +7,7 @@ from collections import Counter
 
 import pytest
 from book_pages import API, ROOT, source
+from bs4 import BeautifulSoup
 
 PACKAGE = ROOT / "ddlib"
 
@@ -56,3 +57,17 @@ def test_a_heading_names_the_module_below_it(page):
     pairs = re.findall(r"^#+ ([\w.]+)\n\n```\{eval-rst\}\n\.\. automodule:: (\S+)", text, re.M)
     assert len(pairs) >= len(documented(page)) - 1
     assert not [pair for pair in pairs if not pair[1].endswith(pair[0])]
+
+
+@pytest.mark.built
+def test_what_a_constant_is_stands_whole(built):
+    """No part of its docstring is taken for a type."""
+    entries = [
+        entry
+        for page in API[1:]
+        for entry in BeautifulSoup((built / f"{page}.html").read_bytes(), "html.parser").select(
+            "dl.py.data"
+        )
+    ]
+    assert len(entries) > 100
+    assert not [e.get_text()[:80] for e in entries if e.select("dd > .field-list")]
