@@ -154,11 +154,18 @@ async (places) => {
 }
 """
 # Without a question whether to keep what was changed. The session ends first: what still listens
-# to a closed panel would look for its kernel.
+# to a closed panel would look for its kernel. And not before a kernel that starts is at rest: what
+# it is asked then would never be answered.
 CLOSE = """
 async () => {
   const { panel } = window;
   await panel.sessionContext.ready;
+  const starts = () => ["unknown", "starting", "busy", "connecting"]
+    .includes(panel.sessionContext.session?.kernel?.status);
+  for (let calm = 0, k = 0; calm < 5 && k < 200; k++) {
+    calm = starts() ? 0 : calm + 1;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
   await panel.context.revert();
   await panel.sessionContext.shutdown();
   panel.close();
@@ -285,16 +292,23 @@ def running(lab, browser):
     page = context.new_page()
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
-    page.goto(f"{lab}lab?token={TOKEN}&reset")
-    page.wait_for_selector("#jp-main-dock-panel")
+    enter(page, lab)
     yield page, errors
     context.close()
 
 
+def enter(page, lab: str):
+    """JupyterLab with nothing open."""
+    page.goto(f"{lab}lab?token={TOKEN}&reset")
+    page.wait_for_selector("#jp-main-dock-panel")
+
+
 @pytest.fixture
-def opened(running):
+def opened(running, lab):
     """The page, with nothing open in it before and after; its scripts make no errors."""
     page, errors = running
+    if page.locator(".jp-Dialog, .jp-Notebook").count():  # what another test has left
+        enter(page, lab)
     errors.clear()
     yield page
     page.evaluate(CLOSE)

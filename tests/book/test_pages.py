@@ -219,17 +219,20 @@ def test_pages_with_widgets_are_known(built):
 @built_test
 @pytest.mark.parametrize("name", WITH_WIDGETS)
 def test_widgets_are_light(name, built):
-    """At most 400 kB of baked values for a widget, and none where the page computes."""
+    """At most 400 kB of baked values for a widget; where the page computes, what it starts from."""
     page = (built / f"{name}.html").read_text(encoding="utf-8")
     saved = json.loads(re.search(rf"{STATE_TAG}(.*?)</script>", page, re.DOTALL)[1])["state"]
-    baked = {
-        model: sum(len(base64.b64decode(b["data"])) for b in entry.get("buffers", ()))
+    sizes = {
+        model: {b["path"][0]: len(base64.b64decode(b["data"])) for b in entry.get("buffers", ())}
         for model, entry in saved.items()
     }
+    baked = {model: sum(parts.values()) for model, parts in sizes.items()}
     shown = {model: entry["state"].get("spec") for model, entry in saved.items()}
     live = {model for model, spec in shown.items() if spec and {"live", "kind"} & set(spec)}
     assert max(baked.values()) > 0 or live
-    assert all(baked[model] == 0 for model in live)
+    tables = [size for model in live for size in map(sizes[model].get, ("baked", "exact")) if size]
+    assert not tables  # of what it would show
+    assert all(baked[model] <= 32_000 for model in live)  # weights, a recording
     assert max(baked.values()) <= 400_000
 
 
