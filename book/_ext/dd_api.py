@@ -17,10 +17,19 @@ def skip_field(app, what, name, obj, skip, options):
     return True if type(obj).__name__ == "_tuplegetter" else None
 
 
-def keep_first_line(app, what, name, obj, options, lines):
+COLON = "\u2236"
+"""Stands for a colon while napoleon looks for one."""
+
+
+def hide_colon(app, what, name, obj, options, lines):
     """What a constant's docstring says before a colon is no type, as napoleon has it."""
     if what == "data":
-        lines.insert(0, "")
+        lines[:1] = [line.replace(":", COLON) for line in lines[:1]]
+
+
+def show_colon(app, what, name, obj, options, lines):
+    """After napoleon."""
+    lines[:] = [line.replace(COLON, ":") for line in lines]
 
 
 def leave_sources(app, env, docnames):
@@ -45,7 +54,8 @@ def forget_others(app):
 
 def setup(app):
     app.connect("autodoc-skip-member", skip_field)
-    app.connect("autodoc-process-docstring", keep_first_line, priority=100)  # before napoleon
+    app.connect("autodoc-process-docstring", hide_colon, priority=100)
+    app.connect("autodoc-process-docstring", show_colon, priority=900)
     app.connect("env-before-read-docs", leave_sources)
     app.connect("html-collect-pages", forget_others, priority=100)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
