@@ -238,7 +238,8 @@ def _legible(figure: Figure) -> bool:
         for side in (axis.xaxis, axis.yaxis):
             low, high = sorted(side.get_view_interval())
             ticks = (*side.get_major_ticks(), *side.get_minor_ticks())
-            hidden |= {tick.label1 for tick in ticks if not low <= tick.get_loc() <= high}
+            beyond = [tick for tick in ticks if not low <= tick.get_loc() <= high]
+            hidden |= {label for tick in beyond for label in (tick.label1, tick.label2)}
     texts = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip()]
     boxes = [t.get_window_extent() for t in texts if t not in hidden]
     whole, point = figure.bbox.padded(1), figure.dpi / 72
