@@ -9,8 +9,28 @@
   const NAMES = "dt.sig .pre, .indextable a, .modindextable code .pre, article h1, \
 .prev-next-title, .bd-sidebar-secondary a, .bd-sidebar-secondary .pre";
 
+  // Down to which share of its size a formula, or a table, is set smaller instead of scrolled.
+  const LEAST = { "MJX-CONTAINER": 0.68, SECTION: 0.83, DIV: 0.83 };
+  const fitted = new WeakMap(); // the width for which a box was set
+
+  const fit = (box) => {
+    const least = LEAST[box.tagName];
+    const part = box.matches(TABLES) ? box.querySelector("table") : box;
+    if (!least || !part || box.matches(".ddlib-figure, div.math")) return;
+    if (fitted.get(box) === box.clientWidth) return;
+    fitted.set(box, box.clientWidth);
+    part.style.fontSize = "";
+    const own = parseFloat(getComputedStyle(part).fontSize);
+    const over = () => box.scrollWidth > box.clientWidth + 1;
+    for (let share = 1; over() && share > least; share -= 0.01) {
+      part.style.fontSize = `${(share - 0.01) * own}px`;
+    }
+    if (over()) part.style.fontSize = "";
+  };
+
   let stops = 0; // each region has a name of its own
   const judge = (box) => {
+    fit(box);
     const wide = box.scrollWidth > box.clientWidth + 1;
     box.classList.toggle("goes-on", wide);
     if (wide && box.getAttribute("tabindex") !== "0") {

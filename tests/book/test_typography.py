@@ -1,0 +1,81 @@
+"""Numbers in prose: their units stay with them, and minus is no hyphen."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import pytest
+from book_pages import PAGES, ROOT
+from bs4 import BeautifulSoup, Comment
+from docutils import nodes
+from docutils.utils import new_document
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_typography
+from dd_typography import MINUS, NO_BREAK, typeset
+
+PROSE = "article :is(p, h1, h2, h3, li, td, th, figcaption, dd)"
+NOT_PROSE = "code, pre, script, style, svg, mjx-container, .math, .sig, .cell_output, .ddlib-widget"
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("0.5 N m and 3 kg m² or 20 %", "0.5~N~m and 3~kg~m² or 20~%"),
+        ("in 2 steps of 3 s, 4 m.", "in 2 steps of 3~s, 4~m."),
+        ("5 shoulders, 7 AND 3 meters", "5 shoulders, 7 AND 3 meters"),
+        ("1 rad/s² and 2 N m s/rad", "1~rad/s² and 2~N~m~s/rad"),
+    ],
+)
+def test_a_unit_stays_with_its_number(text, wanted):
+    assert typeset(text) == wanted.replace("~", NO_BREAK)
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("from -1 to 1", "from ~1 to 1"),
+        ("(-0.5, -2)", "(~0.5, ~2)"),
+        ("-3 at the start", "~3 at the start"),
+        ("CMU-CS-88-160, Table 4-1, 1985-86, p.-7", "CMU-CS-88-160, Table 4-1, 1985-86, p.-7"),
+    ],
+)
+def test_minus_is_no_hyphen_and_a_hyphen_no_minus(text, wanted):
+    assert typeset(text) == wanted.replace("~", MINUS)
+
+
+def set_pieces(*pieces: nodes.Node) -> str:
+    document = new_document("page")
+    document += nodes.paragraph("", "", *pieces)
+    transform = dd_typography.SetNumbers(document)
+    transform.run()
+    return document[0].astext()
+
+
+def test_numbers_that_were_put_in_are_set_with_the_text_around_them():
+    assert set_pieces(nodes.Text("error "), nodes.inline("", "0.3"), nodes.Text(" N m")) == (
+        f"error 0.3{NO_BREAK}N{NO_BREAK}m"
+    )
+    assert set_pieces(nodes.math("", "10^{-8}"), nodes.Text(" rad")) == f"10^{{-8}}{NO_BREAK}rad"
+
+
+def test_code_is_as_it_was_written():
+    assert set_pieces(nodes.literal("", "x = -1 s"), nodes.Text("-3 s")) == (
+        f"x = -1 s-3{NO_BREAK}s"
+    )
+
+
+@pytest.mark.built
+@pytest.mark.parametrize("name", PAGES)
+def test_no_line_of_a_page_can_part_a_number_from_its_unit(name, built):
+    soup = BeautifulSoup((built / f"{name}.html").read_text(encoding="utf-8"), "html.parser")
+    for el in soup.select(NOT_PROSE):
+        el.replace_with("\n")
+    parted, minus = [], []
+    for el in soup.select(PROSE):
+        own = [t for t in el.find_all(string=True, recursive=False) if not isinstance(t, Comment)]
+        for text in own:
+            parted += re.findall(r"\d (?:N m|kg|mm|rad/s|Hz|ms)(?!\w)", text)
+            minus += re.findall(r"(?:^|[\s(])-\d[\d.]*", text)
+    assert not parted and not minus
