@@ -1,4 +1,5 @@
-"""What a typesetter does to the prose: units stay with their numbers, minus is no hyphen."""
+"""What a typesetter does to prose: units stay with their numbers and have raised powers, minus is
+no hyphen."""
 
 from __future__ import annotations
 
@@ -8,7 +9,7 @@ from docutils import nodes
 from sphinx import addnodes
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-NO_BREAK, MINUS = "\u00a0", "\u2212"
+NO_BREAK, MINUS, RAISED = "\u00a0", "\u2212", {"2": "²", "3": "³"}
 
 UNITS = (
     "N m s/rad", "N m/rad", "N m", "(N m)² s", "kg m²", "kg", "mm", "ms", "µs", "mrad", "rad/s²",
@@ -19,6 +20,7 @@ UNITS = (
 
 _UNIT = "|".join(map(re.escape, sorted(UNITS, key=len, reverse=True)))
 _AFTER_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/²³])")
+_POWER = re.compile(r"(?<=\b[ms])\^([23])\b")
 _HYPHEN = re.compile(r"(?<![^\s(\[,:;±≤≥<>=])-(?=\d)")
 
 AS_WRITTEN = (
@@ -35,7 +37,8 @@ def typeset(text: str, before: str = "") -> str:
     ----------
     text, before : str
     """
-    whole = _AFTER_NUMBER.sub(lambda unit: unit[0].replace(" ", NO_BREAK), before + text)
+    whole = _POWER.sub(lambda power: RAISED[power[1]], before + text)
+    whole = _AFTER_NUMBER.sub(lambda unit: unit[0].replace(" ", NO_BREAK), whole)
     return _HYPHEN.sub(MINUS, whole)[len(before) :]
 
 

@@ -26,6 +26,7 @@ NOT_PROSE = "code, pre, script, style, svg, mjx-container, .math, .sig, .cell_ou
         ("in 2 steps of 3 s, 4 m.", "in 2 steps of 3~s, 4~m."),
         ("5 shoulders, 7 AND 3 meters", "5 shoulders, 7 AND 3 meters"),
         ("1 rad/s² and 2 N m s/rad", "1~rad/s² and 2~N~m~s/rad"),
+        ("1 kg m^2, in rad/s^2, not q^2 or dm^2", "1~kg~m², in rad/s², not q^2 or dm^2"),
     ],
 )
 def test_a_unit_stays_with_its_number(text, wanted):

@@ -26,7 +26,7 @@ CUT = r"""([selector, ends]) => {
   return [seen, found];
 }"""
 WORD = r"^[^\s,(]{2,}$"
-NUMBER = r"^[≤≥]? ?[\d.]+ (s|ms|µs|×|GiB)$"
+NUMBER = r"^[≤≥]?\s?[\d.]+\s(s|ms|µs|×|GiB)$"
 
 
 @pytest.mark.parametrize(
@@ -89,3 +89,31 @@ def test_the_contents_of_a_long_page_are_not_cut(site, visit):
         }).map((link) => link.innerText)"""
     )
     assert not cut
+
+
+@pytest.mark.parametrize(
+    "name", ["adaptive-control", "convolution-filters", "rivals", "why-smooth-filters"]
+)
+def test_formulas_fit_a_phone(name, site, visit):
+    """Set smaller where they must be, but never too small to read."""
+    page = visit(f"{site}/book/{name}.html", width=390).page
+    formulas = page.evaluate(
+        """() => [...document.querySelectorAll("article div.math > mjx-container")].map((el) =>
+          [el.scrollWidth - el.clientWidth, parseFloat(getComputedStyle(el).fontSize)])"""
+    )
+    assert formulas
+    assert all(over <= 1 and size >= 10.5 for over, size in formulas)
+
+
+@pytest.mark.parametrize("name", ["convolution-filters", "learning-in-the-loop", "rivals"])
+def test_tables_that_are_a_little_too_wide_fit_a_screen(name, site, visit):
+    page = visit(f"{site}/book/{name}.html", width=1280).page
+    tables = page.evaluate(
+        """() => [...document.querySelectorAll(".pst-scrollable-table-container")]
+          .filter((el) => el.clientWidth)
+          .map((el) => [el.scrollWidth - el.clientWidth,
+            parseFloat(getComputedStyle(el.querySelector("table")).fontSize)])"""
+    )
+    sizes = [size for _, size in tables]
+    assert min(sizes) < max(sizes) and min(sizes) >= 11
+    assert all(over <= 1 for over, _ in tables)

@@ -20,7 +20,8 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     """Matrix Y with ``Y @ parameters = M(q) a + C(q, qd) v + g(q) + friction(v)``.
 
     With ``v = qd`` and ``a = qdd`` it is `ddlib.dynamics.Arm.regressor` and friction. C is the
-    matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`).
+    matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`); the form is that of Slotine & Li
+    1987, for two links.
 
     Parameters
     ----------
@@ -34,8 +35,6 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     Returns
     -------
     ndarray, shape (..., 2, parameters)
-
-    Source: Slotine & Li 1987, for two links.
     """
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
     q, qd, v, a = np.broadcast_arrays(*(finite_array(n, x, 2) for n, x in pairs))
