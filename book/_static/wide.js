@@ -11,17 +11,17 @@
 
   // Down to which share of its size a formula, or a table, is set smaller instead of scrolled.
   const LEAST = { "MJX-CONTAINER": 0.68, SECTION: 0.83, DIV: 0.83 };
-  const fitted = new WeakMap(); // the width for which a box was set
+  let fitted = new WeakMap(); // the width for which a box was set
 
   const fit = (box) => {
     const least = LEAST[box.tagName];
     const part = box.matches(TABLES) ? box.querySelector("table") : box;
     if (!least || !part || box.matches(".ddlib-figure, div.math")) return;
-    if (fitted.get(box) === box.clientWidth) return;
+    const over = () => box.scrollWidth > box.clientWidth + 1;
+    if (fitted.get(box) === box.clientWidth && !(part.style.fontSize && over())) return;
     fitted.set(box, box.clientWidth);
     part.style.fontSize = "";
     const own = parseFloat(getComputedStyle(part).fontSize);
-    const over = () => box.scrollWidth > box.clientWidth + 1;
     for (let share = 1; over() && share > least; share -= 0.01) {
       part.style.fontSize = `${(share - 0.01) * own}px`;
     }
@@ -89,12 +89,15 @@
   }
 
   const watched = new ResizeObserver((seen) => seen.forEach((entry) => judge(entry.target)));
-  const watch = () => {
-    for (const box of document.querySelectorAll("article")) {
-      for (const part of box.querySelectorAll(BOXES)) watched.observe(part);
+  const parts = () => document.querySelectorAll(`article :is(${BOXES})`);
+  for (const part of parts()) watched.observe(part);
+  const formulasStand = () => { // only now does everything have its width
+    fitted = new WeakMap();
+    for (const part of parts()) {
+      judge(part);
+      watched.observe(part);
     }
   };
-  watch();
-  window.MathJax?.startup?.promise?.then(() => watch()); // formulas have their width by then
-  addEventListener("load", () => window.MathJax?.startup?.promise?.then(() => watch()));
+  window.MathJax?.startup?.promise?.then(formulasStand);
+  addEventListener("load", () => window.MathJax?.startup?.promise?.then(formulasStand));
 })();

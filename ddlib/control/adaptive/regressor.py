@@ -20,8 +20,8 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     """Matrix Y with ``Y @ parameters = M(q) a + C(q, qd) v + g(q) + friction(v)``.
 
     With ``v = qd`` and ``a = qdd`` it is `ddlib.dynamics.Arm.regressor` and friction. C is the
-    matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`); the form is that of Slotine & Li
-    1987, for two links.
+    matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`).
+    The form is that of Slotine & Li 1987, for two links.
 
     Parameters
     ----------
