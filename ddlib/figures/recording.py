@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
 from ddlib._check import finite_array, number, shaped
-from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
+from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
 
 
 def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
@@ -172,11 +172,11 @@ def extents_square(training, test, extra=None) -> Illustration:
         axis.set(xlabel="shoulder extent, degrees", ylabel="elbow extent, degrees")
         axis.set(xlim=(-2, 50), ylim=(-2, 50), aspect="equal", xticks=range(0, 46, 15))
         axis.set_yticks(range(0, 46, 15))
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        legend_above(figure, *axis.get_legend_handles_labels())
 
     alt = (
         "Square of extents from 0 to 45 degrees for shoulder and elbow with five training "
         f"trajectories and test trajectory 6 at {test[0]:g} and {test[1]:g} degrees; the convex "
         "hull of the training trajectories is shaded."
     )
-    return illustrate(draw, alt, 5.4, 3.6)
+    return illustrate(draw, alt, 4.4, 3.9)

@@ -97,7 +97,8 @@ class Illustration:
     alt : str
         What it shows, for those who cannot see it.
     draw, height
-        What `illustrate` drew it from, and how high it became, in inches.
+        What `illustrate` drew it from, and the height of its narrow form in inches, before
+        its panels are put one below the other.
     """
 
     svg: str
@@ -127,7 +128,9 @@ class Illustration:
             file.write(svg)
 
 
-def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) -> Illustration:
+def illustrate(
+    draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0, narrow_height=None
+) -> Illustration:
     """Draw a figure in the house style.
 
     Parameters
@@ -138,6 +141,9 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
         Alternative text; required.
     width, height : float
         Size in inches.
+    narrow_height : float, optional
+        Height of the narrow form, of a figure that `draw` arranges in another way there; by
+        default it is as high as the wide one.
 
     Raises
     ------
@@ -151,7 +157,7 @@ def illustrate(draw: Callable[[Figure], None], alt: str, width=7.0, height=3.0) 
         draw(figure)
         figure.draw_without_rendering()
         svg = _written(figure)
-    return Illustration(_inline(svg, alt), alt, draw, height)
+    return Illustration(_inline(svg, alt), alt, draw, narrow_height or height)
 
 
 def _written(figure: Figure, **options) -> str:

@@ -1,11 +1,15 @@
 """Figures of control engineering."""
 
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
 import control
 import numpy as np
 import pytest
+from pictures import words
 
 from ddlib.control import loop_gain
-from ddlib.figures import nyquist, root_loci
+from ddlib.figures import feedforward_loop, nyquist, root_loci
 
 GAINS = np.geomspace(1e-4, 5, 50)
 LOOPS = {"P": loop_gain(4.0, 0.0, 100.0), "PD": loop_gain(4.0, 0.0, 100.0, 0.0, 24.0)}
@@ -62,3 +66,15 @@ def test_nyquist_tells_the_largest_sensitivity():
 def test_bad_frequencies_are_refused(arguments, name):
     with pytest.raises(ValueError, match=f"^{name} must"):
         nyquist(*arguments)
+
+
+def test_the_block_diagram_stands_on_a_narrow_page():
+    """From top to bottom, with the same blocks, signals and signs."""
+    lying = feedforward_loop()
+    standing = replace(lying, svg=lying.narrow)
+    assert sorted(words(standing)) == sorted(words(lying)) and "inverse arm" in words(lying)
+    across, down = (
+        [float(x) for x in ET.fromstring(made.svg).attrib["viewBox"].split()[2:]]
+        for made in (lying, standing)
+    )
+    assert across[0] > 2 * across[1] and down[1] > down[0]

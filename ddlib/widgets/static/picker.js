@@ -114,7 +114,7 @@ function mapOf(view) {
   layers.forEach((_, k) => ramp.append(make("rect", { class: "level", x: 12 * k, width: 12, height: 12, "fill-opacity": short(0.07 * k) })));
   scale.append(ramp, `${(step * (LEVELS - 1)).toFixed(1)} and more`);
   const title = "Errors under the pad";
-  const words = { class: "presets", role: "group", "aria-label": title };
+  const words = { class: "presets under", role: "group", "aria-label": title };
   const choice = make("div", words, make("span", { "aria-hidden": "true" }, title), ...buttons.map(([, b]) => b));
   show(names[0]);
   legend.after(choice, scale);
