@@ -45,6 +45,9 @@ MOTIONS = 6
 SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}
 """Estimates that are shown, and their places among the parameters."""
 
+LABELS = dict(zip(SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
+"""What the chart calls them."""
+
 MOST_ERROR = 20.0
 """Largest error that is shown, mm; a run that the guard stopped has a larger one, too."""
 
@@ -171,7 +174,7 @@ class LoopLearner(CurveWidget):
                 ),
                 Panel(
                     "Estimates over true values",
-                    {n: n for n in SHOWN},
+                    LABELS,
                     "motions done, number",
                     np.arange(MOTIONS + 1),
                     y_fit=True,
@@ -180,7 +183,8 @@ class LoopLearner(CurveWidget):
             ],
             **{
                 "alt": "Error of the hand from motion to motion with Slotine and Li's learner and "
-                "without; below, five estimates as multiples of the true values.",
+                "without; below, estimates of a, b, d and of the shoulder's viscous and Coulomb "
+                "friction as multiples of the true values.",
                 "title": "The loop with a learner inside",
                 "note": NOTE,
                 "depends": {"nobody": ["load", "friction"]},

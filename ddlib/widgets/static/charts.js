@@ -202,7 +202,7 @@ function chart(view, panel) {
   function layout() {
     bottom = height - 36;
     y = axis(low, high, panel.y_scale, bottom, 6, 30);
-    left = 10 + 6.6 * Math.max(...y.texts.map((text) => text.length));
+    left = 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0)));
     right = width - 10;
     x = axis(...ends, panel.x_scale, left, right, panel.x_scale === "linear" ? 52 : 34);
     xs = panel.x.map((v) => short(x.place(v)));
