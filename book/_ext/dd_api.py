@@ -1,4 +1,4 @@
-"""The API pages: no field of a named tuple twice, constants whole; source beside measures.
+"""The API pages: no field of a named tuple twice, constants in short; source beside measures.
 
 Every claim leads to the lines that measure it. A page for every other module as well would take
 more time than all chapters' pages together.
@@ -7,6 +7,9 @@ more time than all chapters' pages together.
 from __future__ import annotations
 
 from pathlib import Path
+
+from docutils import nodes
+from sphinx import addnodes
 
 SHOWN = "ddlib.evidence.measures"
 """Package whose source has pages."""
@@ -30,6 +33,19 @@ def hide_colon(app, what, name, obj, options, lines):
 def show_colon(app, what, name, obj, options, lines):
     """After napoleon."""
     lines[:] = [line.replace(COLON, ":") for line in lines]
+
+
+LONGEST = 160
+"""Letters of a constant's value that a page shows."""
+
+
+def shorten_values(app, doctree):
+    """Of a longer value the beginning is shown: its docstring says what it is."""
+    for node in doctree.findall(addnodes.desc_annotation):
+        value = node.astext().strip()
+        if value.startswith("= ") and len(value) > LONGEST:
+            node.clear()
+            node += nodes.Text(f" {value[:LONGEST].rpartition(' ')[0]} …")
 
 
 def leave_sources(app, env, docnames):
@@ -56,6 +72,7 @@ def setup(app):
     app.connect("autodoc-skip-member", skip_field)
     app.connect("autodoc-process-docstring", hide_colon, priority=100)
     app.connect("autodoc-process-docstring", show_colon, priority=900)
+    app.connect("doctree-read", shorten_values)
     app.connect("env-before-read-docs", leave_sources)
     app.connect("html-collect-pages", forget_others, priority=100)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -6,7 +6,8 @@
   const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math, pre`;
   const SENTENCE = 60; // letters of a cell that is read, not compared
   const SHORT = 12; // letters of a cell that is a number with its unit
-  const NAMES = "dt.sig .pre, .indextable a, .modindextable code .pre, article h1, \
+  const NAMES = "dt.sig .pre, .indextable a, .modindextable code .pre, \
+article :is(h1, h2, h3), \
 .prev-next-title, .bd-sidebar-secondary a, .bd-sidebar-secondary .pre";
 
   // Down to which share of its size a formula, or a table, is set smaller instead of scrolled.

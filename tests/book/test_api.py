@@ -71,3 +71,23 @@ def test_what_a_constant_is_stands_whole(built):
     ]
     assert len(entries) > 100
     assert not [e.get_text()[:80] for e in entries if e.select("dd > .field-list")]
+
+
+@pytest.mark.built
+@pytest.mark.parametrize("page", API)
+def test_the_value_of_a_constant_fits_a_few_lines(page, built):
+    soup = BeautifulSoup((built / f"{page}.html").read_text(encoding="utf-8"), "html.parser")
+    values = [el.get_text() for el in soup.select("dl.py.data > dt > .property")]
+    assert all(len(value) < 200 for value in values)
+
+
+@pytest.mark.built
+def test_a_short_value_is_whole_and_a_long_one_says_that_it_goes_on(built):
+    html = (built / "book/api/dynamics.html").read_text(encoding="utf-8")
+    dynamics = BeautifulSoup(html, "html.parser")
+    arm, free_fall = (
+        dynamics.find(id=f"ddlib.dynamics.{name}").select_one(".property").get_text()
+        for name in ("joints.DD_ARM_II_IN_SPACE", "arm.STANDARD_GRAVITY")
+    )
+    assert free_fall.split() == ["=", "9.81"]
+    assert arm.startswith(" = ") and arm.endswith("…")

@@ -34,9 +34,10 @@ NUMBER = r"^[≤≥]?\s?[\d.]+\s(s|ms|µs|×|GiB)$"
     [
         ("book/notation", 1280, "td code .pre", WORD),
         ("book/provenance", 1280, ":is(td, th) code .pre", WORD),
-        ("book/provenance", 390, "th code .pre", WORD),
+        ("book/provenance", 390, ":is(td, th) code .pre", WORD),
         ("book/status", 390, "td, td > p", NUMBER),
         ("book/api/control", 390, "dt.sig .pre", WORD),
+        ("book/api/control", 390, "article h3", r"^\w+[._]?$"),
         ("book/use-it-on-your-arm", 390, ".prev-next-title", r"^\w+$"),
         ("book/api/dynamics", 390, ".prev-next-title", r"\w"),
         ("genindex", 390, ".indextable a", r"^[\w.]+$"),
