@@ -5,6 +5,7 @@
   const TABLES = ".pst-scrollable-table-container, .cell_output .text_html";
   const BOXES = `${TABLES}, .ddlib-figure, mjx-container[display="true"], div.math, pre`;
   const SENTENCE = 60; // letters of a cell that is read, not compared
+  const INTERVAL = /^[−\d.]+ \([−\d.]+ to [−\d.]+\)$/;
   const SHORT = 12; // letters of a cell that is a number with its unit
   const NAMES = "dt.sig .pre, .indextable a, .modindextable code .pre, \
 article :is(h1, h2, h3), \
@@ -71,7 +72,9 @@ article :is(h1, h2, h3), \
   }
 
   for (const cell of document.querySelectorAll("article td")) {
-    if (cell.textContent.trim().length <= SHORT) cell.classList.add("short");
+    const text = cell.textContent.trim();
+    if (text.length <= SHORT) cell.classList.add("short");
+    else if (INTERVAL.test(text)) cell.classList.add("interval");
   }
 
   // Cards need one line of headings in plain words, to be said again in front of each cell.
