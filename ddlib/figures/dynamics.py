@@ -10,7 +10,7 @@ from matplotlib.patches import Circle
 
 from ddlib._check import finite_array, number
 from ddlib.dynamics import Arm, Operations
-from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, Illustration, illustrate
+from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, NARROW, Illustration, illustrate
 from ddlib.identification import Estimate
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
@@ -95,7 +95,10 @@ def operations(
             axis.plot(*point, "x+1*"[k % 4], color=INK, ms=10, mew=2, ls="none", label=name)
         axis.set(xlabel="joints", ylabel="multiplications", yscale="log")
         axis.set_xticks(sorted({n for by_joints in counts.values() for n in by_joints}))
-        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        if figure.get_figwidth() <= NARROW:
+            figure.legend(*axis.get_legend_handles_labels(), loc="outside upper left", ncols=2)
+        else:
+            axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
     most = {name: max(v.items()) for name, v in counts.items()}
     listed = "; ".join(f"{name}: {o.multiplications:,}" for name, (_, o) in most.items())

@@ -9,7 +9,16 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from ddlib._check import finite_array
-from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, Illustration, check_label, illustrate
+from ddlib.figures.style import (
+    COLOURS,
+    DASHES,
+    FAINT,
+    INK,
+    NARROW,
+    Illustration,
+    check_label,
+    illustrate,
+)
 from ddlib.tables import significant
 
 
@@ -114,10 +123,11 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
     order = sorted(sizes, key=lambda name: sizes[name][0], reverse=True)
     values = np.array([sizes[name] for name in order])
     places = np.arange(len(order))
-    height = 0.8 / len(joints)
 
     def draw(figure: Figure):
         axis = figure.subplots()
+        slim = figure.get_figwidth() <= NARROW  # names above their bars, not beside them
+        height = (0.56 if slim else 0.8) / len(joints)
         low = 10.0 ** np.floor(np.log10(values.min()))
         for j, joint in enumerate(joints):
             rows = places + (j - (len(joints) - 1) / 2) * height
@@ -125,16 +135,19 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
             bars = axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
             words = [significant(value, 2) for value in values[:, j]]
             axis.bar_label(bars, words, padding=3, fontsize=7.5, color=INK)
-        axis.set_yticks(places, order)
+        axis.set_yticks(places, [""] * len(order) if slim else order)
         axis.set(xscale="log", xlim=(low, values.max() * 2.5), xlabel="torque, N m (RMS)")
-        axis.set_ylim(len(order) - 0.4, -0.6)
+        axis.set_ylim(len(order) - 0.4, -0.8 if slim else -0.6)
+        for place, name in zip(places, order if slim else ()):
+            axis.text(low * 1.03, place - 0.32, name, fontsize=8.5, color=INK, va="bottom")
         axis.grid(axis="y", visible=False)
         axis.tick_params(axis="y", length=0)
-        axis.axhline(0.5, color=FAINT, lw=0.8)
+        axis.axhline(0.35 if slim else 0.5, color=FAINT, lw=0.8)
         axis.legend(loc="lower right")
 
     listed = "; ".join(
         f"{name} {' and '.join(significant(v, 2) for v in row)}" for name, row in zip(order, values)
     )
     alt = f"Bars of torque in N m for {' and '.join(joints)}, largest first: {listed}."
-    return illustrate(draw, alt, 7.0, 0.36 * len(order) + 0.9)
+    size = 7.0, 0.36 * len(order) + 0.9
+    return illustrate(draw, alt, *size, narrow_height=0.46 * len(order) + 0.9)

@@ -82,6 +82,10 @@ def test_counts_are_drawn_on_a_logarithmic_scale(made):
         ]
 
 
+def test_counts_have_a_form_for_a_narrow_page(made):
+    assert all(name in made["operations"][0].narrow for name in COUNTS)
+
+
 def test_hand_paths_begin_in_one_point_and_end_where_the_arm_does(made):
     figure = made["hand_paths"][1]
     paths = [max(curves(figure, colour), key=len) for colour in COLOURS]

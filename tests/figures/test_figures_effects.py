@@ -89,6 +89,11 @@ def test_bars_stand_in_order_and_are_as_long_as_their_logarithms(made):
     assert [text for text in words(picture) if text in SIZES] == ["large", "middle", "small"]
 
 
+def test_on_a_narrow_page_names_stand_above_their_bars():
+    name = "encoder, acceleration by differences"
+    assert name in figures_effects.ranking(SIZES | {name: [4.0, 1.0]}).narrow
+
+
 @pytest.mark.parametrize("bad", [[0.0, 1.0], [-1.0, 1.0], [np.nan, 1.0], [1.0]])
 def test_torques_without_a_logarithm_are_refused(bad):
     with pytest.raises(ValueError, match="sizes"):
