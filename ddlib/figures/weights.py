@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from ddlib._check import finite_array
@@ -233,8 +234,7 @@ def against_nulls(
                 axis.plot([np.mean(values)] * 2, [row - 0.43, row + 0.43], color=INK, lw=2.0)
                 for k, (name, draws) in enumerate(nulls):
                     height = row + (k - (len(nulls) - 1) / 2) * 0.26
-                    axis.plot(draws, np.full(len(draws), height), "os^Dv"[k % 5], ms=3.2, mew=0,
-                              color=COLOURS[k % len(COLOURS)], alpha=0.6, label=name)  # fmt: skip
+                    _dots(axis, draws, height, k, name)
             axis.set(title=title, xlim=(-0.03, 1.03), ylim=(len(groups) - 0.5, -0.5))
             axis.grid(visible=False, axis="y")
         for axis in axes[:, 0]:
@@ -244,6 +244,18 @@ def against_nulls(
         handles, names = axes[0, 0].get_legend_handles_labels()
         first = {name: handle for handle, name in zip(handles[::-1], names[::-1])}
         order = list(next(iter(next(iter(panels.values())).values())))
+        for k, name in enumerate(order[1:]):
+            first[name] = Line2D([], [], ls="", marker="os|"[k % 3], ms=4, color=COLOURS[k])
         legend_above(figure, [first[name] for name in order], order)
 
     return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))
+
+
+def _dots(axis: Axes, values, height: float, k: int, name: str):
+    """One mark for each value, all in one path, since hundreds of markers are heavy."""
+    at = np.unique(np.asarray(values, dtype=float))
+    long = 0.09 if k % 3 == 2 else 1e-3  # discs, squares and strokes
+    x, y = np.repeat(at, 3), np.tile([height - long, height + long, np.nan], at.size)
+    cap = ("round", "projecting", "butt")[k % 3]
+    axis.plot(x, y, color=COLOURS[k % len(COLOURS)], lw=1.5 if k % 3 == 2 else 3.4, alpha=0.7,
+              solid_capstyle=cap, label=name)  # fmt: skip
