@@ -27,7 +27,7 @@ from ddlib.experiments import WINDOWS, results
 from ddlib.tables import significant
 
 ROOT = Path(__file__).resolve().parent.parent
-BOOK_SECONDS = 120.0
+BOOK_SECONDS = 100.0
 BUILT_FROM = ("_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml", "book", "ddlib")
 
 
