@@ -120,7 +120,7 @@ def test_gains_are_judged_by_their_worst_entry(planted):
     assert found.value == pytest.approx(0.2)
     assert found.replicates == pytest.approx(0.2)
     m = wanted[0, 0, 2]
-    assert found.text.startswith(f"M11 {1.1 * m:.2f} (arm {m:.2f}), M12 ")
+    assert found.text.startswith(f"M₁₁ {1.1 * m:.2f} (arm {m:.2f}), M₁₂ ")
     assert found.text.endswith(" kg m²; as near by chance: p 0.10")  # one draw of 19, and itself
     assert trial.calibrated("friction").value == pytest.approx(0.5)
     direct = trial.calibrated("friction", path="gains, direct")

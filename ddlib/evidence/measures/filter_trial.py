@@ -158,7 +158,7 @@ def follow(quantity: str, width: int | str = 21, layer: str = "hidden") -> Measu
 
 
 ENTRIES = {
-    "inertia": {"M11": (0, 0, 2), "M12": (0, 1, 2), "M21": (1, 0, 2), "M22": (1, 1, 2)},
+    "inertia": {"M₁₁": (0, 0, 2), "M₁₂": (0, 1, 2), "M₂₁": (1, 0, 2), "M₂₂": (1, 1, 2)},
     "friction": {"shoulder": (0, 0, 1), "elbow": (1, 1, 1)},
 }
 """Gains of a network that the arm has, too: output, joint, order of the derivative."""
@@ -239,7 +239,7 @@ def stiffness(width: int = 21) -> Measured:
     """
     found = np.array(row(width)["real"]["gains"])[:, 0, 0, 0]
     worth = (np.pi / MOTION_SECONDS) ** 2 * arm_gains()[0, 0, 2]
-    text = f"K11 {spread(found, 2)} N m/rad; the inertia is worth {worth:.1f}"
+    text = f"K₁₁ {spread(found, 2)} N m/rad; the inertia is worth {worth:.1f}"
     return judged(lambda each: np.abs(median(each)) / worth, found, text=text)
 
 
