@@ -327,6 +327,13 @@ def bias(effect: str) -> np.ndarray:
     return np.median(own - none, axis=0)
 
 
+def _told(parameter: str) -> str:
+    """A parameter of `ddlib.control.adaptive` in words, if it is a friction or a moment."""
+    kinds = {"F_v": "viscous friction", "F_c": "Coulomb friction", "g": "gravity moment"}
+    kind, joint = kinds.get(parameter[:-1]), parameter[-1]
+    return f"the {('shoulder', 'elbow')[int(joint) - 1]}'s {kind}" if kind else parameter
+
+
 def bent(effect: str) -> Measured:
     """Largest such bias.
 
@@ -340,5 +347,5 @@ def bent(effect: str) -> Measured:
     return judged(
         lambda x: np.abs(np.median(x, axis=1)).max(-1),
         off,
-        text=f"{100 * np.median(off, 0)[k]:+.0f} % of {FULL[k]}",
+        text=f"{100 * np.median(off, 0)[k]:+.0f} % of {_told(FULL[k])}",
     )
