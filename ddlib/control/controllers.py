@@ -107,17 +107,17 @@ class PID:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         kp, ki, kd = (np.asarray(g, dtype=float) for g in (self.kp, self.ki, self.kd))
-        integral = np.zeros(())
+        integral, integrates, damps = np.zeros(()), ki.any(), kd.any()
 
         def law(k, q, qd):
             nonlocal integral
             error = reference.q[..., k, :] - q
             tau = kp * error
-            if ki.any():
+            if integrates:
                 integral = integral + ki * error * step
                 integral = np.clip(integral, -self.integral_limit, self.integral_limit)
                 tau = tau + integral
-            if kd.any():
+            if damps:
                 tau = tau + kd * (reference.qd[..., k, :] - qd)
             return tau
 

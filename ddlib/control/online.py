@@ -13,11 +13,11 @@ are runs, each with a network of its own.
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ddlib._check import integer, non_negative, number, one_of
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
@@ -283,25 +283,23 @@ class _Law:
     def __init__(self, controller: OnlineFeedforward, reference: Trajectory, feedback):
         self._feedback, self._every, self._limit = feedback, controller.every, controller.limit
         self._teacher, learner = controller.teacher, controller.learner
-        self._learner = copy.copy(learner) if self._teacher == "nobody" else learner
-        self._q, half = reference.q, controller.width // 2
+        self._learner, half = learner, controller.width // 2
         moving = (reference.qd != 0) | (reference.qdd != 0)
         self._moving = moving.any(axis=(*range(moving.ndim - 2), -1))
         self._half, self._read, self._applied = half, [], []
-        self._taps = self._every * np.arange(-half, half + 1)
-
-    def _windows(self, centres):
-        taps = np.clip(np.asarray(centres)[:, None] + self._taps, 0, len(self._moving) - 1)
-        return np.swapaxes(self._q[..., taps, :], -1, -2)
+        self._windows = _windows(reference.q, controller.width, self._every)
+        if self._teacher == "nobody":
+            self._ahead = learner.torque(self._windows)
 
     def __call__(self, k, q, qd):
         correction = self._feedback(k, q, qd)
+        if self._teacher == "nobody":
+            return self._ahead[..., k, :] + correction
         part = k % self._every
         if part == 0:
             self._read.append(q)
             self._teach(k, correction)
-            ahead = np.arange(k, min(k + self._every, len(self._moving)))
-            self._ahead = self._learner.torque(self._windows(ahead))
+            self._ahead = self._learner.torque(self._windows[..., k : k + self._every, :, :])
         torque = self._ahead[..., part, :] + correction
         if part == 0:
             self._applied.append(np.clip(torque, -np.asarray(self._limit), self._limit))
@@ -309,12 +307,23 @@ class _Law:
 
     def _teach(self, k, correction):
         if self._teacher == "feedback" and self._moving[k]:
-            self._learner.correct(self._windows([k])[..., 0, :, :], correction)
+            self._learner.correct(self._windows[..., k, :, :], correction)
         centre = len(self._read) - 1 - self._half
         if self._teacher == "torque" and centre >= self._half:
             if self._moving[centre * self._every]:
                 window = np.stack(self._read[centre - self._half :], -1)
                 self._learner.learn(window, self._applied[centre])
+
+
+def _windows(q, width: int, every: int) -> np.ndarray:
+    """A view of the windows around all samples of `q`, shape (..., time, joint, width).
+
+    Before its first and after its last sample `q` is taken to rest.
+    """
+    reach = width // 2 * every
+    ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
+    padded = np.concatenate([ends[0], q, ends[1]], -2)
+    return sliding_window_view(padded, 2 * reach + 1, -2)[..., ::every]
 
 
 @dataclass(frozen=True)

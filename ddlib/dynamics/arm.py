@@ -227,7 +227,7 @@ class Arm:
         v1, v2 = qd[..., 0], qd[..., 1]
         r1 = tau[..., 0] + h * v2 * (2 * v1 + v2)
         r2 = tau[..., 1] - h * v1 * v1
-        if any(self.gravity_moments):
+        if self.gravity_moments != (0.0, 0.0):
             weight = self._gravity(q)
             r1, r2 = r1 - weight[..., 0], r2 - weight[..., 1]
         m11, m12 = self.a + 2 * self.b * c2, self.d + self.b * c2
@@ -236,7 +236,7 @@ class Arm:
         qdd = np.empty((2, *np.shape(numerators[0])))  # joint by joint: contiguous over runs
         for joint, numerator in enumerate(numerators):
             np.divide(numerator, determinant, out=qdd[joint, ...])
-        return np.moveaxis(qdd, 0, -1)
+        return qdd.transpose(*range(1, qdd.ndim), 0)
 
     def kinetic_energy(self, q, qd) -> np.ndarray:
         """Kinetic energy ``qd' M(q) qd / 2`` in J, shape ``(...)``."""

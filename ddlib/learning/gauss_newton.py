@@ -81,13 +81,10 @@ class Objective:
         self._test = (self._whiten.T @ _columns(test[0]), _float64(test[1]).T) if test else None
         self._penalty = busy @ matrix @ busy.T
 
-        self._pairs = torch.tril_indices(self._rows, self._rows)
-        row, column = _pair_number(self._rows), _pair_number(self._inputs)
-        size = column.max() + 1
-        # Where the table of `_sums` has the element (row r, input i; row s, input j).
-        place = row[:, None, :, None] * size + column[None, :, None, :]
-        self._place = place.reshape(self._split, self._split)
-        self._products = _zeros(size, _BLOCK)
+        self._pairs = torch.tril_indices(self._hidden, self._hidden)
+        self._blocks = _blocks(self._hidden, self._outputs)
+        self._symmetric = _pair_number(self._inputs)
+        self._products = _zeros(self._symmetric.max() + 1, _BLOCK)
 
     def pack(self, weights: Weights) -> torch.Tensor:
         """Vector of a network's parameters, shape (parameter,)."""
@@ -137,12 +134,15 @@ class Objective:
         hidden, split = self._hidden, self._split
         table, cross, corner, slopes, squares = self._sums(vector, exact)
         matrix = _zeros(len(vector), len(vector))
-        first = matrix[:split, :split]
-        first.numpy()[...] = np.take(table.numpy(), self._place)
-        matrix[split:, :split] = cross.view(-1, split)
+        first, inputs = matrix[:split, :split], self._inputs
+        blocks = first.view(self._rows, inputs, self._rows, inputs).numpy()
+        blocks[self._blocks[0], :, self._blocks[1]] = table.numpy()[:, self._symmetric]
+        lower = matrix[split:, :split].view(*cross.shape[:2], self._rows, self._inputs)
+        lower[:, :, :hidden] = cross[:, :, :hidden]
         for o in range(self._outputs):
             own = slice(split + o * hidden, split + (o + 1) * hidden)
             matrix[own, own] = corner[o]
+            lower[o, :, hidden + o] = cross[o, :, hidden]
         for r in range(self._rows):
             own = slice(r * self._inputs, (r + 1) * self._inputs)
             first[own, own] += self._penalty
@@ -171,19 +171,30 @@ class Objective:
     def _sums(self, vector, exact):
         """The sums over cases of which matrix, gradient and lengths consist.
 
-        The net input of output o has the derivative ``factor[o, r] z[i]`` by the weight i
-        of row r, and ``hidden[h]`` by the weight from hidden unit h. The block of the
-        matrix between rows r and s sums ``z[i] z[j]`` times a product of factors, so that
-        one product of matrices gives all blocks, each pair of rows and inputs once.
+        The net input of output o has the derivative ``f[o, r] z[i]`` by the weight i of row r,
+        where f is ``second[o, r] hidden_slope[r]`` for a hidden unit and 1 for output o itself,
+        and ``hidden[h]`` by the weight from hidden unit h. The block of the matrix between rows r
+        and s sums ``z[i] z[j]`` times a product of factors, so that one product of matrices
+        gives all blocks, each pair of rows and inputs once.
+
+        Returns
+        -------
+        table : Tensor, shape (pair of rows, pair of inputs)
+            In the orders of `_blocks` and `_pair_number`.
+        cross : Tensor, shape (output, hidden, hidden + 1, input)
+            Weight from a hidden unit to an output against all hidden rows and that output's.
+        corner : Tensor, shape (output, hidden, hidden)
+        slopes, squares : list of Tensor
+            Gradient, and squared lengths of the derivatives: of rows, of hidden-to-output weights.
         """
         (_, second), (r, s) = self._parts(vector), self._pairs
-        h = torch.arange(self._hidden)
-        table = _zeros(len(r), len(self._products))
-        cross = _zeros(self._outputs * self._hidden * self._rows, self._inputs)
-        corner = _zeros(self._outputs, self._hidden, self._hidden)
+        h, outputs = self._hidden, self._outputs
+        k = torch.arange(h)
+        both = (second[:, r] * second[:, s]).T
+        table, corner = _zeros(len(self._blocks[0]), len(self._products)), _zeros(outputs, h, h)
+        cross = _zeros(outputs * h * (h + 1), self._inputs)
         slopes, squares = (
-            [_zeros(self._rows, self._inputs), _zeros(self._outputs, self._hidden)]
-            for _ in range(2)
+            [_zeros(self._rows, self._inputs), _zeros(outputs, h)] for _ in range(2)
         )
         for start in range(0, self._z.shape[1], _BLOCK):
             z, y = (array[:, start : start + _BLOCK] for array in (self._z, self._y))
@@ -191,31 +202,32 @@ class Objective:
             hidden, output = self._activity(vector, z)
             slope, hidden_slope = output - output * output, hidden - hidden * hidden
             delta = (output - y) * slope
-            factor = _zeros(self._outputs, self._rows, n)
-            torch.mul(second[:, :, None], hidden_slope, out=factor[:, : self._hidden])
-            for o in range(self._outputs):
-                factor[o, self._hidden + o] = 1
-            slopes[0].addmm_((factor * delta[:, None]).sum(0), z.T)
+            back = (second.T @ delta) * hidden_slope
+            slopes[0].addmm_(torch.cat([back, delta]), z.T)
             slopes[1].addmm_(delta, hidden.T)
             bend = slope * slope
-            squares[0].addmm_((bend[:, None] * factor * factor).sum(0), (z * z).T)
-            squares[1].addmm_(bend, (hidden * hidden).T)
+            steep = (second.square().T @ bend) * hidden_slope.square()
+            squares[0].addmm_(torch.cat([steep, bend]), z.square().T)
+            squares[1].addmm_(bend, hidden.square().T)
 
             if exact:
                 bend = bend + delta * (1 - 2 * output)
-            bent = bend[:, None] * factor
-            weight, mixed = (bent[:, r] * factor[:, s]).sum(0), bent[:, None] * hidden[:, None]
+            bent = bend[:, None] * second[:, :, None] * hidden_slope
+            pair = (both @ bend) * hidden_slope[r] * hidden_slope[s]
+            mixed = torch.empty(outputs, h, h + 1, n, dtype=z.dtype)
+            torch.mul(bent[:, None], hidden[:, None], out=mixed[:, :, :h])
+            torch.mul(bend[:, None], hidden, out=mixed[:, :, h])
             if exact:
-                weight[h * (h + 3) // 2] += (second.T @ delta) * hidden_slope * (1 - 2 * hidden)
-                mixed[:, h, h] += delta[:, None] * hidden_slope
+                pair[k * (k + 3) // 2] += back * (1 - 2 * hidden)
+                mixed[:, k, k] += delta[:, None] * hidden_slope
             products = self._products[:, :n]
             for i in range(self._inputs):
                 row = i * (i + 1) // 2
                 torch.mul(z[i], z[: i + 1], out=products[row : row + i + 1])
-            table.addmm_(weight, products.T)
+            table.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
             cross.addmm_(mixed.view(-1, n), z.T)
             corner += (bend[:, None] * hidden) @ hidden.T
-        return table, cross, corner, slopes, squares
+        return table, cross.view(outputs, h, h + 1, -1), corner, slopes, squares
 
 
 def _columns(x) -> torch.Tensor:
@@ -234,3 +246,15 @@ def _pair_number(size: int) -> np.ndarray:
     i, j = np.indices((size, size))
     i, j = np.maximum(i, j), np.minimum(i, j)
     return i * (i + 1) // 2 + j
+
+
+def _blocks(hidden: int, outputs: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (r, s), r >= s, of weights whose block of the matrix is not zero, in `_sums`' order.
+
+    Pairs of hidden rows, each output with each hidden row, each output with itself: two outputs
+    have no case's derivative in common.
+    """
+    first, second = np.tril_indices(hidden)
+    own = hidden + np.arange(outputs)
+    mixed = np.repeat(own, hidden), np.tile(np.arange(hidden), outputs)
+    return np.concatenate([first, mixed[0], own]), np.concatenate([second, mixed[1], own])

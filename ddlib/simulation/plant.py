@@ -179,18 +179,22 @@ class Plant:
 
 def _rk4(acceleration, x, v, step):
     """One classical Runge-Kutta step of ``x'' = acceleration(x, x')``."""
-    half = 0.5 * step
-    a1 = acceleration(x, v)
-    v2 = v + half * a1
-    a2 = acceleration(x + half * v, v2)
-    v3 = v + half * a2
-    a3 = acceleration(x + half * v2, v3)
-    v4 = v + step * a3
-    a4 = acceleration(x + step * v3, v4)
-    return (
-        x + step / 6 * (v + 2 * v2 + 2 * v3 + v4),
-        v + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4),
-    )
+    half, n = 0.5 * step, x.shape[-1]
+    first = acceleration(x, v)  # of all runs, even where they begin alike
+    start = np.concatenate(np.broadcast_arrays(x, v, first)[:2], -1)
+    k1 = np.concatenate([start[..., n:], first], -1)
+
+    def rate(state):
+        x, v = state[..., :n], state[..., n:]
+        found = np.empty_like(state)
+        found[..., :n], found[..., n:] = v, acceleration(x, v)
+        return found
+
+    k2 = rate(start + half * k1)
+    k3 = rate(start + half * k2)
+    k4 = rate(start + step * k3)
+    end = start + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return end[..., :n], end[..., n:]
 
 
 def _stops(before, after):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import non_negative, shaped
-from ddlib.control.adaptive.regressor import PARAMETERS, check_parameters, mixed_regressor
+from ddlib.control.adaptive.regressor import PARAMETERS, check_parameters, unchecked_regressor
 from ddlib.control.adaptive.running import RunningLaw
 from ddlib.control.controllers import ControlLaw
 from ddlib.trajectories import Trajectory
@@ -88,9 +88,9 @@ class CraigHsuSastry:
         estimate = np.asarray(estimate, float)
         error, error_rate = wanted.q - q, wanted.qd - qd
         asked = wanted.qdd + np.asarray(self.kd) * error_rate + np.asarray(self.kp) * error
-        Y = mixed_regressor(q, qd, qd, asked, self.names)
+        Y = unchecked_regressor(q, qd, qd, asked, self.names)
         torque = np.einsum("...jp,...p->...j", Y, estimate)
-        measured = mixed_regressor(q, qd, qd, qdd, self.names)
+        measured = unchecked_regressor(q, qd, qd, qdd, self.names)
         filtered = error_rate + np.asarray(self.weight) * error
         turned = np.linalg.solve(_mass(estimate, np.asarray(q)), filtered[..., None])[..., 0]
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)

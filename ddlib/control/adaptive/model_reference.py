@@ -61,21 +61,21 @@ class ModelReference:
         first = reference.q[..., :1, :]
         command = reference.qdd + a1 * reference.qd + a0 * (reference.q - first)
         motion = np.zeros((*command.shape, 2))
-        for joint in range(2):
-            system = (
-                np.array([[0.0, 1.0], [-a0[joint], -a1[joint]]]),
-                np.array([[0.0], [1.0]]),
-                np.eye(2),
-                np.zeros((2, 1)),
-            )
-            free, push, _, ahead, _ = cont2discrete(system, step, "foh")
-            asked = command[..., joint, None]
-            state = -asked[..., 0, :] * ahead.T
-            for k in range(command.shape[-2]):
-                motion[..., k, joint, :] = state + asked[..., k, :] * ahead.T
-                state = state @ free.T + asked[..., k, :] * push.T
+        free, push, ahead = (np.stack(x) for x in zip(*map(self._sampled, a0, a1, 2 * [step])))
+        asked = command[..., None]
+        state = -asked[..., 0, :, :] * ahead
+        for k in range(command.shape[-2]):
+            motion[..., k, :, :] = state + asked[..., k, :, :] * ahead
+            state = (free @ state[..., None])[..., 0] + asked[..., k, :, :] * push
         q, qd = np.moveaxis(motion, -1, 0)
         return Trajectory(q + first, qd, command - a1 * qd - a0 * q)
+
+    @staticmethod
+    def _sampled(a0, a1, step):
+        """A joint's model at samples: what state and command become, and the part fed through."""
+        system = np.array([[0.0, 1.0], [-a0, -a1]]), np.array([[0.0], [1.0]]), np.eye(2)
+        free, push, _, ahead, _ = cont2discrete((*system, np.zeros((2, 1))), step, "foh")
+        return free, push[:, 0], ahead[:, 0]
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
         """Torque and the estimate's rate of change in continuous time.

@@ -37,9 +37,14 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     ndarray, shape (..., 2, parameters)
     """
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
-    q, qd, v, a = np.broadcast_arrays(*(finite_array(n, x, 2) for n, x in pairs))
     for name in names:
         one_of("names", name, PARAMETERS)
+    return unchecked_regressor(*(finite_array(n, x, 2) for n, x in pairs), names)
+
+
+def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
+    """`mixed_regressor` without checks, for the inner loop of a simulation."""
+    q, qd, v, a = np.broadcast_arrays(q, qd, v, a)
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
     (w1, w2), (v1, v2), (a1, a2) = ((x[..., 0], x[..., 1]) for x in (qd, v, a))
     Y = np.zeros((*q.shape, len(names)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import non_negative, number, one_of, shaped
-from ddlib.control.adaptive.regressor import PARAMETERS, check_parameters, mixed_regressor
+from ddlib.control.adaptive.regressor import PARAMETERS, check_parameters, unchecked_regressor
 from ddlib.control.adaptive.running import RunningLaw
 from ddlib.control.controllers import ControlLaw
 from ddlib.dynamics import Arm
@@ -88,7 +88,7 @@ class SlotineLi:
         s, v, a = self._sliding(wanted, q, qd)
         if self.at == "desired":
             q, qd, v, a = wanted.q, wanted.qd, wanted.qd, wanted.qdd
-        Y = mixed_regressor(q, qd, v, a, self.names)
+        Y = unchecked_regressor(q, qd, v, a, self.names)
         torque = np.einsum("...jp,...p->...j", Y, np.asarray(estimate)) + self.gain * s
         learnt = s - np.clip(s, -np.asarray(self.dead_zone), self.dead_zone)
         change = np.asarray(self.rate) * np.einsum("...jp,...j->...p", Y, learnt)
