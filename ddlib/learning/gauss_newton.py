@@ -193,9 +193,7 @@ class Objective:
         both = (second[:, r] * second[:, s]).T
         table, corner = _zeros(len(self._blocks[0]), len(self._products)), _zeros(outputs, h, h)
         cross = _zeros(outputs * h * (h + 1), self._inputs)
-        slopes, squares = (
-            [_zeros(self._rows, self._inputs), _zeros(outputs, h)] for _ in range(2)
-        )
+        slopes, squares = ([_zeros(self._rows, self._inputs), _zeros(outputs, h)] for _ in range(2))
         for start in range(0, self._z.shape[1], _BLOCK):
             z, y = (array[:, start : start + _BLOCK] for array in (self._z, self._y))
             n = z.shape[1]
