@@ -18,7 +18,8 @@ import torch
 from ddlib.learning.network import Weights
 from ddlib.learning.training import TrainingSet
 
-_BLOCK = 512  # cases whose products of inputs are held at once
+_BLOCK = 512  # cases whose products of inputs are held at once, or more while they are
+_HELD = 600_000  # numbers at most, so that they stay in a core's cache
 _float64 = partial(torch.as_tensor, dtype=torch.float64)
 _zeros = partial(torch.zeros, dtype=torch.float64)
 
@@ -84,7 +85,9 @@ class Objective:
         self._pairs = torch.tril_indices(self._hidden, self._hidden)
         self._blocks = _blocks(self._hidden, self._outputs)
         self._symmetric = _pair_number(self._inputs)
-        self._products = _zeros(self._symmetric.max() + 1, _BLOCK)
+        size = self._symmetric.max() + 1
+        self._products = _zeros(size, min(cases, max(_BLOCK, _HELD // size)))
+        self._multiplied = None  # the first case of the block in `_products`
 
     def pack(self, weights: Weights) -> torch.Tensor:
         """Vector of a network's parameters, shape (parameter,)."""
@@ -162,6 +165,16 @@ class Objective:
         hidden = torch.sigmoid(net[: self._hidden])
         return hidden, torch.sigmoid(torch.addmm(net[self._hidden :], second, hidden))
 
+    def _multiply(self, z, start):
+        """Products of all pairs of inputs in a block of cases, shape (pair, cases)."""
+        products = self._products[:, : z.shape[1]]
+        if self._multiplied != start:
+            self._multiplied = start
+            for i in range(self._inputs):
+                row = i * (i + 1) // 2
+                torch.mul(z[i], z[: i + 1], out=products[row : row + i + 1])
+        return products
+
     def _penalise(self, vector):
         """The penalties and their gradient."""
         first, second = self._parts(vector)
@@ -192,10 +205,11 @@ class Objective:
         k = torch.arange(h)
         both = (second[:, r] * second[:, s]).T
         table, corner = _zeros(len(self._blocks[0]), len(self._products)), _zeros(outputs, h, h)
-        cross = _zeros(outputs * h * (h + 1), self._inputs)
+        shared, own = _zeros(h * (h + 1), outputs * self._inputs), _zeros(outputs * h, self._inputs)
         slopes, squares = ([_zeros(self._rows, self._inputs), _zeros(outputs, h)] for _ in range(2))
-        for start in range(0, self._z.shape[1], _BLOCK):
-            z, y = (array[:, start : start + _BLOCK] for array in (self._z, self._y))
+        block = self._products.shape[1]
+        for start in range(0, self._z.shape[1], block):
+            z, y = (array[:, start : start + block] for array in (self._z, self._y))
             n = z.shape[1]
             hidden, output = self._activity(vector, z)
             slope, hidden_slope = output - output * output, hidden - hidden * hidden
@@ -212,20 +226,21 @@ class Objective:
                 bend = bend + delta * (1 - 2 * output)
             bent = bend[:, None] * second[:, :, None] * hidden_slope
             pair = (both @ bend) * hidden_slope[r] * hidden_slope[s]
-            mixed = torch.empty(outputs, h, h + 1, n, dtype=z.dtype)
-            torch.mul(bent[:, None], hidden[:, None], out=mixed[:, :, :h])
-            torch.mul(bend[:, None], hidden, out=mixed[:, :, h])
             if exact:
                 pair[k * (k + 3) // 2] += back * (1 - 2 * hidden)
-                mixed[:, k, k] += delta[:, None] * hidden_slope
-            products = self._products[:, :n]
-            for i in range(self._inputs):
-                row = i * (i + 1) // 2
-                torch.mul(z[i], z[: i + 1], out=products[row : row + i + 1])
+                own.addmm_((delta[:, None] * hidden_slope).view(-1, n), z.T)
+            products = self._multiply(z, start)
             table.addmm_(torch.cat([pair, bent.flatten(0, 1), bend]), products.T)
-            cross.addmm_(mixed.view(-1, n), z.T)
+            factors = torch.cat([(hidden[:, None] * hidden_slope).flatten(0, 1), hidden])
+            shared.addmm_(factors, (bend[:, None] * z).flatten(0, 1).T)
             corner += (bend[:, None] * hidden) @ hidden.T
-        return table, cross.view(outputs, h, h + 1, -1), corner, slopes, squares
+        cross = torch.empty(outputs, h, h + 1, self._inputs, dtype=z.dtype)
+        parts = shared.view(h + 1, h, outputs, self._inputs).permute(2, 0, 1, 3)
+        torch.mul(parts[:, :h], second[:, None, :, None], out=cross[:, :, :h])
+        cross[:, :, h] = parts[:, h]
+        if exact:
+            cross[:, k, k] += own.view(outputs, h, -1)
+        return table, cross, corner, slopes, squares
 
 
 def _columns(x) -> torch.Tensor:

@@ -43,7 +43,10 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
 
 
 def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
-    """`mixed_regressor` without checks, for the inner loop of a simulation."""
+    """`mixed_regressor` of arrays `q`, `qd`, `v`, `a` and known `names`: nothing is checked.
+
+    It is for the inner loop of a simulation.
+    """
     q, qd, v, a = np.broadcast_arrays(q, qd, v, a)
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
     (w1, w2), (v1, v2), (a1, a2) = ((x[..., 0], x[..., 1]) for x in (qd, v, a))
