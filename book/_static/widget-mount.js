@@ -68,14 +68,23 @@
     }
   }
 
-  async function mount(script, entries, models) {
+  // What a view shows, on its way; a failure is met where it is shown.
+  function begin(script, entries, models) {
     const el = document.createElement("div");
     script.before(el);
-    try {
+    const loaded = (async () => {
       const id = JSON.parse(script.textContent).model_id;
       if (!entries[id]) throw new Error("its state is not in the page");
       models[id] ??= load(entries[id]);
-      const { widget, model } = await models[id];
+      return models[id];
+    })();
+    loaded.catch(() => {});
+    return { el, loaded };
+  }
+
+  async function show({ el, loaded }) {
+    try {
+      const { widget, model } = await loaded;
       await widget.render({ model, el });
       el.classList.add("ddlib-widget");
     } catch (error) {
@@ -93,7 +102,8 @@
       // each view below says that its state is missing
     }
     const models = {};
-    await Promise.all([...document.querySelectorAll(VIEW)].map((s) => mount(s, entries, models)));
+    const views = [...document.querySelectorAll(VIEW)].map((s) => begin(s, entries, models));
+    for (const view of views) await show(view); // in order: the second of a kind is named so
     document.documentElement.dataset.widgets = "mounted";
   }
 

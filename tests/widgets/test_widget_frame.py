@@ -104,9 +104,17 @@ def test_address_that_does_not_fit_is_no_harm(state, tmp_path, visit, widget):
     assert not opened.problems and not opened.page.locator(".ddlib-widget-error").count()
 
 
+def late(entry):
+    """The widget's script takes a while to load."""
+    entry["state"]["_esm"] = (
+        f"await new Promise((r) => setTimeout(r, 500));{entry['state']['_esm']}"
+    )
+
+
 @browser_test
-def test_two_widgets_of_a_kind_have_entries_of_their_own(tmp_path, visit, widget):
-    url = page_of(tmp_path / "page.html", widget, framed())
+@pytest.mark.parametrize("change", [None, late])
+def test_two_widgets_of_a_kind_have_entries_of_their_own(change, tmp_path, visit, widget):
+    url = page_of(tmp_path / "page.html", widget, framed(), change=change)
     page = visit(f"{url}?curve-widget=gain:100&curve-widget2=decay:2").page
     assert shown_values(page) == [100, 0.5, 0, 10, 2, 0]
     page.locator("#curve-widget2-widget").get_by_label("Gain").press("Home")
