@@ -4,14 +4,33 @@ A study (`ddlib.experiments.studies`) whose result is there already, made by the
 skipped; so an interrupted run resumes. Several studies run side by side, each on one core.
 """
 
+# ruff: noqa: E402
+
 from __future__ import annotations
 
-import argparse
-import contextlib
-import io
 import multiprocessing
 import os
 import sys
+
+FORKED = sys.platform == "linux"
+"""Whether studies are forked from a process that has imported everything."""
+
+PROCESSES = multiprocessing.get_context("forkserver" if FORKED else "spawn")
+if FORKED:
+    PROCESSES.set_forkserver_preload(["ddlib.experiments.studies", "ddlib.figures.style"])
+if FORKED and __name__ == "__main__":  # it imports while this process does
+    from multiprocessing.forkserver import ensure_running
+
+    before = dict(os.environ)
+    os.environ["OMP_NUM_THREADS"] = "1"
+    ensure_running()
+    os.environ.clear()
+    os.environ.update(before)
+
+import argparse
+import contextlib
+import gc
+import io
 import time
 import traceback
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -61,12 +80,8 @@ def make_apart(name: str, code: str, do=make) -> str:
     do : callable
         What is called with them there.
     """
-    forked = sys.platform == "linux"
-    processes = multiprocessing.get_context("forkserver" if forked else "spawn")
-    if forked:
-        processes.set_forkserver_preload(["ddlib.experiments.studies", "ddlib.figures.style"])
-    told, tell = processes.Pipe(duplex=False)
-    process = processes.Process(target=_quietly, args=(tell, do, name, code))
+    told, tell = PROCESSES.Pipe(duplex=False)
+    process = PROCESSES.Process(target=_quietly, args=(tell, do, name, code))
     process.start()
     tell.close()
     try:
@@ -79,6 +94,7 @@ def make_apart(name: str, code: str, do=make) -> str:
 
 def _quietly(tell, do, *arguments) -> None:
     """Call a function, say nothing meanwhile, and send what went wrong, or nothing."""
+    gc.freeze()  # what was imported is no garbage: nobody looks through it again
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
