@@ -134,13 +134,34 @@ def test_value_gradient_and_matrix_are_those_of_autograd(data, start, decay, smo
         np.testing.assert_allclose(lengths, np.linalg.norm(j @ to_weights, axis=0), rtol=1e-9)
 
 
-def test_blocks_of_cases_add_up(data, start, monkeypatch):
+@pytest.mark.parametrize(("hidden", "outputs"), [(1, 1), (4, 1), (2, 3), (5, 4)])
+def test_any_numbers_of_units_have_the_matrices_of_autograd(hidden, outputs):
+    windows, torque = some_cases(40, 3)
+    mixed = np.random.default_rng(0).normal(size=(2, outputs))
+    data = TrainingSet.from_arrays(windows, torque @ mixed)
+    w = Weights.random(1, 3, hidden, 2, outputs, initial=1.0, seed=hidden)[0]
+    objective = Objective(w, data, 0.01, 0.02)
+    vector, args = objective.pack(w), (w, data, 0.01, 0.02)
+    j, bent = jacobian(flat(w), *args), hessian(flat(w), *args)
+    to_vector = np.column_stack([objective.pack(unflat(x, w)).numpy() for x in np.eye(j.shape[1])])
+    for _ in range(2):  # the second time what is kept of the first is used
+        for exact, expected in ((False, j.T @ j), (True, bent)):
+            lower = objective.normal(vector, exact)[0].numpy()
+            matrix = np.tril(lower) + np.tril(lower, -1).T
+            np.testing.assert_allclose(to_vector.T @ matrix @ to_vector, expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("exact", [False, True])
+def test_blocks_of_cases_add_up(exact, data, start, monkeypatch):
     whole = Objective(start[0], data)
     vector = whole.pack(start[0])
     monkeypatch.setattr(gauss_newton, "_BLOCK", 7)
+    monkeypatch.setattr(gauss_newton, "_HELD", 1)
     pieces = Objective(start[0], data)
-    for one, other in zip(whole.normal(vector), pieces.normal(vector)):
-        np.testing.assert_allclose(one, other, atol=1e-11)
+    assert whole._products.shape[1] == len(data.x) and pieces._products.shape[1] == 7
+    for _ in range(2):
+        for one, other in zip(whole.normal(vector, exact), pieces.normal(vector, exact)):
+            np.testing.assert_allclose(one, other, atol=1e-11)
 
 
 def test_parameters_come_back_and_inputs_are_white(data, start):
