@@ -245,9 +245,8 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     page.get_by_role("button", name="New weights").click()
     page.get_by_label("Inputs").select_option("printed")
     page.get_by_label("Momentum").select_option("0.9")
-    page.evaluate(
-        PRESS, ["A hidden filter has a name", "Pause"]
-    )  # at once: the training would be over soon
+    # both at once: the training would soon be over
+    page.evaluate(PRESS, ["A hidden filter has a name", "Pause"])
     for _ in range(3):
         page.get_by_role("button", name="Step").click()
     page.wait_for_timeout(600)
