@@ -168,14 +168,24 @@ def usable(page):
     return page.evaluate(PATHS) != before
 
 
+ALL_ANSWERED = """(before) => {
+  const request = kernel.model.get("request");
+  return request > before && kernel.model.get("answer")?.request === request;
+}"""
+"""Nothing is under way: a look at the page does not tell, as an answer to the first of two requests
+can hold the values of the second."""
+
+
 def answers(page):
     page.evaluate("kernel.alive = true; kernel.closed = false")
+    before = page.evaluate("kernel.model.get('request')")
     gain = page.get_by_label("Gain")
     gain.press("ArrowRight")
     gain.press("ArrowRight")
-    page.wait_for_selector("[data-values=exact]")
-    page.wait_for_selector(".note[hidden]", state="attached")
+    page.wait_for_function(ALL_ANSWERED, arg=before)
     page.evaluate(NEXT_FRAME)  # values are drawn with the next one
+    assert page.locator("[data-values=exact]").count() == 1
+    assert not page.locator(".note").is_visible()
     return page.evaluate(READ, 0)[0] == pytest.approx([1.25] * 41, abs=0.01)
 
 
