@@ -174,6 +174,12 @@ STATE = """() => {
 CALM = {"reduced_motion": "reduce"}
 
 
+def until(page, holds: str):
+    """Wait until something holds of `world`, however slow the machine."""
+    world = "document.querySelector('.ddlib-throw').world"
+    page.wait_for_function(f"(({{ world }}) => {holds})({{ world: {world} }})")
+
+
 def said(page) -> str:
     return page.locator(".said").inner_text()
 
@@ -192,9 +198,7 @@ def test_it_stands_still_until_asked(tmp_path, visit, widget):
     page.wait_for_timeout(300)
     assert page.evaluate(STATE) == before and "Paused on trajectory 6" in said(page)
     page.get_by_role("button", name="Play").click()
-    page.wait_for_timeout(300)
-    playing = page.evaluate(STATE)
-    assert playing["mode"] == "play" and playing["count"] > before["count"] + 20
+    until(page, f"world.mode === 'play' && world.count > {before['count'] + 20}")
     assert "trajectory 6" in said(page)
     page.get_by_role("button", name="Pause").click()
     paused = page.evaluate(STATE)
@@ -206,8 +210,7 @@ def test_it_stands_still_until_asked(tmp_path, visit, widget):
 @pytest.mark.browser
 def test_once_in_view_a_motion_greets(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget)).page
-    page.wait_for_timeout(200)
-    assert page.evaluate(STATE)["mode"] == "play"
+    until(page, "world.mode === 'play'")
 
 
 @pytest.mark.browser
@@ -220,14 +223,12 @@ def test_the_hand_is_pulled_by_pointer(tmp_path, visit, widget):
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x - 60, y + 120, steps=4)
-    page.wait_for_timeout(500)
+    until(page, "world.mode === 'held' && world.places()[1][1] < -0.02")
     held = page.evaluate(STATE)
-    assert held["mode"] == "held" and held["hand"][1] < -0.02
     assert page.locator(".rope").get_attribute("visibility") == "visible"
     page.mouse.up()
     assert page.evaluate(STATE)["mode"] == "free" and "friction" in said(page)
-    page.wait_for_timeout(200)
-    assert page.evaluate(STATE)["hand"] != held["hand"]
+    until(page, f"world.places()[1][1] !== {held['hand'][1]}")
     page.get_by_role("button", name="Reset").click()
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(STATE)["q"] == [0, 0]
@@ -240,10 +241,9 @@ def test_the_hand_is_pulled_by_keys(tmp_path, visit, widget):
     page.get_by_role("button", name="Reset").click()
     page.get_by_role("application", name="arrow keys").focus()
     page.keyboard.down("ArrowDown")
-    page.wait_for_timeout(400)
-    assert page.evaluate(STATE)["mode"] == "held" and page.evaluate(STATE)["hand"][1] < -0.01
+    until(page, "world.mode === 'held' && world.places()[1][1] < -0.01")
     page.keyboard.up("ArrowDown")
-    assert page.evaluate(STATE)["mode"] == "free"
+    until(page, "world.mode === 'free'")  # a key pulls for some time at least
     page.keyboard.down("ArrowLeft")
     page.keyboard.press("Tab")  # leaves the hand
     assert page.evaluate(STATE)["mode"] == "free"

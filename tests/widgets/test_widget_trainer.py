@@ -249,8 +249,9 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     page.evaluate(PRESS, ["A hidden filter has a name", "Pause"])
     for _ in range(3):
         page.get_by_role("button", name="Step").click()
-    page.wait_for_timeout(600)
-    wanted, query = page.evaluate(STATE), page.evaluate("location.search")
+    wanted = page.evaluate(STATE)
+    page.wait_for_function(f"location.search.includes('epoch:{wanted['epoch']}')")
+    query = page.evaluate("location.search")
     again = opened(tmp_path, visit, widget, query).page
     goal = f"document.querySelector('.ddlib-trainer').school.epoch >= {wanted['epoch']}"
     again.wait_for_function(goal)
