@@ -106,7 +106,7 @@ def execute_ahead(root: Path) -> None:
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
     folder = cache_path(root, root / "_build")
-    os.environ[SHARED] = str(folder / "measured")  # chapters and ledger share claims
+    os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
     pages = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
     paths = [root / f"{page}.ipynb" for page in listed(pages)]  # the ledger after the chapters
     folder.mkdir(parents=True, exist_ok=True)

@@ -18,9 +18,12 @@ __getattr__, __dir__, __all__ = hand_on(
         "ComputedTorque ControlLaw Controller Feedforward PID as_controller pd proportional"
     ),
     feedback_error="FeedbackErrorLearning GenericTerms MotionMemory RigidBodyTerms",
-    online="Abreast Descent LastLayer LinearFilter OnlineFeedforward OnlineNetwork TEACHERS",
+    online="Abreast LastLayer LinearFilter OnlineDescent OnlineFeedforward OnlineNetwork TEACHERS",
     guarded="Guarded REASONS Stops",
-    windowed=("BETWEEN MeasuredWindows PlannedTorque WindowFeedforward past_slopes poles_inside"),
+    windowed=(
+        "BETWEEN MeasuredWindows PlannedTorque WindowFeedforward past_slopes poles_inside "
+        "reference_windows"
+    ),
     linear="Margins closed_loop loop_gain margins opened_loop plant proportional_limit",
     delays="late_poles",
     velocity="EstimatedVelocity difference end_slope lag noise_gain stacked",

@@ -17,10 +17,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from ddlib._check import integer, non_negative, number, one_of
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
+from ddlib.control.windowed import reference_windows
 from ddlib.trajectories import Trajectory
 
 TEACHERS = ("torque", "feedback", "nobody")
@@ -125,7 +125,7 @@ class OnlineNetwork:
         return back @ seen / count, delta @ features / count
 
 
-class Descent(OnlineNetwork):
+class OnlineDescent(OnlineNetwork):
     """All weights learn by gradient descent, a step for each sample.
 
     Parameters
@@ -239,7 +239,7 @@ class OnlineFeedforward:
     Parameters
     ----------
     learner
-        `Descent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)`` of windows
+        `OnlineDescent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)`` of windows
         ``(..., cases, joint, width)`` and, by what teaches it, ``learn(windows, torque)`` or
         ``correct(windows, feedback)`` of one window for each run. It outlives the run.
     feedback : Controller or callable
@@ -287,7 +287,7 @@ class _Law:
         moving = (reference.qd != 0) | (reference.qdd != 0)
         self._moving = moving.any(axis=(*range(moving.ndim - 2), -1))
         self._half, self._read, self._applied = half, [], []
-        self._windows = _windows(reference.q, controller.width, self._every)
+        self._windows = reference_windows(reference.q, controller.width, self._every)
         if self._teacher == "nobody":
             self._ahead = learner.torque(self._windows)
 
@@ -313,17 +313,6 @@ class _Law:
             if self._moving[centre * self._every]:
                 window = np.stack(self._read[centre - self._half :], -1)
                 self._learner.learn(window, self._applied[centre])
-
-
-def _windows(q, width: int, every: int) -> np.ndarray:
-    """A view of the windows around all samples of `q`, shape (..., time, joint, width).
-
-    Before its first and after its last sample `q` is taken to rest.
-    """
-    reach = width // 2 * every
-    ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
-    padded = np.concatenate([ends[0], q, ends[1]], -2)
-    return sliding_window_view(padded, 2 * reach + 1, -2)[..., ::every]
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import control
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from ddlib._check import integer, non_negative, number, one_of, shaped
 from ddlib.control.controllers import PID, ControlLaw, Controller, Feedforward, as_controller
@@ -20,6 +21,29 @@ from ddlib.trajectories import Trajectory
 BETWEEN = ("window", "line", "hold")
 """What happens between two samples of the log: a window of its own around each control sample, a
 straight line from torque to torque, or the last torque is held."""
+
+
+def reference_windows(q, width: int, every: int) -> np.ndarray:
+    """A view of the windows around all samples of a reference.
+
+    Parameters
+    ----------
+    q : ndarray, shape (..., time, joint)
+        Positions, rad. Before the first and after the last sample they are taken to rest.
+    width : int
+        Samples of a window, odd.
+    every : int
+        Steps between two samples of a window.
+
+    Returns
+    -------
+    ndarray, shape (..., time, joint, width)
+        Read-only.
+    """
+    reach = width // 2 * every
+    ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
+    padded = np.concatenate([ends[0], q, ends[1]], -2)
+    return sliding_window_view(padded, 2 * reach + 1, -2)[..., ::every]
 
 
 @dataclass(frozen=True)
@@ -96,14 +120,15 @@ class WindowFeedforward:
         ndarray, shape (..., time, joint)
         """
         q = shaped("q", q, "(..., time, joint)")
-        time, half = q.shape[-2], self.width // 2
+        time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
-        centres = np.arange(0, time + (stride - 1), stride)
-        taps = centres[:, None] + self.every * np.arange(-half, half + 1)
-        windows = np.moveaxis(q[..., np.clip(taps, 0, time - 1), :], -1, -2)
+        late = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
+        windows = reference_windows(np.concatenate([q, late], -2), self.width, self.every)
+        windows = windows[..., ::stride, :, :]
+        centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])
         torque = shaped("model(windows)", self.model(cases), f"({len(cases)}, {q.shape[-1]})")
-        torque = torque.reshape(*q.shape[:-2], len(centres), q.shape[-1])
+        torque = torque.reshape(*q.shape[:-2], centres, q.shape[-1])
         if stride == 1:
             return torque
         now = np.arange(time)
@@ -111,7 +136,7 @@ class WindowFeedforward:
         if self.between == "hold":
             return before
         share = (now % stride / stride)[:, None]
-        after = torque[..., np.minimum(now // stride + 1, len(centres) - 1), :]
+        after = torque[..., np.minimum(now // stride + 1, centres - 1), :]
         return before + share * (after - before)
 
 

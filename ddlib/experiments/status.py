@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from ddlib.experiments import results
+from ddlib.experiments import results, studies
+from ddlib.experiments.studies import PARTS
 from ddlib.tables import Table, significant
 
-REPRODUCE_SECONDS = 900
-"""Target for `make reproduce`, s."""
+REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
+"""Targets for the parts of `make reproduce` on two cores, s; for all of it, their sum."""
 
 GAP = "\N{NO-BREAK SPACE}"
 
@@ -81,9 +82,23 @@ def made_results() -> Table:
     times = {name: by["seconds"] for name, by in made.items() if "code" in by}
     rows = [(name, f"{seconds:.1f} s") for name, seconds in times.items()]
     rows.append(("sum", f"{sum(times.values()):.0f} s"))
+    for part, most in REPRODUCE_SECONDS.items():
+        spent = sum(seconds for name, seconds in times.items() if _part(name) == part)
+        rows.append((f"results of {part}, half of it", _held(spent / 2, most)))
     if whole := made.get("reproduce"):
         fewer = "" if whole.get("parts") == len(times) else ", before results were added"
-        verdict = "met" if whole["seconds"] <= REPRODUCE_SECONDS else "missed"
-        words = f"{whole['seconds']:.0f} s{fewer}; target ≤ {REPRODUCE_SECONDS} s: {verdict}"
+        words = _held(whole["seconds"], sum(REPRODUCE_SECONDS.values()), fewer)
         rows.append((f"make reproduce, {whole['jobs']} at a time, by the clock", words))
     return Table(("result", "processor time to make it"), rows)
+
+
+def _held(seconds: float, most: float, beside: str = "") -> str:
+    verdict = "met" if seconds <= most else "missed"
+    return f"{seconds:.0f} s{beside}; target ≤ {most} s: {verdict}"
+
+
+def _part(name: str) -> str:
+    """The part of `REPRODUCE_SECONDS` to which a result belongs, by the folder of its study."""
+    report, rivals, loop = REPRODUCE_SECONDS
+    folder = PARTS[name].__module__.removeprefix(studies.__name__) if name in PARTS else ""
+    return {"beyond": rivals, "loop": loop}.get(folder.strip(".").partition(".")[0], report)

@@ -6,6 +6,9 @@ in place, on as few members as fit into a core's cache.
 
 from __future__ import annotations
 
+import platform
+from collections.abc import Callable
+
 import numpy as np
 import torch
 
@@ -13,12 +16,25 @@ from ddlib.learning.network import Weights
 
 _times_slope = torch.ops.aten.sigmoid_backward.grad_input  # g, s -> g s (1 - s), one pass
 
+ONEDNN = (
+    torch.backends.mkldnn.is_available()
+    and platform.machine().lower() in {"x86_64", "amd64"}
+    and all(
+        hasattr(torch.ops.mkldnn, f"_{op}") for op in ("reorder_linear_weight", "linear_pointwise")
+    )
+)
+"""Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
+uses. Its kernels take the widest registers of any processor, those of MKL of Intel's alone."""
+
+LEAST = 300_000
+"""Multiplications from which a product is worth oneDNN's longer way."""
+
 
 class Descent:
     """Batch gradient descent with acceleration of many networks on the same inputs.
 
-    The input-to-hidden and direct weights of all members are the columns of one matrix:
-    member by member the hidden units, then the outputs; its last row holds the biases.
+    The input-to-hidden and direct weights of all members are the rows of one matrix:
+    member by member the hidden units, then the outputs; its last column holds the biases.
 
     Parameters
     ----------
@@ -37,33 +53,36 @@ class Descent:
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
         inputs = int(np.prod(self.shape))
         layers = (weights.hidden_weights, weights.direct_weights)
-        columns = np.concatenate([w.reshape(n, -1, inputs) for w in layers], 1)
+        rows = np.concatenate([w.reshape(n, -1, inputs) for w in layers], 1)
         biases = np.concatenate([weights.hidden_bias, weights.output_bias], 1)
-        first = np.concatenate([columns, biases[..., None]], -1)
+        first = np.concatenate([rows, biases[..., None]], -1)
         self.rows = first.shape[1]
-        self.first = _tensor(first.reshape(n * self.rows, -1).T)
+        self.first = _tensor(first.reshape(n * self.rows, -1))
         self.second = _tensor(weights.output_weights)
         self.inputs = _with_ones(x)
         self.targets = _tensor(np.swapaxes(y, -1, -2))
         per_member = [np.broadcast_to(value, n) for value in (eps, momentum)]
-        self.eps, self.momentum = ([_tensor(np.repeat(v, self.rows)), _tensor(v)[:, None, None]]
-                                   for v in per_member)  # fmt: skip
+        self.eps, self.momentum = (
+            [_tensor(np.repeat(v, self.rows))[:, None], _tensor(v)[:, None, None]]
+            for v in per_member
+        )
         self.step_first = torch.zeros_like(self.first)
         self.step_second = torch.zeros_like(self.second)
-        self.gradient_first = torch.empty_like(self.first)
         cases = self.inputs.shape[1]
-        self.net = torch.empty(n, self.rows, cases)
         self.back = torch.empty(n, self.hidden, cases)
         self.delta = torch.empty(n, self.rows - self.hidden, cases)
+        self._net = times(self.inputs, len(self.first))
+        self._gradient = times(self.inputs.t().contiguous(), len(self.first))
 
-    def _forward(self, inputs, net):
-        """Activities of the hidden and output units, as views of `net`."""
-        torch.mm(self.first.t(), inputs, out=net.view(len(net) * self.rows, -1))
+    def _activities(self, net):
+        """Activities of the hidden and output units, in place, as views of `net`."""
+        net = net.view(self.members, self.rows, -1)
         hidden, output = net[:, : self.hidden], net[:, self.hidden :]
         hidden.sigmoid_()
         output.baddbmm_(self.second, hidden).sigmoid_()
         return hidden, output
 
+    @torch.inference_mode()
     def epoch(self, wanted: bool = False, most: float = 1.0) -> np.ndarray | None:
         """One step of every member, in place.
 
@@ -74,7 +93,8 @@ class Descent:
         most : float
             Largest momentum of this step.
         """
-        hidden, output = self._forward(self.inputs, self.net)
+        net = self._net(self.first)
+        hidden, output = self._activities(net)
         torch.sub(output, self.targets, out=self.delta)
         errors = self._mean_square(self.delta) if wanted else None
         _times_slope(self.delta, output, grad_input=self.delta)
@@ -82,9 +102,7 @@ class Descent:
         torch.bmm(self.second.transpose(1, 2), self.delta, out=self.back)
         _times_slope(self.back, hidden, grad_input=hidden)
         output.copy_(self.delta)
-        deltas = self.net.view(self.members * self.rows, -1)
-        torch.mm(self.inputs, deltas.t(), out=self.gradient_first)
-        gradients = (self.gradient_first, gradient_second)
+        gradients = (self._gradient(net), gradient_second)
         steps, weights = (self.step_first, self.step_second), (self.first, self.second)
         for step, weight, gradient, eps, alpha in zip(
             steps, weights, gradients, self.eps, self.momentum
@@ -104,19 +122,19 @@ class Descent:
             Windows prepared by `prepare`.
         targets : torch.Tensor, shape (output, cases)
         """
-        net = torch.empty(self.members, self.rows, inputs.shape[1])
-        return self._mean_square(self._forward(inputs, net)[1].sub_(targets))
+        _, output = self._activities(torch.mm(self.first, inputs))
+        return self._mean_square(output.sub_(targets))
 
     def _mean_square(self, delta) -> np.ndarray:
         errors = delta.square().mean(-1).numpy().astype(float)
-        fine = torch.isfinite(self.first).all(0).view(-1, self.rows).all(1)
+        fine = torch.isfinite(self.first).all(1).view(-1, self.rows).all(1)
         fine &= torch.isfinite(self.second).all(2).all(1)
         errors[~fine.numpy()] = np.nan
         return errors
 
     def weights(self) -> Weights:
         """All members as plain arrays."""
-        first = self.first.numpy().astype(float).T.reshape(self.members, self.rows, -1)
+        first = self.first.numpy().astype(float).reshape(self.members, self.rows, -1)
         hidden, skip = first[:, : self.hidden, :-1], first[:, self.hidden :, :-1]
         return Weights(
             hidden.reshape(*hidden.shape[:2], *self.shape),
@@ -125,6 +143,28 @@ class Descent:
             skip.reshape(*skip.shape[:2], *self.shape),
             first[:, self.hidden :, -1],
         )
+
+
+def times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
+    """Products ``left @ matrix`` with a matrix that stays the same, packed once.
+
+    Parameters
+    ----------
+    matrix : torch.Tensor, shape (inner, columns)
+        In single precision.
+    rows : int
+        Of each matrix ``left``.
+
+    Returns
+    -------
+    callable
+        ``left -> left @ matrix``, a new tensor of shape (rows, columns).
+    """
+    if not ONEDNN or rows * matrix.numel() < LEAST:
+        return lambda left: torch.mm(left, matrix)
+    packed = torch.ops.mkldnn._reorder_linear_weight(matrix.t().contiguous(), rows)
+    linear = torch.ops.mkldnn._linear_pointwise
+    return lambda left: linear(left, packed, None, "none", [], "")
 
 
 def prepare(x, y) -> tuple[torch.Tensor, torch.Tensor]:

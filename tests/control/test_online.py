@@ -6,9 +6,9 @@ import pytest
 from ddlib.control import Feedforward, Watched, WindowFeedforward, pd, proportional
 from ddlib.control.online import (
     Abreast,
-    Descent,
     LastLayer,
     LinearFilter,
+    OnlineDescent,
     OnlineFeedforward,
     OnlineNetwork,
 )
@@ -55,7 +55,7 @@ def test_every_run_may_have_windows_of_its_own():
 @pytest.mark.parametrize("part", ["hidden", "output"])
 def test_a_step_of_descent_is_the_gradient_by_differences(part):
     wanted = np.random.default_rng(2).uniform(-20, 20, (6, 2))
-    before = Descent(model(1), rate=1.0)
+    before = OnlineDescent(model(1), rate=1.0)
     before.hidden, before.output = before.hidden[0], before.output[0]
 
     def cost(learner):
@@ -76,7 +76,7 @@ def test_a_step_of_descent_is_the_gradient_by_differences(part):
 
 
 def test_feedback_is_an_error_like_any_other():
-    one, other = Descent(model(), 0.5), Descent(model(), 0.5)
+    one, other = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5)
     each = np.stack([windows(k)[0] for k in range(3)])
     missing = np.random.default_rng(5).normal(size=(3, 2))
     other.learn(each, other.torque(each[:, None])[:, 0] + missing)
@@ -87,8 +87,8 @@ def test_feedback_is_an_error_like_any_other():
 
 def test_a_rate_for_each_run_and_momentum():
     rates = np.array([0.0, 0.1, 0.3])
-    together = Descent(model(), rates, momentum=0.5)
-    alone = Descent(model()[2:], 0.3, momentum=0.5)
+    together = OnlineDescent(model(), rates, momentum=0.5)
+    alone = OnlineDescent(model()[2:], 0.3, momentum=0.5)
     each = np.stack([windows(k) for k in range(3)])
     for k in range(4):
         torque = np.full((3, 2), 3.0 * k)
@@ -99,7 +99,7 @@ def test_a_rate_for_each_run_and_momentum():
 
 
 def test_replay_learns_earlier_samples_again():
-    plain, again = Descent(model(), 0.5), Descent(model(), 0.5, replay=8)
+    plain, again = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5, replay=8)
     each = np.stack([windows(k, 40) for k in range(3)])
     wanted = 20 * each.mean(-1)
     for k in range(40):
@@ -145,7 +145,7 @@ def test_a_linear_filter_learns_what_is_linear():
 def test_with_rate_0_it_is_the_plain_feedforward(teacher):
     network = model(1)
     plain = Feedforward(WindowFeedforward(lambda w: network.torque(w)[0], WIDTH), FEEDBACK)
-    learner = Descent(network[0], 0.0)
+    learner = OnlineDescent(network[0], 0.0)
     online = OnlineFeedforward(learner, FEEDBACK, WIDTH, teacher)
     runs = [record(ARM, law, EXTENTS, **SHORT) for law in (plain, online)]
     np.testing.assert_allclose(runs[1].tau_true, runs[0].tau_true, rtol=1e-9, atol=1e-9)
@@ -227,4 +227,4 @@ def test_several_controllers_run_abreast():
 )
 def test_values_out_of_range_are_refused(change, name):
     with pytest.raises(ValueError, match=name):
-        OnlineFeedforward(Descent(model(), 0.1), FEEDBACK, **{"width": 5, **change})
+        OnlineFeedforward(OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, **change})

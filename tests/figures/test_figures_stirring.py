@@ -1,5 +1,7 @@
 """Figures of the chapter on stirring: accessible, and true to what they are given."""
 
+import re
+
 import numpy as np
 import pytest
 from pictures import check_sound, drawn, figures_in
@@ -56,7 +58,17 @@ def test_errors_are_exaggerated_and_the_path_is_not(made):
 
 def test_states_are_shoulder_against_elbow(made):
     for k, axis in enumerate(made["two_families"][1].axes):
-        np.testing.assert_array_equal(axis.lines[0].get_xydata(), STATES[:, [k, k + 3]])
+        first, second = (patch.get_path().vertices[::2] for patch in axis.patches)
+        np.testing.assert_array_equal(first, STATES[:, [k, k + 3]])
+        np.testing.assert_array_equal(second, -first)
+
+
+def test_thousands_of_states_are_few_elements_and_none_is_dropped():
+    states = np.random.default_rng(0).normal(size=(3000, 6))
+    svg = figures_stirring.two_families({"only": states, "other": states + 1}, "Clouds.").svg
+    assert svg.count("<use") < 100 and svg.count("<path") < 60
+    places = [len(re.findall("[ML]", d)) for d in re.findall(r'<path d="([^"]*)"', svg)]
+    assert sorted(places)[-6:] == [6000] * 6
 
 
 def test_bad_data_are_refused():

@@ -11,6 +11,8 @@ import nbformat
 import pytest
 from book_pages import PAGES, source
 
+from ddlib.learning.descent import ONEDNN
+
 DRAWS = """
 import numpy as np
 rng = np.random.default_rng(3)
@@ -73,6 +75,20 @@ def test_other_libraries_take_another_core(tmp_path):
     env = {**foreign.environment("other-libraries", tmp_path), "OPENBLAS_VERBOSE": "2"}
     answer = ask("import numpy", env)
     assert "Core: Nehalem" in answer.stdout + answer.stderr
+
+
+@pytest.mark.skipif(not ONEDNN, reason="products do not go through oneDNN here")
+@pytest.mark.parametrize("name", ["plain-kernels", "other-libraries"])
+def test_products_of_descent_take_older_instructions(name, tmp_path):
+    code = (
+        "import torch; from ddlib.learning.descent import times;"
+        "torch.manual_seed(0); x = torch.rand(43, 1500); a = torch.rand(96, 43);"
+        "times(x, 96)(a)"
+    )
+    env = {**foreign.environment(name, tmp_path), "ONEDNN_VERBOSE": "1"}
+    told = ask(code, env).stdout
+    (product,) = re.findall(r"exec,cpu,(?:inner_product|matmul),([^,]*)", told)
+    assert "isa:Intel" in told and "avx512" not in product and "avx10" not in product
 
 
 @pytest.mark.parametrize("name, count", [("one-thread", 1), ("two-threads", 2)])

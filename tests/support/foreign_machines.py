@@ -29,11 +29,13 @@ def _threads(count: int) -> dict[str, str]:
 SETTINGS = {
     "jog-1": {"DDLIB_JOG": "1"},
     "jog-7": {"DDLIB_JOG": "7"},
-    "plain-kernels": {"ATEN_CPU_CAPABILITY": "default"},
-    "other-libraries": {"MKL_CBWR": "COMPATIBLE", "OPENBLAS_CORETYPE": "Nehalem"},
+    "plain-kernels": {"ATEN_CPU_CAPABILITY": "default", "ONEDNN_MAX_CPU_ISA": "SSE41"},
+    "other-libraries": {
+        "MKL_CBWR": "COMPATIBLE", "OPENBLAS_CORETYPE": "Nehalem", "ONEDNN_MAX_CPU_ISA": "AVX2"
+    },
     "one-thread": _threads(1),
     "two-threads": _threads(2),
-}
+}  # fmt: skip
 """Environment variables of each foreign machine; ``jog-1+other-libraries`` has those of both."""
 
 CI = "jog-1+other-libraries"

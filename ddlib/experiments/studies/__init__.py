@@ -10,7 +10,7 @@ names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 - ``states``, ``states_sizes``: section 6
 - ``beyond``: Part IV, rivals and a real arm
 - ``loop``: Part IV, closing the loop
-- ``page``: networks trained as a reader trains one in the page
+- ``page``: what readers try in the pages: networks trained there, a learner in the loop
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from ddlib.experiments.studies.beyond import (
 )
 from ddlib.experiments.studies.loop import adaptive, joints, learning, run_time, stirring
 from ddlib.experiments.studies.loop.runs import conditions
-from ddlib.experiments.studies.page import training
+from ddlib.experiments.studies.page import learner, training
 
 PARTS: dict[str, Callable[[], dict]] = {
     "table-4-1": table.table_4_1,
@@ -54,6 +54,7 @@ PARTS: dict[str, Callable[[], dict]] = {
     "filter-trial-elsewhere": nulls.filter_trial_elsewhere,
     "span": span.span,
     "page-training": training.page_training,
+    "loop-learner": learner.loop_learner,
     "harmonics": harmonics.harmonics,
     "table-6-1": states.table_6_1,
     "state-space-choices": states.state_space_choices,

@@ -6,6 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from ddlib._check import number, positive, shaped
 from ddlib.figures.style import (
@@ -120,6 +123,17 @@ def paths(
     return illustrate(draw, alt, 6.6, 1.7 * rows + 0.7)
 
 
+def _dots(places: np.ndarray, colour: str) -> PathPatch:
+    """Small dots as one shape: lines of no length with round ends.
+
+    Thousands of markers would be as many elements of the page.
+    """
+    path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
+    path.should_simplify = False
+    look = {"facecolor": "none", "edgecolor": colour, "lw": 1.6, "alpha": 0.6}
+    return PathPatch(path, capstyle="round", **look)
+
+
 def two_families(states: Mapping[str, np.ndarray], alt: str) -> Illustration:
     """States of families of motions, shoulder against elbow: positions, velocities, accelerations.
 
@@ -139,10 +153,16 @@ def two_families(states: Mapping[str, np.ndarray], alt: str) -> Illustration:
         axes = figure.subplots(1, 3)
         for k, (axis, (title, unit)) in enumerate(zip(axes, PLANES.items())):
             for j, (name, x) in enumerate(drawn.items()):
-                look = {"color": COLOURS[j % len(COLOURS)], "ms": 1.6, "mew": 0, "alpha": 0.6}
-                axis.plot(x[:, k], x[:, k + 3], MARKERS[j], label=name, ls="", **look)
+                dots = _dots(x[:, [k, k + 3]], COLOURS[j % len(COLOURS)])
+                axis.add_patch(dots)
+                dots.set_label(name)
+            axis.autoscale_view()
             axis.set(title=title, xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
-        handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper left", ncols=3, markerscale=3)
+        look = {"marker": "o", "ls": "", "ms": 4.8, "mew": 0}
+        handles = [
+            Line2D([], [], color=COLOURS[j % len(COLOURS)], label=name, **look)
+            for j, name in enumerate(drawn)
+        ]
+        figure.legend(handles=handles, loc="outside upper left", ncols=3)
 
     return illustrate(draw, alt, 7.0, 2.9)

@@ -11,12 +11,12 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.control import (
-    Descent,
     FeedbackErrorLearning,
     GenericTerms,
     LastLayer,
     LinearFilter,
     MotionMemory,
+    OnlineDescent,
     OnlineFeedforward,
     RigidBodyTerms,
     Watched,
@@ -239,7 +239,7 @@ def by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> Windows:
         Multiple of the rate chosen.
     """
     rate = BY_FEEDBACK[draw.setup.name] * np.asarray(times)
-    return Windows(Descent(model, rate), "feedback", draw)
+    return Windows(OnlineDescent(model, rate), "feedback", draw)
 
 
 def tiled(weights: Weights, count: int) -> Weights:
@@ -262,13 +262,15 @@ def lineup(draw: Draw) -> dict[str, object]:
 def candidates(draw: Draw) -> dict[str, object]:
     """The learners of the family: from nothing, and from networks trained off-line."""
     return {
-        "one pass": Windows(Descent(draw.untrained, ONE_PASS), "torque", draw),
-        "replay": Windows(Descent(draw.untrained, REPLAYED, replay=REPLAY), "torque", draw),
+        "one pass": Windows(OnlineDescent(draw.untrained, ONE_PASS), "torque", draw),
+        "replay": Windows(OnlineDescent(draw.untrained, REPLAYED, replay=REPLAY), "torque", draw),
         "last layer": last_layer(draw.untrained, draw),
         "by feedback": by_feedback(draw.untrained, draw),
         "linear filter": linear_filter(draw),
-        "off-line, as it is": Windows(Descent(draw.trained, 0.0), "nobody", draw),
-        "off-line, replay": Windows(Descent(draw.trained, TRAINED, replay=REPLAY), "torque", draw),
+        "off-line, as it is": Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
+        "off-line, replay": Windows(
+            OnlineDescent(draw.trained, TRAINED, replay=REPLAY), "torque", draw
+        ),
         "off-line, last layer": last_layer(draw.trained, draw, TRUST),
         "off-line, by feedback": by_feedback(draw.trained, draw),
     }
