@@ -329,6 +329,7 @@ def _inline(svg: str, alt: str) -> str:
     svg = svg.replace(INK, "currentColor")
     svg = re.sub(r' transform="rotate\(-0 [^"]*"', "", svg)
     svg = re.sub(r' (d|x|y|transform)="[^"]*"', _rounded, svg)
+    svg = DOT.sub(r"M\1 \2h0", svg)
     svg = re.sub(r"; font-family: 'DejaVu Sans'", "", svg)  # said once, on the whole picture
     svg = FORMULA.sub(_in_reading_order, svg)
     svg = re.sub(r"font-size: ([\d.]+)px|font: ([\d.]+)px", _legible_size, svg)
@@ -343,6 +344,9 @@ def _inline(svg: str, alt: str) -> str:
     svg = svg.replace(size[0], attributes, 1)
     return re.sub(r"\n\s*", "\n", svg)
 
+
+DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s+(?=M|\")")
+"""A line of no length, which is a dot if its ends are round."""
 
 FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
 LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')

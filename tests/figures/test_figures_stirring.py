@@ -67,8 +67,8 @@ def test_thousands_of_states_are_few_elements_and_none_is_dropped():
     states = np.random.default_rng(0).normal(size=(3000, 6))
     svg = figures_stirring.two_families({"only": states, "other": states + 1}, "Clouds.").svg
     assert svg.count("<use") < 100 and svg.count("<path") < 60
-    places = [len(re.findall("[ML]", d)) for d in re.findall(r'<path d="([^"]*)"', svg)]
-    assert sorted(places)[-6:] == [6000] * 6
+    dots = [len(re.findall(r"M\S+ \S+h0", d)) for d in re.findall(r'<path d="([^"]*)"', svg)]
+    assert sorted(dots)[-7:] == [0] + [3000] * 6
 
 
 def test_bad_data_are_refused():

@@ -130,7 +130,7 @@ def _dots(places: np.ndarray, colour: str) -> PathPatch:
     """
     path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
     path.should_simplify = False
-    look = {"facecolor": "none", "edgecolor": colour, "lw": 1.6, "alpha": 0.6}
+    look = {"facecolor": "none", "edgecolor": colour, "lw": 1.8, "alpha": 0.8}
     return PathPatch(path, capstyle="round", **look)
 
 
