@@ -111,13 +111,14 @@ def request(url: str, method: str = "GET"):
     return json.loads(text) if text else None
 
 
+# Nothing is awaited here: a promise on which no object of the page waits may be collected.
 SHOW = """
-async (path) => {
+(path) => {
   const app = window.jupyterapp;
-  await app.restored;
-  const panel = await app.commands.execute("docmanager:open", { path, factory: "Notebook" });
-  await panel.context.ready;
-  window.panel = panel;
+  window.panel = null;
+  window.opening = app.restored
+    .then(() => app.commands.execute("docmanager:open", { path, factory: "Notebook" }))
+    .then((panel) => panel.context.ready.then(() => { window.panel = panel; }));
 }
 """
 # What a reader sees of the answers before opening anything.
@@ -320,6 +321,7 @@ def test_a_chapter_in_the_lab(name, lab, opened):
     """Its answers are folded; its widgets live with a kernel and outlive it."""
     page = opened
     page.evaluate(SHOW, f"book/{source(name).name}")
+    wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
     if name in ANSWERED:
         answers_are_folded(page, source(name).read_text(encoding="utf-8"))
     if name in WITH_WIDGETS:
