@@ -1,4 +1,4 @@
-"""Notebooks executed ahead of the build, as many at a time as there are cores.
+"""Notebooks executed ahead of the build, on all cores.
 
 Each has a kernel of its own. On Linux that is forked from a process that has imported the large
 libraries, which saves the two or three seconds that a fresh one needs for them.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gc
 import multiprocessing
+import multiprocessing.forkserver
 import os
 import sys
 from collections.abc import Iterator
@@ -66,7 +67,8 @@ def execute(cache, paths: list[Path]) -> tuple[list[Path], list[Path]]:
     known -= {Path(record.uri) for record in cache.list_unexecuted()}
     todo = [path for path in paths if path not in known]
     done, ended = [], []
-    with forked_kernels(len(todo) > FEW), ThreadPoolExecutor(os.cpu_count()) as pool:
+    # one more than cores: a kernel that starts or ends mostly waits
+    with forked_kernels(len(todo) > FEW), ThreadPoolExecutor(os.cpu_count() + 1) as pool:
         for path, result in pool.map(run, todo):
             if result is None:
                 ended.append(path)
@@ -97,6 +99,7 @@ def forked_kernels(wanted: bool = True) -> Iterator[None]:
     # a process that starts would import the main module: without a file there is none
     main, sys.modules["__main__"] = sys.modules["__main__"], ModuleType("__main__")
     local_provisioner.launch_kernel = launch
+    multiprocessing.forkserver.ensure_running()  # and importing, before the first kernel asks
     try:
         yield
     finally:
@@ -145,4 +148,5 @@ def kernel(connection_file: str, env: dict, cwd: str, ready) -> None:
     from ipykernel.kernelapp import launch_new_instance
 
     gc.freeze()  # what was imported is never garbage
+    gc.set_threshold(20_000, 20, 100)  # figures make many small objects and drop them at once
     launch_new_instance()

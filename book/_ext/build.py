@@ -22,7 +22,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 # Imported with nbformat, it compiles a grammar of addresses for more than a second. Nothing here
@@ -36,7 +36,7 @@ from sphinx.util.console import strip_colors
 
 from ahead import execute
 from dd_book import PAGE_INPUTS, cache_path, digest
-from dd_failures import FAILURES, UNEXECUTED, last_line, where
+from dd_failures import FAILURES, last_line, where
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"
@@ -46,36 +46,31 @@ TRACEBACK = "Traceback (most recent call last):"
 NOTEBOOK_FAILED = "Executing notebook failed"
 CRASHES = ("Exception occurred:", "Extension error", "Sphinx error:", "Theme error:")
 
-# Its command has no option for as many jobs as there are cores. All pages are held as trees of
-# many nodes: looking through them for garbage at the usual pace takes a third of the time.
-JUPYTER_BOOK = """
-import gc
-import os
-import sys
 
-gc.set_threshold(200_000, 50, 100)
-
-sys.modules["rfc3987_syntax"] = None
-from jupyter_book import sphinx
-from jupyter_book.cli.main import main
-
-sphinx.build_sphinx.__kwdefaults__["jobs"] = os.cpu_count()
-main()
-"""
-
-
-def build(root: Path, strict: bool) -> tuple[int, list[str]]:
-    """Run Jupyter Book; its exit status and what it complained about, a message an entry."""
-    command = [sys.executable, "-c", JUPYTER_BOOK, "build", root]
+def made_ready(root: Path, strict: bool) -> subprocess.Popen:
+    """Jupyter Book in a process of its own, which imports what it needs and waits."""
+    command = [sys.executable, Path(__file__).with_name("pages.py"), "build", root]
     options = ["-W", "-n", "--keep-going"] if strict else []
+    return subprocess.Popen(
+        [*command, *options], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def build(root: Path, process: subprocess.Popen, ended: list[str]) -> tuple[int, list[str]]:
+    """Let Jupyter Book write the pages, of which some are not to be executed again.
+
+    Returns its exit status and what it complained about, a message an entry.
+    """
     lines = []
-    with subprocess.Popen([*command, *options], stderr=subprocess.PIPE, text=True) as process:
-        for line in process.stderr:
-            if NOISE not in line:
-                lines.append(strip_colors(line))
+    with suppress(BrokenPipeError):  # it ended before: its status and its messages tell
+        process.stdin.write(json.dumps(ended) + "\n")
+        process.stdin.close()
+    for line in process.stderr:
+        if NOISE not in line:
+            lines.append(strip_colors(line))
     with log(root).open("a", encoding="utf-8") as file:
         file.writelines(lines)
-    return process.returncode, messages(lines)
+    return process.wait(), messages(lines)
 
 
 def log(root: Path) -> Path:
@@ -98,23 +93,18 @@ def messages(lines: list[str]) -> list[str]:
     return [text for text in found if text.strip() and not text.startswith(TRACEBACK)]
 
 
-def execute_ahead(root: Path) -> None:
+def execute_ahead(root: Path, folder: Path) -> list[str]:
     """Execute on all cores the notebooks that the build would otherwise execute one by one.
 
     What fails here is not kept: the build meets it again, shows what came before and reports it.
-    A notebook whose kernel ended is left out there.
+    Returns the pages whose kernel ended, which are left out there.
     """
-    os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
-    folder = cache_path(root, root / "_build")
-    os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
     pages = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
     paths = [root / f"{page}.ipynb" for page in listed(pages)]  # the ledger after the chapters
-    folder.mkdir(parents=True, exist_ok=True)
     with errors_into(log(root)):
         done, ended = execute(get_cache(str(folder)), [path for path in paths if path.is_file()])
-    ended = [path.relative_to(root).with_suffix("").as_posix() for path in ended]
-    os.environ[UNEXECUTED] = json.dumps(ended)
     print(f"==> Executed {len(done)} notebooks", flush=True)
+    return [path.relative_to(root).with_suffix("").as_posix() for path in ended]
 
 
 def listed(contents) -> Iterator[str]:
@@ -188,11 +178,16 @@ def main(root: Path, strict: bool) -> int:
     else:
         print("==> Executing the notebooks that changed and writing the pages", flush=True)
         started = time.monotonic()
-        execute_ahead(root)
-        for stale in (html, root / "_build" / ".doctrees"):
-            shutil.rmtree(stale, ignore_errors=True)
-        (root / "_build" / FAILURES).unlink(missing_ok=True)
-        status, found = build(root, strict)
+        folder = cache_path(root, root / "_build")
+        folder.mkdir(parents=True, exist_ok=True)
+        os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
+        os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
+        with made_ready(root, strict) as pages:
+            ended = execute_ahead(root, folder)
+            for stale in (html, root / "_build" / ".doctrees"):
+                shutil.rmtree(stale, ignore_errors=True)
+            (root / "_build" / FAILURES).unlink(missing_ok=True)
+            status, found = build(root, pages, ended)
         report(root, found, strict)
         failed = bool(status or failures(root) or (strict and found))
         if status and not found:

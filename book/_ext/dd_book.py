@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import shutil
 import sys
-from functools import wraps
+from functools import cache, partial, wraps
 from importlib.metadata import files
 from pathlib import Path
 
 import joblib
-from sphinx import addnodes
+from pybtex import plugin
+from sphinx import addnodes, builders
 from sphinx.environment.adapters import toctree
+from sphinx.util.parallel import make_chunks
 
 from slim import slim
 
 MATHJAX = "tex-svg-full.js"
 SKIP = {"__pycache__", ".ipynb_checkpoints"}
 KEPT_CACHES = 3
+SMALL = 1  # as Sphinx counts: pages in a batch are more by the root of all that a process has
 
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
 CELL_INPUTS = ("ddlib", "book/results", "book/*.yml", "requirements.txt")
@@ -72,6 +75,19 @@ def read_side_by_side(app, env, names):
             app.extensions[name].parallel_read_safe = True
 
 
+def deal(app, env, names):
+    """Pages that document much code take long to read: not all of them in one batch."""
+    texts = {name: Path(env.doc2path(name)).read_text(encoding="utf-8") for name in names}
+    names.sort(key=lambda name: (-texts[name].count("automodule"), -len(texts[name])))
+    batches = len(builders.make_chunks(names, app.parallel))
+    names[:] = [name for k in range(batches) for name in names[k::batches]]
+
+
+def work_in_small_batches(app):
+    """One batch of pages is written while the next is made ready: the first comes soon."""
+    builders.make_chunks = partial(make_chunks, maxbatch=SMALL)
+
+
 def copy_titles_alone(app):
     """The sidebar shows titles of pages: do not copy all their sections for it, on every page.
 
@@ -89,6 +105,11 @@ def copy_titles_alone(app):
     toctree._toctree_standard_entry = entry
 
 
+def look_up_plugins_once(app):
+    """A citation looks its style up among all installed packages: once for each name will do."""
+    plugin._load_entry_point = cache(plugin._load_entry_point)
+
+
 def slim_pages(app, exception):
     """Trim what was written, once all of it is there."""
     if app.builder.format == "html" and exception is None:
@@ -99,6 +120,9 @@ def setup(app):
     app.connect("config-inited", set_cache_path)
     app.connect("builder-inited", copy_mathjax)
     app.connect("builder-inited", copy_titles_alone)
+    app.connect("builder-inited", look_up_plugins_once)
     app.connect("env-before-read-docs", read_side_by_side)
+    app.connect("env-before-read-docs", deal)
+    app.connect("builder-inited", work_in_small_batches)
     app.connect("build-finished", slim_pages, priority=900)  # after the theme's own
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

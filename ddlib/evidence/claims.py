@@ -209,13 +209,19 @@ class Claim:
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else shares(self.of(value) for value in replicates)
+        return {} if replicates is None else shares(self._of_each(replicates))
 
     def of(self, value: float) -> str:
         """The verdict that the bands give for one value."""
-        if self._within(self.band, value):
-            return "by construction" if self.verdict == "by construction" else "reproduced"
-        return "qualitative" if self.loose and self._within(self.loose, value) else "not reproduced"
+        return str(self._of_each([value])[0])
+
+    def _of_each(self, values) -> np.ndarray:
+        """The verdicts that the bands give for many values."""
+        values = np.asarray(values)
+        best = "by construction" if self.verdict == "by construction" else "reproduced"
+        nearly = self._within(self.loose, values) if self.loose else False
+        rest = np.where(nearly, "qualitative", "not reproduced")
+        return np.where(self._within(self.band, values), best, rest)
 
     def edges(self) -> list[float]:
         """Values at which the verdict turns."""
@@ -226,13 +232,13 @@ class Claim:
                 found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
         return sorted(set(found))
 
-    def _within(self, bounds, value) -> bool:
+    def _within(self, bounds, values: np.ndarray) -> np.ndarray:
         if "is" in bounds:
-            return bool(value) == bounds["is"]
+            return values.astype(bool) == bounds["is"]
         if "factor" in bounds:
-            ratio = value / self.printed
-            return 1 / bounds["factor"] <= ratio <= bounds["factor"]
-        return bounds.get("from", float("-inf")) <= value <= bounds.get("to", float("inf"))
+            ratios = values / self.printed
+            return (1 / bounds["factor"] <= ratios) & (ratios <= bounds["factor"])
+        return (bounds.get("from", -np.inf) <= values) & (values <= bounds.get("to", np.inf))
 
 
 @cache

@@ -17,7 +17,7 @@ and one verdict, and a written one that differs is wrong.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -204,15 +204,15 @@ def largest_median(*cells) -> np.ndarray:
     return np.max([median(cell) for cell in cells], axis=0)
 
 
-def shares(verdicts: Iterable[str]) -> dict[str, float]:
+def shares(verdicts) -> dict[str, float]:
     """Share of the draws in which each verdict comes out, the most frequent first.
 
     Parameters
     ----------
-    verdicts : iterable of str
+    verdicts : array_like of str, shape (draws,)
         The verdict of each draw.
     """
-    names, counts = np.unique(list(verdicts), return_counts=True)
+    names, counts = np.unique(verdicts, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return {str(names[k]): float(counts[k] / counts.sum()) for k in order}
 

@@ -155,17 +155,24 @@ def illustrate(
     with mpl.rc_context({**RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
-        figure.draw_without_rendering()
+        _lay_out(figure)
         svg = _written(figure)
     return Illustration(_inline(svg, alt), alt, draw, narrow_height or height)
 
 
-def _written(figure: Figure, **options) -> str:
-    """A matplotlib figure that is laid out, as the text of an SVG file.
+def _lay_out(figure: Figure) -> None:
+    """Give the axes of a figure their places, which then stay.
 
-    Its layout stays: saving would make it twice more, which takes as long as the drawing.
+    Left to saving, it would be done again, with a drawing more than is needed.
     """
-    figure.set_layout_engine("none")
+    if figure.axes:
+        figure.get_layout_engine().execute(figure)
+    with mpl.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)  # "none" leaves an empty one, for which saving draws twice
+
+
+def _written(figure: Figure, **options) -> str:
+    """A matplotlib figure that is laid out, as the text of an SVG file."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None}, **options)
     return stream.getvalue()
@@ -188,11 +195,11 @@ def _narrow(draw: Callable[[Figure], None], alt: str, height: float) -> str:
         draw(figure)
         rows, stacked = _stack(figure)
         figure.set_figheight(height if stacked == rows else stacked * min(height / rows, 2.4))
-        figure.draw_without_rendering()
         if figure.legends:  # they take lines that the wide form has not
             above = sum(legend.get_window_extent().height for legend in figure.legends)
             figure.set_figheight(figure.get_figheight() + max(0.0, above / figure.dpi - 0.3))
-            figure.draw_without_rendering()
+        _lay_out(figure)
+        figure.draw_without_rendering()  # texts of axes find their places
         if not _legible(figure):
             return ""
         drawn = figure.get_tightbbox()  # maps to scale leave room above and below

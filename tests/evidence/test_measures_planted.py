@@ -14,7 +14,8 @@ from ddlib.evidence.measures import (
     networks,
 )
 from ddlib.evidence.measures import windows as of_windows
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results
+from ddlib.experiments import WINDOWS, results
+from ddlib.learning import History
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import significant
 
@@ -266,12 +267,12 @@ def test_scaling_leaves_the_error():
     assert of_windows.scaling().value < 1e-12
 
 
-def test_the_best_of_momentum_and_step_size(monkeypatch):
+def test_the_best_of_momentum_and_step_size(plant):
     """Three networks at two step sizes: medians .8 and .9 without, .5 and .2 with momentum."""
     without = np.array([[0.8, 0.9], [0.7, 0.9], [2.0, 0.1]])
     with_it = np.array([[0.5, 0.2], [0.1, 0.2], [2.0, 0.2]])
-    errors = {0.0: without, STATE_FEEDBACK.momentum: with_it}
-    monkeypatch.setattr(of_windows, "_momentum_errors", lambda *_: errors)
+    errors = {"without": without.tolist(), "with": with_it.tolist()}
+    plant("acceleration", {"errors": errors, "epochs": 2000})
     found = of_windows.acceleration()
     assert found.value == pytest.approx(4.0)
     assert found.text == "0.80 without, 0.20 with it after 2,000 epochs"
@@ -544,9 +545,26 @@ def test_errors_settle_where_their_power_law_bends(plant, power, flat_from, word
     assert found.text == f"{words}{value}, {words.removeprefix('epochs: ')}{value}"
 
 
-def test_when_errors_reach_a_level():
-    from ddlib.learning import History
+def race(length, reached):
+    """Errors that fall on a straight line to 0.75 at these epochs."""
+    epochs = np.array([0.0, length])
+    training = 1.0 - 0.25 * epochs[:, None] / np.array(reached, float)
+    return {"epochs": epochs.tolist(), "training": training.tolist()}
 
+
+@pytest.mark.parametrize("late, wanted", [(9e9, 1000), (200.0, 200)])
+def test_speed_ups_here_and_elsewhere(plant, late, wanted):
+    """Medians: 800 over that of the later two, or the length of the run; 600 over 60 there."""
+    windows = {"without": race(9000, [600, 800, 8000]), "with": race(1000, [late, late, 160])}
+    parity = {"without": [4400, 600, 500], "with": [70, 60, 50]}
+    plant("acceleration", {"windows": windows, "parity": parity, "bits": 3})
+    found = backpropagation.acceleration()
+    assert found.value == pytest.approx(800 / wanted / 10)
+    faster = significant(800 / wanted, 2)
+    assert found.text == f"{faster} times faster here, 10 times on parity of 3 bits"
+
+
+def test_when_errors_reach_a_level():
     errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
     history = History(np.array([10, 20, 40]), errors, None)
     np.testing.assert_allclose(backpropagation.reach(history, 0.75), [25.0, 10.0, np.inf])

@@ -8,62 +8,13 @@ import numpy as np
 import pytest
 
 from ddlib.evidence.measures import backpropagation, dynamics, networks, trajectories
-from ddlib.evidence.measures import windows as of_windows
-from ddlib.experiments import POSITION_FEEDBACK, STATE_FEEDBACK
-from ddlib.experiments.setups import INITIAL
-from ddlib.learning import History, default_rate
+from ddlib.experiments import POSITION_FEEDBACK
 from ddlib.trajectories import pick_and_place
 
 SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
 
 
 # --- training ----------------------------------------------------------------------------------
-
-
-def falling(epochs, reached):
-    """Errors that fall on a straight line to 0.75 at these epochs."""
-    at = np.array([0.0, 2 * epochs])
-    return History(at, 1.0 - 0.25 * at[:, None] / np.array(reached, float), None)
-
-
-def test_speed_ups_here_and_elsewhere(monkeypatch):
-    asked = []
-
-    def train_ensemble(weights, data, rate, momentum, epochs, progress):
-        assert len(weights) == backpropagation.SEEDS and data == "windows of 21"
-        assert rate == default_rate(21) and progress is False
-        assert np.abs(weights.hidden_weights).max() == pytest.approx(INITIAL, rel=0.01)
-        asked.append((momentum, epochs))
-        reached = [600.0, 800.0, 10_000.0] if momentum == 0 else [100.0, 200.0, 150.0]
-        return None, falling(epochs, reached), None
-
-    def learn(bits, hidden, members, momentum, epochs, every):
-        assert (bits, hidden) == (3, 3) and members == 16 and every == 10
-        asked.append((momentum, epochs))
-        late = np.inf if momentum == 0 else 70.0
-        return None, np.array([late, 60.0, 50.0]) * (10 if momentum == 0 else 1)
-
-    monkeypatch.setattr(backpropagation, "_data", lambda: "windows of 21")
-    monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
-    monkeypatch.setattr(backpropagation.parity_networks, "learn", learn)
-    found = backpropagation.acceleration()
-    assert asked == [(0.0, 2200), (0.0, 4400), (0.9, 500), (0.9, 1000)]
-    # medians: 800 over 150 epochs here, 600 over 60 there
-    assert found.value == pytest.approx(800 / 150 / 10, rel=1e-6)
-    assert found.text == "5.3 times faster here, 10 times on parity of 3 bits"
-
-
-def test_runs_that_never_arrive_count_with_their_length(monkeypatch):
-    def train_ensemble(weights, data, momentum, epochs, **options):
-        return None, falling(epochs, [9e9] * 3 if momentum == 0 else [100.0] * 3), None
-
-    def learn(*sizes, momentum, epochs, **options):
-        return None, np.full(3, np.inf if momentum == 0 else 44.0)
-
-    monkeypatch.setattr(backpropagation, "_data", lambda: None)
-    monkeypatch.setattr(backpropagation, "train_ensemble", train_ensemble)
-    monkeypatch.setattr(backpropagation.parity_networks, "learn", learn)
-    assert backpropagation.acceleration().value == pytest.approx(22 / 100, rel=1e-6)
 
 
 def test_best_possible_answers_to_noisy_parity():
@@ -105,29 +56,6 @@ def test_networks_that_are_wrong_are_refused(monkeypatch):
 def test_units_and_steps_are_exact():
     assert backpropagation.unit().value < 1e-12
     assert 0 < backpropagation.chain_rule().value < 1e-4
-
-
-def test_settings_of_momentum_and_step_size(monkeypatch):
-    """Every network at every setting: its error says which setting it was."""
-    alpha = STATE_FEEDBACK.momentum
-
-    def train_ensemble(weights, data, rate, momentum, epochs, progress):
-        np.testing.assert_allclose(rate / default_rate(21), [0.5, 0.5, 2, 2, 0.5, 0.5, 2, 2])
-        np.testing.assert_array_equal(momentum, [0] * 4 + [alpha] * 4)
-        assert epochs == 7 and progress is False and data == "data"
-        hidden = weights.hidden_weights.reshape(4, 2, -1)
-        assert (hidden == hidden[:1]).all() and (hidden[:, 0] != hidden[:, 1]).any()
-        errors = 100 * momentum + rate / default_rate(21) + np.tile([0.0, 0.1], 4)
-        return None, SimpleNamespace(training=np.array([0 * errors, errors])), None
-
-    monkeypatch.setattr(of_windows.committed, "training", lambda: "runs")
-    monkeypatch.setattr(of_windows.TrainingSet, "from_recording", lambda run, width: "data")
-    monkeypatch.setattr(of_windows, "train_ensemble", train_ensemble)
-    found = of_windows._momentum_errors.__wrapped__(7, 2, (0.5, 2))
-    assert list(found) == [0.0, alpha]
-    for momentum, errors in found.items():
-        wanted = 100 * momentum + np.array([[0.5, 2.0], [0.6, 2.1]])
-        np.testing.assert_allclose(errors, wanted)
 
 
 # --- the family and its recordings -------------------------------------------------------------

@@ -16,14 +16,9 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     WindowNetwork,
-    default_rate,
     parity_networks,
-    train_ensemble,
 )
 from ddlib.tables import scientific, significant, spread
-
-SEEDS = 8
-"""Networks of a training run."""
 
 LEVEL = 0.75
 """Training RMSS to which runs with and without acceleration are timed."""
@@ -87,38 +82,25 @@ def reach(history: History, level: float = LEVEL) -> np.ndarray:
     return np.array(found)
 
 
-def acceleration(momentum: float = 0.9, bits: int = 3) -> Measured:
+def acceleration() -> Measured:
     """How much more acceleration speeds up learning here than in another domain, parity.
 
     The speed-up is the median number of epochs without over that with acceleration, at the same
     step size and from the same initial weights: to a training RMSS of `LEVEL` on the windows of
     21, and to the first time that all inputs are right on parity. A run that does not get there
     counts with its length.
-
-    Parameters
-    ----------
-    momentum : float
-        With acceleration: the share of the last step.
-    bits : int
-        Inputs and hidden units of the parity networks.
     """
-    start = Weights.random(SEEDS, 21, initial=STATE_FEEDBACK.initial)
-    windows, other = {}, {}
-    for alpha, epochs in ((0.0, 2200), (momentum, 500)):
-        options = dict(rate=default_rate(21), momentum=alpha, epochs=epochs, progress=False)
-        reached = reach(train_ensemble(start, _data(), **options)[1])
-        windows[alpha] = np.minimum(reached, epochs)
-        learned = parity_networks.learn(
-            bits, bits, members=16, momentum=alpha, epochs=2 * epochs, every=10
-        )
-        other[alpha] = np.minimum(learned[1], 2 * epochs)
-    cells = [(runs[0.0], runs[momentum]) for runs in (windows, other)]
+    kept = results.read("acceleration")
+    windows = [kept["windows"][name] for name in ("without", "with")]
+    histories = [History(np.array(w["epochs"]), np.array(w["training"])) for w in windows]
+    here = tuple(np.minimum(reach(h), h.epochs[-1]) for h in histories)
+    cells = [here, tuple(kept["parity"][name] for name in ("without", "with"))]
 
     def faster(pair):
         return median(pair[0]) / median(pair[1])
 
     here, there = (significant(np.median(a) / np.median(b), 2) for a, b in cells)
-    text = f"{here} times faster here, {there} times on parity of {bits} bits"
+    text = f"{here} times faster here, {there} times on parity of {kept['bits']} bits"
     return judged(lambda here, there: faster(here) / faster(there), *cells, text=text)
 
 

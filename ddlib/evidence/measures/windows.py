@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 
 from ddlib import paper
@@ -17,11 +15,9 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     cases,
-    default_rate,
     jacobian,
     moved,
     rows,
-    train_ensemble,
     with_ones,
 )
 from ddlib.metrics import rmss
@@ -158,43 +154,17 @@ def more_hidden_units(column: str = "test") -> Measured:
     return Measured(value, f"{column}: {text}", replicates)
 
 
-@cache
-def _momentum_errors(epochs: int, members: int, factors: tuple) -> dict[float, np.ndarray]:
-    """Last training errors, ``(members, factors)``, without and with momentum."""
-    data = TrainingSet.from_recording(committed.training(), 21)
-    start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
-    alphas = (0.0, STATE_FEEDBACK.momentum)
-    tried = [(alpha, f) for alpha in alphas for f in factors]
-    _, history, _ = train_ensemble(
-        Weights.concatenate([start] * len(tried)),
-        data,
-        rate=np.repeat([f * default_rate(21) for _, f in tried], members),
-        momentum=np.repeat([alpha for alpha, _ in tried], members),
-        epochs=epochs,
-        progress=False,
-    )
-    last = history.training[-1].reshape(len(alphas), len(factors), members)
-    return {alpha: errors.T for alpha, errors in zip(alphas, last)}
-
-
-def acceleration(epochs: int = 2000, members: int = 8, factors=(0.5, 1, 1.5)) -> Measured:
-    """Training error without momentum over that with it, each at its best step size.
-
-    Parameters
-    ----------
-    epochs, members : int
-        Length of training; networks for each setting, of which the median counts.
-    factors : sequence of float
-        Step sizes tried, as multiples of the usual one.
-    """
-    errors = tuple(_momentum_errors(epochs, members, tuple(factors)).values())
+def acceleration() -> Measured:
+    """Training error without momentum over that with it, each at its best step size."""
+    kept = results.read("acceleration")
+    errors = tuple(np.asarray(kept["errors"][name]) for name in ("without", "with"))
 
     def best(drawn):
         return np.median(drawn, axis=1).min(-1)
 
     value, replicates = over_members(lambda pair: best(pair[0]) / best(pair[1]), errors)
     without, with_it = (significant(np.median(e, axis=0).min(), 2) for e in errors)
-    text = f"{without} without, {with_it} with it after {epochs:,} epochs"
+    text = f"{without} without, {with_it} with it after {kept['epochs']:,} epochs"
     return Measured(value, text, replicates)
 
 

@@ -4,7 +4,7 @@ Every study is a function without required arguments that returns a plain dictio
 names them all. ``python -m ddlib.experiments.reproduce NAME`` runs one.
 
 - ``table``, ``knobs``: Table 4-1, on other days, longer, with clean sensors; which knobs decide it
-- ``windows``, ``inputs``: window sizes, hidden units, states in place of windows
+- ``windows``, ``inputs``: window sizes, hidden units, states in place of windows, acceleration
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
 - ``states``, ``states_sizes``: section 6
@@ -49,6 +49,7 @@ PARTS: dict[str, Callable[[], dict]] = {
     "hidden-units": windows.hidden_units,
     "memory": windows.memory,
     "state-inputs": inputs.state_inputs,
+    "acceleration": inputs.acceleration,
     "null-controls": nulls.null_controls,
     "filter-trial": nulls.filter_trial,
     "filter-trial-elsewhere": nulls.filter_trial_elsewhere,

@@ -1,4 +1,4 @@
-"""Section 3.1: windows of positions against position, velocity and acceleration themselves."""
+"""Sections 3.1 and 3.3: states in place of windows; training with and without acceleration."""
 
 from __future__ import annotations
 
@@ -6,9 +6,25 @@ import numpy as np
 
 from ddlib.analysis import savitzky_golay
 from ddlib.experiments.setups import STATE_FEEDBACK, split
-from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
+from ddlib.learning import (
+    TrainingSet,
+    Weights,
+    cases,
+    default_rate,
+    parity_networks,
+    train_ensemble,
+)
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP, Recording
+
+RACED = 0.9
+"""Acceleration in a race at one step size: the share of the last step that is repeated."""
+
+LENGTHS = {0.0: 2200, RACED: 500}
+"""Epochs of the race by acceleration; on parity it may take twice as many."""
+
+STEPS = (0.5, 1.0, 1.5)
+"""Step sizes to choose from, as multiples of the usual one: twice it derails."""
 
 
 def _states(recording: Recording, kind: str) -> np.ndarray:
@@ -61,3 +77,49 @@ def state_inputs(members=6) -> dict:
             }
         )
     return {"members": members, "rows": rows}
+
+
+def acceleration(members=25, epochs=2000, bits=3) -> dict:
+    """Window 21 with and without acceleration: errors at each step size, and a race.
+
+    Errors are those of `members` networks after `epochs`, with the table's acceleration. The race
+    has `RACED` and one step size, and is run on another task, too: parity of `bits` bits, with
+    twice as many networks.
+    """
+    data = TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], 21)
+    start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
+    errors = {}
+    for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
+        _, history, _ = train_ensemble(
+            Weights.concatenate([start] * len(STEPS)),
+            data,
+            rate=np.repeat([factor * default_rate(21) for factor in STEPS], members),
+            momentum=momentum,
+            epochs=epochs,
+            label=f"{name} acceleration",
+        )
+        errors[name] = history.training[-1].reshape(len(STEPS), members).T
+    windows, parity = {}, {}
+    for name, (momentum, length) in zip(errors, LENGTHS.items()):
+        _, history, _ = train_ensemble(
+            start,
+            data,
+            rate=default_rate(21),
+            momentum=momentum,
+            epochs=length,
+            label=f"{name} acceleration, race",
+        )
+        windows[name] = {"epochs": history.epochs, "training": history.training}
+        _, learned = parity_networks.learn(
+            bits, bits, members=2 * members, momentum=momentum, epochs=2 * length, every=10
+        )
+        parity[name] = np.minimum(learned, 2 * length)  # infinite if never
+    return {
+        "members": members,
+        "epochs": epochs,
+        "steps": STEPS,
+        "errors": errors,
+        "bits": bits,
+        "windows": windows,
+        "parity": parity,
+    }
