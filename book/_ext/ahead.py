@@ -20,6 +20,8 @@ from types import ModuleType
 # What takes long to import is imported where it is needed: kernels read this module, too.
 
 TIMEOUT = 600  # seconds for one cell, as in _config.yml
+HERE = str(Path(__file__).parent)
+PATHS = "PYTHONPATH"
 FEW = 4  # notebooks, for which a process to fork from is not worth its start
 PRELOADED = (
     "ipykernel.kernelapp",
@@ -33,6 +35,7 @@ PRELOADED = (
     "ddlib.evidence.wall",
     "ddlib.figures.style",
     "ddlib.widgets.base",
+    "warm",
 )
 
 
@@ -99,12 +102,22 @@ def forked_kernels(wanted: bool = True) -> Iterator[None]:
     # a process that starts would import the main module: without a file there is none
     main, sys.modules["__main__"] = sys.modules["__main__"], ModuleType("__main__")
     local_provisioner.launch_kernel = launch
-    multiprocessing.forkserver.ensure_running()  # and importing, before the first kernel asks
+    start_importing()
     try:
         yield
     finally:
         local_provisioner.launch_kernel = usual
         sys.modules["__main__"] = main
+
+
+def start_importing() -> None:
+    """Let the server import, before the first kernel asks for it, from this folder as well."""
+    known = os.environ.get(PATHS)
+    os.environ[PATHS] = os.pathsep.join(filter(None, (HERE, known)))
+    multiprocessing.forkserver.ensure_running()
+    del os.environ[PATHS]
+    if known:
+        os.environ[PATHS] = known
 
 
 class Forked:
@@ -141,10 +154,11 @@ def kernel(connection_file: str, env: dict, cwd: str, ready) -> None:
     os.setsid()
     ready.send(os.getpid())
     os.chdir(cwd)
+    os.environ.pop(PATHS, None)  # that of the server
     os.environ.update(env)
     parent = f"--IPKernelApp.parent_handle={os.getppid()}"  # it ends if that one does
     sys.argv[:] = ["ipykernel_launcher", "-f", connection_file, parent]
-    sys.path[:] = [folder for folder in sys.path if folder != str(Path(__file__).parent)]
+    sys.path[:] = [folder for folder in sys.path if folder != HERE]
     from ipykernel.kernelapp import launch_new_instance
 
     gc.freeze()  # what was imported is never garbage

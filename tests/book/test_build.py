@@ -6,15 +6,18 @@ import os
 import shutil
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import nbformat
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
+from sphinx import builders
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
+from build import build as write_pages
 from build import messages, report
-from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
+from dd_book import CELL_INPUTS, PAGE_INPUTS, deal, digest
 from dd_failures import failing_cell, last_line
 
 STAMP = "_build/html/.built-from"
@@ -195,7 +198,8 @@ def test_bad_chapters_do_not_take_the_book_with_them(tiny):
 def test_forked_kernels_are_like_others(tmp_path):
     """Fresh, in their folder, with the given surroundings; one that ends takes nothing with it."""
     tell = "import os, sys; print(os.getcwd(), os.environ['TOLD'], __name__, 'book' in dir());"
-    tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0))"
+    tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0));"
+    tell += "from ddlib.evidence import claims; print('held', claims._parsed.cache_info().currsize)"
     sources = [(tell, "book = 1"), (tell,), ("import os; os._exit(1)",), ("1 / 0",)]
     for k, cells in enumerate(sources):
         (tmp_path / "book").mkdir(exist_ok=True)
@@ -226,6 +230,41 @@ def test_forked_kernels_are_like_others(tmp_path):
     said = " ".join(told)
     assert said.count(f"{tmp_path / 'book'} here __main__ False") == 2
     assert said.count("True False True") == 2
+    assert said.count("held 1") == 2  # claims are read before the fork: see `warm`
+
+
+def test_jupyter_book_ends_if_nobody_waits_for_it(tmp_path):
+    """An interrupted build leaves no process behind that writes pages."""
+    command = [sys.executable, str(ROOT / "book" / "_ext" / "pages.py"), "build", str(tmp_path)]
+    ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    assert ended.returncode == 0 and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("ended", [[], ["book/a"] * 20_000], ids=["few", "many"])
+def test_jupyter_book_that_has_ended_is_told(tmp_path, ended):
+    """What it said last is its complaint, whether or not the list still fits into the pipe."""
+    (tmp_path / "_build").mkdir()
+    command = [sys.executable, "-c", "raise SystemExit('Theme error:\\nno theme')"]
+    pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, **pipes) as process:
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+        assert write_pages(tmp_path, process, ended) == (1, ["Theme error:\nno theme\n"])
+    assert "no theme" in (tmp_path / "_build" / "build.log").read_text()
+
+
+@pytest.mark.parametrize("jobs", [2, 4])
+def test_pages_that_take_long_are_dealt_out(tmp_path, jobs):
+    """Of 40 pages 8 document much: no batch has more than its share of them."""
+    names = [f"{k:02}" for k in range(40)]
+    for k, name in enumerate(names):
+        (tmp_path / name).write_text("automodule " * (k < 8) + "x" * k)
+    env = SimpleNamespace(doc2path=lambda name: tmp_path / name)
+    app, dealt = SimpleNamespace(parallel=jobs), names.copy()
+    deal(app, env, dealt)
+    assert sorted(dealt) == names
+    batches = builders.make_chunks(dealt, jobs)
+    heavy = [sum(int(name) < 8 for name in batch) for batch in batches]
+    assert len(batches) >= jobs and max(heavy) <= -(-8 // len(batches)) + 1
 
 
 CAUGHT = """\

@@ -113,7 +113,7 @@ def formulas(figure):
 
 def test_texts_are_texts_in_their_order():
     texts = words(illustrate(formulas, "Formulas."))
-    assert "error of τ1 & q̇fb, N m" in texts and "a=2+b, s" in texts and "10−3" in texts
+    assert "error of τ1 & q̇fb, N m" in texts and "a=2+b, s" in texts and "10⁻³" in texts
     assert {"two", "lines", "first", "second"} <= set(texts)
     assert illustrate(formulas, "Formulas.").svg.count("font-family") == 1
 

@@ -1,0 +1,9 @@
+"""What every kernel would do again, done once in the process that they are forked from."""
+
+# ruff: noqa: F401
+
+import ipykernel.zmqshell
+import matplotlib.backends.backend_svg
+from ddlib.evidence import claims
+
+claims.load()
