@@ -91,8 +91,8 @@ def acceleration() -> Measured:
     counts with its length.
     """
     kept = results.read("acceleration")
-    windows = [kept["windows"][name] for name in ("without", "with")]
-    histories = [History(np.array(w["epochs"]), np.array(w["training"])) for w in windows]
+    runs = [kept["race"][name] for name in ("without", "with")]
+    histories = [History(np.array(run["epochs"]), np.array(run["training"])) for run in runs]
     here = tuple(np.minimum(reach(h), h.epochs[-1]) for h in histories)
     cells = [here, tuple(kept["parity"][name] for name in ("without", "with"))]
 

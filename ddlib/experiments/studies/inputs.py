@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib.analysis import savitzky_golay
-from ddlib.experiments.setups import STATE_FEEDBACK, split
+from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, split
 from ddlib.learning import (
     TrainingSet,
     Weights,
@@ -80,46 +80,50 @@ def state_inputs(members=6) -> dict:
 
 
 def acceleration(members=25, epochs=2000, bits=3) -> dict:
-    """Window 21 with and without acceleration: errors at each step size, and a race.
+    """With and without acceleration: errors by window and step size, and a race at window 21.
 
     Errors are those of `members` networks after `epochs`, with the table's acceleration. The race
     has `RACED` and one step size, and is run on another task, too: parity of `bits` bits, with
     twice as many networks.
     """
-    data = TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], 21)
-    start = Weights.random(members, 21, initial=STATE_FEEDBACK.initial)
-    errors = {}
-    for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
-        _, history, _ = train_ensemble(
-            Weights.concatenate([start] * len(STEPS)),
-            data,
-            rate=np.repeat([factor * default_rate(21) for factor in STEPS], members),
-            momentum=momentum,
-            epochs=epochs,
-            label=f"{name} acceleration",
-        )
-        errors[name] = history.training[-1].reshape(len(STEPS), members).T
-    windows, parity = {}, {}
-    for name, (momentum, length) in zip(errors, LENGTHS.items()):
-        _, history, _ = train_ensemble(
-            start,
-            data,
-            rate=default_rate(21),
-            momentum=momentum,
-            epochs=length,
-            label=f"{name} acceleration, race",
-        )
-        windows[name] = {"epochs": history.epochs, "training": history.training}
-        _, learned = parity_networks.learn(
-            bits, bits, members=2 * members, momentum=momentum, epochs=2 * length, every=10
-        )
-        parity[name] = np.minimum(learned, 2 * length)  # infinite if never
+    training = split(STATE_FEEDBACK.record())[0]
+    errors, race, parity = {}, {}, {}
+    for width in WINDOWS:
+        data = TrainingSet.from_recording(training, width)
+        start = Weights.random(members, width, initial=STATE_FEEDBACK.initial)
+        errors[str(width)] = {}
+        for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
+            _, history, _ = train_ensemble(
+                Weights.concatenate([start] * len(STEPS)),
+                data,
+                rate=np.repeat([factor * default_rate(width) for factor in STEPS], members),
+                momentum=momentum,
+                epochs=epochs,
+                label=f"window {width}, {name} acceleration",
+            )
+            errors[str(width)][name] = history.training[-1].reshape(len(STEPS), members).T
+        if width != 21:
+            continue
+        for name, (momentum, length) in zip(errors[str(width)], LENGTHS.items()):
+            _, history, _ = train_ensemble(
+                start,
+                data,
+                rate=default_rate(width),
+                momentum=momentum,
+                epochs=length,
+                label=f"{name} acceleration, race",
+            )
+            race[name] = {"epochs": history.epochs, "training": history.training}
+            _, learned = parity_networks.learn(
+                bits, bits, members=2 * members, momentum=momentum, epochs=2 * length, every=10
+            )
+            parity[name] = np.minimum(learned, 2 * length)  # infinite if never
     return {
         "members": members,
         "epochs": epochs,
         "steps": STEPS,
         "errors": errors,
         "bits": bits,
-        "windows": windows,
+        "race": race,
         "parity": parity,
     }
