@@ -19,7 +19,7 @@ from slim import slim
 MATHJAX = "tex-svg-full.js"
 SKIP = {"__pycache__", ".ipynb_checkpoints"}
 KEPT_CACHES = 3
-SMALL = 1  # as Sphinx counts: pages in a batch are more by the root of all that a process has
+SMALL = 1  # a batch has the root of so many times the pages that fall to a process
 
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
 CELL_INPUTS = ("ddlib", "book/results", "book/*.yml", "requirements.txt")

@@ -28,20 +28,23 @@ gc.disable()
 # One extension asks of every object in memory whether it is of a kind; some of torch's warn then.
 warnings.filterwarnings("ignore", category=FutureWarning, module="sphinx_external_toc")
 
+# Those that take long to import.
+EXTENSIONS = ("myst_nb", "sphinx.ext.autodoc", "sphinx_book_theme", "sphinxcontrib.bibtex")
+
 
 def prepare():
-    """Import Jupyter Book, its extensions and the documented modules; return the command.
+    """Import Jupyter Book, its large extensions and the documented modules; return the command.
 
     Pages are read and written in processes that are forked from this one.
     """
-    import sphinx.ext.autodoc
     from jupyter_book import sphinx
     from jupyter_book.cli.main import main
 
-    for module in pkgutil.walk_packages(ddlib.__path__, "ddlib."):
+    documented = [module.name for module in pkgutil.walk_packages(ddlib.__path__, "ddlib.")]
+    for name in (*EXTENSIONS, *documented):
         try:
-            importlib.import_module(module.name)
-        except Exception:  # its page will tell
+            importlib.import_module(name)
+        except Exception:  # its pages will tell
             continue
     # The command has no option for as many jobs as there are cores.
     sphinx.build_sphinx.__kwdefaults__["jobs"] = os.cpu_count()

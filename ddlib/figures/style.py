@@ -178,9 +178,9 @@ def _lay_out(figure: Figure) -> None:
     """
     for side in (side for axis in figure.axes for side in (axis.xaxis, axis.yaxis)):
         if isinstance(side.get_major_formatter(), ticker.LogFormatterSciNotation):
-            side.set_major_formatter(_Powers())
+            side.set_major_formatter(_Powers(side.get_transform().base))
         if isinstance(side.get_minor_formatter(), ticker.LogFormatterSciNotation):
-            side.set_minor_formatter(_Powers())
+            side.set_minor_formatter(_Powers(side.get_transform().base))
     if figure.axes:
         figure.get_layout_engine().execute(figure)
     with mpl.rc_context({"figure.constrained_layout.use": False}):

@@ -66,7 +66,7 @@ def test_the_race_is_one_at_one_step(asked):
     kept = inputs.acceleration(members=2, epochs=7)
     plain = [1.0, 1.0]
     raced = [call for call in asked if 7 not in call]
-    assert raced == [(21, 0.0, 2200, plain), (0.0, 4400), (21, 0.9, 500, plain), (0.9, 1000)]
+    assert raced == [(21, 0.0, 2200, plain), (21, 0.9, 500, plain), (0.0, 4400), (0.9, 1000)]
     run = kept["race"]["without"]
     np.testing.assert_allclose(run["epochs"], [0, 4400])
     np.testing.assert_allclose(run["training"], falling(2200, [600.0, 800.0]).training)

@@ -87,43 +87,62 @@ def acceleration(members=25, epochs=2000, bits=3) -> dict:
     twice as many networks.
     """
     training = split(STATE_FEEDBACK.record())[0]
-    errors, race, parity = {}, {}, {}
-    for width in WINDOWS:
-        data = TrainingSet.from_recording(training, width)
-        start = Weights.random(members, width, initial=STATE_FEEDBACK.initial)
-        errors[str(width)] = {}
-        for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
-            _, history, _ = train_ensemble(
-                Weights.concatenate([start] * len(STEPS)),
-                data,
-                rate=np.repeat([factor * default_rate(width) for factor in STEPS], members),
-                momentum=momentum,
-                epochs=epochs,
-                label=f"window {width}, {name} acceleration",
-            )
-            errors[str(width)][name] = history.training[-1].reshape(len(STEPS), members).T
-        if width != 21:
-            continue
-        for name, (momentum, length) in zip(errors[str(width)], LENGTHS.items()):
-            _, history, _ = train_ensemble(
-                start,
-                data,
-                rate=default_rate(width),
-                momentum=momentum,
-                epochs=length,
-                label=f"{name} acceleration, race",
-            )
-            race[name] = {"epochs": history.epochs, "training": history.training}
-            _, learned = parity_networks.learn(
-                bits, bits, members=2 * members, momentum=momentum, epochs=2 * length, every=10
-            )
-            parity[name] = np.minimum(learned, 2 * length)  # infinite if never
     return {
         "members": members,
         "epochs": epochs,
         "steps": STEPS,
-        "errors": errors,
+        "errors": {str(width): _by_step(training, width, members, epochs) for width in WINDOWS},
         "bits": bits,
-        "race": race,
-        "parity": parity,
+        "race": _race(training, members),
+        "parity": _race_on_parity(bits, 2 * members),
     }
+
+
+def _start(training: Recording, width: int, members: int) -> tuple[TrainingSet, Weights]:
+    data = TrainingSet.from_recording(training, width)
+    return data, Weights.random(members, width, initial=STATE_FEEDBACK.initial)
+
+
+def _by_step(training: Recording, width: int, members: int, epochs: int) -> dict:
+    """Training errors without and with acceleration, each ``(members, step sizes)``."""
+    data, start = _start(training, width, members)
+    errors = {}
+    for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
+        _, history, _ = train_ensemble(
+            Weights.concatenate([start] * len(STEPS)),
+            data,
+            rate=np.repeat([factor * default_rate(width) for factor in STEPS], members),
+            momentum=momentum,
+            epochs=epochs,
+            label=f"window {width}, {name} acceleration",
+        )
+        errors[name] = history.training[-1].reshape(len(STEPS), members).T
+    return errors
+
+
+def _race(training: Recording, members: int, width: int = 21) -> dict:
+    """Training errors along the epochs, ``(points, members)``, without and with acceleration."""
+    data, start = _start(training, width, members)
+    run = {}
+    for name, (momentum, length) in zip(("without", "with"), LENGTHS.items()):
+        _, history, _ = train_ensemble(
+            start,
+            data,
+            rate=default_rate(width),
+            momentum=momentum,
+            epochs=length,
+            label=f"{name} acceleration, race",
+        )
+        run[name] = {"epochs": history.epochs, "training": history.training}
+    return run
+
+
+def _race_on_parity(bits: int, members: int) -> dict:
+    """Epochs until parity is learnt, or all there are if it never is, without and with it."""
+    learned = {}
+    for name, (momentum, length) in zip(("without", "with"), LENGTHS.items()):
+        _, epochs = parity_networks.learn(
+            bits, bits, members=members, momentum=momentum, epochs=2 * length, every=10
+        )
+        learned[name] = np.minimum(epochs, 2 * length)  # infinite if never
+    return learned
