@@ -2,33 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 
-BOOK = Path(__file__).parents[1] / "book"
-"""The folder beside the package in the book's repository; an installed package has none."""
+BOOK = Path(__file__).parents[1] / "book"  # in the repository; an installed package has none
 
 
 def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
-    """`value` as a float array, refused if it is not finite or has the wrong last axis.
+    """`value` as a float array; TypeError or ValueError otherwise.
 
-    Parameters
-    ----------
-    name : str
-        Name of the argument, used in the message.
-    value : array_like
-        The argument.
-    last : int, optional
-        Required length of the last axis.
-
-    Raises
-    ------
-    TypeError
-        If `value` is not numeric.
-    ValueError
-        If it contains NaN or infinity, or its last axis is not `last` long.
+    Refused are what is no real number, NaN and infinity, and a last axis that is not `last` long.
     """
     try:
         given = np.asarray(value)
@@ -45,38 +29,27 @@ def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     return array
 
 
-def shaped(name: str, value, shape) -> np.ndarray:
+def shaped(name: str, value, shape: tuple | str) -> np.ndarray:
     """`value` as a finite array of a shape, like (3, 2) or "(..., time, 2)"; ValueError otherwise.
 
-    Parameters
-    ----------
-    name : str
-        Name of the argument, used in the message.
-    value : array_like
-        The argument.
-    shape : str or tuple
-        A word stands for any length, dots for any number of axes.
+    In text an axis that is a word has any length, and dots at the front are any number of axes.
     """
     array = finite_array(name, value)
-    axes = re.findall(r"\w+|\.{3}", str(shape))
-    pattern = "".join(
-        r"(\d+,)*" if a == "..." else re.sub(r"\D\w*", r"\\d+", a) + "," for a in axes
-    )
-    if not re.fullmatch(pattern, "".join(f"{n}," for n in array.shape)):
+    axes = list(shape)
+    if isinstance(shape, str):
+        axes = [axis.strip() for axis in shape.strip("()").split(",") if axis.strip()]
+    lengths = list(array.shape)
+    if axes[:1] == ["..."]:
+        axes = axes[1:]
+        lengths = lengths[max(len(lengths) - len(axes), 0) :]
+    fits = (str(axis) == str(n) or str(axis).isidentifier() for axis, n in zip(axes, lengths))
+    if len(axes) != len(lengths) or not all(fits):
         raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
     return array
 
 
 def number(name: str, value, low=-np.inf, high=np.inf, *, open_low=False) -> float:
-    """`value` as a float within `low` to `high` (`open_low` excludes `low` itself).
-
-    Raises
-    ------
-    TypeError
-        If `value` is not a single number.
-    ValueError
-        If it is not finite or out of range.
-    """
+    """`value` as a float within `low` to `high` (`open_low` excludes `low` itself)."""
     if isinstance(value, bool) or np.ndim(value) != 0:
         raise TypeError(f"{name} must be a single number, got {value!r}")
     x = float(finite_array(name, value))
@@ -94,7 +67,7 @@ def non_negative(name: str, value, last: int | None = None) -> np.ndarray:
     return array
 
 
-def positive(name: str, value, shape="(..., 2)") -> np.ndarray:
+def positive(name: str, value, shape: tuple | str = "(..., 2)") -> np.ndarray:
     """`value` as a finite array of numbers above 0, of a shape as in `shaped`."""
     array = shaped(name, value, shape)
     if (array <= 0).any():
@@ -120,13 +93,7 @@ def one_of(name: str, value, known) -> str:
 
 
 def book_file(path: Path) -> Path:
-    """`path` as it is, or a FileNotFoundError if it lies in the book and there is no book here.
-
-    Parameters
-    ----------
-    path : Path
-        A file or folder, in `BOOK` or elsewhere.
-    """
+    """`path` as it is, or a FileNotFoundError if it lies in the book and there is no book here."""
     if path.is_relative_to(BOOK) and not BOOK.is_dir():
         raise FileNotFoundError(
             f"{path.relative_to(BOOK.parent).as_posix()} belongs to the book and does not come "

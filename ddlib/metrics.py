@@ -15,21 +15,14 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
     predicted, target : array_like, shape (..., cases, joint)
         Torques in the same unit.
     scale : array_like, shape (joint,), optional
-        Standard deviation to divide by, per joint; default: that of `target` itself,
-        over its cases. The paper does not say which data set's it used for the
-        test trajectory, so the choice is always explicit in this book.
+        Standard deviation to divide by; default: that of `target` itself over its cases.
+        The paper does not say which data set's it used for the test trajectory.
     pooled : bool
-        True: one number, the root of the joints' mean squared RMSS.
-        False: one number per joint.
+        Whether to join the joints: the root of their mean squared RMSS.
 
     Returns
     -------
     ndarray, shape (...) if pooled, else (..., joint)
-
-    Raises
-    ------
-    ValueError
-        If shapes differ, a value is not finite or the standard deviation is zero.
     """
     predicted, target = finite_array("predicted", predicted), finite_array("target", target)
     if target.ndim < 2 or not target.shape[-2] or predicted.shape[-2:] != target.shape[-2:]:

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GLUE_PREFIX = "application/papermill.record/"
-"""Before the MIME type of what is kept for the prose and not shown."""
-
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-"""A power as it stands above the line."""
+_POWER = re.compile(r"(?<![\w.])(-?)(\d(?:\.\d+)?)e([-+]\d+)\b")
+_MINUS = re.compile(r"(?<![\w.)\-])-(?=\.?\d)|(?<=[(^])-(?=\w)")
+_GLUE = "application/papermill.record/"  # before the MIME type of what only the prose quotes
 
 
 def significant(value, digits: int = 3) -> str:
@@ -31,15 +30,7 @@ def significant(value, digits: int = 3) -> str:
 
 
 def scientific(value, digits: int = 1) -> str:
-    """A number as a product with a power of ten, as mathematics sets it: ``4 · 10⁻¹⁴``.
-
-    Parameters
-    ----------
-    value : float
-        Zero is told as ``0``; of a power of ten, with one digit, the power alone: ``10⁻⁶``.
-    digits : int
-        Significant digits.
-    """
+    """A number with a power of ten, to some significant digits: ``4 · 10⁻¹⁴``, ``10⁻⁶``."""
     if value == 0:
         return "0"
     first, _, power = f"{value:.{digits - 1}e}".partition("e")
@@ -47,38 +38,21 @@ def scientific(value, digits: int = 1) -> str:
     return {"1": power, "-1": f"-{power}"}.get(first, f"{first} · {power}")
 
 
-_POWER = re.compile(r"(?<![\w.])(-?)(\d(?:\.\d+)?)e([-+]\d+)\b")
-_MINUS = re.compile(r"(?<![\w.)\-])-(?=\.?\d)|(?<=[(^])-(?=\w)")
-
-
 def typeset(text: str) -> str:
     """Text with its numbers as mathematics sets them: ``1e-05`` is ``10⁻⁵``, ``-3`` is ``−3``.
 
     Hyphens between words or parts of a name, as in "Table 4-1", stay.
-
-    Parameters
-    ----------
-    text : str
     """
 
-    def power(found):
-        digits = sum(map(str.isdigit, found[2]))
-        return found[1] + scientific(float(f"{found[2]}e{found[3]}"), digits)
+    def power(match):
+        sign, factor, exponent = match.groups()
+        return sign + scientific(float(f"{factor}e{exponent}"), sum(map(str.isdigit, factor)))
 
     return _MINUS.sub("−", _POWER.sub(power, text))
 
 
 def number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
-    """A number with as many digits as it takes to see on which side of some others it lies.
-
-    Parameters
-    ----------
-    value : float
-    edges : iterable of float
-        The numbers beside which it stands.
-    digits, most : int
-        Significant digits at least and at most.
-    """
+    """A number with the digits (`most` of them) that show on which side of others it lies."""
     edges = np.array(list(edges), dtype=float)
     for count in range(digits, most + 1):
         shown = float(f"{value:.{count - 1}e}")
@@ -88,15 +62,7 @@ def number_beside(value: float, edges: Iterable[float], digits: int = 2, most: i
 
 
 def spread(values, digits: int = 2) -> str:
-    """Median and range of a sample: ``0.10 (0.08 to 0.14)``.
-
-    Parameters
-    ----------
-    values : array_like
-        The sample; values that are not finite are left out.
-    digits : int
-        Significant digits.
-    """
+    """Median and range of a sample's finite values: ``0.10 (0.08 to 0.14)``."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
     if values.size == 0:
@@ -106,21 +72,13 @@ def spread(values, digits: int = 2) -> str:
 
 
 def quote(name: str, value) -> None:
-    """Keep a computed number under a name, for the prose of the page to quote.
-
-    Parameters
-    ----------
-    name : str
-        What the prose asks for; begins with the chapter's name.
-    value : scalar
-        A number; numpy scalars become plain ones, so that formats work.
-    """
+    """Keep a computed number under a name, for the prose of the page to quote."""
     from IPython.display import display
 
     # what myst_nb's `glue` displays; its import would take every chapter more than a second
     plain = np.asarray(value)[()].item()
-    told = {"scrapbook": {"name": name, "mime_prefix": GLUE_PREFIX}}
-    display({f"{GLUE_PREFIX}text/plain": repr(plain)}, raw=True, metadata=told)
+    metadata = {"scrapbook": {"name": name, "mime_prefix": _GLUE}}
+    display({f"{_GLUE}text/plain": repr(plain)}, raw=True, metadata=metadata)
 
 
 @dataclass(frozen=True)
@@ -132,7 +90,7 @@ class Table:
     header : sequence of str
         Column heads.
     rows : iterable of sequence
-        Cells: text is taken as it is, numbers are formatted by `number`, with a minus sign.
+        Cells: text is taken as it is, numbers are formatted by `significant`.
     """
 
     header: Sequence[str]

@@ -10,11 +10,12 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, shaped
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
-MOTION_SECONDS = 3.0
-"""Length of one pick-and-place motion, s (Appendix I)."""
+MOTION_SECONDS = 3.0  # length of one pick-and-place motion (Appendix I)
+MAX_EXTENT_DEG = 45.0  # largest extent of the family (section 2)
 
-MAX_EXTENT_DEG = 45.0
-"""Largest extent of the family, degrees (section 2)."""
+APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)
+"""Extents of the six trajectories in degrees, shape (6, 2); the last one is the test."""
+APPENDIX_I.setflags(write=False)
 
 
 class OutsideFamilyWarning(UserWarning):
@@ -38,8 +39,7 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     Parameters
     ----------
     extents_deg : array_like, shape (..., 2)
-        Extents theta of shoulder and elbow in degrees. Outside 0 to 45 they are
-        accepted with an `OutsideFamilyWarning`.
+        Extents theta of shoulder and elbow; outside 0 to 45 with an `OutsideFamilyWarning`.
     t : array_like, shape (time,)
         Times, s.
     duration : float
@@ -49,11 +49,6 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     -------
     Trajectory
         Arrays of shape ``(..., time, 2)``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not numeric, not finite or of the wrong shape.
 
     Source: Goldberg & Pearlmutter 1988, Appendix I.
     """
@@ -78,16 +73,10 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     return Trajectory(*(np.moveaxis(x, (0, 1), (-2, -1)) for x in scaled))
 
 
-APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)
-"""Extents of the six trajectories in degrees, shape (6, 2); the last one is the test."""
-APPENDIX_I.setflags(write=False)
-
-
 def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.ndarray:
-    """`n` random members of the family: extents in degrees, shape ``(n, 2)``.
+    """Extents of `n` random members of the family, degrees, shape ``(n, 2)``.
 
-    Uniform over the square from 0 to `max_deg`, the way the paper draws its six
-    (section 2); the same `seed` gives the same members.
+    Uniform over the square from 0 to `max_deg`, as the paper draws its six (section 2).
     """
     integer("n", n, 1)
     integer("seed", seed, 0)
@@ -98,13 +87,8 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
 def time_grid(step: float, rest: float = 0.0, duration: float = MOTION_SECONDS) -> np.ndarray:
     """Times of one motion with `rest` s before and after it, every `step` s.
 
-    The grid contains 0 and `duration` exactly (the latter if there is a rest); the motion
-    covers the samples from 0 s to the last before `duration`.
-
-    Raises
-    ------
-    ValueError
-        If `step` does not divide the motion and the rest into whole samples.
+    The motion covers the samples from 0 s, exactly, to the last before `duration`, which is
+    exact, too. `step` must divide motion and rest into whole samples.
     """
     number("duration", duration, 0.0, open_low=True)
     number("step", step, 0.0, duration, open_low=True)
