@@ -1,4 +1,7 @@
-"""What the paper prints, as data. Page and section numbers refer to CMU-CS-88-160."""
+"""What the paper prints, as data. Page and section numbers refer to CMU-CS-88-160.
+
+The page Provenance shows constants with the notes below them.
+"""
 
 from __future__ import annotations
 

@@ -10,8 +10,12 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, shaped
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
-MOTION_SECONDS = 3.0  # length of one pick-and-place motion (Appendix I)
-MAX_EXTENT_DEG = 45.0  # largest extent of the family (section 2)
+# The page Provenance shows constants with the notes below them.
+MOTION_SECONDS = 3.0
+"""Length of one pick-and-place motion, s (Appendix I)."""
+
+MAX_EXTENT_DEG = 45.0
+"""Largest extent of the family, degrees (section 2)."""
 
 APPENDIX_I = np.array(APPENDIX_I_EXTENTS_DEG)
 """Extents of the six trajectories in degrees, shape (6, 2); the last one is the test."""
