@@ -6,7 +6,7 @@
 - ``knobs``: what decides the table: a design, a regression, what the printed numbers speak for
 - ``studies``: what is too slow for a chapter, a function for each result
 - ``reproduce``: runs studies, ``make reproduce``; an outcome lies in ``book/results/NAME.json``
-- ``results``: reads these files, and tells which code made them
+- ``results``: reads these files; ``code_hash``: tells which code made them
 - ``sweeps``: one experiment over many settings, kept and resumed
 - ``status``: tables of the page *Status*
 """
@@ -15,6 +15,7 @@ from ddlib._names import hand_on
 
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
+    "code_hash",
     "reproduce",
     "results",
     "status",

@@ -12,12 +12,15 @@ import multiprocessing
 import os
 import sys
 
+from ddlib.experiments.code_hash import code_hash, places, run
+
 FORKED = sys.platform == "linux"
 """Whether studies are forked from a process that has imported everything."""
 
 PROCESSES = multiprocessing.get_context("forkserver" if FORKED else "spawn")
 if FORKED:
-    PROCESSES.set_forkserver_preload(["ddlib.experiments.studies", "ddlib.figures.style"])
+    modules = sorted({module for module, _ in places().values()})
+    PROCESSES.set_forkserver_preload([*modules, "ddlib.figures.style"])
 if FORKED and __name__ == "__main__":  # it imports while this process does
     from multiprocessing.forkserver import ensure_running
 
@@ -41,7 +44,6 @@ from ddlib import figures
 from ddlib._check import book_file
 from ddlib.analysis import purest, upright
 from ddlib.experiments import results
-from ddlib.experiments.studies import PARTS
 from ddlib.simulation import LOG_STEP
 
 
@@ -63,7 +65,7 @@ def make(name: str, code: str) -> None:
     in which studies start the next time.
     """
     started = time.process_time()
-    content = PARTS[name]()
+    content = run(name)
     made_by = {"code": code, **results.stamp(time.process_time() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 
@@ -145,19 +147,20 @@ def _seconds(name: str) -> float:
 
 def main(arguments=None) -> None:
     """Run the parts that are missing or stale; ``--force`` runs them all."""
+    known = list(places())
     parser = argparse.ArgumentParser(description=main.__doc__)
-    parser.add_argument("parts", nargs="*", help=f"among {', '.join(PARTS)}; default: all")
+    parser.add_argument("parts", nargs="*", help=f"among {', '.join(known)}; default: all")
     parser.add_argument("--force", action="store_true", help="also what is up to date")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="parts at a time")
     options = parser.parse_args(arguments)
     for name in options.parts:
-        if name not in PARTS:
-            parser.error(f"parts must be among {', '.join(PARTS)}, got {name!r}")
+        if name not in known:
+            parser.error(f"parts must be among {', '.join(known)}, got {name!r}")
     if options.jobs < 1:
         parser.error(f"jobs must be 1 or more, got {options.jobs}")
     book_file(results.FOLDER).mkdir(parents=True, exist_ok=True)
-    names = options.parts or PARTS
-    codes = {name: results.code_hash(name) for name in names}  # now: files may change meanwhile
+    names = options.parts or known
+    codes = {name: code_hash(name) for name in names}  # now: files may change meanwhile
     stale = []
     for name in names:
         path = results.FOLDER / f"{name}.json"
@@ -174,9 +177,9 @@ def main(arguments=None) -> None:
             print(f"==> {name}", flush=True)
             make(name, codes[name])
             print(f"==> {name}: {_seconds(name):.0f} s", flush=True)
-    if len(stale) == len(PARTS):
+    if len(stale) == len(known):
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
-        made_by["parts"] = len(PARTS)
+        made_by["parts"] = len(known)
         results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
     if "table-4-1" in stale:  # the picture shows two of its networks
         picture()

@@ -1,10 +1,9 @@
-"""Committed results: where they are, which code made them, and whether it still does.
+"""Committed results: where they are, and how they are written and read.
 
 What is kept from one run to the next is used again under two conditions, and no others:
 
-- A result of a study, and a setting that a sweep has finished, while `code_hash` is the same: a
-  hash of what the code means, so that words and layout do not count. A result is committed, and
-  a test compares the hash in it.
+- A result of a study, and a setting that a sweep has finished, while their `code_hash` is the
+  same. A result is committed, and a test compares the hash in it.
 - What the build keeps in ``_build``, while the files are the same, byte for byte: ``digest`` in
   ``book/_ext/dd_book.py``. Of ddlib, results, ``book/*.yml`` and requirements it names the folder
   of executed notebooks, in which a notebook is known by its cells and in which claims that one of
@@ -14,171 +13,21 @@ What is kept from one run to the next is used again under two conditions, and no
 
 from __future__ import annotations
 
-import ast
-import hashlib
 import json
 import os
 import platform
-from functools import cache, lru_cache
+from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import book_file
+from ddlib._check import BOOK, book_file
 from ddlib.experiments.setups import COURSE, STATE_FEEDBACK
 from ddlib.learning import TorqueModel, kernels
 
-PACKAGE = Path(__file__).parents[1]
-FOLDER = PACKAGE.parent / "book" / "results"
+FOLDER = BOOK / "results"
 """Where `make reproduce` writes and the chapters read."""
-
-STUDIES = "experiments/studies"
-"""Folder of the package with the functions that make the results."""
-
-ASIDE = ("_check", "experiments.results")
-"""Modules that a study imports and that do not decide what it finds."""
-
-
-def code_hash(result: str) -> str:
-    """Hash of the code that makes a result: docstrings, comments and layout do not count.
-
-    It covers every module of ddlib that the result's study depends on through its imports,
-    and of the study's own file all but the other public functions.
-
-    Parameters
-    ----------
-    result : str
-        Name of the result, like "table-4-1".
-
-    Raises
-    ------
-    ValueError
-        If no function in `STUDIES` makes it.
-    """
-    own = result.replace("-", "_")
-    study = _study(result)
-    forms = [_study_form(study, own), *(_form(_text(name)) for name in modules(result))]
-    return hashlib.sha256("\n".join(forms).encode()).hexdigest()[:16]
-
-
-def modules(result: str) -> list[str]:
-    """Modules of ddlib on which a result depends, through all imports of its study's file.
-
-    Parameters
-    ----------
-    result : str
-        Name of the result, like "table-4-1".
-    """
-    reached, waiting = set(ASIDE), _imports(_study(result))
-    while waiting - reached:
-        name = min(waiting - reached)
-        reached.add(name)
-        waiting |= _imports(_text(name))
-    return sorted(reached - set(ASIDE))
-
-
-def _study(result: str) -> str:
-    """The text of the file whose function makes a result."""
-    own = result.replace("-", "_")
-    for path in sorted((PACKAGE / STUDIES).rglob("*.py")):
-        text = path.read_text(encoding="utf-8")
-        if own in _functions(text):
-            return text
-    raise ValueError(f"result must be made by a function of ddlib/{STUDIES}, got {result!r}")
-
-
-def _imports(text: str) -> set[str]:
-    """Modules of ddlib that a file imports from; a package's names lead to its modules."""
-    found = set()
-    for module, names in _import_statements(text):
-        place = module.partition(".")[2]
-        found |= {_home(place, name) for name in names} if _path(place).is_dir() else {place}
-    return found
-
-
-def _home(package: str, name: str) -> str:
-    """The module behind a name that a package hands on, as its ``__init__`` says."""
-    inside = f"{package}.{name}".lstrip(".")
-    if _path(inside).is_dir() or _path(inside).with_suffix(".py").is_file():
-        return inside
-    for module, names in _handed_on(_text(package)):
-        if name in names:
-            return f"{package}.{module}"
-    return package
-
-
-def _path(module: str) -> Path:
-    return PACKAGE.joinpath(*filter(None, module.split(".")))
-
-
-def _text(module: str) -> str:
-    path = _path(module)
-    path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-    return path.read_text(encoding="utf-8")
-
-
-# What a text says is found once; whether a file has that text is asked each time.
-
-
-@cache
-def _functions(text: str) -> frozenset[str]:
-    body = ast.parse(text).body
-    return frozenset(node.name for node in body if isinstance(node, ast.FunctionDef))
-
-
-@cache
-def _import_statements(text: str) -> list[tuple[str, list[str]]]:
-    """Modules of ddlib that are imported from, with the names."""
-    nodes = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom))
-    return [
-        (node.module, [alias.name for alias in node.names])
-        for node in nodes
-        if (node.module or "").split(".")[0] == "ddlib"
-    ]
-
-
-@cache
-def _handed_on(text: str) -> list[tuple[str, list[str]]]:
-    """The keywords of a package's ``__init__``: modules, with the names they hand on."""
-    found = []
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.keyword):  # without a name: a dictionary of dotted modules
-            value = ast.literal_eval(node.value)
-            found += value.items() if node.arg is None else [(node.arg, value)]
-    return [(module, names.split()) for module, names in found]
-
-
-@cache
-def _form(text: str) -> str:
-    return _normal_form(ast.parse(text))
-
-
-@cache
-def _study_form(text: str, own: str) -> str:
-    """Of a study's file without the public functions that make other results."""
-    others = {name for name in _functions(text) if not name.startswith("_")} - {own}
-    body = ast.parse(text).body
-    return _normal_form([node for node in body if getattr(node, "name", None) not in others])
-
-
-def _normal_form(node) -> str:
-    """A syntax tree as text, the same for every Python version the book supports."""
-    if isinstance(node, list):
-        return "[" + ",".join(_normal_form(item) for item in node if not _is_text(item)) + "]"
-    if isinstance(node, ast.AST):
-        parts = [
-            f"{name}={_normal_form(value)}"
-            for name, value in ast.iter_fields(node)
-            if value not in (None, []) and name not in ("ctx", "kind", "type_params")
-        ]
-        return f"{type(node).__name__}({','.join(parts)})"
-    return repr(node)
-
-
-def _is_text(node) -> bool:
-    """A statement that is only a string: a docstring or the note below a constant."""
-    return isinstance(node, ast.Expr) and isinstance(getattr(node.value, "value", None), str)
 
 
 def stamp(seconds: float) -> dict:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ddlib.experiments import results, studies
-from ddlib.experiments.studies import PARTS
+from ddlib.experiments.code_hash import places
 from ddlib.tables import Table, significant
 
 REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
@@ -100,5 +100,5 @@ def _held(seconds: float, most: float, beside: str = "") -> str:
 def _part(name: str) -> str:
     """The part of `REPRODUCE_SECONDS` to which a result belongs, by the folder of its study."""
     report, rivals, loop = REPRODUCE_SECONDS
-    folder = PARTS[name].__module__.removeprefix(studies.__name__) if name in PARTS else ""
+    folder = places()[name][0].removeprefix(studies.__name__) if name in places() else ""
     return {"beyond": rivals, "loop": loop}.get(folder.strip(".").partition(".")[0], report)

@@ -56,7 +56,7 @@ def sweep(
     settings : iterable of mapping
         The arguments of each call.
     code : str
-        Hash of the code of the experiment (`ddlib.experiments.results.code_hash`): only what
+        Hash of the code of the experiment (`ddlib.experiments.code_hash`): only what
         the same code made is read back.
     backend : {"loky", "threading", "sequential", "dask"}
         joblib's backend. "loky": processes with one thread each. "dask": the cluster of the

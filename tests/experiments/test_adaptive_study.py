@@ -7,6 +7,7 @@ from ddlib.control import PARAMETERS, SlotineLi, Watched, mixed_regressor
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error
 from ddlib.effects import IDEAL
 from ddlib.experiments import JOINT_DAMPING, KD, STATE_FEEDBACK, results
+from ddlib.experiments.code_hash import definitions
 from ddlib.experiments.studies.loop import adaptive as study
 from ddlib.experiments.studies.loop.runs import adaptive as runs
 from ddlib.simulation import record
@@ -100,9 +101,9 @@ def test_names_are_in_the_order_of_the_friction_truth():
 
 
 def test_the_laws_behind_the_result_are_part_of_its_hash():
-    found = results.modules("adaptive")
+    found = {module for module, _ in definitions("adaptive")}
     for name in ("slotine_li", "craig", "model_reference", "regressor", "running"):
-        assert f"control.adaptive.{name}" in found
+        assert any(module.endswith(f"adaptive.{name}") for module in found)
 
 
 def test_what_was_kept_is_whole():

@@ -1,11 +1,8 @@
 """Committed results: hashes that see code and nothing else, files, freshness, a re-measurement."""
 
-import ast
 import json
 import os
 import random
-import re
-import shutil
 from dataclasses import fields
 from pathlib import Path
 
@@ -26,135 +23,11 @@ from ddlib.experiments import (
     split,
     true_states,
 )
-from ddlib.experiments.studies import PARTS
+from ddlib.experiments.code_hash import places
 from ddlib.experiments.studies.harmonics import NAME
 from ddlib.learning import TorqueModel, Weights, cases
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
-
-
-# --- the hash -----------------------------------------------------------------------------
-
-
-@pytest.fixture
-def copy(tmp_path, monkeypatch):
-    """`results` looks at a copy of the package; ``copy(module, old, new)`` edits it."""
-    folder = tmp_path / "ddlib"
-    shutil.copytree(
-        results.PACKAGE, folder, ignore=shutil.ignore_patterns("__pycache__", "widgets")
-    )
-    monkeypatch.setattr(results, "PACKAGE", folder)
-
-    def edit(module, old, new):
-        path = folder / f"{module}.py"
-        text = path.read_text()
-        assert text.count(old) >= 1, f"{old!r} is not in {module}.py"
-        path.write_text(text.replace(old, new, 1))
-
-    edit.folder = folder
-    return edit
-
-
-def hashes():
-    return {name: results.code_hash(name) for name in PARTS}
-
-
-@pytest.fixture(scope="module")
-def before():
-    """Hashes of the package as it is."""
-    return hashes()
-
-
-def test_each_part_has_its_own_hash(before):
-    assert len(set(before.values())) == len(PARTS)
-    assert all(re.fullmatch("[0-9a-f]{16}", h) for h in before.values())
-    assert hashes() == before
-
-
-def test_words_and_layout_do_not_count(copy, before):
-    copy("learning/training", '"""Batch gradient descent', '"""Some words. Batch gradient descent')
-    copy(
-        "learning/training",
-        "history, points = History(), set(",
-        "history, points = History(), set(  # x\n",
-    )
-    copy("metrics", '    """Root mean square error', '    """Words')
-    copy(
-        "learning/windows",
-        "import numpy as np\n",
-        "\n\n# a remark\nimport numpy as np  # another\n",
-    )
-    copy("experiments/setups", '"""Window sizes of Table 4-1."""', '"""Other words."""')
-    copy("experiments/studies/table", '"""State feedback trained three times', '"""Words')
-    copy("experiments/studies/__init__", '"""The studies by the name of their result."""', "")
-    copy("paper", '    """A pair of printed errors', '    """A couple of printed errors')
-    assert hashes() == before
-
-
-def test_layout_of_every_module_does_not_count(copy, before):
-    for path in copy.folder.rglob("*.py"):
-        path.write_text(ast.unparse(ast.parse(path.read_text())))
-    assert hashes() == before
-
-
-@pytest.mark.parametrize("module", results.modules("clean"))
-def test_code_of_every_module_counts(copy, before, module):
-    path = copy.folder / f"{module.replace('.', '/')}.py"
-    path.write_text(path.read_text() + "\nADDED = 1\n")
-    assert results.code_hash("clean") != before["clean"]
-
-
-@pytest.mark.parametrize(
-    "module, old, new",
-    [
-        ("learning/training", "TARGET_RANGE = (0.2, 0.8)", "TARGET_RANGE = (0.2, 0.9)"),
-        ("learning/training", "return 33.0 / integer", "return 34.0 / integer"),
-        ("learning/training", "momentum=0.95", "momentum=0.96"),
-        ("experiments/setups", "MOMENTUM = 0.98", "MOMENTUM = 0.97"),
-        ("experiments/setups", "KP = (300.0, 90.0)", "KP = (300.0, -90.0)"),
-        ("metrics", "scale = target.std(-2) if", "scale = target.std(-1) if"),
-        ("learning/network", "0.5 * (1 + np.tanh", "0.5 * (1 - np.tanh"),
-        ("learning/windows", "width // 2", "width / 2"),
-        (
-            "experiments/studies/table",
-            "history.best_test",
-            "history.best_tests",
-        ),  # in a private helper
-    ],
-)
-def test_changed_code_changes_every_hash(copy, before, module, old, new):
-    copy(module, old, new)
-    assert results.code_hash("clean") != before["clean"]
-
-
-def test_a_part_stales_alone(copy, before):
-    copy("experiments/studies/table", "def longer(members=8", "def longer(members=9")
-    after = hashes()
-    assert {name for name in PARTS if after[name] != before[name]} == {"longer"}
-
-
-def test_a_result_that_nothing_makes():
-    with pytest.raises(ValueError, match="result must be made by a function"):
-        results.code_hash("table-9-9")
-
-
-def test_modules_are_followed_through_the_imports(copy):
-    found = results.modules("clean")
-    expected = {
-        "experiments.setups",
-        "learning.training",
-        "learning.descent",
-        "dynamics.arm",
-        "paper",
-    }
-    assert expected <= set(found)
-    assert not {"_check", "experiments.results", "tables", "learning.parity_networks"} & set(found)
-    (copy.folder / "deep.py").write_text("VALUE = 1\n")
-    copy("metrics", "import numpy as np", "import numpy as np\nfrom ddlib.deep import VALUE")
-    assert set(results.modules("clean")) == {*found, "deep"}
-    before = results.code_hash("clean")
-    (copy.folder / "deep.py").write_text("VALUE = 2\n")
-    assert results.code_hash("clean") != before
 
 
 # --- files --------------------------------------------------------------------------------
@@ -218,27 +91,34 @@ def test_read(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def parts(copy, tmp_path, monkeypatch):
-    """Two quick parts in place of the real ones; the list says which have run."""
-    ran = []
+def parts(tmp_path, monkeypatch):
+    """Two quick studies in place of the real ones; the list says which have run.
 
-    def part(name):
-        return lambda: ran.append(name) or {"value": len(ran)}
+    ``parts.studies`` has them, ``parts.codes`` their hashes.
+    """
 
+    class Ran(list):
+        pass
+
+    ran = Ran()
+    ran.codes = {"longer": "1" * 16, "clean": "2" * 16}
+    ran.studies = {n: lambda n=n: ran.append(n) or {"value": len(ran)} for n in ran.codes}
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
-    monkeypatch.setattr(reproduce, "PARTS", {n: part(n) for n in ("longer", "clean")})
+    monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
+    monkeypatch.setattr(reproduce, "run", lambda name: ran.studies[name]())
+    monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
     monkeypatch.setattr(reproduce, "picture", lambda: None)
     return ran
 
 
-def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
+def test_what_is_up_to_date_is_not_made_again(parts, capsys):
     reproduce.main(["clean"])
     reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer"]
     assert "==> clean: up to date" in capsys.readouterr().out
     reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer"]
-    copy("experiments/studies/table", "def longer(members=8", "def longer(members=9")
+    parts.codes["longer"] = "3" * 16
     reproduce.main(["--jobs", "1"])
     assert parts == ["clean", "longer", "longer"] and results.read("longer")["value"] == 3
     reproduce.main(["--force", "clean"])
@@ -253,24 +133,15 @@ def test_what_is_up_to_date_is_not_made_again(parts, copy, capsys):
     assert len(parts) == 4
 
 
-def test_studies_hide_their_helpers():
-    """A result's hash leaves out other public functions of its file: they must be results."""
-    names = {name.replace("-", "_") for name in PARTS}
-    for path in (results.PACKAGE / results.STUDIES).glob("*.py"):
-        body = ast.parse(path.read_text(encoding="utf-8")).body
-        functions = {node.name for node in body if isinstance(node, ast.FunctionDef)}
-        assert {name for name in functions if not name.startswith("_")} <= names, path.name
-
-
 def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
     def interrupted():
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(reproduce.PARTS, "clean", interrupted)
+    monkeypatch.setitem(parts.studies, "clean", interrupted)
     with pytest.raises(KeyboardInterrupt):
         reproduce.main(["--jobs", "1"])
     assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
-    assert results.read("longer")["made by"]["code"] == results.code_hash("longer")
+    assert results.read("longer")["made by"]["code"] == parts.codes["longer"]
 
 
 def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
@@ -331,17 +202,17 @@ def test_what_goes_wrong_apart_is_told():
     assert "ended" in reproduce.make_apart("clean", "", do=_gone)
 
 
-def test_the_stamp_is_of_the_code_that_ran(parts, copy, monkeypatch):
+def test_the_stamp_is_of_the_code_that_ran(parts, monkeypatch):
     """Code that changes while a long part runs does not get the credit for it."""
-    before = results.code_hash("longer")
+    before = parts.codes["longer"]
 
     def slow():
-        copy("experiments/setups", "MOMENTUM = 0.98", "MOMENTUM = 0.5")
+        parts.codes["longer"] = "4" * 16
         return {}
 
-    monkeypatch.setitem(reproduce.PARTS, "longer", slow)
+    monkeypatch.setitem(parts.studies, "longer", slow)
     reproduce.main(["longer"])
-    assert results.read("longer")["made by"]["code"] == before != results.code_hash("longer")
+    assert results.read("longer")["made by"]["code"] == before
 
 
 def test_every_file_has_its_own_name():
@@ -356,16 +227,9 @@ def test_every_file_has_its_own_name():
 # --- what is committed ------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", PARTS)
-def test_committed_results_are_of_this_code(name):
-    path = results.FOLDER / f"{name}.json"
-    assert path.is_file(), f"{name}: {STALE}"
-    assert results.read(name)["made by"]["code"] == results.code_hash(name), f"{name}: {STALE}"
-
-
 def test_nothing_is_left_over():
     assert not [p.name for p in results.FOLDER.rglob("*.part")], STALE
-    unknown = {p.stem for p in results.FOLDER.glob("*.json")} - set(PARTS)
+    unknown = {p.stem for p in results.FOLDER.glob("*.json")} - set(places())
     for name in unknown:  # made elsewhere: then it must not claim to be made here
         assert "code" not in results.read(name).get("made by", {}), name
 

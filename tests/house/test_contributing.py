@@ -12,7 +12,7 @@ from test_imports import ORDER, ROOT
 
 from ddlib.evidence import claims
 from ddlib.evidence.measures import dynamics
-from ddlib.experiments import SETUPS, reproduce, results
+from ddlib.experiments import SETUPS, code_hash, reproduce, results
 
 HOUSE = ROOT.parent
 TEXT = (HOUSE / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -79,12 +79,12 @@ def test_the_study_is_run_and_read(tmp_path, monkeypatch):
     package = tmp_path / "ddlib"
     shutil.copytree(ROOT, package, ignore=shutil.ignore_patterns("__pycache__", "static"))
     (package / "experiments" / "studies" / "following.py").write_text(source, encoding="utf-8")
-    monkeypatch.setattr(results, "PACKAGE", package)
+    monkeypatch.setattr(code_hash, "ROOTS", {"ddlib": package})
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
-    monkeypatch.setitem(reproduce.PARTS, "following", function)
+    monkeypatch.setattr(reproduce, "run", lambda name: function())
     reproduce.main(["following", "--jobs", "1"])
     found = results.read("following")
-    assert found["made by"]["code"] == results.code_hash("following")
+    assert found["made by"]["code"] == code_hash.code_hash("following")
     assert set(found["rms"]) == set(SETUPS)
     assert np.shape(found["rms"]["state feedback"]) == (6, 2)
     assert 0 < np.max(found["rms"]["state feedback"]) < 0.2

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ddlib.analysis import summary
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
 from ddlib.experiments.two_harmonics import ORDER, record_two_harmonics, true_states
 from ddlib.learning import cases
@@ -37,6 +38,7 @@ def _cell(order, seed, width, members):
     return cell, model
 
 
+@study
 def harmonics(members=12, fewer=6) -> dict:
     """Networks of Table 4-1 trained on two harmonics; the networks go into ``.npz`` files.
 

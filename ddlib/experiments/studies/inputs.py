@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib.analysis import savitzky_golay
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, split
 from ddlib.learning import (
     TrainingSet,
@@ -44,6 +45,7 @@ def _states(recording: Recording, kind: str) -> np.ndarray:
     return cases(recording, width)[0] @ taps
 
 
+@study
 def state_inputs(members=6) -> dict:
     """Networks that get the state at one moment: exact, by differences, by least squares.
 
@@ -79,6 +81,7 @@ def state_inputs(members=6) -> dict:
     return {"members": members, "rows": rows}
 
 
+@study
 def acceleration(members=25, epochs=2000, bits=3) -> dict:
     """With and without acceleration: errors by window and step size, and a race at window 21.
 

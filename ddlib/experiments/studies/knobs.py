@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ddlib.experiments.code_hash import code_hash, study
 from ddlib.experiments.knobs import METHODS, knobs_of, screening, setup, without_start
-from ddlib.experiments.results import code_hash
 from ddlib.experiments.setups import WINDOWS, errors, train_windows
 from ddlib.experiments.sweeps import sweep
 
@@ -44,6 +44,7 @@ def _run(method: str, places: list, seeds: list) -> dict:
     return {"values": values, "places": list(places), "derailed": derailed, "windows": cells}
 
 
+@study
 def screened(networks=2) -> dict:
     """The six errors at each run of the design, by both methods; every network has its own day."""
     settings = [

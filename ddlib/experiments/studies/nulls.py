@@ -24,6 +24,7 @@ from ddlib.analysis import (
     with_filters,
     with_jerk,
 )
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split
 from ddlib.experiments.two_harmonics import (
     record_circle,
@@ -264,6 +265,7 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
     return found
 
 
+@study
 def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
     """Filters of networks trained on real torques beside those of networks trained on surrogates.
 
@@ -282,6 +284,7 @@ def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
     return {"members": members, "draws": draws, "each": each, "epochs": EPOCHS, "windows": windows}
 
 
+@study
 def filter_trial_elsewhere(
     members: int = 10, draws: int = 20, each: int = 1, width: int = 21
 ) -> dict:
@@ -315,6 +318,7 @@ def filter_trial_elsewhere(
     return {"members": members, "draws": draws, "each": each, "longer": LONGER, "rows": found}
 
 
+@study
 def null_controls(
     members: int = 4, steps: int = 400, few: int = 120, tolerance: float = 1e-4
 ) -> dict:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.analysis import roughness
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import (
     JOINT_DAMPING,
     STATE_FEEDBACK,
@@ -142,6 +143,7 @@ def _correlations(seen, variance) -> dict:
     }
 
 
+@study
 def span(members=5) -> dict:
     """Learning curves of `members` networks along the directions of their windows.
 

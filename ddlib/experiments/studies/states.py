@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ddlib import paper
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.exact_states import (
     EPOCHS,
     INITIAL,
@@ -44,6 +45,7 @@ def _sets(seed: int = 0) -> dict:
     return dict(zip(names, states, strict=True))
 
 
+@study
 def table_6_1(members=25, draws=8) -> dict:
     """Table 6-1 over initial weights and over draws of the sets; the networks are kept."""
     sets = _sets()
@@ -64,6 +66,7 @@ def table_6_1(members=25, draws=8) -> dict:
     }
 
 
+@study
 def state_space_choices(members=8) -> dict:
     """What step size, momentum and initial weights decide in Table 6-1."""
     rows = []

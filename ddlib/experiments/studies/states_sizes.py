@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ddlib import paper
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.exact_states import (
     EPOCHS,
     INITIAL,
@@ -78,6 +79,7 @@ def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
     return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
 
 
+@study
 def state_space_sizes() -> dict:
     """Errors by number of samples, by number of hidden units, and over five times the epochs."""
     samples = [

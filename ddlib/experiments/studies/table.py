@@ -10,6 +10,7 @@ from ddlib.analysis import saturated
 from ddlib.control import pd
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import (
     COURSE,
     JOINT_DAMPING,
@@ -42,6 +43,7 @@ def _cell(setup, recording, width, members, snapshots=()):
     return cell, model, kept
 
 
+@study
 def table_4_1(members=25) -> dict:
     """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
     table = {}
@@ -87,6 +89,7 @@ def _ablations() -> dict:
     }
 
 
+@study
 def recordings(days=5, networks=5, fewer=1) -> dict:
     """Joint damping and its ablations on several days (`Setup.repeated`).
 
@@ -126,6 +129,7 @@ def _saturated(model, recording, width) -> np.ndarray:
     return np.array([saturated(m.weights.activity(m.scaled(windows))[0]).mean() for m in members])
 
 
+@study
 def longer(members=8, epochs=60_000) -> dict:
     """State feedback trained three times as long: where do the errors go?"""
     setup = replace(STATE_FEEDBACK, epochs=epochs)
@@ -134,6 +138,7 @@ def longer(members=8, epochs=60_000) -> dict:
     return {"members": members, "epochs": epochs, "windows": windows}
 
 
+@study
 def clean(members=8) -> dict:
     """State feedback on an arm without friction, quantisation and torque noise."""
     effects = STATE_FEEDBACK.effects.without("friction", "encoder", "torque_sensor")

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.analysis import CLASSES, classify, roughness, savitzky_golay
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
 from ddlib.learning import TrainingSet, Weights, cases, solve, train_ensemble
 from ddlib.simulation import LOG_STEP
@@ -36,6 +37,7 @@ def _acceleration_error(recording, width) -> float:
     return float(np.sqrt((wrong**2).mean() / true.var(0).mean()))
 
 
+@study
 def window_sizes(members=6) -> dict:
     """Training and test error against the size of the window, far beyond the paper's three."""
     recording = STATE_FEEDBACK.record()
@@ -52,6 +54,7 @@ def window_sizes(members=6) -> dict:
     return {"members": members, "rows": rows}
 
 
+@study
 def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     """Training and test error of `members` networks of one `width` for each number of `units`."""
     recording = STATE_FEEDBACK.record()
@@ -70,6 +73,7 @@ MEMORY_DECAY = 1e-3
 """Weight decay with which weights stay about as large as the printed ones."""
 
 
+@study
 def memory(members=5) -> dict:
     """Networks that have nothing to learn but noise: how much of it do they memorise?
 

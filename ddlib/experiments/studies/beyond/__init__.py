@@ -1,4 +1,4 @@
-"""Studies of Part IV, *Rivals and beyond*; `PARTS` of the package above names them too.
+"""Studies of Part IV, *Rivals and beyond*.
 
 - ``lineup``: who takes part in ``rivals``, at which sizes: a new rival is a line there
 - ``rivals_1988``: tables, CMAC, polynomials and Fourier series, each varied; one trajectory alone

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib.dynamics import Arm
+from ddlib.experiments.code_hash import study
 from ddlib.identification import GRAVITY, RIGID
 from ddlib.others import Characters
 from ddlib.others import characters as data
@@ -204,6 +205,7 @@ def _as_published() -> dict:
     return {"marks": list(MARKS), "networks": rows, "dead starts": starts}
 
 
+@study
 def characters() -> dict:
     """Every rival on both splits; the Lagrangian network also as published, on the loader's."""
     found = {}

@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import JOINT_DAMPING, split
 from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
@@ -48,6 +49,7 @@ def _asked(rival, cases: Cases) -> dict:
     return row
 
 
+@study
 def gaussian_intervals() -> dict:
     """Share of measured torques in the intervals of several processes, on several days.
 

@@ -17,6 +17,7 @@ from ddlib.analysis import (
     mean_gradient,
     shares,
 )
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.studies.beyond.tx40 import (
     BLOCKS,
     RATES,
@@ -323,6 +324,7 @@ def _memory(members: int) -> dict:
     return rows
 
 
+@study
 def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
     """Errors by blocks and windows, what changes them, and the filters beside their nulls.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ddlib.analysis import noise_floor
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.extents import square
 from ddlib.experiments.setups import JOINT_DAMPING, split
 from ddlib.experiments.studies.beyond.lineup import DAYS, LINES, REFERENCE
@@ -101,6 +102,7 @@ def floors(sets: dict) -> dict:
     return found
 
 
+@study
 def rivals() -> dict:
     """Every line of `LINES` at all its sizes, on several days.
 

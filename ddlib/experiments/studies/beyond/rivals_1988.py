@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.extents import inside_hull, square
 from ddlib.experiments.setups import JOINT_DAMPING, Setup
 from ddlib.experiments.two_harmonics import true_states
@@ -127,6 +128,7 @@ def _table(over: str, cells: int) -> Rival:
     return CellTable(cells, over, beyond="edge")
 
 
+@study
 def rivals_tables(days=DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
@@ -255,6 +257,7 @@ SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)
 """Weights for each joint, where cubes share them by hashing."""
 
 
+@study
 def rivals_cmac(days=DAYS) -> dict:
     """Errors of CMAC by width, layers and slots; its collisions, and where it diverges."""
     settings = [
@@ -339,6 +342,7 @@ BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 """Families of functions and their highest degree or order."""
 
 
+@study
 def rivals_bases(days=DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen.
 

@@ -1,4 +1,4 @@
-"""Studies of Part IV, *Closing the loop*; `PARTS` of the package above names them too.
+"""Studies of Part IV, *Closing the loop*.
 
 - ``run_time_parts``: motions, feedforwards and scores of ``run_time``
 - ``run_time``: section 7.1's next step: torques at run time, and the end-point error

@@ -18,6 +18,7 @@ from ddlib.effects import (
     Ripple,
     StribeckFriction,
 )
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import (
     JOINT_DAMPING,
     JOINT_DAMPING_COULOMB,
@@ -325,6 +326,7 @@ def _map(setup: Setup = JOINT_DAMPING) -> dict:
     return {"laws": list(names), "factors": FACTORS, "rows": rows}
 
 
+@study
 def adaptive() -> dict:
     """Everything that the chapter on adaptive control says of runs."""
     both = {s.name: s for s in (JOINT_DAMPING, STATE_FEEDBACK)}

@@ -22,6 +22,7 @@ from ddlib.dynamics import (
     newton_euler,
     regressor,
 )
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.exact_states import INITIAL as STATES_INITIAL
 from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.experiments.studies.loop.chain import (
@@ -366,6 +367,7 @@ def costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
     return rows
 
 
+@study
 def joints() -> dict:
     """All of it; what each part holds stands with its function."""
     second = {n: (5, MAIN, 40) for n in (1, 2, 3, 4)}

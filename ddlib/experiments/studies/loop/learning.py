@@ -15,6 +15,7 @@ import numpy as np
 
 from ddlib.control import Abreast, Feedforward, GenericTerms, Guarded, RigidBodyTerms, Watched
 from ddlib.dynamics import Arm, end_point_error, with_load
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.experiments.studies.loop.learners import (
     NAMES,
@@ -180,6 +181,7 @@ def _rates(draw: Draw) -> dict:
     return {name: {"error": e, "stopped": s} for name, e, s in zip(learners, errors, stopped)}
 
 
+@study
 def learning_in_the_loop() -> dict:
     """End-point errors of all learners, mm, for each reading of section 4."""
     found = {}

@@ -21,6 +21,7 @@ from ddlib.control import (
 from ddlib.dynamics import end_point_error, with_load
 from ddlib.effects import CoulombFriction, Delay, ViscousFriction
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
 from ddlib.experiments.studies.loop.run_time_parts import (
     EXTENTS,
@@ -328,6 +329,7 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
     return [float(np.abs(each).max()) for each in poles]
 
 
+@study
 def run_time() -> dict:
     """Feedforwards of the square of extents under two readings of the controller.
 

@@ -21,6 +21,7 @@ from ddlib.analysis import (
 from ddlib.control import Feedforward, WindowFeedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
 from ddlib.experiments import results
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.experiments.studies.loop.motions import (
     FAMILIES,
@@ -346,6 +347,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
     os.replace(part, PICKER)
 
 
+@study
 def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
     """What section 7.1 plans about other families of trajectories, done.
 

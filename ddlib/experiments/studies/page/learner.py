@@ -9,6 +9,7 @@ import numpy as np
 from ddlib.control import FeedbackErrorLearning, RigidBodyTerms, pd
 from ddlib.dynamics import with_load
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import (
     JOINT_DAMPING,
     JOINT_DAMPING_COULOMB,
@@ -124,6 +125,7 @@ def start() -> np.ndarray:
     return make("with friction", JOINT_DAMPING).estimate
 
 
+@study
 def loop_learner() -> dict:
     """`learned` of each of the `LOADS`: errors (mm) and estimates by load and learner."""
     return {

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.analysis import classify
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.learning import (
     Descent,
@@ -124,6 +125,7 @@ def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOC
     }
 
 
+@study
 def page_training(members: int = 25) -> dict:
     """Networks of window 21 trained as the page trains them, on torques real and shifted.
 

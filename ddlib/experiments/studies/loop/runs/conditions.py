@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.control import Feedforward, RigidBodyTerms, WindowFeedforward
+from ddlib.experiments.code_hash import study
 from ddlib.experiments.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.experiments.studies.loop import joints, learners, learning, motions, stirring
 from ddlib.experiments.studies.loop import run_time_parts as run_time
@@ -225,6 +226,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
     return found
 
 
+@study
 def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
     """Four findings under other conditions, both set-ups where they were found in both.
 
