@@ -204,6 +204,8 @@ def _only_tells(node) -> bool:
     """A docstring, an assertion, a refusal, a warning: what leaves every number as it is."""
     if isinstance(node, (ast.Raise, ast.Assert, ast.Pass, *IMPORTS)):
         return True
+    if isinstance(node, ast.FunctionDef):
+        return node.name in ("__str__", "__repr__")
     if isinstance(node, ast.If):
         return not node.orelse and all(_only_tells(inner) for inner in node.body)
     if not isinstance(node, ast.Expr):
