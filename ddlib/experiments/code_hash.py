@@ -212,7 +212,8 @@ def _only_tells(node) -> bool:
         return False
     if isinstance(node.value, ast.Constant):
         return True
-    return isinstance(node.value, ast.Call) and ast.unparse(node.value.func) == "warnings.warn"
+    called = ast.unparse(node.value.func) if isinstance(node.value, ast.Call) else ""
+    return called.rpartition(".")[2].startswith("warn")
 
 
 @cache
