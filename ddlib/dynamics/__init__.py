@@ -1,8 +1,7 @@
 """The rigid body: arms, their equations of motion, and what computing them costs.
 
-- ``arm``: `Arm` of two links, made of `Link`; the book's arm and two measured ones
+- ``arm``: `Arm` of two links, made of `Link`, with a load; the book's arm and two others
 - ``kinematics``: where the hand is and how to get it there; circles of the hand
-- ``payload``: what the hand carries
 - ``serial``: arms in space of any number of joints; the PUMA 560
 - ``joints``: the arm of seven joints, and tools for any number: mass matrix, hand, regressor
 - ``derivation``: the equations of motion, derived by sympy
@@ -14,19 +13,14 @@ from ddlib._names import hand_on
 
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
-    arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY",
+    arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY with_load",
     kinematics=(
-        "ELBOWS LEAST_SINE Unreachable around circle end_point_error follow_hand "
-        "inverse_kinematics jacobian jacobian_rate reach"
+        "ELBOWS Unreachable around end_point_error follow_hand inverse_kinematics jacobian reach"
     ),
-    payload="with_load",
     serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
-    joints=(
-        "DD_ARM_II_IN_SPACE FOREARM PER_LINK TO_THIRD_AXIS frames hand inertial_parameters locked "
-        "mass_matrix regressor"
-    ),
-    formulations="Constants LinkConstants lagrange_euler newton_euler recursive_lagrange",
-    derivation="Derivation MAX_LINKS derive",
-    counting="Counted Operations Tape",
-    costs="KNOWLEDGE PUBLISHED PUBLISHED_CUSTOMISED Published count count_closed_form table",
+    joints="DD_ARM_II_IN_SPACE hand inertial_parameters locked mass_matrix regressor",
+    formulations="lagrange_euler newton_euler recursive_lagrange",
+    derivation="derive",
+    counting="Operations Tape",
+    costs="count table",
 )

@@ -1,26 +1,14 @@
-"""Rigid-body dynamics of a two-link arm in Lagrange-Euler form.
-
-The equations of motion are ``M(q) qdd + C(q, qd) qd + g(q) = tau``. For two
-links they need only five constants: the base inertial parameters `a`, `b`, `d`
-and, in a vertical plane, two gravity moments. Everything that is not rigid-body
-mechanics (friction, quantisation, ...) lives in `ddlib.effects`.
-
-Arrays are ``(..., joint)`` with joint 0 the shoulder and joint 1 the elbow;
-angles are in rad and, for arms with gravity, counted from hanging straight down.
-"""
+"""Rigid-body dynamics of a two-link arm: ``M(q) qdd + C(q, qd) qd + g(q) = tau``."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ddlib._check import finite_array, non_negative, number, shaped
 
-STANDARD_GRAVITY = 9.81
-"""Acceleration of free fall, m/s^2."""
+STANDARD_GRAVITY = 9.81  #: Acceleration of free fall, m/s^2.
 
 
 @dataclass(frozen=True)
@@ -44,19 +32,21 @@ class Link:
 class Arm:
     """A planar two-link arm, reduced to its base parameters.
 
+    All methods take angles `q` (rad), velocities `qd` (rad/s) and accelerations `qdd` (rad/s^2)
+    as arrays ``(..., 2)``, shoulder first; under gravity angles count from hanging straight down.
+
     Parameters
     ----------
     name : str
         What the arm is called in tables and figures.
     a, b, d : float
         Base inertial parameters in kg m^2, so that ``M11 = a + 2 b cos q2``,
-        ``M12 = d + b cos q2``, ``M22 = d``. The mass matrix is positive definite
-        for every elbow angle when ``d > 0`` and ``a d > d^2 + b^2``.
+        ``M12 = d + b cos q2``, ``M22 = d``.
     lengths : tuple of float
         Link lengths in m (for drawing and kinematics only).
     gravity_moments : tuple of float
         ``((m1 lc1 + m2 l1) g, m2 lc2 g)`` in N m; zero for a horizontal arm.
-    provenance : mapping
+    provenance : dict
         For each quantity, where its value comes from.
 
     Raises
@@ -71,9 +61,7 @@ class Arm:
     d: float
     lengths: tuple[float, float]
     gravity_moments: tuple[float, float] = (0.0, 0.0)
-    provenance: Mapping[str, str] = field(
-        default_factory=dict, compare=False, hash=False, repr=False
-    )
+    provenance: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self):
         for name in ("a", "b", "d"):
@@ -81,35 +69,18 @@ class Arm:
         non_negative("lengths", self.lengths)
         for name in ("lengths", "gravity_moments"):
             object.__setattr__(self, name, tuple(shaped(name, getattr(self, name), (2,)).tolist()))
+        # det M = a d - d^2 - b^2 cos^2 q2, least with the elbow straight or folded
         if not (self.d > 0 and self.a * self.d > self.d**2 + self.b**2):
             raise ValueError(
                 "a, b, d must make the mass matrix positive definite "
                 f"(d > 0 and a d > d^2 + b^2), got a={self.a}, b={self.b}, d={self.d}"
             )
-        object.__setattr__(self, "provenance", MappingProxyType(dict(self.provenance)))
-
-    def __reduce__(self):
-        # a MappingProxyType does not pickle, its dict does
-        values = (self.name, self.a, self.b, self.d, self.lengths, self.gravity_moments)
-        return (Arm, (*values, dict(self.provenance)))
 
     @classmethod
     def from_links(cls, name, link1: Link, link2: Link, gravity=0.0, provenance=()) -> Arm:
-        """Arm with two given links.
+        """Arm of two links (upper arm, forearm) under `gravity` (m/s^2; 0 in a horizontal plane).
 
-        The base parameters are ``a = I1 + m1 lc1^2 + m2 l1^2 + d``,
-        ``b = m2 l1 lc2`` and ``d = I2 + m2 lc2^2``.
-
-        Parameters
-        ----------
-        name : str
-            What the arm is called in tables and figures.
-        link1, link2 : Link
-            Upper arm and forearm.
-        gravity : float
-            Acceleration of free fall, m/s^2; 0 for a horizontal plane.
-        provenance : mapping
-            For each quantity, where its value comes from.
+        ``a = I1 + m1 lc1^2 + m2 l1^2 + d``, ``b = m2 l1 lc2`` and ``d = I2 + m2 lc2^2``.
         """
         d = link2.inertia + link2.mass * link2.com**2
         a = link1.inertia + link1.mass * link1.com**2 + link2.mass * link1.length**2 + d
@@ -121,13 +92,7 @@ class Arm:
         return cls(name, a, b, d, (link1.length, link2.length), moments, dict(provenance))
 
     def mass_matrix(self, q) -> np.ndarray:
-        """Mass matrix M(q) in kg m^2, shape ``(..., 2, 2)``, symmetric positive definite.
-
-        Parameters
-        ----------
-        q : array_like, shape (..., 2)
-            Joint angles, rad.
-        """
+        """Mass matrix M(q) in kg m^2, shape ``(..., 2, 2)``, symmetric positive definite."""
         c2 = np.cos(finite_array("q", q, 2)[..., 1])
         m12 = self.d + self.b * c2
         m11 = self.a + 2 * self.b * c2
@@ -138,11 +103,6 @@ class Arm:
         """Coriolis and centrifugal matrix C(q, qd), shape ``(..., 2, 2)``, N m s/rad.
 
         Built from Christoffel symbols, so that ``dM/dt - 2 C`` is skew-symmetric.
-
-        Parameters
-        ----------
-        q, qd : array_like, shape (..., 2)
-            Joint angles (rad) and velocities (rad/s).
         """
         q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
         h = self.b * np.sin(q[..., 1])
@@ -151,13 +111,7 @@ class Arm:
         return np.stack([row1, row2], -2)
 
     def gravity(self, q) -> np.ndarray:
-        """Gravity torque g(q) in N m, shape ``(..., 2)``; zero for a horizontal arm.
-
-        Parameters
-        ----------
-        q : array_like, shape (..., 2)
-            Joint angles, rad, from hanging straight down.
-        """
+        """Gravity torque g(q) in N m, shape ``(..., 2)``; zero for a horizontal arm."""
         return self._gravity(finite_array("q", q, 2))
 
     def _gravity(self, q) -> np.ndarray:
@@ -167,35 +121,15 @@ class Arm:
         return np.stack([g1 * np.sin(q[..., 0]) + elbow, elbow], -1)
 
     def inverse_dynamics(self, q, qd, qdd) -> np.ndarray:
-        """Torque that produces acceleration `qdd` in state `q`, `qd` (Lagrange-Euler).
-
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., 2)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-
-        Returns
-        -------
-        ndarray, shape (..., 2)
-            Joint torques, N m.
-        """
+        """Torque in N m that produces `qdd` in state `q`, `qd` (Lagrange-Euler), shape (..., 2)."""
         return sum(self.torque_terms(q, qd, qdd).values())
 
     def torque_terms(self, q, qd, qdd) -> dict[str, np.ndarray]:
-        """The torque of `inverse_dynamics`, split by physical origin.
+        """The torque of `inverse_dynamics` by physical origin, each ``(..., 2)`` in N m.
 
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., 2)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-
-        Returns
-        -------
-        dict
-            ``inertial``, ``coupling`` (off-diagonal inertia), ``centrifugal``,
-            ``coriolis`` and ``gravity``, each of shape ``(..., 2)`` in N m.
+        ``coupling`` is that of the off-diagonal inertia.
         """
-        q, qd, qdd = _state(q, qd, qdd)
+        q, qd, qdd = checked_state(q, qd, qdd)
         c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
         m12 = self.d + self.b * c2
         v1, v2 = qd[..., 0], qd[..., 1]
@@ -210,19 +144,14 @@ class Arm:
         }
 
     def forward_dynamics(self, q, qd, tau) -> np.ndarray:
-        """Acceleration under torque `tau`, shape ``(..., 2)``, rad/s^2.
-
-        Parameters
-        ----------
-        q, qd, tau : array_like, shape (..., 2)
-            Angles (rad), velocities (rad/s), net joint torques (N m).
-        """
+        """Acceleration in rad/s^2 under net joint torques `tau` (N m), both ``(..., 2)``."""
         q, qd = finite_array("q", q, 2), finite_array("qd", qd, 2)
         tau = finite_array("tau", tau, 2)
         return self._acceleration(q, qd, tau)
 
     def _acceleration(self, q, qd, tau) -> np.ndarray:
         """`forward_dynamics` without checks, for the inner loop of a simulation."""
+        # M qdd = tau - C qd - g, solved by Cramer's rule
         c2, h = np.cos(q[..., 1]), self.b * np.sin(q[..., 1])
         v1, v2 = qd[..., 0], qd[..., 1]
         r1 = tau[..., 0] + h * v2 * (2 * v1 + v2)
@@ -253,15 +182,9 @@ class Arm:
     def regressor(q, qd, qdd) -> np.ndarray:
         """Matrix Y with ``tau = Y @ [a, b, d, g1, g2]``, shape ``(..., 2, 5)``, for every arm.
 
-        The torque is linear in the base parameters; this is what identification
-        by least squares rests on (An 1988; Khosla 1986).
-
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., 2)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
+        That torque is linear in these is what identification rests on (An 1988; Khosla 1986).
         """
-        q, qd, qdd = _state(q, qd, qdd)
+        q, qd, qdd = checked_state(q, qd, qdd)
         c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
         (v1, v2), (a1, a2) = np.moveaxis(qd, -1, 0), np.moveaxis(qdd, -1, 0)
         s1, s12, zero = np.sin(q[..., 0]), np.sin(q[..., 0] + q[..., 1]), np.zeros_like(a1 * c2)
@@ -270,10 +193,7 @@ class Arm:
         return np.stack([np.stack(row1, -1), np.stack(row2, -1)], -2)
 
     def forward_kinematics(self, q) -> np.ndarray:
-        """Elbow and hand position in m, shape ``(..., 2, 2)`` as ``(..., point, xy)``.
-
-        A stretched arm with ``q = 0`` lies along the x axis.
-        """
+        """Elbow and hand, m, shape ``(..., point, xy)``; at ``q = 0`` both lie on the x axis."""
         q = finite_array("q", q, 2)
         l1, l2 = self.lengths
         q12 = q[..., 0] + q[..., 1]
@@ -281,10 +201,28 @@ class Arm:
         return np.stack([elbow, elbow + np.stack([l2 * np.cos(q12), l2 * np.sin(q12)], -1)], -2)
 
 
-def _state(q, qd, qdd) -> tuple[np.ndarray, ...]:
+def with_load(arm: Arm, mass: float) -> Arm:
+    """The arm with a point mass (kg; Han, Hemami & Yurkovich 1987 use 2, 5 and 10) in its hand."""
+    number("mass", mass, 0.0)
+    l1, l2 = arm.lengths
+    moments = arm.gravity_moments
+    if any(moments):  # in a horizontal plane the weight does not matter
+        weight = mass * STANDARD_GRAVITY
+        moments = (moments[0] + weight * l1, moments[1] + weight * l2)
+    return replace(
+        arm,
+        name=f"{arm.name} with {mass:g} kg",
+        a=arm.a + mass * (l1**2 + l2**2),
+        b=arm.b + mass * l1 * l2,
+        d=arm.d + mass * l2**2,
+        gravity_moments=moments,
+    )
+
+
+def checked_state(q, qd, qdd, joints: int = 2) -> tuple[np.ndarray, ...]:
     """Checked angles, velocities and accelerations, broadcast against each other."""
-    checked = (finite_array(n, x, 2) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
-    return np.broadcast_arrays(*checked)
+    state = (("q", q), ("qd", qd), ("qdd", qdd))
+    return np.broadcast_arrays(*(finite_array(name, x, joints) for name, x in state))
 
 
 CMU_DD_ARM_II = Arm.from_links(

@@ -15,9 +15,9 @@ from ddlib.dynamics.derivation import derive
 from ddlib.dynamics.formulations import lagrange_euler, newton_euler, recursive_lagrange
 from ddlib.dynamics.serial import PUMA_560, SerialArm
 
+# What may be known off-line: nothing at all; the zeros of the method (the base at rest, the axis
+# of a joint in its own frame); or also every constant of one arm.
 KNOWLEDGE = ("nothing", "zeros", "arm")
-"""What may be known off-line: nothing at all; the zeros of the method (the base at rest, the
-axis of a joint in its own frame); or also every constant of one arm."""
 
 
 class Published(NamedTuple):
@@ -29,6 +29,8 @@ class Published(NamedTuple):
     source: str
 
 
+# For arms of `n` general revolute joints. The first polynomial for multiplications gives 67,143 for
+# six joints where the same table prints 66,271; the others agree.
 PUBLISHED = {
     "Lagrange-Euler": Published(
         (32 + 1 / 2, 86 + 5 / 12, 171 + 1 / 4, 53 + 1 / 3, -128),
@@ -40,11 +42,8 @@ PUBLISHED = {
         (150, -48), (131, -48), Operations(852, 738), "Hollerbach 1980, read in Corke 2002, Table 1"
     ),
 }
-"""Counts for arms of `n` general revolute joints. The first polynomial for multiplications
-gives 67,143 for six joints where the same table prints 66,271; the others agree."""
-
+# Newton-Euler after symbolic simplification by the program ARM (Corke 2002, Table 1)
 PUBLISHED_CUSTOMISED = Operations(224, 174)
-"""Newton-Euler after symbolic simplification by the program ARM (Corke 2002, Table 1)."""
 
 
 @cache
@@ -54,12 +53,11 @@ def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> 
     Parameters
     ----------
     formulation : callable
-        `newton_euler`, `lagrange_euler` or `recursive_lagrange` of `ddlib.dynamics.formulations`.
+        `newton_euler`, `lagrange_euler` or `recursive_lagrange`.
     arm : SerialArm
-        The arm.
     knowledge : {"nothing", "zeros", "arm"}
-        What is known off-line (`KNOWLEDGE`). With "arm" the formula is customised: nothing
-        is computed twice or in vain.
+        What is known off-line: nothing, the zeros of the method, or also the arm's constants. With
+        "arm" the formula is customised: nothing is computed twice or in vain.
     """
     one_of("knowledge", knowledge, KNOWLEDGE)
     tape = Tape()
@@ -75,15 +73,8 @@ def count_closed_form(
 ) -> Operations:
     """Operations of one evaluation of the closed form of a planar arm, base parameters known.
 
-    Parameters
-    ----------
-    links : iterable of Link
-        From the shoulder outwards; at most `ddlib.dynamics.derivation.MAX_LINKS`.
-    shared : bool
-        Whether subexpressions that occur twice are computed once, as in
-        `ddlib.dynamics.derivation.Derivation.function`, or every term is computed as printed.
-    velocity_terms : bool
-        Whether centrifugal and Coriolis torque are computed, or left out (Bejczy 1974).
+    `shared` subexpressions are computed once, or every term as printed; centrifugal and Coriolis
+    torque may be left out (Bejczy 1974).
     """
     links = list(links)
     derivation = derive(len(links))
@@ -97,32 +88,23 @@ def count_closed_form(
 
 
 def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
-    """Operations of every formulation by number of joints.
+    """Operations ``{formulation: {joints: ...}}`` for 1 to 6 joints.
 
-    Parameters
-    ----------
-    joints : iterable of int
-        Numbers of joints, 1 to 6.
-    link : Link
-        The planar arms consist of equal links like this one.
-
-    Returns
-    -------
-    dict
-        ``{formulation: {joints: operations}}``. "general" means arms in space of which
-        nothing is known off-line; the customised spatial arm is `ddlib.dynamics.serial.PUMA_560`.
+    Planar arms consist of equal links, those in space are the first joints of the `PUMA_560`;
+    "general" means that nothing is known off-line.
     """
     joints = list(joints)
 
     def planar(n):
         return SerialArm.planar([link] * n)
 
+    puma = PUMA_560.first
     ways = {
-        "Lagrange-Euler, general": lambda n: count(lagrange_euler, PUMA_560.first(n)),
-        "recursive Lagrange, general": lambda n: count(recursive_lagrange, PUMA_560.first(n)),
-        "Newton-Euler, general": lambda n: count(newton_euler, PUMA_560.first(n)),
-        "Newton-Euler, zeros skipped": lambda n: count(newton_euler, PUMA_560.first(n), "zeros"),
-        "Newton-Euler, customised": lambda n: count(newton_euler, PUMA_560.first(n), "arm"),
+        "Lagrange-Euler, general": lambda n: count(lagrange_euler, puma(n)),
+        "recursive Lagrange, general": lambda n: count(recursive_lagrange, puma(n)),
+        "Newton-Euler, general": lambda n: count(newton_euler, puma(n)),
+        "Newton-Euler, zeros skipped": lambda n: count(newton_euler, puma(n), "zeros"),
+        "Newton-Euler, customised": lambda n: count(newton_euler, puma(n), "arm"),
         "closed form, planar, as printed": lambda n: count_closed_form([link] * n, False),
         "closed form, planar, shared": lambda n: count_closed_form([link] * n, True),
         "Newton-Euler, planar, customised": lambda n: count(newton_euler, planar(n), "arm"),

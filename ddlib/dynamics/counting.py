@@ -1,8 +1,7 @@
 """Numbers that count the arithmetic done with them.
 
-A formula evaluated with the numbers of a `Tape` leaves a record of every multiplication,
-addition, division, sine and cosine. What is known off-line (a constant of the arm, a zero)
-costs nothing: that is what customising a formula to one arm means.
+What is known off-line (a constant of the arm, a zero) costs nothing: that is what customising a
+formula to one arm means.
 """
 
 from __future__ import annotations
@@ -30,27 +29,18 @@ class Tape:
     Operations among known numbers are done off-line and are free. So is adding a known
     zero and multiplying by a known zero, one or minus one. A change of sign is free: it
     merges with the addition that follows. Everything else counts.
-
-    Examples
-    --------
-    >>> tape = Tape()
-    >>> x, two = tape.unknown(3.0), tape.known(2.0)
-    >>> (two * x + x * x).value
-    15.0
-    >>> tape.executed
-    Operations(multiplications=2, additions=1, divisions=0, functions=0)
     """
 
     def __init__(self):
-        self._shared: dict[tuple, Counted] = {}
+        self._shared: dict[tuple, _Counted] = {}
         self._done: Counter = Counter()
         self._size = 0
 
-    def unknown(self, value: float) -> Counted:
+    def unknown(self, value: float) -> _Counted:
         """A number that is not known before the computation runs, like a joint angle."""
         return self._make(number("value", value), ())
 
-    def known(self, value: float) -> Counted:
+    def known(self, value: float) -> _Counted:
         """A number that is known off-line, like the mass of a link."""
         return self._once(("known", number("value", value)), value, None)
 
@@ -60,14 +50,8 @@ class Tape:
         return _tally(self._done)
 
     def needed(self, results: Iterable) -> Operations:
-        """What the `results` need when nothing is computed twice or in vain.
-
-        Parameters
-        ----------
-        results : iterable
-            Numbers of this tape; plain numbers among them need nothing.
-        """
-        waiting = [x for x in results if isinstance(x, Counted)]
+        """What the `results` need when nothing is computed twice or in vain."""
+        waiting = [x for x in results if isinstance(x, _Counted)]
         seen, kinds = set(), Counter()
         while waiting:
             node = waiting.pop()
@@ -77,39 +61,27 @@ class Tape:
                 waiting += node.recipe[1:]
         return _tally(kinds)
 
-    def _make(self, value, recipe) -> Counted:
+    def _make(self, value, recipe) -> _Counted:
         self._size += 1
-        return Counted(self, self._size, value, recipe)
+        return _Counted(self, self._size, value, recipe)
 
-    def _once(self, key, value, recipe) -> Counted:
+    def _once(self, key, value, recipe) -> _Counted:
         """The number made before under the same key, or a new one."""
-        found = self._shared.get(key)
-        if found is None:
-            found = self._shared[key] = self._make(value, recipe)
-        return found
+        if key not in self._shared:
+            self._shared[key] = self._make(value, recipe)
+        return self._shared[key]
 
-    def _operate(self, kind: str, value: float, *operands: Counted) -> Counted:
+    def _operate(self, kind: str, value: float, *operands: _Counted) -> _Counted:
         """The result of an operation of which one operand at least is not known."""
         self._done[kind] += 1
         return self._once((kind, *(x.index for x in operands)), value, (kind, *operands))
 
 
-class Counted:
+class _Counted:
     """A number of a `Tape`. It works in ``+ - * /``, `numpy.sin` and `numpy.cos`.
 
-    Attributes
-    ----------
-    tape : Tape
-        Where operations are recorded.
-    index : int
-        Its place on the tape.
-    value : float
-        What the number is.
-    recipe : tuple or None
-        Kind of operation and operands that made it; empty for an input, None for what is
-        known off-line.
-    negated : bool
-        Whether it is the opposite of another number.
+    Its `recipe` is the kind of operation and the operands that made it; empty for an input, None
+    for what is known off-line.
     """
 
     __slots__ = ("index", "negated", "recipe", "tape", "value")
@@ -120,9 +92,6 @@ class Counted:
 
     def __repr__(self):
         return f"Counted({self.value!r})"
-
-    def __float__(self):
-        return self.value
 
     def _is(self, *values) -> bool:
         """Whether it is known off-line to be one of the values."""
@@ -205,9 +174,9 @@ class Counted:
             return self.tape.known(value)
         return self.tape._operate(kind, value, self)
 
-    def _lift(self, other) -> Counted:
+    def _lift(self, other) -> _Counted:
         """`other` as a number of this tape; a plain number is one that is known."""
-        if not isinstance(other, Counted):
+        if not isinstance(other, _Counted):
             return self.tape.known(other)
         if other.tape is not self.tape:
             raise ValueError("other must be a number of the same tape")

@@ -1,10 +1,4 @@
-"""The equations of motion of a planar arm, derived by sympy and turned into code.
-
-The way from energy to code has four stations, each open to inspection: the kinetic and
-potential energy of the links, the Lagrangian in base parameters (`Derivation.lagrangian`),
-the torque that Lagrange's equation makes of it (`Derivation.torque`), and the function that
-`sympy.lambdify` writes from that (`Derivation.function`, `Derivation.source`).
-"""
+"""The equations of motion of a planar arm, derived by sympy and turned into code."""
 
 from __future__ import annotations
 
@@ -18,33 +12,19 @@ import sympy as sp
 from ddlib._check import integer, number
 from ddlib.dynamics.arm import Link
 
-MAX_LINKS = 6
-"""Longest arm that `derive` takes."""
+_MAX_LINKS = 6
 
 
 @dataclass(frozen=True)
 class Derivation:
-    """The dynamics of a planar arm in symbols; `derive` makes it.
+    """The dynamics of a planar arm in symbols; `derive` makes it."""
 
-    Attributes
-    ----------
-    q, qd, qdd : tuple of Symbol
-        Angles, velocities and accelerations of the joints.
-    base : dict
-        For each base parameter (a symbol) what it is in masses, lengths and inertias. Those
-        of more than two links are not all independent.
-    lagrangian : Expr
-        Kinetic minus potential energy, in base parameters.
-    torque : tuple of Expr
-        The torque of each joint, in base parameters, multiplied out.
-    """
-
-    q: tuple
+    q: tuple  #: Angles of the joints; `qd` and `qdd` are velocities and accelerations.
     qd: tuple
     qdd: tuple
-    base: dict
-    lagrangian: sp.Expr
-    torque: tuple
+    base: dict  #: For each base parameter what it is in masses, lengths and inertias.
+    lagrangian: sp.Expr  #: Kinetic minus potential energy, in base parameters.
+    torque: tuple  #: Of each joint, in base parameters, multiplied out.
 
     @property
     def arguments(self) -> tuple:
@@ -68,15 +48,7 @@ class Derivation:
         return text.replace("_lambdifygenerated", "torque").strip()
 
     def base_values(self, links: Iterable[Link], gravity: float = 0.0) -> list[float]:
-        """The base parameters of an arm, in the order of `base`.
-
-        Parameters
-        ----------
-        links : iterable of Link
-            From the shoulder outwards.
-        gravity : float
-            Acceleration of free fall, m/s^2.
-        """
+        """The base parameters of an arm under `gravity` (m/s^2), in the order of `base`."""
         links = list(links)
         if len(links) != len(self.q):
             raise ValueError(f"links must be {len(self.q)}, got {len(links)}")
@@ -94,7 +66,7 @@ def derive(links: int, gravity: bool = False) -> Derivation:
     Parameters
     ----------
     links : int
-        Number of links, up to `MAX_LINKS`.
+        Number of links, 1 to 6.
     gravity : bool
         Whether the plane is vertical. Angles then count from hanging straight down.
 
@@ -104,7 +76,7 @@ def derive(links: int, gravity: bool = False) -> Derivation:
     sum of ``l_i w_i`` across every earlier link and ``r_k w_k`` across its own, and two
     directions i and j enclose the angle ``q_(i+1) + ... + q_j``.
     """
-    integer("links", links, 1, MAX_LINKS)
+    integer("links", links, 1, _MAX_LINKS)
 
     def named(name):
         return sp.symbols([f"{name}{k}" for k in range(1, links + 1)])

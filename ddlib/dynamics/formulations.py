@@ -1,11 +1,7 @@
 """Three formulations of inverse dynamics, written in plain arithmetic.
 
 The same code runs on numbers, on arrays and on the counting numbers of `ddlib.dynamics.counting`:
-how much a formulation costs is found by running it. `newton_euler` is the recursion of Luh,
-Walker & Paul (1980): motion outwards, forces inwards, equal work for every joint.
-`lagrange_euler` is the older closed form with 4 x 4 matrices (Uicker 1965, Kahn 1969), whose
-work grows with the fourth power of the number of joints. `recursive_lagrange` is what Hollerbach
-(1980) made of it: the same equations as a recursion, with 3 x 3 matrices.
+how much a formulation costs is found by running it.
 """
 
 from __future__ import annotations
@@ -18,33 +14,17 @@ import numpy as np
 
 
 class LinkConstants(NamedTuple):
-    """What a formulation needs to know of a link, in Denavit-Hartenberg's frames.
-
-    Attributes
-    ----------
-    cos_twist, sin_twist, length, offset
-        The frame's place in the one before, besides the joint angle.
-    tip : list of 3
-        From the joint to the frame's origin, in the frame, m.
-    mass
-        kg.
-    com : list of 3
-        Centre of mass in the frame, m.
-    inertia : list of 3 x 3
-        About the centre of mass, kg m^2.
-    second_moments : list of 4 x 4
-        Integral of ``r r'`` over the mass, with ``r = (x, y, z, 1)``.
-    """
+    """What a formulation needs to know of a link, in Denavit-Hartenberg's frames."""
 
     cos_twist: float
     sin_twist: float
     length: float
     offset: float
-    tip: list
+    tip: list  # from the joint to the frame's origin, in the frame, m
     mass: float
-    com: list
-    inertia: list
-    second_moments: list
+    com: list  # centre of mass in the frame, m
+    inertia: list  # 3 x 3, about the centre of mass, kg m^2
+    second_moments: list  # 4 x 4, integral of r r' over the mass, with r = (x, y, z, 1)
 
 
 class Constants(NamedTuple):
@@ -55,7 +35,9 @@ class Constants(NamedTuple):
 
 
 def newton_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
-    """Recursive Newton-Euler in plain arithmetic: torques, one per joint.
+    """Recursive Newton-Euler (Luh, Walker & Paul 1980): torques, one per joint.
+
+    Motion goes outwards, forces come inwards, equal work for every joint.
 
     Parameters
     ----------
@@ -96,18 +78,17 @@ def newton_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
 
 
 def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
-    """The closed Lagrange-Euler form in plain arithmetic: torques, one per joint.
+    """The closed Lagrange-Euler form (Uicker 1965, Kahn 1969): torques, one per joint.
 
     ``tau_i = sum_j D_ij qdd_j + sum_jk D_ijk qd_j qd_k - sum_p m_p g' U_pi r_p`` with
     ``D_ij = sum_p tr(U_pj J_p U_pi')`` and ``D_ijk = sum_p tr(U_pjk J_p U_pi')``, where
     ``U_pi`` and ``U_pjk`` are the derivatives of link p's 4 x 4 frame ``T_p``, ``J_p`` its
     second moments and ``r_p`` its centre of mass. Each of the products in ``D_ijk`` is done
-    anew, as in the programs that Hollerbach (1980) counts.
-
-    ``constants, q, qd, qdd, zero, one`` are those of `newton_euler`.
+    anew, as in the programs that Hollerbach (1980) counts, so that the work grows with the
+    fourth power of the number of joints. Arguments are those of `newton_euler`.
     """
     links, base = constants
-    first, second = _sweeps([_frame(link, x, zero, one) for link, x in zip(links, q)], zero)
+    first, second = _sweeps([link_frame(link, x, zero, one) for link, x in zip(links, q)], zero)
     inertia = {}
     for p, i in first:
         weighted = _product(first[p, i], links[p].second_moments)
@@ -129,14 +110,12 @@ def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
 
 
 def recursive_lagrange(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
-    """Hollerbach's recursive Lagrangian form with 3 x 3 matrices: torques, one per joint.
+    """Recursive Lagrangian form with 3 x 3 matrices (Hollerbach 1980): torques, one per joint.
 
     Outwards go the orientations ``W_i`` with their first and second derivatives in time and the
     accelerations of the frames' origins; inwards come ``D_i``, the integral of ``r a'`` over all
     mass beyond joint i (``r`` from the joint, in frame i; ``a`` its acceleration), and the first
     moments ``c_i``. Then ``tau_i = tr(dW_i/dq_i D_i) - g' dW_i/dq_i c_i``.
-
-    ``constants, q, qd, qdd, zero, one`` are those of `newton_euler`.
     """
     links, base = constants
     turns = [_rotation(link, angle, zero) for link, angle in zip(links, q)]
@@ -204,7 +183,7 @@ def _rotation(link, angle, zero):
     return [[c, -s * ct, s * st], [s, c * ct, -c * st], [zero, st, ct]]
 
 
-def _frame(link, angle, zero, one):
+def link_frame(link, angle, zero, one):
     """Orientation and origin of a link's frame in the one before, 4 x 4."""
     turn = _rotation(link, angle, zero)
     origin = (link.length * turn[0][0], link.length * turn[1][0], link.offset)

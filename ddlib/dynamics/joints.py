@@ -1,11 +1,4 @@
-"""More joints: an arm of seven in space whose first two are the book's, and tools for any number.
-
-Nothing beyond the second joint of the real arm is known but that there are six joints, and that
-the first three position the hand. Here axes 3, 5 and 7 are level and lie across the forearm, axes
-4 and 6 are upright, all with the arm stretched; masses and lengths are assumed. Link 2 is what the
-forearm of `ddlib.dynamics.arm.CMU_DD_ARM_II` leaves when links 3 to 7 are taken out of it, so that
-with those joints locked the arm is the one of all other chapters. The seventh joint is the book's.
-"""
+"""An arm of seven joints in space whose first two are the book's, and tools for any number."""
 
 from __future__ import annotations
 
@@ -14,28 +7,18 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib._check import finite_array, integer, shaped
-from ddlib.dynamics.arm import STANDARD_GRAVITY
+from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
+from ddlib.dynamics.formulations import link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
 
-PER_LINK = 10
-"""Inertial parameters of a link: mass, three first moments, six second moments."""
-
+_PER_LINK = 10  # inertial parameters of a link: mass, three first moments, six second moments
 _SECOND = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # xx, yy, zz, xy, xz, yz
 
 
 def mass_matrix(arm: SerialArm, q) -> np.ndarray:
-    """Mass matrix of an arm, from its torques for one acceleration at a time.
+    """Mass matrix of an arm at angles `q` (rad), shape (..., joints, joints), kg m^2.
 
-    Parameters
-    ----------
-    arm : SerialArm
-    q : array_like, shape (..., joints)
-        Angles, rad.
-
-    Returns
-    -------
-    ndarray, shape (..., joints, joints)
-        kg m^2; column j is the torque that accelerates joint j by 1 rad/s^2 from rest.
+    Column j is the torque that accelerates joint j alone by 1 rad/s^2 from rest.
     """
     q = finite_array("q", q, arm.joints)
     weightless, one = SerialArm(arm.links), np.eye(arm.joints)
@@ -45,41 +28,18 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
 
 
 def frames(arm: SerialArm, q) -> np.ndarray:
-    """Places and orientations of all links, base first.
-
-    Parameters
-    ----------
-    arm : SerialArm
-    q : array_like, shape (..., joints)
-        Angles, rad.
-
-    Returns
-    -------
-    ndarray, shape (..., joints + 1, 4, 4)
-        Homogeneous matrices; the last column holds the frame's origin, m.
-    """
+    """Homogeneous matrices (..., joints + 1, 4, 4) of all links' frames, base first, m."""
     q = finite_array("q", q, arm.joints)
-    found = [np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))]
-    for j, link in enumerate(arm.constants().links):
-        c, s, ct, st = np.cos(q[..., j]), np.sin(q[..., j]), link.cos_twist, link.sin_twist
-        step = np.zeros((*q.shape[:-1], 4, 4))
-        step[..., 0, :3] = np.stack([c, -s * ct, s * st], -1)
-        step[..., 1, :3] = np.stack([s, c * ct, -c * st], -1)
-        step[..., 2, 1:3] = st, ct
-        step[..., :3, 3] = np.stack([link.length * c, link.length * s, link.offset + 0 * c], -1)
-        step[..., 3, 3] = 1
-        found.append(found[-1] @ step)
-    return np.stack(found, -3)
+    placed = [np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))]
+    for link, angle in zip(arm.constants().links, np.moveaxis(q, -1, 0)):
+        rows = link_frame(link, angle, 0.0, 1.0)
+        step = [np.stack(np.broadcast_arrays(*row, angle)[:4], -1) for row in rows]
+        placed.append(placed[-1] @ np.stack(step, -2))
+    return np.stack(placed, -3)
 
 
 def hand(arm: SerialArm, q) -> np.ndarray:
-    """End of the last link, shape ``(..., 3)``, m: x and y level, z up.
-
-    Parameters
-    ----------
-    arm, q
-        As in `frames`.
-    """
+    """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
     return frames(arm, q)[..., -1, :3, 3]
 
 
@@ -91,7 +51,7 @@ def inertial_parameters(link: SpatialLink) -> np.ndarray:
     inertia, products with their sign in it.
     """
     com = np.array(link.com)
-    tensor = np.array(link.inertia) + link.mass * (com @ com * np.eye(3) - np.outer(com, com))
+    tensor = np.array(link.inertia) + link.mass * _steiner(com)
     return np.concatenate([[link.mass], link.mass * com, [tensor[place] for place in _SECOND]])
 
 
@@ -99,7 +59,8 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     """Matrix Y with ``tau = Y p``, p the `inertial_parameters` of all links in their order.
 
     Force and moment of a link are linear in its parameters, and each joint feels the moments of
-    all links beyond it about its axis.
+    all links beyond it about its axis. Many columns depend on others, or are zero: only some
+    combinations of parameters move a joint (Khosla 1986).
 
     Parameters
     ----------
@@ -111,14 +72,11 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     Returns
     -------
     ndarray, shape (..., joints, 10 joints)
-        Many columns depend on others, or are zero: only some combinations of parameters move a
-        joint (Khosla 1986).
     """
-    q, qd, qdd = (finite_array(n, x, arm.joints) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
-    q, qd, qdd = np.broadcast_arrays(q, qd, qdd)
+    q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
     placed = frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
-    found = np.zeros((*q.shape, PER_LINK * arm.joints))
+    matrix = np.zeros((*q.shape, _PER_LINK * arm.joints))
     spin, spin_rate = np.zeros((2, *q.shape[:-1], 3))
     fall = spin - np.array(arm.gravity)  # acceleration of the frame, as a weight feels it
     for j in range(arm.joints):
@@ -135,16 +93,12 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
         for i in range(j + 1):
             lever = np.cross(axes[..., i, :], places[..., j + 1, :] - places[..., i, :])
             row = axes[..., i, None, :] @ moment + lever[..., None, :] @ force
-            found[..., i, PER_LINK * j : PER_LINK * (j + 1)] = row[..., 0, :]
-    return found
+            matrix[..., i, _PER_LINK * j : _PER_LINK * (j + 1)] = row[..., 0, :]
+    return matrix
 
 
 def _wrenches(spin, spin_rate, fall) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment at a link's origin for each of its parameters, ``(..., 3, 10)`` both.
-
-    From the link's angular velocity and acceleration and its origin's acceleration ``(..., 3)``,
-    all in its own frame.
-    """
+    """Force and moment at a link's origin per parameter, ``(..., 3, 10)``, in its own frame."""
     swing = _across(spin_rate) + _across(spin) @ _across(spin)
     force = np.concatenate([fall[..., None], swing, np.zeros((*spin.shape, 6))], -1)
     second = _tensor_times(spin_rate) + _across(spin) @ _tensor_times(spin)
@@ -159,11 +113,11 @@ def _across(x) -> np.ndarray:
 
 def _tensor_times(x) -> np.ndarray:
     """The matrix by which a tensor's six elements give its product with x, ``(..., 3, 6)``."""
-    found = np.zeros((*x.shape, 6))
+    matrix = np.zeros((*x.shape, 6))
     for k, (row, column) in enumerate(_SECOND):
-        found[..., row, k] = x[..., column]
-        found[..., column, k] = x[..., row]
-    return found
+        matrix[..., row, k] = x[..., column]
+        matrix[..., column, k] = x[..., row]
+    return matrix
 
 
 def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
@@ -180,7 +134,7 @@ def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
     Returns
     -------
     SerialArm
-        Its last link ends where the arm's does.
+        Its last link ends where the arm's does; a posture for which it cannot is refused.
     """
     integer("joints", joints, 1, arm.joints)
     rest = np.zeros(arm.joints) if posture is None else shaped("posture", posture, (arm.joints,))
@@ -195,7 +149,7 @@ def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
     com = sum(m * c for m, c, _ in bodies) / mass if mass else np.zeros(3)
     inertia = sum(t + m * _steiner(c - com) for m, c, t in bodies)
     end = (np.linalg.inv(last) @ placed[-1])[:3, 3]
-    # In the frame of the last free link its own far end; the hand lies `end` beyond it.
+    # the hand lies `end` beyond the last free link's own far end, in that link's frame
     near = arm.links[joints - 1]
     if np.abs(end[1:]).max() > 1e-12 * max(1.0, np.abs(end).max()):
         raise ValueError(
@@ -219,35 +173,28 @@ def _moved(link: SpatialLink, place) -> tuple:
 
 
 def _steiner(arm) -> np.ndarray:
+    """What a unit mass at a place adds to the tensor of inertia (Steiner's parallel axes)."""
     return arm @ arm * np.eye(3) - np.outer(arm, arm)
-
-
-FOREARM = {
-    "mass": (3.0, 1.8, 1.2, 0.7, 0.3),
-    "length": (0.10, 0.07, 0.05, 0.04, 0.04),
-    "gyration": (0.07, 0.05, 0.04, 0.03, 0.03),
-}
-"""Links 3 to 7: mass (kg), length (m), radius of gyration about their middles (m). All assumed."""
-
-TO_THIRD_AXIS = 0.10
-"""From axis 2 to axis 3, m. Assumed; with the lengths of links 3 to 7 it makes 0.40 m."""
 
 
 def _arm_in_space() -> SerialArm:
     """Links 3 to 7 as assumed; link 2 is what they leave of the two-link arm's forearm."""
-    mass, length, gyration = (np.array(FOREARM[name]) for name in ("mass", "length", "gyration"))
-    ends = TO_THIRD_AXIS + np.cumsum(length)
+    to_third_axis = 0.10  # from axis 2, m; with the lengths of links 3 to 7 it makes 0.40 m
+    mass = np.array((3.0, 1.8, 1.2, 0.7, 0.3))  # of links 3 to 7, kg
+    length = np.array((0.10, 0.07, 0.05, 0.04, 0.04))  # m
+    gyration = np.array((0.07, 0.05, 0.04, 0.03, 0.03))  # radius about their middles, m
+    ends = to_third_axis + np.cumsum(length)
     middle = ends - length / 2
     own = mass * gyration**2
-    whole, centre, inertia = 14.0, 0.09, 0.60  # of `ddlib.dynamics.arm.CMU_DD_ARM_II`'s forearm
+    whole, centre, inertia = 14.0, 0.09, 0.60  # of the forearm of `CMU_DD_ARM_II`
     left = float(whole - mass.sum())
     com = float((whole * centre - mass @ middle) / left)
     about_axis = inertia + whole * centre**2 - (own + mass * middle**2).sum()
     about_com = about_axis - left * com**2
     twists = (-90.0, 90.0, -90.0, 90.0, 0.0)
     first = SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
-    place = com - TO_THIRD_AXIS, 0.0, 0.0
-    second = SpatialLink(90.0, TO_THIRD_AXIS, 0.0, left, place, np.eye(3) * about_com)
+    place = com - to_third_axis, 0.0, 0.0
+    second = SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
     rest = [
         SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
         for twist, a, m, i in zip(twists, length, mass, own)
@@ -256,4 +203,10 @@ def _arm_in_space() -> SerialArm:
 
 
 DD_ARM_II_IN_SPACE = _arm_in_space()
-"""Stand-in for all six joints of the CMU Direct-Drive Arm II, and a seventh; see the module."""
+"""Stand-in for all six joints of the CMU Direct-Drive Arm II, and a seventh of the book's.
+
+Nothing beyond the second joint of the real arm is known but that there are six joints, and that
+the first three position the hand. Here axes 3, 5 and 7 are level and lie across the forearm, axes
+4 and 6 are upright, all with the arm stretched; masses and lengths are assumed, so that with
+joints 3 to 7 locked the arm is `CMU_DD_ARM_II`.
+"""

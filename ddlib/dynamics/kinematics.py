@@ -1,19 +1,18 @@
-"""Where the hand is and how to get it there: Jacobian, inverse kinematics, end-point error."""
+"""Where the hand is and how to get it there: Jacobian, inverse kinematics, circles."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, number, one_of
+from ddlib._check import finite_array, one_of
 from ddlib.dynamics.arm import Arm
 from ddlib.trajectories import Trajectory
 
-ELBOWS = ("positive", "negative")
-"""Signs of the elbow angle: most points of the hand can be reached with either."""
+ELBOWS = ("positive", "negative")  #: Signs of the elbow angle; most points allow either.
 
-LEAST_SINE = 0.05
-"""Smallest sine of the elbow angle that is not taken for singular: at 3 degrees from stretched or
-folded the joints must turn twenty times as fast as the hand moves, per length of a link."""
+# Smallest sine of the elbow angle that is not taken for singular: at 3 degrees from stretched or
+# folded the joints must turn twenty times as fast as the hand moves, per length of a link.
+_LEAST_SINE = 0.05
 
 
 class Unreachable(ValueError):
@@ -21,28 +20,14 @@ class Unreachable(ValueError):
 
 
 def jacobian(arm: Arm, q) -> np.ndarray:
-    """Derivatives of the hand's position by the angles, shape (..., 2, 2), m/rad.
-
-    Parameters
-    ----------
-    arm : Arm
-    q : array_like, shape (..., 2)
-        Joint angles, rad.
-    """
+    """Derivatives of the hand's position by the angles `q` (rad), shape (..., 2, 2), m/rad."""
     elbow, hand = np.moveaxis(arm.forward_kinematics(q), -2, 0)
     arms = np.stack([hand, hand - elbow], -1)  # from each joint to the hand, (..., xy, joint)
     return np.stack([-arms[..., 1, :], arms[..., 0, :]], -2)
 
 
-def jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
-    """Time derivative of `jacobian` in motion, shape (..., 2, 2), m/(rad s).
-
-    Parameters
-    ----------
-    arm : Arm
-    q, qd : array_like, shape (..., 2)
-        Joint angles (rad) and velocities (rad/s).
-    """
+def _jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
+    """Time derivative of `jacobian` in motion, shape (..., 2, 2), m/(rad s)."""
     J, qd = jacobian(arm, q), finite_array("qd", qd, 2)
     turning = np.stack([qd.sum(-1), qd.sum(-1)], -1)
     l1, first = arm.lengths[0], np.asarray(q, float)[..., 0]
@@ -54,13 +39,8 @@ def jacobian_rate(arm: Arm, q, qd) -> np.ndarray:
 
 
 def reach(arm: Arm) -> tuple[float, float]:
-    """Least and largest distance of the hand from the shoulder that `inverse_kinematics` takes, m.
-
-    Parameters
-    ----------
-    arm : Arm
-    """
-    (l1, l2), bent = arm.lengths, np.sqrt(1 - LEAST_SINE**2)
+    """Least and largest distance of the hand from the shoulder, elbow not too straight, m."""
+    (l1, l2), bent = arm.lengths, np.sqrt(1 - _LEAST_SINE**2)
     near, far = (np.sqrt(l1**2 + l2**2 + s * 2 * l1 * l2 * bent) for s in (-1, 1))
     return float(near), float(far)
 
@@ -79,13 +59,13 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
     Raises
     ------
     Unreachable
-        If a point is too far or too near, or the sine of the elbow angle is below `LEAST_SINE`.
+        If a point is too far or too near: with the arm within 3 degrees of stretched or folded.
     """
     hand, (l1, l2) = finite_array("hand", hand, 2), arm.lengths
     one_of("elbow", elbow, ELBOWS)
     distance2 = (hand**2).sum(-1)
     cosine = (distance2 - l1**2 - l2**2) / (2 * l1 * l2)
-    bad = np.abs(cosine) > np.sqrt(1 - LEAST_SINE**2)
+    bad = np.abs(cosine) > np.sqrt(1 - _LEAST_SINE**2)
     if bad.any():
         worst = float(np.sqrt(distance2[bad].ravel()[0]))
         low, high = reach(arm)
@@ -99,64 +79,28 @@ def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
 
 
 def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive") -> Trajectory:
-    """Joint motion that moves the hand along a path.
-
-    Parameters
-    ----------
-    arm : Arm
-    hand, velocity, acceleration : array_like, shape (..., time, 2)
-        Of the hand, m, m/s and m/s^2. The path is continuous, so the shoulder's angle is made to
-        run on beyond half a turn.
-    elbow : {"positive", "negative"}
-        Sign of the elbow angle, all the way.
-
-    Raises
-    ------
-    Unreachable
-        As in `inverse_kinematics`.
-    """
+    """Joint motion that moves the hand along a path ``(..., time, 2)``; m, m/s and m/s^2."""
     q = inverse_kinematics(arm, hand, elbow)
+    # a path is continuous: the shoulder's angle runs on beyond half a turn
     q = np.stack([np.unwrap(q[..., 0], axis=-1), q[..., 1]], -1)
     J = jacobian(arm, q)
     velocity = finite_array("velocity", velocity, 2)
     acceleration = finite_array("acceleration", acceleration, 2)
     qd = np.linalg.solve(J, velocity[..., None])[..., 0]
-    bent = np.einsum("...ij,...j->...i", jacobian_rate(arm, q, qd), qd)
+    bent = np.einsum("...ij,...j->...i", _jacobian_rate(arm, q, qd), qd)  # hand'' = J qdd + J' qd
     return Trajectory(q, qd, np.linalg.solve(J, (acceleration - bent)[..., None])[..., 0])
 
 
 def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
-    """Where the hand is minus where it should be, shape (..., 2), m.
-
-    Parameters
-    ----------
-    arm : Arm
-    wanted, q : array_like, shape (..., 2)
-        Desired and true joint angles, rad.
-    """
+    """Where the hand is, at angles `q`, minus where it should be, at `wanted`; (..., 2), m."""
     return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]
 
 
 def around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
-    """Joint motion that moves the hand on circles, at any pace.
+    """Joint motion that moves the hand on circles about `centre` (runs, 2), m, at any pace.
 
-    Parameters
-    ----------
-    arm : Arm
-    centre : array_like, shape (2,) or (runs, 2)
-        Of the circles, from the shoulder, m.
-    radius : float or array_like, shape (runs,)
-        Of the circles, m, above 0.
-    phase : sequence of three array_like, each of shape (time,) or (runs, time)
-        Where on its circle the hand is, counter-clockwise from its far right, rad; the rate of
-        that, rad/s, and the rate's rate, rad/s^2.
-    elbow : {"positive", "negative"}
-        Sign of the elbow angle.
-
-    Raises
-    ------
-    Unreachable
-        If part of a circle cannot be reached.
+    `phase` is where on its circle the hand is, (runs, time), counter-clockwise from its far right,
+    rad, with its first and second derivative in time.
     """
     radius = finite_array("radius", radius)
     if not (radius > 0).all():
@@ -168,33 +112,3 @@ def around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajecto
     hand = finite_array("centre", centre, 2)[..., None, :] + size * along
     pull = size * (change * across - rate**2 * along)
     return follow_hand(arm, hand, size * rate * across, pull, elbow)
-
-
-def circle(
-    arm: Arm, centre, radius: float, period: float, t, elbow: str = "positive"
-) -> Trajectory:
-    """ "Stirring": the hand goes round a circle, counter-clockwise, from its far right.
-
-    Parameters
-    ----------
-    arm : Arm
-    centre : array_like, shape (2,) or (runs, 2)
-        Of the circle, from the shoulder, m.
-    radius : float
-        Of the circle, m, above 0.
-    period : float
-        Of one turn, s, above 0.
-    t : array_like, shape (time,)
-        Times, s.
-    elbow : {"positive", "negative"}
-        Sign of the elbow angle.
-
-    Raises
-    ------
-    Unreachable
-        If part of the circle cannot be reached.
-    """
-    number("radius", radius, 0.0, open_low=True)
-    omega = 2 * np.pi / number("period", period, 0.0, open_low=True)
-    phase = omega * finite_array("t", t)
-    return around(arm, centre, radius, (phase, np.full_like(phase, omega), 0 * phase), elbow)

@@ -1,8 +1,7 @@
 """Serial arms in space, of any number of revolute joints.
 
 Frames follow Denavit & Hartenberg: joint ``i`` turns about the z axis of frame ``i - 1``,
-and frame ``i`` is fixed to the far end of link ``i``. Torques come from the three
-formulations of `ddlib.dynamics.formulations`.
+and frame ``i`` is fixed to the far end of link ``i``.
 """
 
 from __future__ import annotations
@@ -13,39 +12,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, shaped
-from ddlib.dynamics.arm import STANDARD_GRAVITY, Link
+from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, checked_state
 from ddlib.dynamics.formulations import Constants, LinkConstants, newton_euler
 
 
 @dataclass(frozen=True)
 class SpatialLink:
-    """A rigid link with a revolute joint, in Denavit-Hartenberg's parameters.
+    """A rigid link with a revolute joint, in Denavit-Hartenberg's parameters."""
 
-    Parameters
-    ----------
-    twist_deg : float
-        Angle from its joint's axis to the next joint's, degrees.
-    length, offset : float
-        Distances between the axes and along the joint's axis, m.
-    mass : float
-        kg.
-    com : array_like, shape (3,)
-        Centre of mass in the link's frame, m. The origin is at the far end of the link.
-    inertia : array_like, shape (3, 3)
-        Inertia about the centre of mass in the link's frame, kg m^2, symmetric.
-
-    Raises
-    ------
-    ValueError
-        If a value is not finite, of the wrong shape or out of range.
-    """
-
-    twist_deg: float
-    length: float
-    offset: float
-    mass: float
-    com: tuple[float, float, float]
-    inertia: tuple[tuple[float, ...], ...]
+    twist_deg: float  #: Angle from its joint's axis to the next joint's, degrees.
+    length: float  #: Distance between the axes, m.
+    offset: float  #: Distance along the joint's axis, m.
+    mass: float  #: kg
+    com: tuple[float, float, float]  #: Centre of mass, m, from the frame at the link's far end.
+    inertia: tuple[tuple[float, ...], ...]  #: About the centre of mass, kg m^2, symmetric.
 
     def __post_init__(self):
         for name in ("twist_deg", "length", "offset"):
@@ -58,10 +38,11 @@ class SpatialLink:
         object.__setattr__(self, "inertia", tuple(map(tuple, inertia.tolist())))
 
     def constants(self) -> LinkConstants:
-        """What `ddlib.dynamics.formulations` needs of the link."""
+        """What the formulations of inverse dynamics need of the link."""
         cos_twist, sin_twist = _cos_sin(self.twist_deg)
         tip = [self.length, self.offset * sin_twist, self.offset * cos_twist]
         inertia, point = np.array(self.inertia), np.append(self.com, 1.0)
+        # second moments of mass from the tensor of inertia: integral r r' = tr(I)/2 - I
         moments = self.mass * np.outer(point, point)
         moments[:3, :3] += np.trace(inertia) / 2 * np.eye(3) - inertia
         place = (cos_twist, sin_twist, self.length, self.offset, tip)
@@ -92,15 +73,7 @@ class SerialArm:
 
     @classmethod
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
-        """An arm whose axes are parallel, with the conventions of `ddlib.dynamics.arm.Arm`.
-
-        Parameters
-        ----------
-        links : iterable of Link
-            From the shoulder outwards.
-        gravity : float
-            Acceleration of free fall along the x axis, m/s^2: angles count from hanging.
-        """
+        """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
         spatial = (
             SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
@@ -135,17 +108,14 @@ class SerialArm:
         ndarray, shape (..., joints)
             Torques, N m.
         """
-        state = (finite_array(n, x, self.joints) for n, x in (("q", q), ("qd", qd), ("qdd", qdd)))
-        state = np.broadcast_arrays(*state)
+        state = checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))
         return np.stack([t + np.zeros(state[0].shape[:-1]) for t in tau], -1)
 
     def constants(self, make: Callable = float) -> Constants:
-        """What `ddlib.dynamics.formulations` needs, every number made by `make`.
-
-        The base of an arm under gravity accelerates upwards instead of every link falling.
-        """
+        """What the formulations need of the arm, every number made by `make`."""
         links = [_each(make, link.constants()) for link in self.links]
+        # under gravity the base accelerates upwards, instead of every link falling
         base = _each(make, [-g for g in self.gravity])
         return Constants([LinkConstants(*values) for values in links], base)
 
@@ -163,25 +133,21 @@ def _cos_sin(degrees: float):
     return float(np.cos(np.deg2rad(degrees))), float(np.sin(np.deg2rad(degrees)))
 
 
-def _link(twist, length, offset, mass, com, moments) -> SpatialLink:
-    return SpatialLink(twist, length, offset, mass, com, np.diag(moments))
-
-
+_PUMA_560_LINKS = (  # twist (degrees), length, offset, mass, centre, diagonal of the inertia
+    (90.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.35, 0.0)),
+    (0.0, 0.4318, 0.0, 17.4, (-0.3638, 0.006, 0.2275), (0.13, 0.524, 0.539)),
+    (-90.0, 0.0203, 0.15005, 4.8, (-0.0203, -0.0141, 0.070), (0.066, 0.086, 0.0125)),
+    (90.0, 0.0, 0.4318, 0.82, (0.0, 0.019, 0.0), (1.8e-3, 1.3e-3, 1.8e-3)),
+    (-90.0, 0.0, 0.0, 0.34, (0.0, 0.0, 0.0), (0.3e-3, 0.4e-3, 0.3e-3)),
+    (0.0, 0.0, 0.0, 0.09, (0.0, 0.0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3)),
+)
 PUMA_560 = SerialArm(
-    (
-        _link(90.0, 0.0, 0.0, 0.0, (0.0, 0.0, 0.0), (0.0, 0.35, 0.0)),
-        _link(0.0, 0.4318, 0.0, 17.4, (-0.3638, 0.006, 0.2275), (0.13, 0.524, 0.539)),
-        _link(-90.0, 0.0203, 0.15005, 4.8, (-0.0203, -0.0141, 0.070), (0.066, 0.086, 0.0125)),
-        _link(90.0, 0.0, 0.4318, 0.82, (0.0, 0.019, 0.0), (1.8e-3, 1.3e-3, 1.8e-3)),
-        _link(-90.0, 0.0, 0.0, 0.34, (0.0, 0.0, 0.0), (0.3e-3, 0.4e-3, 0.3e-3)),
-        _link(0.0, 0.0, 0.0, 0.09, (0.0, 0.0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3)),
-    ),
+    tuple(SpatialLink(*place, np.diag(moments)) for *place, moments in _PUMA_560_LINKS),
     gravity=(0.0, 0.0, -STANDARD_GRAVITY),
 )
 """The most studied geared arm, without its motors (Corke & Armstrong-Helouvry 1994)."""
 
+#: Inertia of its motors' rotors, kg m^2 (Corke & Armstrong-Helouvry 1994).
 PUMA_560_ROTORS = (200e-6, 200e-6, 200e-6, 33e-6, 33e-6, 33e-6)
-"""Inertia of its motors' rotors, kg m^2 (Corke & Armstrong-Helouvry 1994)."""
-
+#: Its gear ratios (Corke & Armstrong-Helouvry 1994).
 PUMA_560_GEARS = (62.6111, 107.815, 53.7063, 76.0364, 71.923, 76.686)
-"""Its gear ratios (Corke & Armstrong-Helouvry 1994)."""

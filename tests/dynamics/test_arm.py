@@ -1,8 +1,4 @@
-"""Rigid-body dynamics against two independent derivations and the laws of mechanics."""
-
-import copy
-import pickle
-from dataclasses import FrozenInstanceError, replace
+"""Rigid-body dynamics against an independent derivation and the laws of mechanics."""
 
 import numpy as np
 import pytest
@@ -10,7 +6,15 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm, Link
+from ddlib.dynamics import (
+    CMU_DD_ARM_II,
+    IMI_ARM,
+    REYES_KELLY_ARM,
+    Arm,
+    Link,
+    jacobian,
+    with_load,
+)
 
 # mass, length, centre of mass, inertia: typed from the tables, not read from the module
 CMU_LINKS = ((14.0, 0.50, 0.22, 0.40), (14.0, 0.40, 0.09, 0.60))
@@ -23,23 +27,6 @@ def random_states(n=1000, seed=0):
     """Angles within a turn, velocities within 10 rad/s, accelerations within 50 rad/s^2."""
     rng = np.random.default_rng(seed)
     return (rng.uniform(-1, 1, (n, 2)) * scale for scale in (np.pi, 10.0, 50.0))
-
-
-def random_links(n=20, seed=1):
-    rng = np.random.default_rng(seed)
-    low, high = (0.2, 0.1, 0.02, 0.01), (30.0, 1.0, 0.6, 2.0)
-    return [tuple(map(tuple, rng.uniform(low, high, (2, 4)))) for _ in range(n)]
-
-
-CASES = [
-    (CMU_LINKS, 0.0),
-    (REYES_KELLY_LINKS, 9.81),
-    *((links, (0.0, 9.81, 1.62)[i % 3]) for i, links in enumerate(random_links())),
-]
-
-
-def arm_of(links, gravity) -> Arm:
-    return Arm.from_links("test", Link(*links[0]), Link(*links[1]), gravity)
 
 
 @pytest.fixture(scope="module")
@@ -77,60 +64,22 @@ def euler_lagrange():
     )
 
 
-def newton_euler(q, qd, qdd, links, gravity):
-    """Recursive Newton-Euler with general vectors: motion outwards, forces inwards."""
-    z = np.array([0.0, 0.0, 1.0])
-    n = len(q)
-    omega, alpha = np.zeros((n, 3)), np.zeros((n, 3))
-    # the base accelerates upwards instead of a weight pulling down
-    joint_acceleration = np.tile([0.0, gravity, 0.0], (n, 1))
-    angle = np.zeros(n)
-    bodies = []
-    for i, (mass, length, com, inertia) in enumerate(links):
-        angle = angle + q[:, i]
-        along = np.stack([np.sin(angle), -np.cos(angle), np.zeros(n)], -1)
-        omega = omega + qd[:, i, None] * z
-        alpha = alpha + qdd[:, i, None] * z
-
-        def acceleration(arm, base=joint_acceleration, w=omega, a=alpha):
-            return base + np.cross(a, arm) + np.cross(w, np.cross(w, arm))
-
-        force = mass * acceleration(com * along)
-        moment = inertia * alpha + np.cross(omega, inertia * omega)
-        bodies.append((length * along, com * along, force, moment))
-        joint_acceleration = acceleration(length * along)
-    tau = np.zeros((n, 2))
-    force_out, moment_out = np.zeros((n, 3)), np.zeros((n, 3))
-    for i in (1, 0):
-        tip, centre, force, moment = bodies[i]
-        moment_out = moment + moment_out + np.cross(centre, force) + np.cross(tip, force_out)
-        force_out = force + force_out
-        tau[:, i] = moment_out @ z
-    return tau
-
-
-def relative_gap(x, y):
-    return np.abs(x - y).max() / max(1.0, np.abs(y).max())
-
-
-@pytest.mark.parametrize("links, gravity", CASES)
-def test_inverse_dynamics_agrees_with_lagrange_and_newton(links, gravity, euler_lagrange):
+def test_inverse_dynamics_is_lagranges_equation(euler_lagrange):
+    """Of the preset arms, and of links of any size under any gravity."""
+    low, high = (0.2, 0.1, 0.02, 0.01), (30.0, 1.0, 0.6, 2.0)
+    drawn = np.random.default_rng(1).uniform(low, high, (6, 2, 4))
+    cases = [
+        (CMU_DD_ARM_II, CMU_LINKS, 0.0),
+        (REYES_KELLY_ARM, REYES_KELLY_LINKS, 9.81),
+        *((None, links, gravity) for links, gravity in zip(drawn, (0.0, 9.81, 1.62) * 2)),
+    ]
     q, qd, qdd = random_states()
-    tau = arm_of(links, gravity).inverse_dynamics(q, qd, qdd)
-    assert relative_gap(tau, euler_lagrange(q, qd, qdd, links, gravity)) < 1e-10
-    assert relative_gap(tau, newton_euler(q, qd, qdd, links, gravity)) < 1e-10
-
-
-@pytest.mark.parametrize(
-    "preset, links, gravity",
-    [(CMU_DD_ARM_II, CMU_LINKS, 0.0), (REYES_KELLY_ARM, REYES_KELLY_LINKS, 9.81)],
-    ids=["CMU", "Reyes-Kelly"],
-)
-def test_presets_agree_with_both_derivations(preset, links, gravity, euler_lagrange):
-    q, qd, qdd = random_states(seed=3)
-    tau = preset.inverse_dynamics(q, qd, qdd)
-    np.testing.assert_allclose(tau, euler_lagrange(q, qd, qdd, links, gravity), atol=1e-10, rtol=0)
-    np.testing.assert_allclose(tau, newton_euler(q, qd, qdd, links, gravity), atol=1e-10, rtol=0)
+    for preset, links, gravity in cases:
+        made = Arm.from_links("test", *(Link(*link) for link in links), gravity)
+        wanted = euler_lagrange(q, qd, qdd, links, gravity)
+        for arm in (made, preset or made):
+            tau = arm.inverse_dynamics(q, qd, qdd)
+            assert np.abs(tau - wanted).max() < 1e-10 * max(1.0, np.abs(wanted).max())
 
 
 def test_preset_base_parameters():
@@ -138,8 +87,6 @@ def test_preset_base_parameters():
     assert rounded == [5.291, 0.63, 0.713]
     assert (IMI_ARM.a, IMI_ARM.d, IMI_ARM.b) == (3.473, 0.193, 0.242)
     assert CMU_DD_ARM_II.gravity_moments == IMI_ARM.gravity_moments == (0.0, 0.0)
-    for arm in ARMS:
-        assert arm.provenance and all(arm.provenance.values())
 
 
 @by_name
@@ -161,17 +108,6 @@ def test_mass_matrix_is_symmetric_positive_definite(arm):
     assert np.linalg.eigvalsh(m).min() > 0
     # nothing but the elbow angle matters
     np.testing.assert_array_equal(m, arm.mass_matrix(np.stack([0 * q[:, 0], q[:, 1]], -1)))
-
-
-@by_name
-def test_columns_of_the_mass_matrix_are_torques_per_unit_acceleration(arm):
-    q, *_ = random_states(seed=6)
-    rest = np.zeros_like(q)
-    weight = arm.inverse_dynamics(q, rest, rest)
-    np.testing.assert_allclose(weight, arm.gravity(q), atol=1e-12)
-    for j in range(2):
-        column = arm.inverse_dynamics(q, rest, rest + np.eye(2)[j]) - weight
-        np.testing.assert_allclose(arm.mass_matrix(q)[..., j], column, atol=1e-12)
 
 
 @by_name
@@ -302,18 +238,24 @@ def test_forward_kinematics_obeys_the_law_of_cosines(q1, q2):
     turn = np.array([[np.cos(q1), -np.sin(q1)], [np.sin(q1), np.cos(q1)]])
     still = CMU_DD_ARM_II.forward_kinematics([0.0, q2])
     np.testing.assert_allclose([elbow, hand], still @ turn.T, atol=1e-12)
+    np.testing.assert_allclose(still[0], [l1, 0.0], atol=1e-15)
 
 
-def test_forward_kinematics_at_known_poses():
-    arm = CMU_DD_ARM_II
-    np.testing.assert_allclose(arm.forward_kinematics([0, 0]), [[0.5, 0], [0.9, 0]], atol=1e-15)
-    bent = arm.forward_kinematics(np.deg2rad([90, -90]))
-    np.testing.assert_allclose(bent, [[0, 0.5], [0.4, 0.5]], atol=1e-15)
-    # counter-clockwise angles
-    assert arm.forward_kinematics([0.1, 0.0])[1, 1] > 0
+@by_name
+def test_a_load_adds_its_kinetic_energy_and_its_weight(arm):
+    q, qd = np.random.default_rng(0).uniform(-2, 2, (2, 50, 2))
+    mass, loaded = 3.0, with_load(arm, 3.0)
+    hand = np.einsum("nij,nj->ni", jacobian(arm, q), qd)
+    more = loaded.kinetic_energy(q, qd) - arm.kinetic_energy(q, qd)
+    np.testing.assert_allclose(more, 0.5 * mass * (hand**2).sum(-1), rtol=1e-12)
+    down = np.array([mass * 9.81, 0.0]) if any(arm.gravity_moments) else np.zeros(2)
+    weight = -np.einsum("nij,i->nj", jacobian(arm, q), down)  # angles count from hanging
+    np.testing.assert_allclose(loaded.gravity(q) - arm.gravity(q), weight, atol=1e-11)
+    with pytest.raises(ValueError, match="mass"):
+        with_load(arm, -1.0)
 
 
-STATE_METHODS = {
+METHODS = {
     "mass_matrix": 1,
     "coriolis_matrix": 2,
     "gravity": 1,
@@ -324,74 +266,47 @@ STATE_METHODS = {
     "regressor": 3,
     "forward_kinematics": 1,
 }
+by_method = pytest.mark.parametrize("name, count", METHODS.items())
 
 
-@pytest.mark.parametrize("name, count", STATE_METHODS.items())
+@by_method
 def test_many_states_at_once_equal_one_by_one(name, count):
     rng = np.random.default_rng(13)
-    states = rng.normal(size=(count, 3, 4, 2))
+    states = [rng.normal(size=shape) for shape in ((3, 1, 2), (4, 2), (3, 4, 2))][-count:]
     method = getattr(REYES_KELLY_ARM, name)
-    together = method(*states)
+    together, full = method(*states), [np.broadcast_to(x, (3, 4, 2)) for x in states]
     for index in np.ndindex(3, 4):
-        single = method(*(s[index] for s in states))
+        single = method(*(s[index] for s in full))
         np.testing.assert_allclose(together[index], single, rtol=1e-13, atol=1e-13)
 
 
-@pytest.mark.parametrize("name, count", [(n, c) for n, c in STATE_METHODS.items() if c > 1])
-def test_arguments_broadcast(name, count):
-    rng = np.random.default_rng(14)
-    method = getattr(REYES_KELLY_ARM, name)
-    for many in range(count):
-        args = [rng.normal(size=(5, 2) if i == many else 2) for i in range(count)]
-        full = [np.broadcast_to(x, (5, 2)) for x in args]
-        np.testing.assert_array_equal(method(*args), method(*full))
-
-
-@pytest.mark.parametrize("name, count", STATE_METHODS.items())
-@pytest.mark.parametrize("bad", [[np.nan, 0.0], [0.0, np.inf], [0.0], [0.0, 0.0, 0.0], 0.0])
-def test_bad_states_are_refused_by_name(name, count, bad):
+@by_method
+def test_bad_states_are_refused_by_name(name, count):
     names = ("q", "qd", "tau" if name == "forward_dynamics" else "qdd")
     for position in range(count):
-        args = [[0.1, 0.2]] * count
-        args[position] = bad
-        with pytest.raises(ValueError, match=rf"^{names[position]} must"):
-            getattr(REYES_KELLY_ARM, name)(*args)
+        for bad in ([np.nan, 0.0], [0.0], [0.0, 0.0, 0.0], 0.0):
+            states = [[0.1, 0.2]] * count
+            states[position] = bad
+            with pytest.raises(ValueError, match=rf"^{names[position]} must"):
+                getattr(REYES_KELLY_ARM, name)(*states)
 
 
-def test_words_are_not_angles():
-    with pytest.raises(TypeError, match="qd"):
-        CMU_DD_ARM_II.inverse_dynamics([0, 0], "fast", [0, 0])
-
-
-GOOD = dict(name="arm", a=5.0, b=0.5, d=0.7, lengths=(0.5, 0.4))
-
-
-@pytest.mark.parametrize("name", ["a", "b", "d"])
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_arm_refuses_parameters_that_are_not_finite(name, bad):
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        Arm(**{**GOOD, name: bad})
-
-
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        (dict(d=0.0), "positive definite"),
-        (dict(d=-0.7), "positive definite"),
-        (dict(a=0.7), "positive definite"),
-        (dict(b=2.0), "positive definite"),
-        (dict(b=-2.0), "positive definite"),
-        (dict(lengths=(0.5, -0.4)), "lengths"),
-        (dict(lengths=(0.5,)), "lengths"),
-        (dict(lengths=np.ones((3, 2))), "lengths"),
-        (dict(gravity_moments=(1.0, np.nan)), "gravity_moments"),
-        (dict(gravity_moments=(1.0, 2.0, 3.0)), "gravity_moments"),
-    ],
-)
-def test_arm_refuses_impossible_parameters(change, words):
-    Arm(**GOOD)
-    with pytest.raises(ValueError, match=words):
-        Arm(**{**GOOD, **change})
+def test_arms_and_links_refuse_impossible_parameters():
+    good = dict(name="arm", a=5.0, b=0.5, d=0.7, lengths=(0.5, 0.4))
+    Arm(**good)
+    for name, *values in (
+        ("a", np.nan), ("b", np.inf), ("d", np.nan),
+        ("lengths", (0.5, -0.4), (0.5,), np.ones((3, 2))),
+        ("gravity_moments", (1.0, np.nan), (1.0, 2.0, 3.0)),
+    ):  # fmt: skip
+        for bad in values:
+            with pytest.raises(ValueError, match=rf"^{name} must"):
+                Arm(**{**good, name: bad})
+    for position, name in enumerate(("mass", "length", "com", "inertia")):
+        values = [14.0, 0.5, 0.22, 0.4]
+        values[position] = -1.0
+        with pytest.raises(ValueError, match=rf"^{name} must"):
+            Link(*values)
 
 
 @settings(deadline=None, max_examples=100)
@@ -408,45 +323,3 @@ def test_arm_accepts_exactly_the_positive_definite_matrices(a, b, d):
     else:
         with pytest.raises(ValueError, match="positive definite"):
             Arm("arm", a, b, d, (1.0, 1.0))
-
-
-@pytest.mark.parametrize("position, name", list(enumerate(["mass", "length", "com", "inertia"])))
-@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf])
-def test_link_refuses_impossible_parameters(position, name, bad):
-    values = [14.0, 0.5, 0.22, 0.4]
-    values[position] = bad
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        Link(*values)
-
-
-@by_name
-def test_arms_survive_pickling_and_copying(arm):
-    for twin in (pickle.loads(pickle.dumps(arm)), copy.deepcopy(arm), replace(arm)):
-        assert twin == arm and hash(twin) == hash(arm)
-        assert dict(twin.provenance) == dict(arm.provenance)
-        q, qd, qdd = random_states(10)
-        np.testing.assert_array_equal(
-            twin.inverse_dynamics(q, qd, qdd), arm.inverse_dynamics(q, qd, qdd)
-        )
-
-
-def test_arms_cannot_be_changed():
-    lengths, sources = [0.5, 0.4], {"a": "assumed"}
-    arm = Arm("arm", 5.0, 0.5, 0.7, lengths, provenance=sources)
-    for name in ("a", "lengths", "provenance", "new"):
-        with pytest.raises(FrozenInstanceError):
-            setattr(arm, name, 1.0)
-    with pytest.raises(TypeError):
-        arm.provenance["a"] = "measured"
-    lengths[0], sources["a"] = 9.0, "measured"
-    assert arm.lengths == (0.5, 0.4) and arm.provenance["a"] == "assumed"
-    assert arm == Arm("arm", 5.0, 0.5, 0.7, (0.5, 0.4)) and arm != replace(arm, a=6.0)
-
-
-def test_results_do_not_alias_the_arguments():
-    q, qd, qdd = (x.copy() for x in random_states(20))
-    before = q.copy(), qd.copy(), qdd.copy()
-    CMU_DD_ARM_II.inverse_dynamics(q, qd, qdd)[:] = 0
-    CMU_DD_ARM_II.forward_dynamics(q, qd, qdd)[:] = 0
-    for now, then in zip((q, qd, qdd), before):
-        np.testing.assert_array_equal(now, then)

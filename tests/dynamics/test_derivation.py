@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from ddlib.dynamics import CMU_DD_ARM_II, MAX_LINKS, Link, SerialArm, derive
+from ddlib.dynamics import CMU_DD_ARM_II, Link, SerialArm, derive
 
 
 def links(n, seed=0):
@@ -16,7 +16,7 @@ def states(n, count=50, seed=1):
 
 
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
-@pytest.mark.parametrize("n", range(1, MAX_LINKS + 1))
+@pytest.mark.parametrize("n", range(1, 7))
 def test_code_agrees_with_the_recursion(n, gravity):
     derivation, arm = derive(n, bool(gravity)), links(n)
     q, qd, qdd = states(n)
@@ -36,13 +36,6 @@ def test_two_links_have_the_base_parameters_of_the_two_link_arm():
     )
     assert [g1, g2] == pytest.approx([9.81 * (14 * 0.22 + 14 * 0.5), 9.81 * 14 * 0.09])
     assert [str(symbol) for symbol in two.base] == ["A11", "A12", "A22", "G1", "G2"]
-
-
-@pytest.mark.parametrize("n", [2, 4])
-def test_a_planar_arm_has_few_base_parameters(n):
-    """Inertial ones: one for every pair of links; n gravity moments in a vertical plane."""
-    assert len(derive(n).base) == n * (n + 1) // 2
-    assert len(derive(n, True).base) == n * (n + 1) // 2 + n
 
 
 def test_torque_is_lagranges_equation_along_a_motion():
@@ -72,7 +65,7 @@ def test_source_is_the_function_that_runs():
 
 
 def test_refusals():
-    for wrong in (0, MAX_LINKS + 1):
+    for wrong in (0, 7):
         with pytest.raises(ValueError, match="links must be an integer from 1 to 6"):
             derive(wrong)
     with pytest.raises(ValueError, match="links must be 2"):
