@@ -24,7 +24,7 @@ export MALLOC_TRIM_THRESHOLD_ = 268435456
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab reproduce bench mutants strip clean
+.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -46,6 +46,18 @@ book: $(READY)  ## execute the notebooks and build the pages
 # What the tests of this machine have measured for claims, the book's pages need not measure anew.
 test: export DDLIB_MEASURED = $(CURDIR)/_build/measured
 test: unmeasured lint stripped unit foreign-ci pages  ## everything that CI checks
+
+# What is quick and concerns the package itself; in three minutes, for every day.
+CORE  = $(wildcard $(addprefix tests/,dynamics effects control simulation identification learning \
+	analysis)) $(wildcard tests/test_*.py)
+FACTS = tests/book/test_prose.py tests/book/test_notebooks.py tests/book/test_lessons.py
+QUICK = not slow and not built and not browser
+
+check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results
+	@echo "==> Core tests, house rules, facts"
+	$(PYTEST) -n $(JOBS) --dist worksteal -m "$(QUICK)" $(CORE) tests/house $(FACTS)
+	@echo "==> Results are of this code"
+	$(PYTEST) -m "$(QUICK)" tests/experiments/test_results.py -k committed
 
 unmeasured:
 	@rm -rf _build/measured
@@ -92,8 +104,11 @@ lab: $(READY)  ## JupyterLab on the book
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	$(BIN)/python -m ddlib.experiments.reproduce
 
-mutants: $(READY)  ## which mistakes would the tests notice? a sample, about 25 minutes
-	$(BIN)/python tests/support/mutation.py --jobs $(JOBS)
+ONLY ?= ddlib.dynamics.*
+mutants: $(READY)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e ".[mutants]"
+	OMP_NUM_THREADS=1 $(BIN)/mutmut run --max-children $(JOBS) "$(ONLY)"
+	$(BIN)/mutmut results
 
 bench: $(READY)  ## speed, as ratios measured in one run
 	$(BIN)/python benchmarks/run.py
@@ -102,5 +117,5 @@ strip: $(READY)  ## remove outputs from the notebooks before a commit
 	$(STRIP) $(NOTEBOOKS)
 
 clean:  ## remove what was built; .venv stays
-	rm -rf _build build dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf _build build dist mutants .pytest_cache .ruff_cache .hypothesis
 	find book ddlib tests benchmarks -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,147 @@
+"""Prose says what was computed: numbers are quoted, words of direction are bound to a check."""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+
+import nbformat
+import prose
+import pytest
+import yaml
+from book_pages import API, PAGES, ROOT, source
+
+SUPPORT = ROOT / "tests" / "support"
+ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
+REASONS = {"parameter", "criterion", "mathematics", "literature", "printed"}
+BOUND = yaml.safe_load((SUPPORT / "bound_words.yml").read_text(encoding="utf-8"))
+ELSEWHERE = {"book/provenance", *API}  # pages of parameters and of signatures
+NAMES = {page.removeprefix("book/"): page for page in PAGES if page not in ELSEWHERE}
+
+
+@cache
+def read(name: str) -> list[prose.Sentence]:
+    return list(prose.sentences(source(NAMES[name])))
+
+
+def allowed(name: str) -> list[str]:
+    return [entry["text"] for entry in ALLOWED.get(name, [])]
+
+
+# --- numbers ------------------------------------------------------------------------------
+
+
+def test_results_are_quoted():
+    """Quote what is found with {glue:text}, or give a reason in allowed_numbers.yml."""
+    typed = {
+        (name, one.text): numbers
+        for name in NAMES
+        for one in read(name)
+        if (numbers := prose.typed_numbers(one, allowed(name)))
+    }
+    assert not typed
+
+
+def test_allowed_numbers_have_a_reason_and_are_needed():
+    """An entry that is not in the page, or that nothing complains about without, has to go."""
+    entries = [entry for page in ALLOWED.values() for entry in page]
+    assert not [e for e in entries if set(e) != {"text", "why"} or e["why"] not in REASONS]
+    idle = []
+    for name in ALLOWED:
+        for text in allowed(name):
+            others = [other for other in allowed(name) if other != text]
+            if not any(text in s.bare and prose.typed_numbers(s, others) for s in read(name)):
+                idle.append((name, text))
+    assert not idle
+
+
+@pytest.mark.parametrize(
+    "planted, numbers",
+    [
+        ("At window 21 the RMSS falls to 0.44, at 41 to 0.51.", ["0.44", "0.51"]),
+        ("It costs 12.5 % of the torque.", ["12.5"]),
+        ("The knock reaches −3.2 N m.", ["−3.2"]),
+        ("*Half a year later* the error is 1.2e-3 and falls.", ["1.2e-3"]),
+        ("The test error is least at 33 samples.", ["33"]),
+        ("Of the weights 1,234 are noise.", ["1,234"]),
+        ("The error is {glue:text}`a-b:.2f`, or 23 % of the torque.", ["23"]),
+        ("An overshoot of 1 %, or of 1 N m.", ["1", "1"]),
+        ("The paper prints 0.22; the error here is 0.69.", ["0.69"]),
+        ("Figure 5-4 has an error of 0.3 in trajectory 6.", ["0.3"]),
+        ("The paper prints an error of 0.22 at window 11.", []),
+        ("Torque and position were measured every 10 ms for 300 samples.", []),
+        ("In Figures 5-4 to 5-6 and Table 4-1 errors are pooled; see section 5.1.", []),
+        ("Goldberg's torques of 1988 are lost.", []),
+        ("An RMSS of 1 is no better than the mean, and 0 is perfect.", []),
+        ("The error $e = 0.5$ and `rmss(x, 0.5)` are mathematics and code.", []),
+        ("The 25 networks of windows 11, 21 and 41 have errors after 20,000 epochs.", []),
+        ("The joint weights of joint 2 and links 2 to 6.", []),
+        ("It lies 17 km from here.", []),
+    ],
+)
+def test_typed_results_are_told_from_names_and_settings(planted, numbers):
+    assert prose.typed_numbers(prose.sentence(planted)) == numbers
+
+
+def test_allowed_pieces_are_whole_numbers():
+    one = prose.sentence("A torque of 0.5 N m is less than 5 N m.")
+    assert prose.typed_numbers(one, ["5 N m"]) == ["0.5"]
+
+
+# --- words of direction -------------------------------------------------------------------
+
+
+def checks(page: str) -> list[str]:
+    """Names of the `stated` calls of a notebook; a constant that checks nothing is left out."""
+    cells = nbformat.read(source(page), as_version=4).cells
+    trees = [ast.parse(cell.source) for cell in cells if cell.cell_type == "code"]
+    calls = [
+        node.args
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "stated"
+    ]
+    return [
+        name.value
+        for name, holds, *_ in calls
+        if isinstance(name, ast.Constant) and not isinstance(holds, ast.Constant)
+    ]
+
+
+def test_bound_sentences_stand_in_their_page_and_their_checks_too():
+    """A piece that was reworded, a check that was renamed, a check behind no sentence."""
+    wrong = []
+    for name, page in NAMES.items():
+        known = checks(page) if source(page).suffix == ".ipynb" else []
+        assert len(known) == len(set(known)), f"{name}: two checks of one name"
+        used = set()
+        for entry in BOUND.get(name, []):
+            used |= {entry["by"]} if isinstance(entry["by"], str) else set(entry["by"])
+            piece = prose.sentence(entry["text"]).bare
+            if not any(piece in one.bare for one in read(name)):
+                wrong.append((name, "no such sentence", entry["text"]))
+        wrong += [(name, "no such check", by) for by in used - set(known)]
+        wrong += [(name, "behind no sentence", check) for check in set(known) - used]
+    assert not wrong
+    assert set(BOUND) <= set(NAMES) and sum(map(len, BOUND.values())) > 200
+
+
+# --- the reader of pages ------------------------------------------------------------------
+
+
+def test_what_is_prose_of_a_page(tmp_path):
+    """Sentences outside fences and exercises; captions and alternative texts, without values."""
+    path = tmp_path / "page.md"
+    plain = "# Errors of 0.4\n\n```\nerror 0.5\n```\n\nAll is well.\n\n**1. Error.** Reach 0.6.\n"
+    path.write_text(plain + "\nHere the error is 0.7. It falls.\n")
+    assert [n for one in prose.sentences(path) for n in prose.typed_numbers(one)] == ["0.7"]
+    code = (
+        "figures.curves(x, 'The training error falls from 0.36 to the end.',"
+        " f'The test error falls from {a:.2f} to 0.25 in the end.')"
+    )
+    cell = nbformat.v4.new_code_cell(code)
+    cell.metadata["mystnb"] = {"figure": {"caption": "The error is 0.47.\n"}}
+    path = tmp_path / "page.ipynb"
+    nbformat.write(nbformat.v4.new_notebook(cells=[cell]), path)
+    numbers = [n for one in prose.sentences(path) for n in prose.typed_numbers(one)]
+    assert sorted(numbers) == ["0.25", "0.36", "0.47"]
