@@ -9,9 +9,8 @@ import anywidget
 import numpy as np
 import traitlets as t
 
-from ddlib._check import integer, number, one_of
-from ddlib.widgets.baking.baked import Baked
-from ddlib.widgets.baking.sampled import evaluate
+from ddlib._check import number, one_of
+from ddlib.widgets.baking.baked import Baked, evaluate
 from ddlib.widgets.baking.still import Still, still_picture
 from ddlib.widgets.parts.common import checked_presets, default_code, filled, key_of
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
@@ -19,14 +18,12 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 
 STATIC = Path(__file__).with_name("static")
 
+# Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
+# its style sheet. A class of its own kind adds its own after them.
 FRAME = ("elements.js", "frame.js")
-"""Files of the script that give a widget of its own kind what all have; see ``frame.js``."""
-
 SCRIPT = ("baked.js", *FRAME, "reading.js", "charts.js", "controls.js", "curves.js")
-"""Files of the script that every widget has; a subclass adds its own after them."""
-
 STYLE = ("curves.css",)
-"""The same for the style sheet."""
+CHECKS = 200  # random settings at which the interpolation is compared with the function
 
 
 def module(*names: str) -> str:
@@ -82,19 +79,12 @@ class CurveWidget(anywidget.AnyWidget):
         Label -> value by name of a parameter: buttons that set several parameters at once.
     presets_title : str
         What stands before these buttons.
-    many : callable, optional
-        The function for many settings at once, for baking and checking where single calls
-        are slow: gets one array of length n per parameter, returns arrays of shape
-        ``(n, samples)`` or ``(n,)``.
     depends : mapping, optional
         Key of the function's result -> names of the only parameters that it depends on;
         default: all. Saves space: such curves are baked over these parameters alone.
-    interpolation : {"cubic", "linear"}
-        Cubic for smooth functions.
-    checks : int
-        Number of random settings at which the interpolation is compared with the function.
     tolerance : float
-        Largest acceptable deviation, relative to the range of each curve.
+        Largest acceptable deviation of the interpolation (cubic splines), relative to the range
+        of each curve.
 
     Raises
     ------
@@ -129,29 +119,22 @@ class CurveWidget(anywidget.AnyWidget):
         code: str = "",
         presets: Mapping[str, Mapping] | None = None,
         presets_title: str = "Go to",
-        many: Callable[..., dict] | None = None,
         depends: Mapping[str, Sequence[str]] | None = None,
-        interpolation: str = "cubic",
-        checks: int = 200,
         tolerance: float = 0.01,
     ):
-        for name, call in (("function", function), ("many", many or function)):
-            if not callable(call):
-                raise TypeError(f"{name} must be callable, got {call!r}")
+        if not callable(function):
+            raise TypeError(f"function must be callable, got {function!r}")
         self._function, self._parameters = function, {p.name: p for p in parameters}
         self._panels, self._pad = tuple(panels), pad
-        one_of("interpolation", interpolation, ("cubic", "linear"))
-        integer("checks", checks, 1)
         number("tolerance", tolerance, 0.0, open_low=True)
         if len(self._parameters) != len(parameters) or not parameters:
             raise ValueError(f"parameters must have different names, got {len(parameters)}")
         for name in self._parameters:
             if hasattr(type(self), name):
                 raise ValueError(f"name must not be an attribute of widgets, got {name!r}")
-        cubic = interpolation == "cubic"
-        self._baked = self._bake(function, parameters, cubic, many, tolerance, depends)
+        self._baked = self._bake(function, parameters, tolerance, depends)
         self._check_names(scalars)
-        error = self._baked.error(checks)
+        error = self._baked.error(CHECKS)
         if error > tolerance:
             raise ValueError(
                 f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
@@ -162,7 +145,7 @@ class CurveWidget(anywidget.AnyWidget):
         start = evaluate(function, {p.name: p.value for p in parameters})
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
         told = {"title": title, "note": note, "presets_title": presets_title}
-        self.set_trait("spec", self._spec(told, scalars, error, checks))
+        self.set_trait("spec", self._spec(told, scalars, error))
         self.set_trait("baked", self._baked.tobytes())
         self.set_trait("still", still_picture(start, panels, self._parameters, pad, alt))
         self.set_trait("still_alt", alt)
@@ -225,30 +208,28 @@ class CurveWidget(anywidget.AnyWidget):
             for name in (self._pad.x, self._pad.y):
                 one_of("parameter of the pad", name, tuple(ranged))
 
-    def _spec(self, told, scalars, error, checks) -> dict:
+    def _spec(self, told, scalars, error) -> dict:
         baked = self._baked
         curves = [
             {"name": name, "length": n, "low": float(low), "high": float(high)}
             for (name, n), low, high in zip(baked.lengths.items(), baked.low, baked.high)
         ]
+        presets = {"title": told["presets_title"], "options": self._presets}
         return {
             "key": key_of(type(self)),
             "title": told["title"] or "; ".join(p.y_label for p in self._panels),
             "note": told["note"],
             "code": self._code,
-            "presets": {"title": told["presets_title"], "options": self._presets}
-            if self._presets
-            else None,
+            "presets": presets if self._presets else None,
             "parameters": [p.description() for p in baked.parameters],
             "curves": curves,
             "panels": [p.description() for p in self._panels],
             "scalars": [vars(s) for s in scalars],
             "pad": self._pad and self._pad.description(),
-            "cubic": baked.cubic,
             "groups": baked.groups,
             "checksum": baked.checksum(),
             "error": error,
-            "checks": checks,
+            "checks": CHECKS,
         }
 
     def _on_change(self, change):

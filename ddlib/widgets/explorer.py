@@ -35,25 +35,8 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
-FREQUENCIES = np.geomspace(0.5, 20.0, 31)
-"""Where the gain is shown, Hz."""
-
-FLOOR = 1e-3
-"""Lowest gain shown, as a part of the filter's largest: a zero of the response has none."""
-
-CODE = """\
-import numpy as np
-
-from ddlib.analysis import classify, frequency_response, shares
-from ddlib.experiments import results
-from ddlib.widgets.hinton import unit_names, weight_functions
-
-weights = results.networks({width}).weights[{seed}]
-unit, joint = unit_names(weights).index({unit}), ("shoulder", "elbow").index({joint})
-f = weight_functions(weights)[unit, joint]
-print(classify(f), shares(f))
-gain = np.abs(frequency_response(f, np.geomspace(0.5, 20, 31), 0.01))"""
-"""The chosen filter by ddlib's functions."""
+FREQUENCIES = np.geomspace(0.5, 20.0, 31)  # where the gain is shown, Hz
+FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
 
 
 class FilterExplorer(HintonWidget):
@@ -78,6 +61,8 @@ class FilterExplorer(HintonWidget):
         Window size and network.
     unit, joint : str
         The unit ("shoulder torque", "hidden 3", ...) and whose window ("shoulder", "elbow").
+    filter : ndarray, shape (width,)
+        The chosen weight function, oldest sample first.
     """
 
     _esm = module(*SCRIPT, "hinton.js", "explorer.js")
@@ -93,7 +78,7 @@ class FilterExplorer(HintonWidget):
             for member in members:
                 integer("members", member, 0, len(weights) - 1)
         some = next(iter(self._weights.values()))
-        reach = max(self._weights) // 2
+        self._reach = reach = max(self._weights) // 2
         time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
         centre, window = "time from the centre, ms", ("first", "last")
         parts = {name: name for name in ("constant", "even", "odd")}
@@ -150,15 +135,14 @@ class FilterExplorer(HintonWidget):
                 "ideal acceleration filter by a factor of 100. The straight line drawn is that of "
                 "the filter's main derivative, as slow signals have it."
             ),
-            presets=named(self._weights, members),
+            presets=_named(self._weights, members),
             presets_title="Named filters",
-            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 
     @property
     def filter(self) -> np.ndarray:
-        """The chosen weight function, shape ``(width,)``, oldest sample first."""
+        """The chosen weight function."""
         return self._filter(self.width, self.seed, self.unit, self.joint)
 
     def _filter(self, width, seed, unit, joint):
@@ -166,7 +150,7 @@ class FilterExplorer(HintonWidget):
         return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
 
     def _curves(self, width, seed, unit, joint) -> dict:
-        reach = max(self._weights) // 2
+        reach = self._reach
         f = self._filter(width, seed, unit, joint)
         parts = decompose(f)
         half = (width // 2 + 0.5) * LOG_STEP * 1e3
@@ -184,34 +168,23 @@ class FilterExplorer(HintonWidget):
         }
 
 
-def named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, dict]:
-    """The purest hidden filters of the middle window size, by the names that the rule gives.
-
-    Parameters
-    ----------
-    weights : mapping
-        Window size -> weights with a leading axis of members.
-    members : sequence of int
-        Which of them to look at.
-
-    Returns
-    -------
-    dict
-        Name -> the explorer's parameters; names that no filter has are left out.
-    """
+def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, dict]:
+    """The purest hidden filters of the middle window size, by the names that the rule gives."""
     width = sorted(weights)[len(weights) // 2]
     every = weights[width].hidden_weights[list(members)]
     names = classify(every)
-    found = {}
+    presets = {}
     for name in CLASSES[:5]:
         if (names == name).any():
             place = np.argwhere((every == purest(every, name)).all(-1))[0]
             member, unit, joint = map(int, place)
-            found[name] = {
-                **{"width": width, "seed": members[member]},
-                **{"unit": f"hidden {unit}", "joint": JOINTS[joint]},
+            presets[name] = {
+                "width": width,
+                "seed": members[member],
+                "unit": f"hidden {unit}",
+                "joint": JOINTS[joint],
             }
-    return found
+    return presets
 
 
 def _gains(f) -> dict[str, np.ndarray]:

@@ -13,10 +13,7 @@ from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.parameters import Choice
 
-"""Names of the joints: of the input windows and of the torques."""
-
-EXACT = 1e-4
-"""Tolerance of widgets that bake every choice: what int16 can hold, and little else."""
+EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold, and little else
 
 
 def unit_names(weights: Weights) -> tuple[str, ...]:
@@ -31,15 +28,7 @@ def weight_functions(weights: Weights) -> np.ndarray:
 
 
 def zero_padded(f, reach: int) -> np.ndarray:
-    """A filter as the same filter of ``2 reach + 1`` samples: zeros on both sides.
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weights of a window, its centre in the middle.
-    reach : int
-        Samples on either side of the centre.
-    """
+    """A filter (..., width) with zeros on both sides: `reach` samples beside its centre."""
     f = np.asarray(f)
     zeros = reach - f.shape[-1] // 2
     if zeros < 0:
@@ -48,14 +37,9 @@ def zero_padded(f, reach: int) -> np.ndarray:
 
 
 def check_models(models, axes: int) -> dict[int, TorqueModel]:
-    """`models` as a dictionary if it maps window sizes to models, otherwise an error.
+    """`models` if it maps two window sizes or more to models, otherwise an error.
 
-    Parameters
-    ----------
-    models : mapping
-        Window size -> `TorqueModel`; two sizes or more.
-    axes : int
-        Leading axes of each model's weights: 0 for one network, 1 for an ensemble.
+    Their weights have no leading axis (``axes=0``, one network) or one (an ensemble).
     """
     if not isinstance(models, Mapping) or len(models) < 2:
         raise TypeError(f"models must map two window sizes or more to models, got {models!r}")
@@ -80,10 +64,10 @@ def width_choice(sizes) -> Choice:
 
 
 def diagram(weights: Weights, reach: int) -> np.ndarray:
-    """All weights of one network in the order in which `hinton.js` draws them.
+    """All weights of one network, unit by unit, as `hinton.js` draws them.
 
-    Unit by unit: the bias, the weights on top (from the hidden units to an output, from a
-    hidden unit to the outputs), and the zero-padded window of each joint.
+    Bias, weights on top (an output's from the hidden units, a hidden unit's to the outputs), and
+    the zero-padded window of each joint.
     """
     windows = zero_padded(weight_functions(weights), reach)
     biases = [*weights.output_bias, *weights.hidden_bias]

@@ -27,19 +27,12 @@ from ddlib.widgets.parts.parameters import Parameter
 RIGID = "Lagrange-Euler"
 RECORDED = "recorded"
 
-TIMES = np.linspace(0.0, MOTION_SECONDS, 76)
-"""Where the curves are sampled, s."""
+TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
+AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
+STEP = 0.1  # between two shades of the map, RMSS
+SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
 
 _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
-
-AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)
-"""Extents at which the map of errors is computed, degrees."""
-
-STEP = 0.1
-"""Between two shades of the map, RMSS."""
-
-SNAP = 0.035
-"""A drag that comes so near to a trajectory of Appendix I, as a part of the pad, ends on it."""
 
 NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
@@ -56,25 +49,6 @@ from ddlib.trajectories import pick_and_place
 extents_deg = [{shoulder_deg}, {elbow_deg}]
 motion = pick_and_place(extents_deg, np.linspace(0, 3, 301))
 torque = CMU_DD_ARM_II.inverse_dynamics(*motion)"""
-
-CODE = """\
-from dataclasses import replace
-
-import numpy as np
-
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, predict, results
-from ddlib.metrics import rmss
-from ddlib.trajectories import APPENDIX_I
-
-quiet = STATE_FEEDBACK.effects.without("encoder", "torque_sensor")
-setup = replace(STATE_FEEDBACK, effects=quiet)
-training = setup.record(APPENDIX_I[:5])
-scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
-
-recording = setup.record([[{shoulder_deg}, {elbow_deg}]])[0]
-for width in WINDOWS:
-    torque = predict(results.median_network(width), recording)
-    print(width, rmss(torque, recording.tau[recording.motion], scale=scale))"""
 
 
 class _Extents(t.TraitType):
@@ -103,7 +77,7 @@ class TrajectoryPicker(LiveWidget):
     Parameters
     ----------
     models : mapping
-        Legend name -> a single trained network, as from `ddlib.experiments.results.median_network`.
+        Legend name -> a single trained network.
     setup : Setup
         Arm, effects and controller that record; with `models` the engine must have them, and the
         controller must be a `PID`.
@@ -119,6 +93,8 @@ class TrajectoryPicker(LiveWidget):
         Extents of shoulder and elbow in degrees; starts as the test trajectory.
     recording : object
         What `on_record` returned last, or None.
+    interpolates : bool
+        Whether the extents lie in the hull of the training trajectories.
     numbers : dict
         The numbers beside the pad over the whole square: name -> ndarray, shape
         ``(shoulder, elbow)``, at the extents `AXIS` of both joints.
@@ -151,34 +127,30 @@ class TrajectoryPicker(LiveWidget):
         if on_record is not None and not callable(on_record):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
         self._on_record = on_record or setup.record
-        many = _Curves(setup, models)
-        alt = "The square of shoulder and elbow extents with the six trajectories of Appendix I, "
-        alt += "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds."
-        options |= {
-            "title": "Trajectory picker",
-            "alt": alt,
-            "scalars": [
-                *(
-                    Scalar(f"peak {joint}", f"Largest {RIGID} torque, {joint}", "N m")
-                    for joint in JOINTS
-                ),
-                *(Scalar(f"RMSS, {name}", f"RMSS, {name}", digits=2) for name in models),
-            ],
-            "pad": _pad(),
-            "note": NOTE if models else "",
-            "code": _code(setup, models),
-            "presets": {
+        curves = _Curves(setup, models)
+        square = curves(*(x.ravel() for x in np.meshgrid(AXIS, AXIS, indexing="ij")))
+        self.numbers = {n: x.reshape(2 * AXIS.shape) for n, x in square.items() if x.ndim == 1}
+        peaks = (Scalar(f"peak {j}", f"Largest {RIGID} torque, {j}", "N m") for j in JOINTS)
+        super().__init__(
+            curves.one,
+            _parameters(),
+            _panels([RIGID, RECORDED, *models] if models else [RIGID]),
+            title="Trajectory picker",
+            alt="The square of shoulder and elbow extents with the six trajectories of Appendix I, "
+            "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds.",
+            scalars=[*peaks, *(Scalar(f"RMSS, {n}", f"RMSS, {n}", digits=2) for n in models)],
+            pad=_pad(),
+            note=NOTE if models else "",
+            presets={
                 str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
                 for k, extents in enumerate(APPENDIX_I.tolist(), 1)
             },
-            "presets_title": "Trajectory",
-        }
-        square = many(*(x.ravel() for x in np.meshgrid(AXIS, AXIS, indexing="ij")))
-        options["ranges"] = {name: (x.min(), x.max()) for name, x in square.items()}
-        self.numbers = {n: x.reshape(2 * AXIS.shape) for n, x in square.items() if x.ndim == 1}
-        panels = _panels([RIGID, RECORDED, *models] if models else [RIGID])
-        super().__init__(many.one, _parameters(), panels, **options)
+            presets_title="Trajectory",
+            ranges={name: (x.min(), x.max()) for name, x in square.items()},
+            **{"code": MOTION, **options},
+        )
         errors = {name: self.numbers[f"RMSS, {name}"] for name in models}
+        # in hundredths, the shoulder's extents fastest
         errors = {name: "".join(map(_digits, 100 * x.T.ravel())) for name, x in errors.items()}
         self.set_trait("map", {"side": AXIS.size, "step": STEP, "errors": errors})
         angles = [f"{joint} angle" for joint in JOINTS]
@@ -186,7 +158,7 @@ class TrajectoryPicker(LiveWidget):
         self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})
         layouts, weights = networks(models.values())
         told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
-        self.set_trait("loop", {**many.plain(), "models": told})
+        self.set_trait("loop", {**curves.plain(), "models": told})
         self.set_trait("weights", weights)
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
@@ -194,7 +166,7 @@ class TrajectoryPicker(LiveWidget):
 
     @property
     def interpolates(self) -> bool:
-        """Whether the extents lie in the hull of the training trajectories."""
+        """Whether the extents lie in the hull."""
         return bool(inside_hull(self.extents_deg))
 
     def record(self):
@@ -226,10 +198,7 @@ class TrajectoryPicker(LiveWidget):
 
 
 def _digits(value: float) -> str:
-    """A number from 0 to 1295, rounded, as two digits to the base of 36.
-
-    The map has the errors of each network so, in hundredths, the shoulder's extents fastest.
-    """
+    """A number from 0 to 1295, rounded, as two digits to the base of 36."""
     rounded = min(max(round(value), 0), 36**2 - 1)
     return "".join("0123456789abcdefghijklmnopqrstuvwxyz"[k] for k in divmod(rounded, 36))
 
@@ -252,26 +221,14 @@ def _pad() -> Pad:
     return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=SNAP)
 
 
-def _code(setup: Setup, models) -> str:
-    """The recording and the errors by ddlib's functions, if it has set-up and networks."""
-    known = {"STATE_FEEDBACK": STATE_FEEDBACK}
-    name = next((name for name, own in known.items() if own == setup), None)
-    return CODE if name and models else MOTION
-
-
 def _panels(lines) -> list[Panel]:
-    seconds, angles = "time, s", {f"{joint} angle": joint for joint in JOINTS}
-    torques = (
-        Panel(
-            f"{joint.title()} torque, N m",
-            {f"{joint} torque, {line}": line for line in lines},
-            seconds,
-            TIMES,
-            y_fit=True,
-        )
-        for joint in JOINTS
-    )
-    return [Panel("Joint angles, °", angles, seconds, TIMES), *torques]
+    angles = {f"{joint} angle": joint for joint in JOINTS}
+    panels = [Panel("Joint angles, °", angles, "time, s", TIMES)]
+    for joint in JOINTS:
+        torques = {f"{joint} torque, {line}": line for line in lines}
+        title = f"{joint.title()} torque, N m"
+        panels.append(Panel(title, torques, "time, s", TIMES, y_fit=True))
+    return panels
 
 
 class _Curves:

@@ -20,20 +20,7 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
-MOVED = 0.05
-"""The film begins where the weights have gone this part of their way."""
-
-CODE = """\
-from ddlib.experiments import STATE_FEEDBACK, errors, results
-from ddlib.widgets.hinton import unit_names, weight_functions
-
-epochs, course = results.course(21)
-then = epochs.tolist().index({epoch})
-print(errors(course[then, 0], STATE_FEEDBACK.record()).named())
-weights = course.weights[then, 0]
-filters = weight_functions(weights)[unit_names(weights).index({unit})]"""
-"""The weights and errors at an epoch by ddlib's functions."""
-
+MOVED = 0.05  # the film begins where the weights have gone this part of their way
 ERRORS = {"training": "training", "test": "trajectory 6"}
 
 
@@ -144,7 +131,6 @@ class TrainingPlayer(HintonWidget):
                 **dict.fromkeys((f"{n} RMSS" for n in ERRORS), ("epoch",)),
                 "weights of all units": ("epoch",),
             },
-            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 

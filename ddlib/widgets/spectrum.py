@@ -15,24 +15,7 @@ from ddlib.widgets.hinton import EXACT, JOINTS, width_choice, zero_padded
 from ddlib.widgets.parts.parameters import Choice
 
 WHO = ("measured", "predicted")
-FLOOR = -8.0
-"""Lowest change shown, as a power of ten of the random start."""
-
-CODE = """\
-from ddlib.experiments import results
-
-study = results.read("span")
-names = list(dict.fromkeys((x["setup"], *x["scaling"]) for x in study["cells"]))
-cell = next(
-    x
-    for x in study["cells"]
-    if (x["setup"], *x["scaling"]) == names[{case}] and x["width"] == {width}
-)
-place, direction = study["epochs"].index({epoch}), {direction} - 1
-for who in ("measured", "predicted"):
-    print(who, cell[who]["change over start"][place][direction])"""
-"""The changes along the direction by ddlib's functions."""
-
+FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
 SHARES = ("bias", "position", "velocity", "acceleration", "jerk", "rest")
 
 
@@ -162,7 +145,6 @@ class SpectrumExplorer(CurveWidget):
                 "place": ("epoch",),
             },
             note="Where the change is below 1, the random start outweighs what was learnt.",
-            code=CODE,
             **{"tolerance": EXACT, **options},
         )
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -19,9 +17,9 @@ from ddlib.effects import (
     Quantisation,
     Saturation,
     ViscousFriction,
-    started,
 )
 from ddlib.experiments import KD, KP
+from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
@@ -32,40 +30,25 @@ from ddlib.widgets.engine.plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 
-JOINTS = ("shoulder", "elbow")
+SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
 
-SHARE = np.array([1.0, 0.3])
-"""Strength of an effect at the shoulder and at the elbow, relative to the shoulder."""
-
-FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}
-"""Coulomb friction, N m, and viscous friction, N m s/rad, of the shoulder."""
-
-DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}
-"""Torque that the shoulder's motor loses, N m."""
-
-SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}
-"""Largest torque of the shoulder's motor, N m."""
-
-QUANTISATION = {"off": None, "assumed": 16, "strong": 14}
-"""Bits of the encoders."""
-
-DELAY = {"off": 0, "weak": 1, "strong": 10}
-"""Control periods between a reading and its torque."""
+# Strengths at the shoulder.
+FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
+DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
+SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
+QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
+DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
 
 _STEPS = np.arange(round(3.5 / CONTROL_STEP) + 1)
 _T = _STEPS * CONTROL_STEP
 _WHOLE = _STEPS[::16]
 _CLOSE = _STEPS[725:801]
 
-TIMES = _T[_WHOLE]
-"""Where the whole motion is shown, s: every 16th control period, not smoothed."""
+TIMES = _T[_WHOLE]  # of the whole motion, s: every 16th control period, not smoothed
+CLOSE_UP = _T[_CLOSE]  # of the close-up, s: every control period around the turn
 
-CLOSE_UP = _T[_CLOSE]
-"""Times of the close-up, s: every control period around the turn."""
-
-
+# Axes of the charts: they stay, whatever is switched on. All combinations lie within.
 RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
-"""Axes of the charts: they stay, whatever is switched on. All combinations lie within."""
 
 CODE = """\
 from ddlib.widgets import RealArmSwitches
@@ -74,15 +57,14 @@ RealArmSwitches().interpolate(
     friction={friction}, dead_zone={dead_zone}, saturation={saturation},
     quantisation={quantisation}, delay={delay},
 )"""
-"""What the page copies as code."""
 
 
 class RealArmSwitches(LiveWidget):
     """Switch friction, dead zone, saturation, quantisation and delay on and off.
 
-    The arm follows trajectory 6 under the PD law of `ddlib.experiments.setups.STATE_FEEDBACK`, with
-    the difference of two encoder readings as its velocity. The page computes every combination by
-    the live engine. The charts show the shoulder; the elbow's effects have 0.3 times the strength
+    The arm follows trajectory 6 under the PD law of `STATE_FEEDBACK`, with the difference of two
+    encoder readings as its velocity. The page computes every combination by the live engine. The
+    charts show the shoulder; the elbow's effects have 0.3 times the strength
     of the shoulder's, as its gains have.
 
     Parameters
@@ -99,7 +81,7 @@ class RealArmSwitches(LiveWidget):
     loop = t.Dict(help="plant, gains, reference and strengths", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
-        ideal = _ideal(arm)
+        ideal = _shown(_ideal_recording(arm))
         super().__init__(
             lambda **levels: _curves(arm, **levels),
             _choices(),
@@ -173,95 +155,44 @@ def _panel(title, what, times, ideal) -> Panel:
     return Panel(title, {what: "real"}, "time, s", times, **lines)
 
 
-@dataclass(frozen=True)
-class _ByRun:
-    """Different effects for different runs of a batch: (rows, effects) for each kind."""
-
-    kinds: tuple
-
-    def start(self, initial):
-        paths = [(rows, started(effects, initial[rows])) for rows, effects in self.kinds]
-
-        def path(x, rng):
-            out = np.empty_like(x)
-            for rows, effect in paths:
-                out[rows] = effect(x[rows], rng)
-            return out
-
-        return path
-
-
-def _kinds(chosen, levels, effects_of) -> _ByRun:
-    """One kind per level: `effects_of` turns a level into a tuple of effects."""
-    chosen = np.asarray(chosen)
-    kinds = [(np.flatnonzero(chosen == key), effects_of(level)) for key, level in levels.items()]
-    return _ByRun(tuple(kind for kind in kinds if kind[0].size))
-
-
-def _effects(levels: Mapping) -> Effects:
-    """Effects of n runs; `levels` has an array of n keys for every switch."""
-
-    def strength(table, name):
-        return np.outer([table[key] for key in levels[name]], SHARE)
-
-    friction = strength(FRICTION, "friction")
+def _effects(friction, dead_zone, saturation, quantisation, delay) -> Effects:
+    """Effects of the named strengths."""
+    lost, limit = DEAD_ZONE[dead_zone] * SHARE, SATURATION[saturation] * SHARE
+    slowing, bits = FRICTION[friction] * SHARE, QUANTISATION[quantisation]
     return Effects(
-        friction=(ViscousFriction(friction), CoulombFriction(friction)),
-        actuator=(
-            _kinds(levels["delay"], DELAY, lambda periods: (Delay(periods),)),
-            DeadZone(strength(DEAD_ZONE, "dead_zone")),
-            Saturation(strength(SATURATION, "saturation")),
-        ),
-        encoder=(
-            _kinds(
-                levels["quantisation"],
-                QUANTISATION,
-                lambda bits: (Quantisation.encoder(bits),) if bits else (),
-            ),
-        ),
+        friction=(ViscousFriction(slowing), CoulombFriction(slowing)),
+        actuator=(Delay(DELAY[delay]), DeadZone(lost), Saturation(limit)),
+        encoder=(Quantisation.encoder(bits),) if bits else (),
     )
 
 
-def _run(arm: Arm, effects: Effects, runs: int) -> Recording:
-    reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T)
-    reference = Trajectory(*(np.broadcast_to(x, (runs, *x.shape)) for x in reference))
+def _run(arm: Arm, effects: Effects) -> Recording:
+    reference = Trajectory(*pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T))
     law = pd(KP, KD)
     return follow(arm, law, reference, _T, effects=effects, log_every=1, velocity="difference")
 
 
 @lru_cache(maxsize=4)
 def _ideal_recording(arm: Arm) -> Recording:
-    return _run(arm, Effects(), 1)
+    return _run(arm, Effects())
 
 
 def _shown(recording: Recording) -> dict[str, np.ndarray]:
-    """The shoulder's curves, shape (runs, samples)."""
-    error, torque = np.rad2deg(recording.tracking_error[..., 0]), recording.tau_true[..., 0]
-    return {
-        "error": error[:, _WHOLE],
-        "torque": torque[:, _WHOLE],
-        "close-up": torque[:, _CLOSE],
-    }
-
-
-def _ideal(arm) -> dict[str, np.ndarray]:
-    return {name: rows[0] for name, rows in _shown(_ideal_recording(arm)).items()}
+    """The shoulder's curves."""
+    error, torque = np.rad2deg(recording.tracking_error[:, 0]), recording.tau_true[:, 0]
+    return {"error": error[_WHOLE], "torque": torque[_WHOLE], "close-up": torque[_CLOSE]}
 
 
 @lru_cache(maxsize=64)
-def _curves(arm, **levels) -> dict:
-    rows = _many(arm, {name: [key] for name, key in levels.items()})
-    return {name: row[0] for name, row in rows.items()}
-
-
-def _many(arm, levels) -> dict[str, np.ndarray]:
-    real, ideal = _run(arm, _effects(levels), len(levels["delay"])), _ideal_recording(arm)
-    rows = _shown(real)
+def _curves(arm: Arm, **levels) -> dict:
+    """What the charts show, and how far position (degrees) and torque are from the ideal arm's."""
+    real, ideal = _run(arm, _effects(**levels)), _ideal_recording(arm)
+    curves = _shown(real)
     moving = _T < MOTION_SECONDS
     for what, gap in (
         ("position", np.rad2deg(real.q_true - ideal.q_true)),
         ("torque", real.tau_true - ideal.tau_true),
     ):
-        rms = np.sqrt((gap[:, moving] ** 2).mean(1))
-        rows |= {f"{joint} {what}": rms[:, j] for j, joint in enumerate(JOINTS)}
-    return rows
+        rms = np.sqrt((gap[moving] ** 2).mean(0))
+        curves |= {f"{joint} {what}": rms[j] for j, joint in enumerate(JOINTS)}
+    return curves

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -12,6 +12,7 @@ from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.experiments import KD, KP
+from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
@@ -22,28 +23,17 @@ from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-JOINTS = ("shoulder", "elbow")
-
-VISCOUS = (0.5, 0.15)
-"""Viscous friction of the joints, N m s/rad, and the only effect here, as in the linear loop.
-Assumed."""
-
-MOST_DEG = 30.0
-"""Error of a joint at which a run is stopped, degrees: larger than any of a stable loop here."""
-
-LATE = (0, 1, 5, 10, 20)
-"""Control periods between a reading and its torque."""
+VISCOUS = (0.5, 0.15)  # friction of the joints, N m s/rad, the only effect here; assumed
+MOST_DEG = 30.0  # error of a joint at which a run is stopped: larger than any of a stable loop here
+LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
 
 _T = np.arange(round(3.5 / CONTROL_STEP) + 1) * CONTROL_STEP
 
-TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]
-"""When the curves are sampled, s."""
+TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
 
 _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 
-START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}
-"""The book's gains."""
-
+START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}  # the book's gains
 
 CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -53,40 +43,28 @@ run = tuned(
     CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward}
 )
 run["shoulder error"], run["growth"], run["stopped"]"""
-"""What the page copies as code."""
 
 
 @dataclass(frozen=True)
 class Question:
-    """What happens if: asked before it is shown.
+    """What happens if: asked before it is shown."""
 
-    Parameters
-    ----------
-    text : str
-        What is changed.
-    change : dict
-        Parameters that differ from `START` afterwards.
-    choices : tuple of str
-        What might happen.
-    right : int
-        Place of what does happen among them; a test measures it.
-    why : str
-        The reason.
-    first : dict
-        Parameters that differ from `START` before.
-    """
-
-    text: str
-    change: dict
-    choices: tuple[str, ...]
-    right: int
+    text: str  # what is changed
+    change: dict  # parameters that differ from `START` afterwards
+    choices: tuple[str, ...]  # what might happen
+    right: int  # place of what does happen among them; a test measures it
     why: str
-    first: dict
+    first: dict = field(default_factory=dict)  # parameters that differ from `START` before
 
     @property
     def settings(self) -> tuple[dict, dict]:
         """All parameters before and after."""
         return {**START, **self.first}, {**START, **self.change}
+
+    def description(self) -> dict:
+        """What the page needs to know."""
+        told = {"text": self.text, "choices": list(self.choices), "right": self.right}
+        return {**told, "why": self.why, "settings": list(self.settings)}
 
 
 _KINDS = (
@@ -102,7 +80,6 @@ QUESTIONS = (
         _KINDS,
         1,
         "P alone is a spring. Only the joint's own friction takes energy out of the swing.",
-        {},
     ),
     Question(
         "there is no damper, and an integral gain of 600 N m/(rad s) is added",
@@ -127,7 +104,6 @@ QUESTIONS = (
         _KINDS,
         0,
         "The damper leads by more than the delay lags: the phase margin pays for it.",
-        {},
     ),
     Question(
         "the damper is more than twice as strong (80 N m s/rad), and every torque comes 40 ms late",
@@ -136,7 +112,6 @@ QUESTIONS = (
         2,
         "A stronger damper has its crossover at a higher frequency, where the same delay is a "
         "larger angle.",
-        {},
     ),
     Question(
         "the damper is made twice as strong (70 N m s/rad)",
@@ -148,7 +123,6 @@ QUESTIONS = (
         ),
         1,
         "The reference begins with a jump of its velocity, and only the damper looks at velocity.",
-        {},
     ),
     Question(
         "feedforward is switched on",
@@ -161,7 +135,6 @@ QUESTIONS = (
         1,
         "The model knows which torque the wanted acceleration needs. It knows nothing of the jump "
         "at the start.",
-        {},
     ),
 )
 
@@ -169,12 +142,12 @@ QUESTIONS = (
 class PIDTuner(LiveWidget):
     """Tune the gains of both joints on trajectory 6; the arm moves, and so does the last one.
 
-    The sliders set the shoulder's gains; the elbow's are in the ratio of `ddlib.experiments.setups`
-    (its integral gain in that of the proportional gains). The arm is rigid, with viscous
-    friction and exact sensors; feedforward uses the rigid arm as its model, without friction.
-    The page computes everything by the live engine. A run is stopped where a joint's error
-    passes `MOST_DEG`. Growth and margins are those of the sampled linear loop at the stretched
-    arm, margins with the loop cut open at one joint's torque while the other joint's is closed.
+    The sliders set the shoulder's gains; the elbow's are in the ratio of the book's `KP` and `KD`
+    (its integral gain in that of `KP`). The arm is rigid, with viscous friction and exact sensors;
+    feedforward uses the rigid arm as its model, without friction. The page computes everything by
+    the live engine. A run is stopped where a joint's error passes `MOST_DEG`. Growth and margins
+    are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
+    joint's torque while the other joint's is closed.
 
     Parameters
     ----------
@@ -242,16 +215,7 @@ class PIDTuner(LiveWidget):
                 "periods": len(_T),
                 "every": round(LOG_STEP / CONTROL_STEP),
                 "most": np.deg2rad(MOST_DEG),
-                "questions": [
-                    {
-                        "text": q.text,
-                        "choices": list(q.choices),
-                        "right": q.right,
-                        "why": q.why,
-                        "settings": list(q.settings),
-                    }
-                    for q in QUESTIONS
-                ],
+                "questions": [q.description() for q in QUESTIONS],
             },
         )
 
@@ -276,18 +240,7 @@ def _kept(arm: Arm, **setting) -> dict:
 
 
 def gains(kp, ki, kd) -> dict[str, np.ndarray]:
-    """Gains of both joints from the shoulder's.
-
-    Parameters
-    ----------
-    kp, ki, kd : array_like, shape (...)
-        The shoulder's, in N m/rad, N m/(rad s) and N m s/rad.
-
-    Returns
-    -------
-    dict
-        The three gains by name, shape (..., 2): arguments of `PID`.
-    """
+    """Gains of both joints, shape (..., 2), from the shoulder's: arguments of `PID`."""
     given = {"kp": kp, "ki": ki, "kd": kd}
     return {k: np.multiply.outer(np.asarray(x, float), (1.0, _ELBOW[k])) for k, x in given.items()}
 

@@ -16,17 +16,6 @@ from ddlib.widgets.engine.plain import ENGINE, SLIDING, lean, networks
 from ddlib.widgets.hinton import JOINTS, check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice
 
-CODE = """\
-from ddlib.experiments import JOINT_DAMPING, results
-from ddlib.learning import sliding_windows
-
-model = results.median_network({width}, JOINT_DAMPING.name)
-run = JOINT_DAMPING.record()[5]
-window = sliding_windows(run.q, {width}, run.motion)[[{sample}]]
-print(model.weights.activity(model.scaled(window)))
-print(model.torque(window), run.tau[run.motion][{sample}])"""
-"""What the network sees and does by ddlib's functions."""
-
 
 class SlidingWindow(LiveWidget):
     """Slide the window along a motion: inputs, activities and torque at every sample.
@@ -117,7 +106,6 @@ class SlidingWindow(LiveWidget):
                     for j, joint in enumerate(JOINTS)
                 ),
             ],
-            code=CODE,
             title="Sliding window",
             alt=(
                 "Torques of a network and measured torques over the motion, with the window "

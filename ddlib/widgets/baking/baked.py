@@ -7,78 +7,59 @@ from __future__ import annotations
 
 import itertools
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ddlib._check import integer, one_of
+from ddlib._check import finite_array, integer, one_of
 from ddlib.widgets.baking.compress import TINY, Table
-from ddlib.widgets.baking.sampled import Sampled
 
-MAX_BYTES = 400_000
-"""Largest size of the baked values of one widget."""
+MAX_BYTES = 400_000  # of the baked values of one widget
+MAX_VALUES = 6_000_000  # settings times samples that are computed to be baked
 
-MAX_VALUES = 6_000_000
-"""Most values, settings times samples, that are computed to be baked."""
+
+def evaluate(function: Callable, values: Mapping) -> dict[str, np.ndarray]:
+    """The function's curves and numbers as finite 1-D arrays, otherwise an error."""
+    result = function(**values)
+    if not isinstance(result, Mapping) or not result:
+        raise TypeError(f"function must return a dict of curves, got {result!r}")
+    curves = {name: np.atleast_1d(finite_array(name, x)) for name, x in result.items()}
+    for name, curve in curves.items():
+        if curve.ndim != 1 or not curve.size:
+            raise ValueError(f"{name} must be one number or one-dimensional, got {curve.shape}")
+    return curves
 
 
 class Baked:
-    """Curves on grids of parameters, as small integers.
+    """Curves of a function on a grid of its parameters, as small integers.
 
-    Parameters
-    ----------
-    function : callable
-        Called with one keyword per parameter; returns a dict of curves and numbers.
-    parameters : sequence of Parameter or Choice
-        The axes of the grid.
-    cubic : bool
-        Interpolate with cubic splines (smooth functions) or linearly.
-    many : callable, optional
-        The function for many settings at once, as in `Sampled`.
-    tolerance : float
-        Acceptable deviation relative to the range of each curve; a part of it may go into
-        making tables small.
-    depends : mapping, optional
-        Curve -> names of the only parameters that it depends on; default: all. Curves of
-        the same parameters have their own table, over those parameters alone.
-
-    Attributes
-    ----------
-    lengths : dict
-        Samples of each curve.
-    low, high : ndarray, shape (curves,)
-        Range of each curve over the grid.
-    tables : list of ddlib.widgets.baking.compress.Table
-        One per set of parameters; see `groups`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If the function's results are unfit, or the grid needs more than `MAX_BYTES`.
+    `depends` maps a curve to the only parameters that it depends on; curves of the same parameters
+    have a table of their own, over those parameters alone. A part of the tolerance (relative to
+    the range of each curve) may go into making tables small.
     """
 
-    def __init__(self, function, parameters, cubic=True, many=None, tolerance=0.01, depends=None):
-        self.parameters, self.cubic = tuple(parameters), bool(cubic)
+    def __init__(self, function, parameters, tolerance=0.01, depends=None):
+        self.parameters, self._function = tuple(parameters), function
+        self.names = [p.name for p in self.parameters]
         start = {p.name: p.value for p in self.parameters}
-        self._sampled = Sampled(function, many, start)
-        self.lengths = self._sampled.lengths
+        self.lengths = {name: curve.size for name, curve in evaluate(function, start).items()}
+        self._samples = sum(self.lengths.values())
         self._groups = self._grouped(depends or {})
         grids = [self._settings(names, start) for names in self._groups]
-        if (count := sum(map(len, grids)) * self._sampled.samples) > MAX_VALUES:
+        if (count := sum(map(len, grids)) * self._samples) > MAX_VALUES:
             raise ValueError(
                 f"grid must give at most {MAX_VALUES} values, got {count}: "
                 "take fewer grid points or fewer samples"
             )
-        self.low = np.empty(len(self.lengths))
+        self.low = np.empty(len(self.lengths))  # range of each curve over the grid
         self.high = np.empty(len(self.lengths))
-        rows = [self._sampled.rows(settings) for settings in grids]
+        rows = [self._rows(settings) for settings in grids]
         for group, curves in zip(rows, self._groups.values()):
-            for name, values in self._sampled.split(group).items():
+            for k, (name, values) in enumerate(self._split(group).items()):
                 if name in curves:
-                    k = list(self.lengths).index(name)
                     self.low[k], self.high[k] = values.min(), values.max()
-        self._middle = self._sampled.spread((self.low + self.high) / 2)
-        self._half = self._sampled.spread((self.high - self.low) / 2)
+        self._middle = self._spread((self.low + self.high) / 2)
+        self._half = self._spread((self.high - self.low) / 2)
         self.tables = [
             self._table(names, group, tolerance) for names, group in zip(self._groups, rows)
         ]
@@ -104,6 +85,29 @@ class Baked:
         points = [p.points() for p in self.parameters if p.name in names]
         return [{**start, **dict(zip(names, values))} for values in itertools.product(*points)]
 
+    def _rows(self, settings) -> np.ndarray:
+        """The curves at many settings, one after the other, shape ``(settings, samples)``."""
+        return np.array([self._row(setting) for setting in settings])
+
+    def _row(self, setting: Mapping) -> np.ndarray:
+        curves = evaluate(self._function, setting)
+        lengths = {name: curve.size for name, curve in curves.items()}
+        if lengths != self.lengths:
+            raise ValueError(
+                f"function must return the same curves everywhere, got {lengths} "
+                f"in place of {self.lengths}"
+            )
+        return np.concatenate([curves[name] for name in self.lengths])
+
+    def _split(self, rows) -> dict[str, np.ndarray]:
+        """Rows ``(..., samples)`` cut into curves by name."""
+        ends = np.cumsum(list(self.lengths.values()))[:-1]
+        return dict(zip(self.lengths, np.split(rows, ends, axis=-1)))
+
+    def _spread(self, values) -> np.ndarray:
+        """One value per curve repeated over its samples."""
+        return np.repeat(values, list(self.lengths.values()))
+
     def _table(self, names, rows, tolerance) -> Table:
         columns = self._columns(names)
         half = self._half[columns]
@@ -111,16 +115,11 @@ class Baked:
         axes = [p for p in self.parameters if p.name in names]
         lengths = [self.lengths[name] for name in self._groups[names]]
         values = values.reshape(*(p.grid for p in axes), -1)
-        return Table(axes, values, lengths, self.cubic, tolerance)
+        return Table(axes, values, lengths, tolerance)
 
     def _columns(self, names) -> np.ndarray:
         """Which samples of a row belong to the group of the parameters `names`."""
-        return self._sampled.spread([name in self._groups[names] for name in self.lengths])
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the parameters."""
-        return [p.name for p in self.parameters]
+        return self._spread([name in self._groups[names] for name in self.lengths])
 
     @property
     def groups(self) -> list[dict]:
@@ -147,14 +146,10 @@ class Baked:
 
     def interpolate(self, **values) -> dict[str, np.ndarray]:
         """The curves at any parameters within the ranges, from the grid alone."""
-        if set(values) != set(self.names):
-            raise TypeError(
-                f"values must name {', '.join(self.names)}, got {', '.join(values) or 'none'}"
-            )
-        return self._sampled.split(self._interpolated(values))
+        return self._split(self._interpolated(values))
 
     def _interpolated(self, values) -> np.ndarray:
-        scaled = np.empty(self._sampled.samples)
+        scaled = np.empty(self._samples)
         for names, table in zip(self._groups, self.tables):
             scaled[self._columns(names)] = table.interpolate(values)
         return self._middle + self._half * scaled
@@ -170,5 +165,5 @@ class Baked:
         width = np.where(self._half > 0, 2 * self._half, np.abs(self._middle) + TINY)
         return max(
             float((np.abs(self._interpolated(values) - row) / width).max())
-            for values, row in zip(settings, self._sampled.rows(settings))
+            for values, row in zip(settings, self._rows(settings))
         )

@@ -10,50 +10,21 @@ import numpy as np
 
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-STEPS = {2: 32_767, 1: 127}
-"""Largest integer of two bytes, and of one byte: numbers are scaled to it."""
-
-FAINT = 10
-"""Components that never reach this many tolerances are stored in one byte a number."""
-
-TINY = 1e-12
-"""Keeps divisions by a size finite where all is zero."""
-
-SHARE = 0.3
-"""Share of the tolerance that leaving components out may cost."""
+STEPS = {2: 32_767, 1: 127}  # largest integer of two bytes, and of one: numbers are scaled to it
+FAINT = 10  # components that never reach so many tolerances are stored in one byte a number
+TINY = 1e-12  # keeps divisions by a size finite where all is zero
+SHARE = 0.3  # of the tolerance that leaving components out may cost
 
 
 class Table:
-    """Curves on a grid, as the coefficients of a spline.
+    """Curves on a grid (`values`: points, ..., samples; within 1), as a spline's coefficients.
 
     The coefficients are a matrix with a row per grid point and a column per sample. Where
     that is smaller, it is stored as a product of two narrow ones (its largest singular
-    components): the spline then runs through a few numbers, which mix a few shapes.
+    components): the spline then runs through a few numbers, which mix a few `shapes`.
 
-    Parameters
-    ----------
-    parameters : sequence of Parameter or Choice
-        The axes of the grid.
-    values : ndarray, shape (points, ..., samples)
-        The curves at the grid points, each scaled to the range -1 to 1.
-    lengths : sequence of int
-        Samples of each curve.
-    cubic : bool
-        Cubic splines, otherwise linear ones.
-    tolerance : float
-        Acceptable deviation relative to the range of each curve.
-
-    Attributes
-    ----------
-    table : ndarray of int16, shape (points, ..., rank or samples)
-        Coefficients of the spline: of the shapes, or of the curves themselves.
-    shapes : ndarray of int16, shape (rank, samples)
-        What the coefficients mix; no rows if they are the curves themselves.
-    scale : ndarray, shape (rank or 1,)
-        What a unit of `table` (times a unit of `shapes`) is worth.
-    wide : int
-        How many columns of `table` and rows of `shapes` need two bytes a number; the others
-        are faint and fit into one.
+    A unit of `table` times a unit of `shapes` is worth `scale`; the first `wide` columns of
+    `table` and rows of `shapes` need two bytes a number, the others are faint and fit into one.
     """
 
     def __init__(
@@ -61,12 +32,11 @@ class Table:
         parameters: Sequence[Parameter | Choice],
         values: np.ndarray,
         lengths: Sequence[int],
-        cubic: bool,
         tolerance: float,
     ):
-        self.parameters, self.cubic = tuple(parameters), cubic
+        self.parameters = tuple(parameters)
         samples = values.shape[-1]
-        coefficients = _each_axis([p.coefficients(cubic) for p in parameters], values)
+        coefficients = _each_axis([p.coefficients() for p in parameters], values)
         size, rows = coefficients.shape[:-1], coefficients.reshape(-1, samples)
         weight = np.repeat(1 / np.sqrt(lengths), lengths)  # a number counts as much as a curve
         left, shapes = _components(rows * weight)
@@ -93,10 +63,7 @@ class Table:
         return len(self.shapes)
 
     def tobytes(self) -> bytes:
-        """`table`, then `shapes`, the last axis fastest.
-
-        Of each first what needs two bytes a number (little-endian), then the rest.
-        """
+        """`table`, then `shapes`: of each first what needs two bytes a number, then the rest."""
         table, shapes, wide = self.table, self.shapes, self.wide
         parts = [table[..., :wide], table[..., wide:].astype("i1")]
         parts += [shapes[:wide], shapes[wide:].astype("i1")]
@@ -104,7 +71,7 @@ class Table:
 
     def interpolate(self, values: Mapping) -> np.ndarray:
         """The scaled curves at one value per parameter, shape ``(samples,)``."""
-        per_axis = [p.weights(values[p.name], self.cubic) for p in self.parameters]
+        per_axis = [p.weights(values[p.name]) for p in self.parameters]
         total = np.zeros(self.table.shape[-1])
         for corner in itertools.product(*per_axis):
             index = tuple(i for i, _ in corner)

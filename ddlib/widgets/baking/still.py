@@ -14,11 +14,8 @@ from ddlib.figures import COLOURS, DASHES, illustrate
 from ddlib.widgets.parts.panels import Pad, Panel
 from ddlib.widgets.parts.parameters import Parameter
 
-COLUMNS = 3
-"""Most charts side by side."""
-
-START = "data:image/svg+xml;base64,"
-"""How the address of every still begins: it holds the picture and leads nowhere."""
+COLUMNS = 3  # most charts side by side
+START = "data:image/svg+xml;base64,"  # of a still's address: it holds the picture, leads nowhere
 
 
 class Still(traitlets.Unicode):
@@ -47,20 +44,7 @@ def still_picture(
     pad: Pad | None,
     alt: str,
 ) -> str:
-    """The picture as a data URI of an SVG with fixed, light colours.
-
-    Parameters
-    ----------
-    curves : mapping
-        The function's result at the starting values.
-    panels : sequence of Panel
-    parameters : mapping
-        Those of the widget by name.
-    pad : Pad or None
-        Drawn first, if there is one.
-    alt : str
-        What the picture shows.
-    """
+    """The starting state as the address of an SVG with fixed, light colours; `alt` describes it."""
     count = len(panels) + bool(pad)
     rows = -(-count // COLUMNS)
     columns = -(-count // rows)

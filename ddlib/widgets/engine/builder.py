@@ -8,9 +8,9 @@ import anywidget
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array
-from ddlib.analysis import frequency_response, purest, savitzky_golay, upright
-from ddlib.experiments import JOINT_DAMPING, results, split, true_states
+from ddlib._check import shaped
+from ddlib.analysis import frequency_response, savitzky_golay
+from ddlib.experiments import JOINT_DAMPING, split, true_states
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.simulation import LOG_STEP
@@ -19,23 +19,12 @@ from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine.plain import lean
 from ddlib.widgets.parts.panels import Panel
 
-WIDTH = 21
-"""Stems of the window."""
-
-ZEROS = 20
-"""Other zeros of the encoder by which the same motion is read again."""
-
-FREQUENCIES = np.geomspace(0.5, 50.0, 81)
-"""Where the gain is shown, Hz: up to half the sampling rate."""
-
-LEVELS = 600
-"""A stem stands at a whole multiple of one part in so many of its largest height."""
-
-TALL = 0.9
-"""Largest stem of a starting point, of the height there is."""
-
-GAINS = (1.0, 2e5)
-"""Range of the gains shown, 1/s^2."""
+WIDTH = 21  # stems of the window
+ZEROS = 20  # other zeros of the encoder by which the same motion is read again
+FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
+LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
+TALL = 0.9  # largest stem of a starting point, of the height there is
+GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 
 HINT = (
     "Drag the dots, or sweep across them in one stroke that begins anywhere (by touch beside the "
@@ -51,14 +40,8 @@ HINT = (
 def readings() -> tuple[np.ndarray, np.ndarray, float]:
     """The shoulder along trajectory 6 of the set-up with damped joints.
 
-    Returns
-    -------
-    q : ndarray, shape (300 + 20,)
-        True positions, rad, half a window more than the motion at either end.
-    acceleration : ndarray, shape (300,)
-        True accelerations in the motion, rad/s^2.
-    step : float
-        Step of the encoder that reads the positions, rad.
+    Returns true positions (rad, half a window more than the motion at either end), true
+    accelerations in the motion (rad/s^2), and the step of the encoder that reads them (rad).
     """
     run = split(JOINT_DAMPING.record())[1]
     half, (encoder,) = WIDTH // 2, JOINT_DAMPING.effects.encoder
@@ -67,7 +50,7 @@ def readings() -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def zeros() -> np.ndarray:
-    """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn evenly within a step."""
+    """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn within a step."""
     drawn = np.random.default_rng(15).uniform(0.0, readings()[2], ZEROS)
     return np.concatenate([[0.0], drawn])
 
@@ -80,18 +63,8 @@ def windows(zero: float = 0.0) -> np.ndarray:
 
 
 def fitted(f, zero: float = 0.0) -> np.ndarray:
-    """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,).
-
-    Parameters
-    ----------
-    f : array_like, shape (21,)
-        Weights, oldest sample first.
-    zero : float
-        Zero of the encoder, rad.
-    """
-    f = finite_array("f", f)
-    if f.shape != (WIDTH,):
-        raise ValueError(f"f must have shape ({WIDTH},), got {f.shape}")
+    """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,)."""
+    f = shaped("f", f, (WIDTH,))
     output, truth = windows(zero) @ f, readings()[1]
     output = output - output.mean()
     power = output @ output
@@ -111,23 +84,17 @@ def least_squares() -> np.ndarray:
     return np.linalg.lstsq(seen, readings()[1], rcond=None)[0][:-1]
 
 
-def trained_unit() -> np.ndarray:
-    """Of the 25 networks of this set-up the hidden unit's filter purest in acceleration."""
-    every = results.networks(WIDTH, JOINT_DAMPING.name).weights.hidden_weights
-    return upright(purest(every.reshape(-1, WIDTH), "acceleration"))
-
-
 def starts() -> dict[str, np.ndarray]:
     """Starting points by name, each with a largest weight of `TALL`, shape (21,) each."""
-    found = {
+    filters = {
         "Second difference": _textbook(3),
         "Savitzky–Golay, 5": _textbook(5),
         "Savitzky–Golay, 11": _textbook(11),
         "Savitzky–Golay, 21": _textbook(21),
         "Velocity": _textbook(21, 1),
     }
-    found = {name: TALL * f / np.abs(f).max() for name, f in found.items()}
-    return {**found, "Zero": np.zeros(WIDTH)}
+    tall = {name: TALL * f / np.abs(f).max() for name, f in filters.items()}
+    return {**tall, "Zero": np.zeros(WIDTH)}
 
 
 def _textbook(width: int, derivative: int = 2) -> np.ndarray:
@@ -141,6 +108,11 @@ class FilterBuilder(anywidget.AnyWidget):
 
     Everything is computed in the page, with a kernel and without. Least squares and a trained
     unit can be laid over one's own filter once it has been changed.
+
+    Parameters
+    ----------
+    unit : array_like, shape (21,)
+        The trained unit: its weights, oldest sample first.
     """
 
     _esm = lean(
@@ -155,22 +127,18 @@ class FilterBuilder(anywidget.AnyWidget):
     still = Still(help="a textbook filter as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
-    def __init__(self):
+    def __init__(self, unit):
+        unit = shaped("unit", unit, (WIDTH,))
         q, truth, step = readings()
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()
-        unit = trained_unit()
-        names = {"own": "yours", "unit": "a trained unit", "least": "least squares"}
-        own, *others = names.items()
 
         def curves(what, aim, label):
-            kinds = [(f"{own[0]} {what}", own[1]), (aim, label)]
-            return dict([*kinds, *((f"{key} {what}", name) for key, name in others)])
+            """Names of curves, and what the legend calls them: one's own comes first."""
+            others = {f"unit {what}": "a trained unit", f"least {what}": "least squares"}
+            return {f"own {what}": "yours", aim: label, **others}
 
-        output, gain = (
-            curves("output", "truth", "true"),
-            curves("gain", "ideal", "ideal, (2πν)²"),
-        )
+        output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
         panels = [
             Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
             Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=GAINS),

@@ -10,32 +10,17 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
 
-class Computed:
-    """What `ddlib.widgets.baking.baked.Baked` is for a widget without a table.
+class _Computed:
+    """What `ddlib.widgets.baking.baked.Baked` is for a widget without a table."""
 
-    Parameters
-    ----------
-    function : callable
-        The Python side of what the page computes; its curves may end in NaN.
-    parameters : sequence of Parameter or Choice
-    examples : sequence of mappings
-        Settings, each with the parameters that differ from the start. The ranges of the curves
-        over them decide with how many decimals numbers are written.
-    ranges : mapping, optional
-        Curve -> its lowest and highest value, where they are known without examples.
-    """
+    groups = ()
 
-    cubic, groups = False, ()
-
-    def __init__(
-        self, function, parameters, examples: Sequence[Mapping] = (), ranges: Mapping | None = None
-    ):
+    def __init__(self, function, parameters, examples, ranges):
         self.function, self.parameters = function, tuple(parameters)
         start = {p.name: p.value for p in self.parameters}
-        found = [self.interpolate(**start, **{})]
-        found += [self.interpolate(**{**start, **setting}) for setting in examples]
-        self.lengths = {name: curve.size for name, curve in found[0].items()}
-        ends = [[(np.nanmin(x), np.nanmax(x)) for x in row.values()] for row in found]
+        known = [self.interpolate(**{**start, **setting}) for setting in ({}, *examples)]
+        self.lengths = {name: curve.size for name, curve in known[0].items()}
+        ends = [[(np.nanmin(x), np.nanmax(x)) for x in curves.values()] for curves in known]
         self.low, self.high = np.nanmin(ends, 0)[:, 0], np.nanmax(ends, 0)[:, 1]
         for name, (low, high) in (ranges or {}).items():
             k = list(self.lengths).index(name)
@@ -50,11 +35,11 @@ class Computed:
         return 0.0
 
     def tobytes(self) -> bytes:
-        """No table: nothing is baked."""
+        """No table."""
         return b""
 
     def checksum(self) -> int:
-        """Of nothing."""
+        """Checksum of no table."""
         return 0
 
 
@@ -66,11 +51,15 @@ class LiveWidget(CurveWidget):
     Parameters
     ----------
     function : callable
-        The same in Python, for `curves`, for tests and for the still picture.
+        The same in Python, for `curves`, for tests and for the still picture; its curves may end
+        in NaN.
     parameters : sequence of Parameter or Choice
     panels : sequence of Panel
-    examples, ranges
-        As for `Computed`.
+    examples : sequence of mappings
+        Settings, each with the parameters that differ from the start. The ranges of the curves
+        over them decide with how many decimals numbers are written.
+    ranges : mapping, optional
+        Curve -> its lowest and highest value, where they are known without examples.
     **options
         Passed on to `CurveWidget`.
     """
@@ -94,7 +83,7 @@ class LiveWidget(CurveWidget):
         return self._baked.interpolate(**self.values)
 
     def _bake(self, function, parameters, *_):
-        return Computed(function, parameters, *self._known)
+        return _Computed(function, parameters, *self._known)
 
     def _spec(self, *given) -> dict:
         return {**super()._spec(*given), "live": True}

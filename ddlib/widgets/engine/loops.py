@@ -6,49 +6,26 @@ tests and for the still picture.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
 
-from ddlib.control import (
-    PID,
-    Controller,
-    Feedforward,
-    Guarded,
-    closed_loop,
-    margins,
-    opened_loop,
-    plant,
-)
+from ddlib.control import PID, Controller, Feedforward, closed_loop, margins, opened_loop, plant
 from ddlib.dynamics import Arm
 from ddlib.effects import Delay, Effects, ViscousFriction
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
 from ddlib.trajectories import Trajectory
 
-LOOPS = "loops.js"
-"""The script, after those of the engine."""
-
-FAST = (1e3, 1e3)
-"""Joint speeds that no run reaches before its error stops it, rad/s."""
+LOOPS = "loops.js"  # the script, after those of the engine
 
 
 def modes(arm: Arm, viscous, posture=(0.0, 0.0)) -> list[dict]:
     """The joints near a posture as two modes that viscous friction damps: what the page takes.
 
-    Parameters
-    ----------
-    arm : Arm
-    viscous : array_like, shape (2,)
-        N m s/rad, positive.
-    posture : array_like, shape (2,)
-        rad.
-
-    Returns
-    -------
-    list of dict
-        ``rate`` (1/s), ``shape`` (angles of the joints per amplitude of the mode, which has an
-        inertia of one) and ``dual`` (amplitude per angle).
+    Each has a ``rate`` (1/s), a ``shape`` (angles of the joints per amplitude of the mode, which
+    has an inertia of one) and a ``dual`` (amplitude per angle).
     """
     mass = arm.mass_matrix(posture)
     rates, shapes = eigh(np.diag(viscous), mass)
@@ -59,14 +36,9 @@ def modes(arm: Arm, viscous, posture=(0.0, 0.0)) -> list[dict]:
 
 
 class Run(NamedTuple):
-    """A run that was over when a joint's error passed a limit.
+    """Error (rad) and torque (N m) at the logging period, shape (time, 2), NaN after the run.
 
-    Attributes
-    ----------
-    error, torque : ndarray, shape (time, 2)
-        rad and N m, at the logging period; NaN after the run.
-    stopped : int or None
-        Place of its last sample, if it was stopped.
+    `stopped` is the place of the last sample if an error passed the limit, otherwise None.
     """
 
     error: np.ndarray
@@ -74,29 +46,31 @@ class Run(NamedTuple):
     stopped: int | None
 
 
+@dataclass(frozen=True)
+class _SwitchedOff:
+    """A controller without torque once a joint is far off: what diverges stays finite."""
+
+    controller: Controller
+
+    def start(self, reference, step):
+        law, off = self.controller.start(reference, step), False
+
+        def torque(k, q, qd):
+            nonlocal off
+            off = off or np.abs(reference.q[k] - q).max() > np.pi
+            return np.zeros(2) if off else law(k, q, qd)
+
+        return torque
+
+
 def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t, most) -> Run:
     """Drive an arm with viscous friction along a reference, the torque some periods late.
 
-    Parameters
-    ----------
-    arm : Arm
-    viscous : tuple of float
-        N m s/rad.
-    law : Controller
-    late : int
-        Control periods between a reading and its torque.
-    reference : Trajectory
-        Sampled at the control period, shape (time, 2).
-    t : array_like, shape (time,)
-        s.
-    most : float
-        Error at which the run is over, rad.
+    The reference is sampled at the control period; the run is over at an error of `most` (rad).
     """
     effects = Effects(friction=(ViscousFriction(viscous),), actuator=(Delay(late),) * bool(late))
     every = round(LOG_STEP / CONTROL_STEP)
-    recording = follow(
-        arm, Guarded(law, speeds=FAST), reference, t, effects=effects, log_every=every
-    )
+    recording = follow(arm, _SwitchedOff(law), reference, t, effects=effects, log_every=every)
     error, torque = recording.tracking_error.copy(), recording.tau_true.copy()
     beyond = np.flatnonzero((np.abs(error) > most).any(-1))
     stopped = int(beyond[0]) if beyond.size else None
@@ -106,15 +80,10 @@ def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t,
 
 
 class Linear(NamedTuple):
-    """The linear loop around a posture.
+    """The linear loop: growth (1/s) of its slowest or least stable motion; negative if stable.
 
-    Attributes
-    ----------
-    growth : float
-        Of its slowest or least stable motion, 1/s; negative: the loop is stable.
-    phase_deg, crossover : ndarray, shape (2,)
-        Margin (degrees) and crossover (rad/s) of each joint's loop, the other one closed; NaN if
-        the loop is unstable.
+    Phase margin (degrees) and crossover (rad/s) are those of each joint's loop, the other one
+    closed; NaN if the loop is unstable.
     """
 
     growth: float
@@ -125,17 +94,7 @@ class Linear(NamedTuple):
 def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> Linear:
     """Poles and margins of the sampled loop at the stretched arm, by python-control.
 
-    Parameters
-    ----------
-    arm : Arm
-    viscous : array_like, shape (2,)
-        N m s/rad.
-    law : dict
-        Gains, as of `PID`: ``kp``, ``ki``, ``kd``, a pair each.
-    late : int
-        Periods between a reading and its torque.
-    period : float
-        s.
+    `law` holds the gains of a `PID` by name, `late` counts periods from a reading to its torque.
     """
     joints = plant(arm.mass_matrix([0.0, 0.0]), viscous)
     poles = closed_loop(joints, **law, period=period, delay=late).poles()

@@ -20,15 +20,18 @@ from ddlib.dynamics import derive
 from ddlib.effects import CoulombFriction, Quantisation, ViscousFriction
 
 FILE = Path(__file__).parents[1] / "static" / "physics.js"
-"""Where the equations are kept for the widgets."""
 
 HEAD = """\
 // Equations of a two-link arm, its friction and its encoder. Written by engine/physics.py from
 // ddlib's derivation and effects: change those, then run `python -m ddlib.widgets.engine.physics`.
-"""
 
-ARM = sp.symbols("a b d g1 g2")
-"""Base inertial parameters (kg m^2) and gravity moments (N m) of `ddlib.dynamics.Arm`."""
+// The nearest whole number, the even one of two that are as near.
+function rint(x) {
+  const near = Math.round(x);
+  return near - x === 0.5 && near % 2 ? near - 1 : near;
+}"""
+
+ARM = sp.symbols("a b d g1 g2")  # base parameters (kg m^2), gravity moments (N m) of an `Arm`
 
 _rint = sp.Function("rint")
 
@@ -98,14 +101,7 @@ def _function(name, about, arguments, results) -> str:
 
 
 def physics() -> str:
-    """The text of ``static/physics.js``.
-
-    Returns
-    -------
-    str
-        Functions ``armTorque``, ``armAcceleration``, ``armMass``, ``frictionTorque`` and
-        ``encoderReading``.
-    """
+    """The text of ``static/physics.js``."""
     arm = derive(2, gravity=True)
     a, b, d, g1, g2 = ARM
     base = dict(zip(arm.base, (a - d, b, d, g1, g2)))
@@ -129,42 +125,35 @@ def physics() -> str:
     friction = sum((law.torque(_Traced(speed)) for law in laws[1:]), laws[0].torque(_Traced(speed)))
     read = _law(Quantisation, step=step).apply(np.asarray(_Traced(position)))
     arm_names, q = "{ a, b, d, g1, g2 }", "q1, q2, qd1, qd2"
-    parts = [
-        HEAD.rstrip(),
-        "// The nearest whole number, the even one of two that are as near.\n"
-        "function rint(x) {\n"
-        "  const near = Math.round(x);\n"
-        "  return near - x === 0.5 && near % 2 ? near - 1 : near;\n"
-        "}",
-        _function(
+    entries = [mass[0, 0], mass[0, 1], mass[1, 1]]
+    functions = [
+        (
             "armTorque",
             "Torques (N m) of angles (rad), velocities (rad/s) and accelerations (rad/s^2).",
             f"{arm_names}, {q}, qdd1, qdd2",
             torque,
         ),
-        _function(
+        (
             "armAcceleration",
             "Accelerations (rad/s^2) under torques t1, t2 (N m).",
             f"{arm_names}, {q}, t1, t2",
             acceleration,
         ),
-        _function(
+        (
             "armMass",
             "Entries 11, 12 and 22 of the mass matrix (kg m^2).",
             "{ a, b, d }, q2",
-            [mass[0, 0], mass[0, 1], mass[1, 1]],
+            entries,
         ),
-        _function(
+        (
             "frictionTorque",
             "Viscous and Coulomb friction (N m) of a joint at the velocity v (rad/s).",
             "viscous, coulomb, smoothing, v",
             [_plain(friction)],
         ),
-        _function(
-            "encoderReading", "An angle (rad) as the encoder reads it.", "step, x", [_plain(read)]
-        ),
+        ("encoderReading", "An angle (rad) as the encoder reads it.", "step, x", [_plain(read)]),
     ]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join([HEAD, *(_function(*function) for function in functions)]) + "\n"
 
 
 def _plain(traced):

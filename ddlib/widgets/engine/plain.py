@@ -10,24 +10,15 @@ from ddlib.control import PID
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, Quantisation, Saturation, ViscousFriction
 from ddlib.learning import Scaler, TorqueModel
-from ddlib.widgets.base import module
 
+# Scripts: of every widget of this room; and, after them, of one that trains, of one whose networks
+# see a recording.
 ENGINE = ("physics.js", "engine.js")
-"""Files of the engine that every widget of this room has, in their order."""
-
 TRAINING = "descent.js"
-"""What a widget has after them if it trains."""
-
 SLIDING = "sliding.js"
-"""What a widget has after them if its networks see a recording."""
 
+# Order of the weights in `weight_bytes`.
 FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
-"""Order of the weights in `weight_bytes`."""
-
-
-def source() -> str:
-    """The whole engine's script: functions without a module around them."""
-    return module(*ENGINE, TRAINING)
 
 
 def lean(script: str) -> str:
@@ -39,17 +30,8 @@ def lean(script: str) -> str:
 def plant(arm: Arm, effects: Effects) -> dict:
     """An arm and what acts on it, as the engine's functions take it.
 
-    Parameters
-    ----------
-    arm : Arm
-    effects : Effects
-        One viscous and one Coulomb friction, one saturation and one quantisation at most; the
-        torque sensor is ignored, since the page shows the applied torque.
-
-    Raises
-    ------
-    TypeError
-        If the engine has no such effect.
+    At most one viscous and one Coulomb friction, one saturation and one quantisation; the torque
+    sensor is ignored, since the page shows the applied torque.
     """
     one = {}
     parts = {

@@ -7,7 +7,7 @@ import numpy as np
 import traitlets as t
 
 from ddlib.analysis import shares
-from ddlib.experiments import JOINT_DAMPING, Setup, predict, results
+from ddlib.experiments import JOINT_DAMPING, Setup, predict
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY
@@ -18,32 +18,17 @@ from ddlib.widgets.base import STYLE, module
 from ddlib.widgets.engine.plain import ENGINE, gains, lean, network, plant, weight_bytes
 from ddlib.widgets.parts.panels import Panel
 
-REST = 0.4
-"""Between two motions that are played, s: longer than half a window."""
-
-FORCE = 35.0
-"""Most that the reader's pull can be, N: its torques are among those of the training."""
-
-SPRING = 150.0
-"""Stiffness of the pull on the hand, N/m."""
-
-TOSS_RATE, TOSS_SECONDS = 4.0, 0.4
-"""Largest acceleration that the button gives the joints, rad/s^2, and for how long, s."""
+REST = 0.4  # s between two motions that are played: longer than half a window
+FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
+SPRING = 150.0  # N/m, stiffness of the pull on the hand
+TOSS_RATE = 4.0  # rad/s^2, largest acceleration that the button gives the joints,
+TOSS_SECONDS = 0.4  # and for how long
 
 HINT = (
     "Grab the hand and throw it, or focus it and hold an arrow key. Friction slows the arm; under "
     "Play a controller drives it along the paper's trajectories. The network never sees the "
     "torque: from each window of positions it tells the torque at the window's centre."
 )
-
-CODE = """\
-from ddlib.experiments import JOINT_DAMPING, predict, results
-from ddlib.trajectories import APPENDIX_I
-
-run = JOINT_DAMPING.record(APPENDIX_I[[{motion}]])[0]
-told = predict(results.median_network(21, JOINT_DAMPING.name), run)
-print(told - run.tau_true[run.motion])  # N m, shape (300, 2)"""
-"""What the page copies as code: the motion that is shown and what the network makes of it."""
 
 
 class ThrownArm(anywidget.AnyWidget):
@@ -54,18 +39,13 @@ class ThrownArm(anywidget.AnyWidget):
 
     Parameters
     ----------
-    model : TorqueModel, optional
-        One network; default: of the 25 of Table 4-1 with window 21 the one with the median
-        error on trajectory 6.
+    model : TorqueModel
+        One network, trained on the sampling period of the log.
     setup : Setup
-        Arm, effects and controller; the controller must be a `PID`.
-
-    Raises
-    ------
-    TypeError
-        If the model is not a single network, or the engine lacks an effect or the controller.
-    ValueError
-        If the model was trained on another sampling period than that of the log.
+        Arm, effects and controller; the engine must have the effects, and the controller must be
+        a `PID`.
+    code : str
+        What *Code* copies, with ``{motion}`` for the trajectory's place in Appendix I.
     """
 
     _esm = lean(module("elements.js", *ENGINE, "world.js", "running.js", "inside.js", "throw.js"))
@@ -77,9 +57,7 @@ class ThrownArm(anywidget.AnyWidget):
     still = Still(help="a played motion as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
-    def __init__(self, model: TorqueModel | None = None, setup: Setup = JOINT_DAMPING):
-        code = CODE if model is None and setup is JOINT_DAMPING else ""
-        model = results.median_network(21, setup.name) if model is None else model
+    def __init__(self, model: TorqueModel, setup: Setup = JOINT_DAMPING, *, code: str = ""):
         layout = network(model)
         if model.step is not None and abs(model.step / LOG_STEP - 1) > 1e-6:
             raise ValueError(
@@ -123,10 +101,10 @@ def _trajectory(k: int) -> dict:
 
 def _units(model: TorqueModel) -> list[dict]:
     """The hidden units whose weights from one joint's window lie closest to a line, a parabola."""
-    found = shares(model.weights.hidden_weights)
+    parts = shares(model.weights.hidden_weights)
     units = []
     for kind, degree in (("line", 1), ("parabola", 2)):
-        unit, joint = np.unravel_index(found[..., degree].argmax(), found.shape[:2])
+        unit, joint = np.unravel_index(parts[..., degree].argmax(), parts.shape[:2])
         label = f"The unit closest to a {kind}"
         units.append({"label": label, "unit": int(unit), "joint": int(joint)})
     return units

@@ -6,13 +6,12 @@ import anywidget
 import numpy as np
 import traitlets as t
 
-from ddlib._check import integer
+from ddlib._check import integer, one_of
 from ddlib.analysis import CLASSES, basis
 from ddlib.experiments import JOINT_DAMPING, split
 from ddlib.experiments.setups import INITIAL
-from ddlib.experiments.studies.page import training as page
 from ddlib.figures import JOINTS
-from ddlib.learning import TorqueModel, TrainingSet, Weights, default_rate, surrogate
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.baking.still import Still, still_picture
@@ -20,13 +19,12 @@ from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine.plain import ENGINE, FIELDS, TRAINING, lean
 from ddlib.widgets.parts.panels import Panel
 
-SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}
-"""Ranges of the inputs that can be chosen."""
-
-STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)
-"""Step sizes, relative to `ddlib.learning.training.default_rate`."""
-
+WIDTH = 21  # samples of the window
+EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
+SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
+STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
+ERRORS = (0.03, 2.0)  # range of the errors shown
 
 HINT = (
     "A network with ten hidden units learns the torques of both joints from windows of 21 "
@@ -43,10 +41,10 @@ def first_weights(seed: int) -> Weights:
     Parameters
     ----------
     seed : int
-        0 to 2**32 - 1; the draws are those of the generator mulberry32.
+        0 to 2**32 - 1, of the generator mulberry32.
     """
     state = integer("seed", seed, 0, 2**32 - 1)
-    width, joints = page.WIDTH, len(JOINTS)
+    width, joints = WIDTH, len(JOINTS)
     shapes = {
         "hidden_weights": (HIDDEN_UNITS, joints, width),
         "hidden_bias": (HIDDEN_UNITS,),
@@ -70,22 +68,24 @@ def _mixed(state: int) -> int:
     return x ^ x >> 14
 
 
-def training_set(inputs: str = "centred", shifted: int | None = None) -> tuple[TrainingSet, tuple]:
-    """What the page trains on, and the scaled windows and torques of trajectory 6.
-
-    Parameters
-    ----------
-    inputs : {"centred", "printed"}
-    shifted : int, optional
-        Draw of shifted torques, 0 to 4; default: the arm's own.
-    """
-    return page.page_set(SCALINGS[inputs], shifted)
-
-
 class NetworkTrainer(anywidget.AnyWidget):
     """Train a window network in the page: errors, torques and the filters of all units.
 
     Everything is computed in the page, with a kernel and without.
+
+    Parameters
+    ----------
+    epochs, check : int
+        Epochs of a run, and between two looks at errors and shapes.
+    level : float
+        RMSS in training below which the error counts as gone.
+    momentum : float
+        Acceleration at the start, one of `MOMENTA`.
+    shifts : int
+        Draws of torques that are shifted in time.
+    code : str
+        What *Code* copies; ``{scaling}``, ``{shifted}``, ``{seed}``, ``{rate}``, ``{momentum}`` and
+        ``{epochs}`` stand for the reader's choices.
     """
 
     _esm = lean(
@@ -102,53 +102,44 @@ class NetworkTrainer(anywidget.AnyWidget):
     still = Still(help="the torque to be learnt as a picture", read_only=True).tag(sync=True)
     still_alt = t.Unicode(read_only=True).tag(sync=True)
 
-    def __init__(self):
+    def __init__(
+        self,
+        *,
+        epochs: int = 2000,
+        check: int = 5,
+        level: float = 0.2,
+        momentum: float = 0.98,
+        shifts: int = 5,
+        code: str = "",
+    ):
+        one_of("momentum", momentum, MOMENTA)
         recording = JOINT_DAMPING.record()
-        test = split(recording)[1]
-        motion, half = recording.motion, page.WIDTH // 2
+        training, test = split(recording)
+        motion, half = recording.motion, WIDTH // 2
         (encoder,) = JOINT_DAMPING.effects.encoder
         seen = recording.q[:, motion.start - half : motion.stop + half]
-        counts = np.round(seen / encoder.step)
         torque = recording.tau[:, motion]
-        plain, _ = training_set("printed")
-        place = np.arange(torque.shape[1])[None, :, None] * np.ones((len(recording.q) - 1, 1, 2))
-        shifts = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(page.SHIFTS)]
-        time = np.arange(torque.shape[1]) * LOG_STEP
-        epochs = np.maximum(1, np.arange(0, page.EPOCHS + 1, page.CHECK))
-        most = 1.15 * np.abs(test.tau[motion]).max(0)
-        panels = [
-            Panel(
-                "Error, RMSS",
-                {"training": "training", "test": "trajectory 6"},
-                "epoch",
-                epochs,
-                "log",
-                "log",
-                y_range=(0.03, 2.0),
-            )
-        ]
-        names = []
-        for j, joint in enumerate(JOINTS):
-            lines = {f"{joint} network": "network", f"{joint} true": "measured"}
-            title = f"{joint.title()} torque on trajectory {TEST_TRAJECTORY}, N m"
-            panels.append(
-                Panel(title, lines, "time, s", time, y_range=(-float(most[j]), float(most[j])))
-            )
-            names += [{"name": n, "low": -float(most[j]), "high": float(most[j])} for n in lines]
+        samples = torque.shape[1]
+        place = np.arange(samples)[None, :, None] * np.ones((len(training.q), 1, 2))
+        shifted = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(shifts)]
+        plain = TrainingSet.from_recording(training, WIDTH, scaling=SCALINGS["printed"])
+        looks = np.maximum(1, np.arange(0, epochs + 1, check))
+        panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
         self.set_trait(
             "spec",
             {
                 "title": "Train a network",
                 "hint": HINT,
+                "code": code,
                 "layout": {
                     "hidden": HIDDEN_UNITS,
                     "outputs": len(JOINTS),
                     "joints": len(JOINTS),
-                    "width": page.WIDTH,
+                    "width": WIDTH,
                 },
                 "runs": len(recording.q),
-                "samples": len(place[0]),
-                "every": page.EVERY,
+                "samples": samples,
+                "every": EVERY,
                 "encoder": encoder.step,
                 "inputs": {
                     "low": plain.inputs.low.tolist(),
@@ -160,38 +151,50 @@ class NetworkTrainer(anywidget.AnyWidget):
                     "gain": plain.outputs.gain.tolist(),
                     "first": float(plain.outputs.target[0]),
                 },
-                "shifts": [shift.tolist() for shift in shifts],
+                "shifts": [shift.tolist() for shift in shifted],
                 "initial": INITIAL,
-                "rate": default_rate(page.WIDTH),
+                "rate": default_rate(WIDTH),
                 "steps": list(STEPS),
                 "momenta": list(MOMENTA),
-                "momentum": page.MOMENTUM,
-                "epochs": page.EPOCHS,
-                "check": page.CHECK,
-                "level": page.LEVEL,
-                "basis": basis(page.WIDTH).tolist(),
+                "momentum": momentum,
+                "epochs": epochs,
+                "check": check,
+                "level": level,
+                "basis": basis(WIDTH).tolist(),
                 "classes": list(CLASSES),
                 "panels": [panel.description() for panel in panels],
                 "curves": [
-                    *({"name": name, "low": 0.03, "high": 2.0} for name in ("training", "test")),
-                    *names,
+                    {"name": name, "low": low, "high": high} for name, (low, high) in ranges.items()
                 ],
             },
         )
-        self.set_trait("positions", counts.astype("<i2").tobytes())
+        self.set_trait("positions", np.round(seen / encoder.step).astype("<i2").tobytes())
         self.set_trait("torques", torque.astype("<f4").tobytes())
-        picture, alt = _still(panels[1:], test.tau[motion], time)
+        picture, alt = _still(panels[1:], training, test)
         self.set_trait("still", picture)
         self.set_trait("still_alt", alt)
         super().__init__()
 
 
-def _still(panels, torque, time) -> tuple[str, str]:
+def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
+    """Charts of the errors and of the torques on the test run, and the ranges of their curves."""
+    errors = {"training": "training", "test": f"trajectory {TEST_TRAJECTORY}"}
+    panels = [Panel("Error, RMSS", errors, "epoch", epochs, "log", "log", y_range=ERRORS)]
+    ranges = dict.fromkeys(errors, ERRORS)
+    for joint, most in zip(JOINTS, (1.15 * np.abs(torque).max(0)).tolist()):
+        lines = {f"{joint} network": "network", f"{joint} true": "measured"}
+        title = f"{joint.title()} torque on trajectory {TEST_TRAJECTORY}, N m"
+        panels.append(Panel(title, lines, "time, s", time, y_range=(-most, most)))
+        ranges |= dict.fromkeys(lines, (-most, most))
+    return panels, ranges
+
+
+def _still(panels, training, test) -> tuple[str, str]:
     """The torques to be learnt and what an untrained network makes of them."""
-    data, (windows, _) = training_set()
+    data = TrainingSet.from_recording(training, WIDTH, scaling=SCALINGS["centred"])
+    windows, torque = cases(test, WIDTH)
     model = TorqueModel(first_weights(1)[0], data.inputs, data.outputs)
-    output = model.weights.activity(windows)[1]
-    told = data.outputs.unscale(output)
+    told = model.torque(windows)
     curves = {}
     for j, joint in enumerate(JOINTS):
         curves |= {f"{joint} network": told[:, j], f"{joint} true": torque[:, j]}

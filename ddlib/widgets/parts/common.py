@@ -16,22 +16,9 @@ def key_of(kind: type) -> str:
 
 
 def default_code(kind: type, names) -> str:
-    """Code that makes a widget with its state, or none if the class needs arguments.
-
-    Parameters
-    ----------
-    kind : type
-    names : iterable of str
-        Its parameters.
-
-    Returns
-    -------
-    str
-        Names in braces stand for values.
-    """
-    given = list(inspect.signature(kind).parameters.values())
-    variadic = (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
-    if any(p.default is p.empty and p.kind not in variadic for p in given):
+    """Code that makes a widget with its state (names in braces), or none if it needs arguments."""
+    given = inspect.signature(kind).parameters.values()
+    if any(p.default is p.empty and p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL) for p in given):
         return ""
     module = kind.__module__
     if (parts := module.split("."))[:2] == ["ddlib", "widgets"] and len(parts) == 3:
@@ -42,11 +29,11 @@ def default_code(kind: type, names) -> str:
 
 def filled(code: str, values: Mapping) -> str:
     """`code` with the values in place of their names in braces, as the page's script does it."""
-    named = {name: literal(value) for name, value in values.items()}
-    return re.sub(r"\{(\w+)\}", lambda found: named.get(found[1], found[0]), code)
+    named = {name: _literal(value) for name, value in values.items()}
+    return re.sub(r"\{(\w+)\}", lambda match: named.get(match[1], match[0]), code)
 
 
-def literal(value: str | int | float | bool) -> str:
+def _literal(value: str | int | float | bool) -> str:
     """A parameter's value as Python writes it, numbers with six digits."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
@@ -54,20 +41,7 @@ def literal(value: str | int | float | bool) -> str:
 
 
 def checked_presets(presets: Mapping | None, parameters: Mapping[str, Parameter | Choice]) -> list:
-    """Labels and values of presets, each value checked by its parameter.
-
-    Parameters
-    ----------
-    presets : mapping
-        Label -> value by name of a parameter.
-    parameters : mapping
-        Those of the widget by name.
-
-    Raises
-    ------
-    ValueError
-        If there is no such parameter, or if a value does not fit.
-    """
+    """Labels and values of presets, each value checked by its parameter."""
     checked = []
     for label, values in (presets or {}).items():
         for name in values:

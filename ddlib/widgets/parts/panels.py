@@ -38,8 +38,6 @@ class Panel:
         ends of a shaded interval.
     ticks : sequence of (float, str), optional
         Places and texts in place of numbers on the x axis.
-    x_texts : sequence of str, optional
-        A text for each sample, told instead of the number on x where values are read.
     y_range : pair of float or str, optional
         Lowest and highest y, or names of numbers in the function's result; default: all
         that the curves reach on the grid.
@@ -60,7 +58,6 @@ class Panel:
     fixed: Mapping[str, Sequence[float]] | None = None
     cursor: str | tuple[str, str] | None = None
     ticks: Sequence[tuple[float, str]] | None = None
-    x_texts: Sequence[str] = ()
     y_range: tuple[float | str, float | str] | None = None
     y_fit: bool = False
     limits: tuple[float | None, float | None] = (None, None)
@@ -91,9 +88,6 @@ class Panel:
         ticks = [(number(f"ticks {what}", place), str(text)) for place, text in self.ticks or ()]
         checked = {"curves": legend, "x": x, "fixed": fixed, "cursor": cursor, "ticks": ticks}
         checked["y_range"] = self._checked_range(what)
-        checked["x_texts"] = texts = tuple(map(str, self.x_texts))
-        if texts and len(texts) != x.size:
-            raise ValueError(f"x_texts {what} must be {x.size} like x, got {len(texts)}")
         checked["limits"] = self._checked_limits(what)
         for name, value in checked.items():
             object.__setattr__(self, name, value)
@@ -130,18 +124,15 @@ class Panel:
             **vars(self),
             "x": np.round(self.x, 9).tolist(),
             "curves": [[name, legend] for name, legend in self.curves.items()],
-            "fixed": [[name, _short(values)] for name, values in self.fixed.items()],
+            "fixed": [
+                [name, [float(f"{v:.6g}") for v in values]] for name, values in self.fixed.items()
+            ],
             "cursor": list(self.cursor),
             "ticks": [list(tick) for tick in self.ticks],
-            "x_texts": list(self.x_texts),
             "y_range": self.y_range and list(self.y_range),
             "y_fit": bool(self.y_fit),
             "limits": list(self.limits),
         }
-
-
-def _short(values) -> list[float]:
-    return [float(f"{v:.6g}") for v in values]
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -36,9 +37,6 @@ class Parameter:
         Number of baked points, 2 or more.
     scale : {"linear", "log"}
         Spacing of the baked points and of the slider.
-    crowd : float
-        1 or more: the baked points crowd towards `low`, at the fractions ``(k / n)**crowd``
-        of the range, where the function changes faster there. The slider stays as it is.
     """
 
     name: str
@@ -49,7 +47,6 @@ class Parameter:
     unit: str = ""
     grid: int = 7
     scale: str = "linear"
-    crowd: float = 1.0
 
     def __post_init__(self):
         name = self.name
@@ -61,16 +58,14 @@ class Parameter:
         one_of(f"scale of {name}", self.scale, ("linear", "log"))
         if self.scale == "log":
             number(f"low of {name}", self.low, 0.0, open_low=True)
-        number(f"crowd of {name}", self.crowd, 1.0, 4.0)
 
     def check(self, value) -> float:
-        """`value` as a float; an error that names parameter, value and range otherwise."""
+        """`value` as a float, otherwise an error that names parameter, value and range."""
         return number(self.name, value, self.low, self.high)
 
     def points(self) -> list[float]:
-        """The baked points, `grid` of them."""
-        fractions = np.linspace(0, 1, self.grid) ** self.crowd
-        return [min(self.place(f), float(self.high)) for f in fractions]
+        """The baked points."""
+        return [min(self.place(f), float(self.high)) for f in np.linspace(0, 1, self.grid)]
 
     def place(self, fraction) -> float:
         """The value at a `fraction` (0 to 1) of the range, as the slider divides it."""
@@ -78,21 +73,16 @@ class Parameter:
             return float(self.low * (self.high / self.low) ** fraction)
         return float(self.low + (self.high - self.low) * fraction)
 
-    def weights(self, value, cubic=True) -> list[tuple[int, float]]:
-        """Places among the coefficients of a spline, and their weights, at `value`.
-
-        With ``cubic`` the four B-splines of the interval, otherwise its two ends.
-        """
+    def weights(self, value) -> list[tuple[int, float]]:
+        """Places of the interval's four B-splines among a spline's coefficients, and weights."""
         x = self.check(value)
         if self.scale == "log":
             position = np.log(x / self.low) / np.log(self.high / self.low)
         else:
             position = (x - self.low) / (self.high - self.low)
-        position = position ** (1 / self.crowd) * (self.grid - 1)
+        position = position * (self.grid - 1)
         i = min(max(int(position), 0), self.grid - 2)
         f = position - i
-        if not cubic:
-            return [(i, 1 - f), (i + 1, f)]
         w = [
             (1 - f) ** 3 / 6,
             ((3 * f - 6) * f * f + 4) / 6,
@@ -101,17 +91,13 @@ class Parameter:
         ]
         return list(zip(range(i, i + 4), w))
 
-    def coefficients(self, cubic=True) -> np.ndarray:
-        """The matrix that makes a spline's coefficients from the values at the baked points.
+    def coefficients(self) -> np.ndarray:
+        """The matrix from values at the baked points to a spline's coefficients.
 
-        With ``cubic`` those of the cubic spline whose third derivative is continuous at the
-        second point and at the last but one ("not a knot": cubic polynomials come out
-        exactly), shape ``(grid + 2, grid)``; otherwise the identity. Source: de Boor (1978),
-        chapter IV.
+        Cubic, its third derivative continuous at the second point and at the last but one: cubic
+        polynomials come out exactly ("not a knot", de Boor 1978, chapter IV).
         """
         n = self.grid
-        if not cubic:
-            return np.eye(n)
         system = np.zeros((n + 2, n + 2))
         for k in range(n):
             system[k + 1, k : k + 3] = 1 / 6, 4 / 6, 1 / 6
@@ -125,8 +111,7 @@ class Parameter:
 
     def description(self) -> dict:
         """What the page needs to know."""
-        fields = ("name", "label", "value", "low", "high", "unit", "grid", "scale", "crowd")
-        return {f: getattr(self, f) for f in fields}
+        return dict(vars(self))
 
 
 @dataclass(frozen=True)
@@ -160,7 +145,7 @@ class Choice:
         if isinstance(given, str) or not isinstance(given, (Mapping, Sequence, np.ndarray)):
             raise TypeError(f"options of {self.name} must be a mapping or sequence, got {given!r}")
         pairs = given.items() if isinstance(given, Mapping) else [(key, str(key)) for key in given]
-        options = [(self._plain(key), str(label)) for key, label in pairs]
+        options = [(self._key(key), str(label)) for key, label in pairs]
         if len(options) < 2:
             raise ValueError(f"options of {self.name} must be two or more, got {len(options)}")
         if len({repr(key) for key, _ in options}) < len(options):
@@ -171,9 +156,9 @@ class Choice:
             raise ValueError(f"options of the switch {self.name} must be False and True: {given!r}")
         object.__setattr__(self, "value", self.check(self.value))
 
-    def _plain(self, key):
-        key = key.item() if isinstance(key, np.generic) else key
-        if not isinstance(key, (str, int, float)) or key != key or abs(_size(key)) == np.inf:
+    def _key(self, key):
+        key = _plain(key)
+        if not isinstance(key, str) and not (isinstance(key, (int, float)) and isfinite(key)):
             raise TypeError(f"options of {self.name} must be texts or finite numbers, got {key!r}")
         return key
 
@@ -183,11 +168,12 @@ class Choice:
         return len(self.options)
 
     def check(self, value) -> str | int | float | bool:
-        """The key that equals `value`; an error that names choice, value and options otherwise."""
-        value = value.item() if isinstance(value, np.generic) else value
-        for key in self.options:
-            if isinstance(value, bool) == isinstance(key, bool) and _same(key, value):
-                return key
+        """The key that equals `value`, otherwise an error that names choice, value and options."""
+        value = _plain(value)
+        if isinstance(value, str | int | float):
+            for key in self.options:
+                if key == value and isinstance(key, bool) == isinstance(value, bool):
+                    return key  # True is no 1
         known = ", ".join(map(repr, self.options))
         raise ValueError(f"{self.name} must be one of {known}, got {value!r}")
 
@@ -199,12 +185,12 @@ class Choice:
         """The key at a `fraction` (0 to 1) of the list."""
         return self.points()[min(int(fraction * self.grid), self.grid - 1)]
 
-    def weights(self, value, cubic=True) -> list[tuple[int, float]]:
-        """The option alone, with weight 1; `cubic` changes nothing."""
+    def weights(self, value) -> list[tuple[int, float]]:
+        """The option alone, with weight 1."""
         return [(self.points().index(self.check(value)), 1.0)]
 
-    def coefficients(self, cubic=True) -> np.ndarray:
-        """The identity: options have nothing between them; `cubic` changes nothing."""
+    def coefficients(self) -> np.ndarray:
+        """The identity: options have nothing between them."""
         return np.eye(self.grid)
 
     def description(self) -> dict:
@@ -214,10 +200,5 @@ class Choice:
         return {**fields, "options": options}
 
 
-def _size(key) -> float:
-    return 0.0 if isinstance(key, str) else key
-
-
-def _same(key, value) -> bool:
-    kinds = (str,) if isinstance(key, str) else (int, float)
-    return isinstance(value, kinds) and key == value
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value

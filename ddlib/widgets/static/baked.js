@@ -12,13 +12,13 @@ function crc32(bytes) {
 
 // What there must be in each part of a description, separated by spaces.
 const FIELDS = {
-  spec: "key title note code presets parameters curves panels scalars pad cubic groups checksum error checks",
+  spec: "key title note code presets parameters curves panels scalars pad groups checksum error checks",
   group: "parameters curves rank wide scale",
   parameter: "name label grid value",
   choice: "display",
-  range: "low high unit scale crowd",
+  range: "low high unit scale",
   curve: "name length low high",
-  panel: "y_label curves x_label x x_texts x_scale y_scale kind fixed cursor ticks y_range y_fit",
+  panel: "y_label curves x_label x x_scale y_scale kind fixed cursor ticks y_range y_fit",
   scalar: "name label unit scale",
   pad: "x y marks region region_label snap",
 };
@@ -53,7 +53,7 @@ export function checkSpec(spec) {
 export const samplesOf = (spec) => spec.curves.reduce((sum, curve) => sum + curve.length, 0);
 
 // How many spline coefficients a parameter has.
-const sizeOf = (spec, p) => p.grid + (spec.cubic && !p.options ? 2 : 0);
+const sizeOf = (p) => p.grid + (p.options ? 0 : 2);
 
 // The baked tables, one per group, or an error that says what is wrong with them.
 export function readTables(spec, view) {
@@ -64,7 +64,7 @@ export function readTables(spec, view) {
   const groups = spec.groups.map((group) => {
     const pieces = group.curves.map((k) => ({ ...spec.curves[k], start: starts[k] }));
     const samples = pieces.reduce((sum, { length }) => sum + length, 0);
-    const sizes = group.parameters.map((k) => sizeOf(spec, spec.parameters[k]));
+    const sizes = group.parameters.map((k) => sizeOf(spec.parameters[k]));
     const rows = sizes.reduce((product, size) => product * size, 1);
     return { ...group, pieces, samples, sizes, rows, columns: group.rank || samples };
   });
@@ -116,12 +116,11 @@ export function fromFraction(p, fraction) {
 export const indexOf = (p, key) => p.options.findIndex(([option]) => option === key);
 
 // Places among the spline's coefficients, and weights, as `weights` in parameters.py.
-export function weights(p, value, cubic) {
+export function weights(p, value) {
   if (p.options) return [[indexOf(p, value), 1]];
-  const position = toFraction(p, value) ** (1 / p.crowd) * (p.grid - 1);
+  const position = toFraction(p, value) * (p.grid - 1);
   const i = Math.min(Math.max(Math.trunc(position), 0), p.grid - 2);
   const f = position - i;
-  if (!cubic) return [[i, 1 - f], [i + 1, f]];
   return [
     [i, (1 - f) ** 3 / 6],
     [i + 1, ((3 * f - 6) * f * f + 4) / 6],
@@ -135,7 +134,7 @@ function mix(spec, group, values) {
   const { parameters, sizes, samples, rank, columns, scale, table, shapes } = group;
   let corners = [[0, 1]];
   parameters.forEach((k, axis) => {
-    const points = weights(spec.parameters[k], values[k], spec.cubic);
+    const points = weights(spec.parameters[k], values[k]);
     corners = corners.flatMap(([row, w]) => points.map(([i, u]) => [row * sizes[axis] + i, w * u]));
   });
   const mixed = new Float64Array(columns);

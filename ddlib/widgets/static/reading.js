@@ -28,7 +28,6 @@ function readerOf(plot) {
   let index = null;
 
   function nameOf(i) {
-    if (panel.x_texts.length) return `${quantity} ${panel.x_texts[i]}`;
     const tick = panel.ticks.find(([at]) => at === panel.x[i]);
     if (tick) return tick[1];
     const { x, x_scale } = panel;
