@@ -1,0 +1,162 @@
+"""What holds in every notebook, and in every chapter: each rule returns what is against it."""
+
+from __future__ import annotations
+
+import re
+
+import nbformat
+from bookkeeping import (
+    ends_with_a_bare_value,
+    lines_of_bookkeeping,
+    only_imports,
+    raw_prints,
+    shows_something,
+)
+
+MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 18, 84  # "about 15", and what a page has room for
+MAX_THESIS = 200  # characters
+HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
+FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
+CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
+MIN_EXERCISES = 3
+
+
+def tags(cell) -> set[str]:
+    return set(cell.metadata.get("tags", []))
+
+
+def code_of(notebook) -> list:
+    return [cell for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def visible(notebook) -> list:
+    """The code cells that stand open."""
+    return [cell for cell in code_of(notebook) if not tags(cell) & HIDDEN]
+
+
+def headings(text: str, level: int) -> list[str]:
+    """Markdown headings of one level, without attributes in braces; code fences are skipped."""
+    text = re.sub(r"^(`{3,}|:{3,}).*?^\1", "", text, flags=re.M | re.S)
+    return re.findall(rf"^#{{{level}}} +(.*?) *(?:\{{.*\}})?$", text, flags=re.M)
+
+
+def prose(notebook) -> str:
+    return "\n\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+
+
+# --- every notebook -----------------------------------------------------------------------
+
+
+def is_stored_bare(notebook) -> list:
+    """Valid and stripped, every cell has an id of its own and is not empty."""
+    nbformat.validate(notebook)
+    ids = [cell.id for cell in notebook.cells]
+    wrong = [cell.id for cell in code_of(notebook) if cell.outputs or cell.execution_count]
+    wrong += [cell.id for cell in notebook.cells if not cell.source.strip()]
+    wrong += [name for name in ids if ids.count(name) > 1]
+    wrong += ["widgets"] * ("widgets" in notebook.metadata)
+    return wrong + ["kernel"] * (notebook.metadata.kernelspec.name != "python3")
+
+
+def has_one_title(notebook) -> list:
+    found = headings(prose(notebook), 1)
+    first = notebook.cells[0]
+    return [] if len(found) == 1 and headings(first.source, 1) == found else [found]
+
+
+def visible_code_is_short(notebook) -> list:
+    wrong = []
+    for cell in visible(notebook):
+        lines = [line for line in cell.source.splitlines() if line.strip()]
+        if len(lines) > MAX_VISIBLE_LINES or max(map(len, lines)) > MAX_VISIBLE_COLUMNS:
+            wrong.append(cell.id)
+    return wrong
+
+
+def visible_code_teaches(notebook) -> list:
+    return [line for cell in visible(notebook) for line in lines_of_bookkeeping(cell.source)]
+
+
+def folds_open_onto_something(notebook) -> list:
+    """One fold for the imports of a recipe is allowed where no chapter's grid is asked for."""
+    folds = [c for c in code_of(notebook) if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
+    silent = [cell for cell in folds if not shows_something(cell.source)]
+    chapter = headings(prose(notebook), 2)[-3:] == CLOSING
+    recipes = [c for c in silent if not chapter and set(only_imports(c.source)) == {True}]
+    return [cell.id for cell in silent if cell not in recipes[:1]]
+
+
+def what_is_removed_shows_nothing(notebook) -> list:
+    """`remove-cell` takes an output away, too, so such a cell has none."""
+    removed = [cell for cell in code_of(notebook) if "remove-cell" in tags(cell)]
+    return [cell.id for cell in removed if shows_something(cell.source)]
+
+
+def outputs_are_sentences_or_tables(notebook) -> list:
+    code = code_of(notebook)
+    wrong = [found for cell in code for found in raw_prints(cell.source)]
+    return wrong + [cell.id for cell in code if ends_with_a_bare_value(cell.source)]
+
+
+EVERYWHERE = (
+    is_stored_bare,
+    has_one_title,
+    visible_code_is_short,
+    visible_code_teaches,
+    folds_open_onto_something,
+    what_is_removed_shows_nothing,
+    outputs_are_sentences_or_tables,
+)
+
+
+# --- every chapter ------------------------------------------------------------------------
+
+
+def title_then_thesis(notebook) -> list:
+    title, thesis = re.split(r"\n\s*\n", notebook.cells[0].source.strip())[:2]
+    titled = re.fullmatch(r"(\([\w-]+\)=\n)?# .+", title)
+    plain = not re.match(r"[#>`:|*-]+ |\*\*", thesis) and len(thesis) <= MAX_THESIS
+    return [] if titled and plain else [title, thesis]
+
+
+def opening(notebook) -> list:
+    text = prose(notebook).split("\n## ")[0]
+    found = re.findall(r"\*\*(You will|You need|Time to run)\b", text)
+    measured = re.search(r"\*\*Time to run\*\* \{runtime\}`", text)
+    return [] if measured and found == ["You will", "You need", "Time to run"] else [found]
+
+
+def closing(notebook) -> list:
+    found = headings(prose(notebook), 2)[-len(CLOSING) :]
+    return [] if found == CLOSING else found
+
+
+def exercises(notebook) -> list:
+    """The cells after the heading *On your own*, up to the next one and with it."""
+    section, found = "", []
+    for cell in notebook.cells:
+        if section == "On your own":
+            found.append(cell)
+        if cell.cell_type == "markdown":
+            section = ([section, *headings(cell.source, 2)])[-1]
+    return found
+
+
+def open_answer(text: str) -> str:
+    """What a markdown cell says before its next question or heading, outside a closed fold."""
+    before = re.split(r"^(?=\*\*\d+\. |## )", text, maxsplit=1, flags=re.M)[0]
+    return re.sub(r"^<details .*?^</details>$", "", before, flags=re.M | re.S).strip()
+
+
+def answers_are_folded(notebook) -> list:
+    """On the page by a tag, in JupyterLab by its own metadata; words by an element for both."""
+    cells = exercises(notebook)
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    wrong = [
+        c.id for c in code if "hide-cell" not in tags(c) or c.metadata.get("jupyter") != FOLDED
+    ]
+    wrong += ["too few"] * (len(code) < MIN_EXERCISES)
+    return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
+
+
+CHAPTER = (title_then_thesis, opening, closing, answers_are_folded)
