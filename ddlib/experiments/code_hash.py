@@ -24,7 +24,7 @@ ROOTS = {"ddlib": PACKAGE}
 CHECKS = "_check"
 """Module of functions ``check(name, value, ...)`` that hand a value on or refuse it."""
 
-ASIDE = (CHECKS, "results", "sweeps", "code_hash")
+ASIDE = (CHECKS, "workshop", "results", "sweeps", "code_hash")
 """Last names of modules that decide no number: what is used of them counts by its name alone."""
 
 SILENT = {"annotation", "returns", "ctx", "kind", "type_params", "type_comment", "simple"}
@@ -250,7 +250,7 @@ class _Writer:
                     self.write(item)
             self.form.append("]")
         elif isinstance(node, ast.Call) and self._is_check(node):
-            self.write(node.args[1])  # the value that it hands on
+            self.write(node.args[min(1, len(node.args) - 1)])  # the value that it hands on
         elif isinstance(node, (ast.Name, ast.Attribute)) and self._place(node) is not None:
             self._write_place(*self._place(node))
         elif isinstance(node, ast.Name):
@@ -309,7 +309,7 @@ class _Writer:
 
     def _is_check(self, node: ast.Call) -> bool:
         module, _ = self._place(node.func) or ("", None)
-        return module.rpartition(".")[2] == CHECKS and len(node.args) > 1
+        return module.rpartition(".")[2] == CHECKS and bool(node.args)
 
     def _is_idle(self, node) -> bool:
         called = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)
