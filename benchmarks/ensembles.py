@@ -8,7 +8,7 @@ import torch
 from measure import THREADS, interleaved, memory_row, ratio
 
 from ddlib.experiments import STATE_FEEDBACK, split
-from ddlib.learning import Weights, WindowNetwork, training
+from ddlib.learning import Weights, WindowNetwork, descent, training
 
 MEMBERS = 32
 MOMENTUM = 0.95
@@ -38,14 +38,14 @@ def eager_loop(network, x, y, rate, momentum, epochs, warm_up=0):
 @contextmanager
 def threads(count: int):
     """Let torch, and `train_ensemble`, use so many threads."""
-    before = torch.get_num_threads(), training.WORKERS
+    before = torch.get_num_threads(), descent.WORKERS
     torch.set_num_threads(count)
-    training.WORKERS = count
+    descent.WORKERS = count
     try:
         yield
     finally:
         torch.set_num_threads(before[0])
-        training.WORKERS = before[1]
+        descent.WORKERS = before[1]
 
 
 def training_set(width: int):
@@ -64,7 +64,7 @@ def measure(width: int, epochs: int = 300, repeats: int = 5) -> list[dict]:
 
     def ours(count):
         with threads(count):
-            training.train_ensemble(weights, data, **options)
+            descent.train_ensemble(weights, data, **options)
 
     def eager(count):
         with threads(count):

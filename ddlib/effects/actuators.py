@@ -1,7 +1,4 @@
-"""What stands between the commanded torque and the joint: amplifier, motor, shaft and gears.
-
-Small frozen objects; every value is per joint, shape ``(2,)``.
-"""
+"""What stands between the commanded torque and the joint: amplifier, motor, shaft and gears."""
 
 from __future__ import annotations
 
@@ -14,9 +11,9 @@ from ddlib._check import finite_array, non_negative, number, positive
 
 @dataclass(frozen=True)
 class Saturation:
-    """Torque limited to plus or minus `limit` (N m per joint, shape (2,))."""
+    """Torque limited to plus or minus `limit`."""
 
-    limit: tuple[float, float]
+    limit: tuple[float, float]  #: N m per joint.
 
     def __post_init__(self):
         positive("limit", self.limit)
@@ -27,13 +24,7 @@ class Saturation:
         return np.clip(x, -limit, limit)
 
     def inverse(self, y) -> np.ndarray:
-        """The torque to command for `y` (N m): `y` itself, where the actuator can give it.
-
-        Raises
-        ------
-        ValueError
-            If `y` is beyond the limit.
-        """
+        """The torque to command for `y` (N m): `y` itself, refused beyond the limit."""
         y = finite_array("y", y, 2)
         if (np.abs(y) > np.asarray(self.limit)).any():
             raise ValueError(f"y must lie within plus or minus {self.limit} N m, got {y.tolist()}")
@@ -42,12 +33,9 @@ class Saturation:
 
 @dataclass(frozen=True)
 class DeadZone:
-    """The first `width` N m of a torque, either way, are lost (per joint, shape (2,)).
+    """The first `width` of a torque, either way, are lost: ``x - width`` beyond, 0 within."""
 
-    What is left starts from zero: ``x - width`` for ``x > width``, 0 within.
-    """
-
-    width: tuple[float, float]
+    width: tuple[float, float]  #: N m per joint.
 
     def __post_init__(self):
         non_negative("width", self.width, 2)
@@ -70,23 +58,12 @@ class Ripple:
     ``tau (1 + share sin(cycles q + phase)) + cogging sin(cycles q + phase)``. The magnets of
     a motor pull at the teeth of its iron with the `cogging` torque even without a current;
     the `share` is what its windings add, in proportion to the current.
-
-    Parameters
-    ----------
-    cogging : array_like, shape (2,)
-        Amplitude, N m per joint, not negative.
-    share : array_like, shape (2,)
-        Amplitude relative to the commanded torque, 0 to 1.
-    cycles : array_like, shape (2,)
-        Whole number of waves a turn, 1 or more.
-    phase : float
-        Angle of the wave at ``q = 0``, rad.
     """
 
-    cogging: tuple[float, float] = (0.0, 0.0)
-    share: tuple[float, float] = (0.0, 0.0)
-    cycles: tuple[int, int] = (60, 60)
-    phase: float = 0.0
+    cogging: tuple[float, float] = (0.0, 0.0)  #: Amplitude, N m per joint.
+    share: tuple[float, float] = (0.0, 0.0)  #: Amplitude relative to the torque, 0 to 1.
+    cycles: tuple[int, int] = (60, 60)  #: Whole number of waves a turn.
+    phase: float = 0.0  #: Angle of the wave at ``q = 0``, rad.
 
     def __post_init__(self):
         non_negative("cogging", self.cogging, 2)
@@ -111,23 +88,12 @@ class FlexibleJoint:
     stiff shaft gives back the rigid arm. The elbow's motor rides on link 1 and turns with
     it. Friction, ripple and the encoder stay at the motor. (Spong 1987, without his
     assumption of high gear ratios.)
-
-    Parameters
-    ----------
-    stiffness : array_like, shape (2,) or (..., 2)
-        N m/rad per joint, positive.
-    motor_inertia : array_like, shape (2,)
-        kg m^2 per joint, positive; part of the arm's own inertia.
-    damping : array_like, shape (2,) or (..., 2)
-        Of the twist, N m s/rad.
-    gap : array_like, shape (2,) or (..., 2)
-        Play (backlash), rad: the motor turns this far between its two contacts.
     """
 
-    stiffness: tuple[float, float]
-    motor_inertia: tuple[float, float]
-    damping: tuple[float, float] = (0.0, 0.0)
-    gap: tuple[float, float] = (0.0, 0.0)
+    stiffness: tuple[float, float]  #: N m/rad per joint, (2,) or (runs, 2).
+    motor_inertia: tuple[float, float]  #: kg m^2 per joint; part of the arm's own inertia.
+    damping: tuple[float, float] = (0.0, 0.0)  #: Of the twist, N m s/rad.
+    gap: tuple[float, float] = (0.0, 0.0)  #: Play, rad, between the motor's two contacts.
 
     def __post_init__(self):
         positive("stiffness", self.stiffness)
@@ -135,28 +101,15 @@ class FlexibleJoint:
         non_negative("damping", self.damping, 2)
         non_negative("gap", self.gap, 2)
 
-    def _pressed(self, twist):
-        half = np.asarray(self.gap) / 2
-        return twist - np.clip(twist, -half, half)
-
     def spring_torque(self, twist, rate) -> np.ndarray:
         """Torque from motor to link (N m) at `twist` (rad), motor minus link, and its `rate`."""
-        pressed = self._pressed(twist)
+        half = np.asarray(self.gap) / 2
+        pressed = twist - np.clip(twist, -half, half)
         touching = (pressed != 0) | (np.asarray(self.gap) == 0)
         return np.asarray(self.stiffness) * pressed + np.asarray(self.damping) * rate * touching
 
-    def energy(self, twist) -> np.ndarray:
-        """Energy in the springs at `twist` (rad, ``(..., 2)``), J, shape ``(...)``."""
-        return 0.5 * (np.asarray(self.stiffness) * self._pressed(twist) ** 2).sum(-1)
-
     def links(self, arm):
-        """The `arm` without its motors' inertia: what hangs behind the springs.
-
-        Raises
-        ------
-        ValueError
-            If the arm's inertia is not larger than the motors'.
-        """
+        """The `arm` without its motors' inertia: what hangs behind the springs."""
         shoulder, elbow = self.motor_inertia
         try:
             return replace(arm, a=arm.a - shoulder - elbow, d=arm.d - elbow)
@@ -166,11 +119,7 @@ class FlexibleJoint:
             ) from error
 
     def mass_matrix(self, arm, q) -> np.ndarray:
-        """Mass matrix of links and motors of `arm`, kg m^2, shape ``(..., 4, 4)``.
-
-        Coordinates: the two link angles, then the two motor angles. `q` holds link angles,
-        rad, ``(..., 2)``.
-        """
+        """Mass matrix (..., 4, 4), kg m^2, of both links, then both motors; `q`: link angles."""
         links = self.links(arm).mass_matrix(q)
         shoulder, elbow = self.motor_inertia
         mass = np.zeros((*links.shape[:-2], 4, 4))
@@ -181,12 +130,10 @@ class FlexibleJoint:
         return mass
 
     def mode_frequencies(self, arm, q) -> np.ndarray:
-        """Natural frequencies (rad/s) of the twists of `arm` at link angles `q` (rad).
-
-        Small swings without damping or play, the motors free; shape ``(..., 2)``, rising.
-        """
+        """Natural frequencies (..., 2) of small twists at link angles `q`, rad/s, rising."""
         k = np.asarray(self.stiffness, dtype=float)[..., None] * np.eye(2)
         spring = np.block([[k, -k], [-k, k]])
+        # modes of M x'' + K x = 0; two are rigid rotations of frequency 0
         squared = np.linalg.eigvals(np.linalg.solve(self.mass_matrix(arm, q), spring)).real
         return np.sqrt(np.sort(squared, axis=-1)[..., 2:])
 
@@ -195,14 +142,10 @@ class FlexibleJoint:
 class ComputingTime:
     """Time between reading the sensors and applying the torque computed from them.
 
-    Parameters
-    ----------
-    seconds : float
-        Not negative and shorter than the control period; `ddlib.effects.real_arm.Delay` adds whole
-        periods. Khosla's customised dynamics take 1.2 ms of 2 (paper, section 1.1).
+    Khosla's customised dynamics take 1.2 ms of 2 (paper, section 1.1).
     """
 
-    seconds: float
+    seconds: float  #: Shorter than the control period; `Delay` adds whole periods.
 
     def __post_init__(self):
         number("seconds", self.seconds, 0.0)

@@ -1,6 +1,5 @@
 """Friction laws of a joint: viscous, Coulomb, Stribeck, and one that truly sticks.
 
-Each is a small frozen object with ``torque(qd)``, the torque that opposes the motion.
 Strengths are arrays ``(2,)``, or ``(runs, 2)`` for runs that differ in friction.
 """
 
@@ -15,15 +14,9 @@ from ddlib._check import non_negative, number
 
 @dataclass(frozen=True)
 class ViscousFriction:
-    """Friction torque proportional to velocity.
+    """Friction torque proportional to velocity."""
 
-    Parameters
-    ----------
-    coefficient : array_like, shape (2,) or (..., 2)
-        N m s/rad per joint, not negative.
-    """
-
-    coefficient: tuple[float, float]
+    coefficient: tuple[float, float]  #: N m s/rad per joint.
 
     def __post_init__(self):
         non_negative("coefficient", self.coefficient, 2)
@@ -40,19 +33,13 @@ class ViscousFriction:
 
 @dataclass(frozen=True)
 class CoulombFriction:
-    """Friction torque of constant size against the motion, smooth through zero.
+    """Friction torque of constant size against the motion, ``level tanh(qd / smoothing)``.
 
-    Parameters
-    ----------
-    level : array_like, shape (2,) or (..., 2)
-        N m per joint, not negative.
-    smoothing : float
-        Velocity in rad/s over which the sign turns (``tanh(qd / smoothing)``).
-        It stands in for sticking: below it the joint creeps instead of resting.
+    The smoothing stands in for sticking: below it the joint creeps instead of resting.
     """
 
-    level: tuple[float, float]
-    smoothing: float = 2e-3
+    level: tuple[float, float]  #: N m per joint.
+    smoothing: float = 2e-3  #: Velocity over which the sign turns, rad/s.
 
     def __post_init__(self):
         non_negative("level", self.level, 2)
@@ -72,9 +59,9 @@ class CoulombFriction:
 class _Stribeck:
     """Coulomb friction that is larger near rest (Armstrong-Helouvry et al. 1994)."""
 
-    level: tuple[float, float]
-    breakaway: tuple[float, float]
-    speed: float = 0.02
+    level: tuple[float, float]  #: Torque at speed, N m per joint.
+    breakaway: tuple[float, float]  #: Torque near rest, N m per joint, not below `level`.
+    speed: float = 0.02  #: Stribeck velocity, rad/s: where the excess has fallen to 1/e.
 
     def __post_init__(self):
         level = non_negative("level", self.level, 2)
@@ -98,20 +85,9 @@ class StribeckFriction(_Stribeck):
 
     ``[level + (breakaway - level) exp(-(qd / speed)^2)] tanh(qd / smoothing)``: the torque
     falls with speed while the lubricant film builds up.
-
-    Parameters
-    ----------
-    level : array_like, shape (2,) or (..., 2)
-        Torque at speed, N m per joint, not negative.
-    breakaway : array_like, shape (2,) or (..., 2)
-        Torque near rest, N m per joint, not below `level`.
-    speed : float
-        Stribeck velocity, rad/s: where the excess has fallen to 1/e.
-    smoothing : float
-        As in `CoulombFriction`; well below `speed`, or the excess never shows.
     """
 
-    smoothing: float = 2e-3
+    smoothing: float = 2e-3  #: rad/s, well below `speed`, or the excess never shows.
 
     def __post_init__(self):
         super().__post_init__()
@@ -135,15 +111,6 @@ class StickSlipFriction(_Stribeck):
     `breakaway` (Karnopp 1985, with a band of zero width). The plant decides at each step
     which joints stick (`ddlib.simulation.plant`): friction's state is that the velocity is
     exactly zero.
-
-    Parameters
-    ----------
-    level : array_like, shape (2,) or (..., 2)
-        Torque at speed, N m per joint, not negative.
-    breakaway : array_like, shape (2,) or (..., 2)
-        Largest torque that holds a joint at rest, N m per joint, not below `level`.
-    speed : float
-        Stribeck velocity, rad/s: where the excess has fallen to 1/e.
     """
 
     def torque(self, qd):

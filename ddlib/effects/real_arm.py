@@ -1,15 +1,10 @@
-"""What Lagrange-Euler leaves out: friction, actuators and sensors as they are.
-
-Each effect is a small frozen object. `Effects` collects them in the order in
-which a signal meets them; leaving one out switches it off. Frictions are written in
-`ddlib.effects.friction`, motors and shafts in `ddlib.effects.actuators`.
-"""
+"""Sensors, and `Effects`: all effects in the order in which a signal meets them."""
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,9 +15,9 @@ from ddlib.effects.friction import CoulombFriction, ViscousFriction
 
 @dataclass(frozen=True)
 class Quantisation:
-    """A reading rounded to the nearest multiple of `step` (in the reading's unit)."""
+    """A reading rounded to the nearest multiple of `step`."""
 
-    step: float
+    step: float  #: In the reading's unit.
 
     def __post_init__(self):
         number("step", self.step, 0.0, open_low=True)
@@ -72,10 +67,7 @@ class Delay:
         integer("periods", self.periods, 0)
 
     def start(self, initial):
-        """The delay of one run: a function ``late(x, rng)``, called once a sample.
-
-        Until its first sample arrives it gives `initial`.
-        """
+        """The delay of one run, ``late(x, rng)``; it gives `initial` at first."""
         waiting = deque([initial] * self.periods)
 
         def late(x, rng=None):
@@ -94,20 +86,15 @@ class Backlash:
     speed, only on the turning points that have been passed (Krasnosel'skii & Pokrovskii 1989).
     It stands for gears whose motor is light and held by its own friction; `FlexibleJoint`
     has play with the motor's motion. A direct-drive joint has none.
-
-    Parameters
-    ----------
-    gap : array_like, shape (2,) or (..., 2)
-        Whole play, rad per joint, not negative.
     """
 
-    gap: tuple[float, float]
+    gap: tuple[float, float]  #: Whole play, rad per joint.
 
     def __post_init__(self):
         non_negative("gap", self.gap, 2)
 
     def start(self, initial):
-        """The play of one run: a function ``play(x, rng)``, centred on `initial` at first."""
+        """The play of one run, ``play(x, rng)``, centred on `initial` at first."""
         half, held = np.asarray(self.gap) / 2, initial
 
         def play(x, rng=None):
@@ -131,6 +118,8 @@ _METHODS = {
 @dataclass(frozen=True, repr=False)
 class Effects:
     """Everything between the rigid-body equations and what is written to the log.
+
+    Each part is a tuple of effects, in the order in which a signal meets them.
 
     Parameters
     ----------
@@ -156,8 +145,8 @@ class Effects:
     transmission: tuple = ()
 
     def __repr__(self):
-        found = {field.name: getattr(self, field.name) for field in fields(self)}
-        return f"Effects({', '.join(f'{k}={v}' for k, v in found.items() if v) or 'none'})"
+        parts = [f"{name}={part}" for name, part in vars(self).items() if part]
+        return f"Effects({', '.join(parts) or 'none'})"
 
     def __post_init__(self):
         for part, methods in _METHODS.items():
@@ -179,17 +168,7 @@ class Effects:
         return sum(torques[1:], torques[0]) if torques else np.zeros_like(qd)
 
     def without(self, *parts: str) -> Effects:
-        """A copy with whole parts switched off.
-
-        Parameters
-        ----------
-        *parts : {"friction", "actuator", "encoder", "torque_sensor", "motor", "transmission"}
-
-        Raises
-        ------
-        ValueError
-            If a part is unknown.
-        """
+        """A copy with whole parts (``"friction"``, ``"encoder"``, ...) switched off."""
         for part in parts:
             one_of("parts", part, tuple(_METHODS))
         return replace(self, **dict.fromkeys(parts, ()))
@@ -222,8 +201,7 @@ def started(effects: tuple, initial) -> Callable:
     return path
 
 
-IDEAL = Effects()
-"""No effect at all: the rigid-body arm with perfect sensors."""
+IDEAL = Effects()  #: No effect at all: the rigid-body arm with perfect sensors.
 
 CMU_DD_ARM_II_EFFECTS = Effects(
     friction=(ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15))),
@@ -233,7 +211,6 @@ CMU_DD_ARM_II_EFFECTS = Effects(
 )
 """Effects of the surrogate arm: every number is assumed.
 
-The torque noise is 2.4 % of the standard deviation of the torques that
-`ddlib.experiments.setups.STATE_FEEDBACK` records: the share that the training errors of Table 4-1
-leave room for.
+The torque noise is 2.4 % of the standard deviation of the torques in the paper's set-up: the share
+that the training errors of Table 4-1 leave room for.
 """

@@ -24,7 +24,7 @@ import numpy as np
 
 from ddlib._check import BOOK, book_file
 from ddlib.experiments.setups import COURSE, STATE_FEEDBACK
-from ddlib.learning import TorqueModel, kernels
+from ddlib.learning import TorqueModel
 
 FOLDER = BOOK / "results"
 """Where `make reproduce` writes and the chapters read."""
@@ -32,6 +32,8 @@ FOLDER = BOOK / "results"
 
 def stamp(seconds: float) -> dict:
     """What is kept beside a result: time, the machine's kernels, versions."""
+    from ddlib.learning import kernels  # needs PyTorch
+
     return {
         "seconds": round(seconds, 1),
         "machine": f"{platform.system()} {platform.machine()}, {kernels()}",

@@ -223,12 +223,12 @@ def train_windows(
     width, members, seed : int
         Window size, number of networks, seed of the first one's weights.
     snapshots, progress
-        As in `ddlib.learning.training.train_ensemble`.
+        As in `ddlib.learning.train_ensemble`.
 
     Returns
     -------
     model, history, snapshots
-        As from `ddlib.learning.training.train_ensemble`; of `Setup.steps` steps of
+        As from `ddlib.learning.train_ensemble`; of `Setup.steps` steps of
         Levenberg-Marquardt there are no snapshots.
     """
     if setup.steps:

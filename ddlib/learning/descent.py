@@ -1,21 +1,34 @@
-"""The arithmetic of `ddlib.learning.training.train_ensemble`: one epoch of many networks at once.
-
-All members see the same inputs, so one matrix product serves them all; the rest is done
-in place, on as few members as fit into a core's cache.
-"""
+"""Descent with momentum of many networks at once: the sums of `ddlib.learning.train`."""
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import torch
+from tqdm.auto import tqdm
 
-from ddlib.learning.network import Weights
+from ddlib._check import finite_array, integer, shaped
+from ddlib.learning.network import TorqueModel, Weights
+from ddlib.learning.training import (
+    WARM_UP_MOMENTUM,
+    History,
+    TrainingDiverged,
+    TrainingSet,
+    check_descent,
+    check_points,
+    default_rate,
+    warn_if_worse_than_mean,
+)
 
-_times_slope = torch.ops.aten.sigmoid_backward.grad_input  # g, s -> g s (1 - s), one pass
+WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
+BLOCK = 8  # most members that a thread trains side by side: what fits into a core's cache
 
+# Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
+# uses: its kernels take the widest registers of any processor, those of MKL of Intel's alone.
 ONEDNN = (
     torch.backends.mkldnn.is_available()
     and platform.machine().lower() in {"x86_64", "amd64"}
@@ -23,18 +36,178 @@ ONEDNN = (
         hasattr(torch.ops.mkldnn, f"_{op}") for op in ("reorder_linear_weight", "linear_pointwise")
     )
 )
-"""Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
-uses. Its kernels take the widest registers of any processor, those of MKL of Intel's alone."""
+_LEAST = 300_000  # multiplications from which a product is worth oneDNN's longer way
 
-LEAST = 300_000
-"""Multiplications from which a product is worth oneDNN's longer way."""
+_times_slope = torch.ops.aten.sigmoid_backward.grad_input  # g, s -> g s (1 - s), one pass
+
+
+def kernels() -> str:
+    """Instruction set of PyTorch's kernels here, like "AVX512": it decides how sums are rounded."""
+    return torch.backends.cpu.get_cpu_capability()
+
+
+def train_ensemble(
+    weights: Weights,
+    data: TrainingSet,
+    *,
+    test: tuple | None = None,
+    targets=None,
+    rate=None,
+    momentum=0.95,
+    epochs: int = 20_000,
+    warm_up: int = 0,
+    snapshots=(),
+    progress: bool = True,
+    label: str = "training",
+) -> tuple[TorqueModel, History, dict[int, Weights]]:
+    """Train many networks on the same windows by the rule of `train`.
+
+    Parameters
+    ----------
+    weights : Weights
+        Initial weights with a leading axis of members.
+    data : TrainingSet
+        Cases and scaling.
+    test : tuple of ndarray, optional
+        Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
+    targets : array_like, shape (members, cases, output), optional
+        Scaled targets of each member in place of ``data.y``, for instance with noise of
+        different levels. Errors are relative to the spread of ``data.y`` all the same.
+    rate : float or array_like, shape (members,), optional
+        Step size per case, one for all or one per member; default `default_rate`.
+    momentum : float or array_like, shape (members,)
+        The factor alpha of the previous step, 0 to 0.999.
+    epochs : int
+        As in `train`.
+    warm_up : int
+        Epochs at the start with a momentum of `WARM_UP_MOMENTUM`, if that is smaller. Large
+        steps before the units have found their parts saturate them for good.
+    snapshots : sequence of int
+        Epochs after which a copy of all weights is kept (0: the initial ones).
+    progress : bool
+        Show a progress bar with the median error and the time left.
+    label : str
+        What the bar says.
+
+    Returns
+    -------
+    model : TorqueModel
+        The trained ensemble.
+    history : History
+        Errors of every member; `History.derailed` marks those that went astray. They
+        do not disturb the others.
+    snapshots : dict
+        Weights by epoch.
+
+    Raises
+    ------
+    TrainingDiverged
+        If no member's error is finite any more.
+
+    Warns
+    -----
+    WorseThanMean
+        If all of several members end with an RMSS above 1, and no `targets` are given.
+    """
+    members = len(weights)
+    rate = default_rate(weights.width) if rate is None else rate
+    rate, momentum = _per_member(rate, momentum, epochs, members)
+    if weights.hidden_weights.shape[-2:] != data.x.shape[-2:]:
+        raise ValueError(
+            f"weights must have the joints and width of the data, {data.x.shape[-2:]}, "
+            f"got {weights.hidden_weights.shape[-2:]}"
+        )
+    if targets is not None:
+        targets = shaped("targets", targets, (members, *data.y.shape))
+    integer("warm_up", warm_up, 0)
+    snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
+    count = WORKERS * math.ceil(members / (WORKERS * BLOCK))
+    blocks = np.array_split(np.arange(members), min(count, members))
+    bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
+
+    def work(block):
+        y = data.y if targets is None else targets[block]
+        start = weights[block]
+        descent = Descent(start, data.x, y, rate[block] / len(data.x), momentum[block])
+        return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar)
+
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)  # one core for each block: no waiting at every product
+    try:
+        with ThreadPoolExecutor(min(WORKERS, len(blocks))) as pool:
+            parts = list(pool.map(work, blocks))
+    finally:
+        torch.set_num_threads(threads)
+        bar.close()
+    trained, histories, kept = zip(*parts)
+    history = History(
+        histories[0].epochs,
+        np.hstack([h.training for h in histories]),
+        np.hstack([h.test for h in histories]),
+    )
+    if not np.isfinite(history.training[-1]).any():
+        raise TrainingDiverged(
+            f"no member's error is finite after {epochs} epochs: lower the rate ({rate.min():g})",
+            history,
+        )
+    if targets is None and members > 1:  # a few networks saturate early at any rate
+        warn_if_worse_than_mean(history, rate.min())
+    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
+    return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in sorted(kept[0])}
+
+
+def _per_member(rate, momentum, epochs, members):
+    """Checked rates and momenta as arrays of shape (members,)."""
+    arrays = [finite_array("rate", rate), finite_array("momentum", momentum)]
+    for name, array in zip(("rate", "momentum"), arrays):
+        if array.shape not in ((), (members,)):
+            raise ValueError(f"{name} must be one number or {members}, got shape {array.shape}")
+    for pair in np.broadcast(*arrays):
+        check_descent(*map(float, pair), epochs)
+    return [np.broadcast_to(array, members) for array in arrays]
+
+
+def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
+    """Train some members in this thread; `bar` is told how far they are."""
+    torch.set_num_threads(1)
+    history, points = History(), set(check_points(epochs))
+    kept = {0: initial} if 0 in snapshots else {}
+    spread = data.y.std(0)
+    if test is not None:
+        test_cases, test_spread = prepare(*test), np.std(test[1], axis=0)
+
+    def relative(mean_square, spread):
+        return np.sqrt((mean_square / spread**2).mean(-1))
+
+    def note(epoch, square, test_square):
+        training = relative(square, spread)
+        history.append(epoch, training, *(relative(s, test_spread) for s in test_square))
+        if np.isfinite(training).any():
+            bar.set_postfix(median_rmss=f"{np.nanmedian(training):.3f}", refresh=False)
+
+    for epoch in range(1, epochs + 1):
+        due = epoch - 1 in points  # the errors after one step show in the next one
+        test_square = [descent.mean_square(*test_cases)] if due and test is not None else []
+        square = descent.epoch(due, WARM_UP_MOMENTUM if epoch <= warm_up else 1.0)
+        if due:
+            note(epoch - 1, square, test_square)
+        if epoch in snapshots:
+            kept[epoch] = descent.weights()
+        if epoch % 50 == 0 or epoch == epochs:
+            with bar.get_lock():
+                bar.update((epoch % 50 or 50) * descent.members)
+    test_square = [descent.mean_square(*test_cases)] if test is not None else []
+    note(epochs, descent.mean_square(descent.inputs, descent.targets), test_square)
+    return descent.weights(), history, kept
 
 
 class Descent:
-    """Batch gradient descent with acceleration of many networks on the same inputs.
+    """The arithmetic of `train_ensemble`: one epoch of many networks on the same inputs at once.
 
-    The input-to-hidden and direct weights of all members are the rows of one matrix:
-    member by member the hidden units, then the outputs; its last column holds the biases.
+    All members see the same inputs, so one matrix product serves them all; the rest is done
+    in place, on as few members as fit into a core's cache. The input-to-hidden and direct
+    weights of all members are the rows of one matrix: member by member the hidden units, then
+    the outputs; its last column holds the biases.
 
     Parameters
     ----------
@@ -84,14 +257,9 @@ class Descent:
 
     @torch.inference_mode()
     def epoch(self, wanted: bool = False, most: float = 1.0) -> np.ndarray | None:
-        """One step of every member, in place.
+        """One step of every member, in place, with a momentum of `most` at most.
 
-        Parameters
-        ----------
-        wanted : bool
-            Return the `mean_square` errors before the step; they cost nothing here.
-        most : float
-            Largest momentum of this step.
+        If `wanted`, return the `mean_square` errors before the step; they cost nothing here.
         """
         net = self._net(self.first)
         hidden, output = self._activities(net)
@@ -112,15 +280,9 @@ class Descent:
         return errors
 
     def mean_square(self, inputs, targets) -> np.ndarray:
-        """Mean squared error of each member and output, shape (members, output).
+        """Mean squared error of each member and output in cases that `prepare` made ready.
 
         NaN for members whose weights are not finite.
-
-        Parameters
-        ----------
-        inputs : torch.Tensor
-            Windows prepared by `prepare`.
-        targets : torch.Tensor, shape (output, cases)
         """
         _, output = self._activities(torch.mm(self.first, inputs))
         return self._mean_square(output.sub_(targets))
@@ -146,21 +308,8 @@ class Descent:
 
 
 def times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
-    """Products ``left @ matrix`` with a matrix that stays the same, packed once.
-
-    Parameters
-    ----------
-    matrix : torch.Tensor, shape (inner, columns)
-        In single precision.
-    rows : int
-        Of each matrix ``left``.
-
-    Returns
-    -------
-    callable
-        ``left -> left @ matrix``, a new tensor of shape (rows, columns).
-    """
-    if not ONEDNN or rows * matrix.numel() < LEAST:
+    """Products of left-hand matrices of some `rows` with one that stays the same, packed once."""
+    if not ONEDNN or rows * matrix.numel() < _LEAST:
         return lambda left: torch.mm(left, matrix)
     packed = torch.ops.mkldnn._reorder_linear_weight(matrix.t().contiguous(), rows)
     linear = torch.ops.mkldnn._linear_pointwise

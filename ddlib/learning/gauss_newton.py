@@ -25,19 +25,7 @@ _zeros = partial(torch.zeros, dtype=torch.float64)
 
 
 def penalty(joints: int, width: int, decay: float = 0.0, smoothness: float = 0.0) -> np.ndarray:
-    """Matrix P of the penalty ``w'P w / 2`` on one unit's weights w from the window.
-
-    Parameters
-    ----------
-    joints, width : int
-        Length of w, which is joint by joint, oldest sample first.
-    decay, smoothness : float
-        As in `ddlib.learning.levenberg_marquardt.solve`.
-
-    Returns
-    -------
-    ndarray, shape (joints * width, joints * width)
-    """
+    """Matrix P of the penalty ``w'P w / 2`` on one unit's weights w, joint by joint."""
     second = np.diff(np.eye(width), 2, axis=0)
     return np.kron(np.eye(joints), decay * np.eye(width) + smoothness * second.T @ second)
 
@@ -49,17 +37,6 @@ class Objective:
     from the window, then the bias), and then the hidden-to-output weights. A row w is
     held as ``C'w`` with ``CC'`` the mean square of the inputs and the penalty, so that the
     inputs ``C^-1 [x, 1]`` are white.
-
-    Parameters
-    ----------
-    weights : Weights
-        A network, for its shape.
-    data : TrainingSet
-        Cases.
-    decay, smoothness : float
-        As in `ddlib.learning.levenberg_marquardt.solve`.
-    test : tuple of ndarray, optional
-        Scaled windows and targets for `test_rmss`.
     """
 
     def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, smoothness=0.0, test=None):
@@ -105,7 +82,7 @@ class Objective:
         return Weights(window[:h], rows[:h, -1], second.numpy().copy(), window[h:], rows[h:, -1])
 
     def value(self, vector: torch.Tensor) -> tuple[float, float]:
-        """The objective (penalties included) and the pooled training RMSS."""
+        """The objective (penalty included) and the pooled training RMSS."""
         square = (self._activity(vector, self._z)[1] - self._y).square()
         return 0.5 * float(square.sum()) + self._penalise(vector)[0], _rmss(square, self._y)
 
@@ -117,22 +94,10 @@ class Objective:
         return _rmss((self._activity(vector, z)[1] - y).square(), y)
 
     def normal(self, vector: torch.Tensor, exact: bool = False) -> tuple[torch.Tensor, ...]:
-        """Matrix of a Newton step, gradient and lengths of the residuals' derivatives.
+        """Matrix of a Newton step, gradient, and lengths of the columns of J.
 
-        Parameters
-        ----------
-        vector : Tensor, shape (parameter,)
-        exact : bool
-            False: the Gauss-Newton matrix ``J'J``, J being the derivatives of the
-            residuals (penalties among them). True: all second derivatives.
-
-        Returns
-        -------
-        matrix : Tensor, shape (parameter, parameter)
-            Its lower triangle only; what lies above is not set.
-        gradient : Tensor, shape (parameter,)
-        lengths : Tensor, shape (parameter,)
-            Of the columns of J.
+        J are the derivatives of the residuals (penalties among them). The matrix, of which only
+        the lower triangle is set, is Gauss-Newton's ``J'J``, or if `exact` all second derivatives.
         """
         hidden, split = self._hidden, self._split
         table, cross, corner, slopes, squares = self._sums(vector, exact)
@@ -176,7 +141,7 @@ class Objective:
         return products
 
     def _penalise(self, vector):
-        """The penalties and their gradient."""
+        """The penalty and its gradient."""
         first, second = self._parts(vector)
         slope = torch.cat([(first @ self._penalty).flatten(), self._decay * second.flatten()])
         return 0.5 * float(vector @ slope), slope
@@ -190,15 +155,10 @@ class Objective:
         and s sums ``z[i] z[j]`` times a product of factors, so that one product of matrices
         gives all blocks, each pair of rows and inputs once.
 
-        Returns
-        -------
-        table : Tensor, shape (pair of rows, pair of inputs)
-            In the orders of `_blocks` and `_pair_number`.
-        cross : Tensor, shape (output, hidden, hidden + 1, input)
-            Weight from a hidden unit to an output against all hidden rows and that output's.
-        corner : Tensor, shape (output, hidden, hidden)
-        slopes, squares : list of Tensor
-            Gradient, and squared lengths of the derivatives: of rows, of hidden-to-output weights.
+        `table`, (pair of rows, pair of inputs), has the orders of `_blocks` and `_pair_number`.
+        `cross`, (output, hidden, hidden + 1, input), is the weight from a hidden unit to an
+        output against all hidden rows and that output's, `corner` against its fellows. `slopes`
+        and `squares` are the gradient and J's squared lengths, of rows and of those weights.
         """
         (_, second), (r, s) = self._parts(vector), self._pairs
         h, outputs = self._hidden, self._outputs

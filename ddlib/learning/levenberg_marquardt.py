@@ -22,9 +22,10 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, number, shaped
+from ddlib.learning.descent import WORKERS
 from ddlib.learning.gauss_newton import Objective
 from ddlib.learning.network import TorqueModel, Weights
-from ddlib.learning.training import WORKERS, History, TrainingSet
+from ddlib.learning.training import History, TrainingSet
 
 _NEAR = 1e-2  # the measure of `tolerance` from which all second derivatives are used
 
@@ -34,32 +35,18 @@ class NotConverged(UserWarning):
 
 
 class Solution(NamedTuple):
-    """What `solve` found.
+    """What `solve` returns; but for the model, arrays of shape (members,).
 
-    Attributes
-    ----------
-    model : TorqueModel
-        The networks, in the shape of the initial weights.
-    history : History
-        RMSS after each step, 0 being the start; a member that has ended keeps its last
-        value.
-    objective : ndarray, shape (members,)
-        What was minimised, penalties included.
-    gradient : ndarray, shape (members,)
-        What `tolerance` is compared with, at the end.
-    steps : ndarray of int, shape (members,)
-        How many were taken.
-    ended : ndarray of str, shape (members,)
-        "gradient" or "target" if the member converged; "steps" if they ran out,
-        "no descent" if nothing nearby is lower by more than rounding.
+    A member ended by its "gradient" or at the "target" has converged; otherwise its "steps" ran
+    out, or there was "no descent": nothing nearby is lower by more than rounding.
     """
 
-    model: TorqueModel
-    history: History
-    objective: np.ndarray
-    gradient: np.ndarray
-    steps: np.ndarray
-    ended: np.ndarray
+    model: TorqueModel  # in the shape of the initial weights
+    history: History  # RMSS after each step; a member that has ended keeps its last value
+    objective: np.ndarray  # what was minimised, penalty included
+    gradient: np.ndarray  # what `tolerance` is compared with, at the end
+    steps: np.ndarray  # how many were taken
+    ended: np.ndarray  # why
 
     @property
     def converged(self) -> np.ndarray:
@@ -84,7 +71,7 @@ def solve(
     """Minimise the error of networks by Levenberg-Marquardt.
 
     The objective is half the summed squared error of all cases and outputs, as in
-    `ddlib.learning.training.train`, plus ``decay / 2`` times the sum of the squared weights, plus
+    `ddlib.learning.train`, plus ``decay / 2`` times the sum of the squared weights, plus
     ``smoothness / 2`` times the sum of the squared second differences of each unit's
     weights along the window. Biases are free of both penalties. Without penalties some
     directions of the weights hardly matter, and hundreds of steps may not reach the end.
@@ -103,30 +90,20 @@ def solve(
         Largest number of steps of each member.
     tolerance : float
         A member has converged when the cosine between the residuals and each column of
-        J is at most this. The penalties count as residuals.
+        J is at most this. The penalty counts as residuals.
     target_rmss : float, optional
         Training RMSS at which a member may stop.
     damping : float
-        First mu, in units of the largest diagonal element of ``J'J``; 0: a Gauss-Newton
-        step.
+        First mu, in units of the largest diagonal element of ``J'J``.
     progress : bool
         Show a progress bar with the RMSS after the last step.
     label : str
         What the bar says.
 
-    Returns
-    -------
-    Solution
-
     Warns
     -----
     NotConverged
         If some member met neither the tolerance nor the target.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of the wrong kind, out of range or not finite, or shapes differ.
     """
     _check(weights, data, test)
     options = (
@@ -156,14 +133,14 @@ def solve(
     threads = torch.get_num_threads()
     pool = ThreadPoolExecutor(min(WORKERS, len(members)))
     try:
-        found, ends = zip(*pool.map(work, members))
+        solved, ends = zip(*pool.map(work, members))
     finally:
         pool.shutdown(cancel_futures=True)
         torch.set_num_threads(threads)
         bar.close()
     solution = Solution(
         TorqueModel(
-            found[0] if single else Weights.stack(found), data.inputs, data.outputs, data.step
+            solved[0] if single else Weights.stack(solved), data.inputs, data.outputs, data.step
         ),
         _history([end.path for end in ends], test is not None),
         np.array([end.objective for end in ends]),
@@ -225,7 +202,7 @@ def _descend(objective, vector, steps, tolerance, target, damping, tell) -> _End
 
 
 def _step(objective, vector, value, matrix, gradient, mu, exact):
-    """The next vector, its objective and RMSS, and the next mu.
+    """The next vector, its objective and RMSS, and the next mu (Nielsen 1999).
 
     None if nothing is lower, or if `exact` and the matrix is not positive definite.
     """

@@ -1,8 +1,7 @@
 """The window network of section 3: sigmoid hidden units and direct input-output weights.
 
-`WindowNetwork` is the network as a PyTorch module, for reading and for small runs.
-`Weights` is the same network (or many of them) as plain arrays, for analysis, files
-and figures. `TorqueModel` adds the scaling, so that radians go in and N m come out.
+`Weights` is the network (or many of them) as plain arrays; `TorqueModel` adds the scaling, so that
+radians go in and N m come out. Neither needs PyTorch.
 """
 
 from __future__ import annotations
@@ -13,18 +12,12 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
-import torch
-from torch import nn
 
 from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning.windows import Scaler
 
-_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
-
-
-def kernels() -> str:
-    """Instruction set of PyTorch's kernels here, like "AVX512": it decides how sums are rounded."""
-    return torch.backends.cpu.get_cpu_capability()
+# names of the arrays of `Weights`
+FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def _sigmoid(x):
@@ -100,16 +93,16 @@ class Weights:
     @classmethod
     def concatenate(cls, parts) -> Weights:
         """One ensemble of several: their members in order."""
-        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS))
+        return cls(*(np.concatenate([getattr(p, name) for p in parts]) for name in FIELDS))
 
     @classmethod
     def stack(cls, parts) -> Weights:
         """Several of one shape along a new leading axis."""
-        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in _FIELDS))
+        return cls(*(np.stack([getattr(p, name) for p in parts]) for name in FIELDS))
 
     def __getitem__(self, index) -> Weights:
         """The network(s) at `index` of the leading axis."""
-        return Weights(*(getattr(self, name)[index] for name in _FIELDS))
+        return Weights(*(getattr(self, name)[index] for name in FIELDS))
 
     def __len__(self) -> int:
         if self.hidden_bias.ndim < 2:
@@ -125,28 +118,17 @@ class Weights:
     def largest(self) -> np.ndarray:
         """Magnitude of the largest weight or bias of each network, shape (...)."""
         lead = self.hidden_bias.ndim - 1
-        each = [np.abs(getattr(self, name)) for name in _FIELDS]
+        each = [np.abs(getattr(self, name)) for name in FIELDS]
         return np.max([x.max(axis=tuple(range(lead, x.ndim))) for x in each], axis=0)
 
     def count(self, biases: bool = False) -> int:
         """Number of weights of one network, with or without `biases`."""
-        names = [n for n in _FIELDS if biases or not n.endswith("bias")]
+        names = [n for n in FIELDS if biases or not n.endswith("bias")]
         lead = self.hidden_bias.ndim - 1
         return sum(int(np.prod(getattr(self, n).shape[lead:])) for n in names)
 
     def activity(self, x) -> tuple[np.ndarray, np.ndarray]:
-        """Hidden and output activities for scaled windows.
-
-        Parameters
-        ----------
-        x : array_like, shape (cases, joint, width)
-            Windows scaled to 0..1.
-
-        Returns
-        -------
-        hidden : ndarray, shape (..., cases, hidden)
-        output : ndarray, shape (..., cases, output)
-        """
+        """Hidden and output activities, ``(..., cases, unit)``, for windows scaled to 0..1."""
         joints, width = self.hidden_weights.shape[-2:]
         x = shaped("x", x, f"(cases, {joints}, {width})")
         x = x.reshape(len(x), -1)
@@ -158,40 +140,6 @@ class Weights:
         hidden = _sigmoid(dot(self.hidden_weights) + self.hidden_bias[..., None, :])
         net = dot(self.direct_weights) + hidden @ np.swapaxes(self.output_weights, -1, -2)
         return hidden, _sigmoid(net + self.output_bias[..., None, :])
-
-
-class WindowNetwork(nn.Module):
-    """One window network as a PyTorch module (Figure 3-1).
-
-    Parameters
-    ----------
-    width : int
-        Window size in samples.
-    hidden, joints, outputs : int
-        Number of hidden units, of joints in the window and of output units.
-    initial : float
-        Weights and biases are drawn uniformly from [-initial, initial].
-    seed : int
-        Seed of that draw.
-    """
-
-    def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=0.3, seed=0):
-        super().__init__()
-        draw = Weights.random(1, width, hidden, joints, outputs, initial, seed)[0]
-        for name in _FIELDS:
-            tensor = torch.tensor(getattr(draw, name), dtype=torch.float32)
-            self.register_parameter(name, nn.Parameter(tensor))
-
-    def forward(self, x):
-        """Output activities, shape (cases, output), for windows (cases, joint, width)."""
-        x = x.flatten(1)
-        hidden = torch.sigmoid(x @ self.hidden_weights.flatten(1).T + self.hidden_bias)
-        net = x @ self.direct_weights.flatten(1).T + hidden @ self.output_weights.T
-        return torch.sigmoid(net + self.output_bias)
-
-    def weights(self) -> Weights:
-        """The weights as plain arrays."""
-        return Weights(*(getattr(self, name).detach().numpy().copy() for name in _FIELDS))
 
 
 @dataclass(frozen=True)
@@ -218,18 +166,7 @@ class TorqueModel:
         return self.inputs.scale(finite_array("windows", windows), joint_axis=-2)
 
     def torque(self, windows) -> np.ndarray:
-        """Predicted torque for windows of positions.
-
-        Parameters
-        ----------
-        windows : array_like, shape (cases, joint, width)
-            Positions in rad, from `ddlib.learning.windows.sliding_windows`.
-
-        Returns
-        -------
-        ndarray, shape (..., cases, joint)
-            Torques in N m; leading axes are the ensemble's.
-        """
+        """Torques, N m, ``(..., cases, joint)``, for windows, rad, ``(cases, joint, width)``."""
         return self.outputs.unscale(self.weights.activity(self.scaled(windows))[1])
 
     def __getitem__(self, index) -> TorqueModel:
@@ -240,7 +177,7 @@ class TorqueModel:
         """Write the model to an ``.npz`` file (float32), replacing it in one step."""
         path = Path(path)
         path.parent.mkdir(parents=True, exist_ok=True)
-        arrays = {name: getattr(self.weights, name).astype(np.float32) for name in _FIELDS}
+        arrays = {name: getattr(self.weights, name).astype(np.float32) for name in FIELDS}
         for name in ("inputs", "outputs"):
             scaler = getattr(self, name)
             arrays |= {f"{name}_low": scaler.low, f"{name}_high": scaler.high}
@@ -254,19 +191,11 @@ class TorqueModel:
 
     @classmethod
     def load(cls, path) -> TorqueModel:
-        """Read what `save` wrote.
-
-        Raises
-        ------
-        OSError
-            If the file cannot be read: there is none, or no right to read it.
-        ValueError
-            If it is not a model file.
-        """
+        """Read what `save` wrote; OSError if there is no file, ValueError if it is another one."""
         content = io.BytesIO(Path(path).read_bytes())
         try:
             with np.load(content) as file:
-                weights = Weights(*(file[name].astype(float) for name in _FIELDS))
+                weights = Weights(*(file[name].astype(float) for name in FIELDS))
                 scalers = [
                     Scaler(file[f"{n}_low"], file[f"{n}_high"], tuple(file[f"{n}_target"]))
                     for n in ("inputs", "outputs")

@@ -1,26 +1,17 @@
 """Targets that look like the torques of a recording and have nothing to do with its motion.
 
 What a network learns from such targets it would learn from any target of their kind: they are
-null controls of the filters (section 5.1). Three kinds are as smooth as the torques themselves,
-one is white:
+null controls of the filters (section 5.1). What is preserved is what the null is about:
 
 - ``"shifted"``: each run's torques moved in time by a random amount, around the run's ends
 - ``"other run"``: the torques of another run
-- ``"phases"``: each run's torques with random phases. The spectra stay, and with one draw of
-  phases for both joints their cross-spectrum, too (Prichard & Theiler 1994, after Theiler et al.
-  1992): the correlations of the torques, and no more of them
+- ``"phases"``: each run's torques with random phases, the same for both joints: spectra and
+  cross-spectrum stay (Prichard & Theiler, Physical Review Letters 73 (1994), 951-954)
 - ``"shuffled"``: each run's torques in random order, which makes them white
 
-What is preserved is what the null is about. Runs keep their means in all kinds but "other run";
-along the paper's family all runs have one shape, so that another run's torques are not unrelated
-to the motion, and a shift leaves a part of the relation, too (`related` measures it).
-
-References
-----------
-- J. Theiler, S. Eubank, A. Longtin, B. Galdrikian, J. D. Farmer, "Testing for nonlinearity in
-  time series: the method of surrogate data", Physica D 58 (1992), 77-94.
-- D. Prichard, J. Theiler, "Generating surrogate data for time series with several simultaneously
-  measured variables", Physical Review Letters 73 (1994), 951-954.
+Runs keep their means in all kinds but "other run". Along the paper's family all runs have one
+shape: there another run's torques, and shifted ones, are not quite unrelated to the motion
+(`related` measures it).
 """
 
 from __future__ import annotations
@@ -33,10 +24,7 @@ MATCHED = ("shifted", "other run", "phases")
 """Kinds of surrogates that are as smooth as the torques."""
 
 KINDS = (*MATCHED, "shuffled")
-"""Kinds of surrogates."""
-
-LEAST_SHIFT = 0.1
-"""Least circular shift, as a share of a run: 0.3 s of the paper's 3 s, in either direction."""
+LEAST_SHIFT = 0.1  # as a share of a run: 0.3 s of the paper's 3 s, in either direction
 
 
 def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
@@ -49,17 +37,11 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
     torque : array_like, shape (runs, time, joint)
         Torques of the motion, run by run; any unit.
     seed : int
-        Of the draw.
+        Seed of the draw.
 
     Returns
     -------
     ndarray, shape (runs, time, joint)
-
-    Raises
-    ------
-    TypeError, ValueError
-        If `kind` is not known, or `torque` is not finite, not three-dimensional, too short, or
-        of a single run where another one is wanted.
     """
     one_of("kind", kind, KINDS)
     torque = finite_array("torque", torque)
@@ -72,36 +54,16 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
 
 
 def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
-    """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only.
-
-    Parameters
-    ----------
-    kind, torque, seed
-        As in `surrogate`.
-    draws : int
-        1 or more.
-    """
+    """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only."""
     return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
 
 
 def p_value(value: float, draws, side: str = "two") -> float:
-    """Probability of a value as far out as this one, if it were another draw of the null.
+    """Probability of a statistic as far out as this one, if it were another draw of the null.
 
-    Parameters
-    ----------
-    value : float
-        A statistic of networks trained on the real torques.
-    draws : array_like, shape (draws,)
-        The same statistic of networks trained on surrogates, draw by draw.
-    side : {"more", "less", "two"}
-        Out: as large or larger, as small or smaller, or either.
-
-    Returns
-    -------
-    float
-        ``(1 + number of draws as far out) / (1 + number of draws)``, twice the smaller one for
-        "two", at most 1. The value itself counts as a draw, so that it is never zero (Phipson &
-        Smyth 2010); of 20 draws the least that can come out is 1/21, for "two" 2/21.
+    Out is "more" (as large or larger), "less", or "two": either. The value itself counts as a
+    draw, so that the probability is never zero (Phipson & Smyth 2010): of 20 draws the least that
+    can come out is 1/21, for "two" 2/21.
     """
     number("value", value)
     draws = finite_array("draws", draws)
@@ -126,7 +88,7 @@ def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
     Returns
     -------
     ndarray, shape (joint,)
-        Of the recorded torques nearly 1. Of surrogates it is what they still share with the
+        Nearly 1 for recorded torques. For surrogates it is what they still share with the
         motion, and what this many taps fit to anything that is smooth.
     """
     target, windows = finite_array("target", target), finite_array("windows", windows)
@@ -165,9 +127,9 @@ def _phases(torque, rng):
     runs, time, _ = torque.shape
     spectrum = np.fft.rfft(torque, axis=1)
     turn = np.exp(2j * np.pi * rng.random((runs, spectrum.shape[1], 1)))
-    turn[:, 0] = 1  # the mean
+    turn[:, 0] = 1  # the mean is real, and so is the highest frequency of an even length
     if time % 2 == 0:
-        turn[:, -1] = 1  # real, like the mean
+        turn[:, -1] = 1
     return np.fft.irfft(spectrum * turn, time, axis=1)
 
 

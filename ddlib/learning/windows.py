@@ -34,12 +34,6 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
     -------
     ndarray, shape (..., cases, joint, width)
         ``[..., k, j, i]`` is joint j at the i-th sample of the k-th window, oldest first.
-
-    Raises
-    ------
-    ValueError
-        If `width` is even or longer than the recording, or a window would reach
-        beyond the recording's ends.
     """
     q = shaped("q", q, "(..., time, joint)")
     width, time = check_width(width), q.shape[-2]
@@ -60,15 +54,7 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Scaler:
-    """An affine map of each joint's data range to `target` and back.
-
-    Parameters
-    ----------
-    low, high : ndarray, shape (joint,)
-        The data's range per joint.
-    target : tuple of float
-        The range it is mapped to.
-    """
+    """An affine map of each joint's data range, `low` to `high`, to `target` and back."""
 
     low: np.ndarray
     high: np.ndarray
@@ -109,6 +95,7 @@ class Scaler:
         return low + (data - self.target[0]) / gain
 
     def _along(self, data, axis):
+        """Checked data, and `low` and `gain` in a shape that fits them."""
         data, shape = finite_array("data", data), [1] * np.ndim(data)
         if not -data.ndim <= axis < data.ndim or data.shape[axis] != self.low.size:
             raise ValueError(

@@ -96,7 +96,7 @@ class ByDescent(Network):
     ----------
     epochs : int
     rate, momentum, warm_up
-        As in `ddlib.learning.training.train_ensemble`.
+        As in `ddlib.learning.train_ensemble`.
     hidden, **options
         As in `Network`.
     """

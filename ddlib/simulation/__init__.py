@@ -2,8 +2,7 @@
 
 - ``plant``: the arm with its frictions, motors and shafts, integrated under held torques
 - ``simulate``: `record` (a pick-and-place motion), `follow` (any reference), `free_motion`
-- ``recording``: `Recording`, what the log holds
-- ``residual``: torque of a recording beyond the rigid body's
+- ``recording``: `Recording`, what the log holds; its torque beyond the rigid body's
 - ``loops``: responses of a loop, predicted and simulated; Figure 2-1; scores of a recording
 """
 
@@ -11,12 +10,10 @@ from ddlib._names import hand_on
 
 __getattr__, __dir__, __all__ = hand_on(
     __name__,
-    recording="Recording equal_steps",
-    plant="PHASE Plant substeps",
+    recording="Recording residual_torque rms",
     simulate="CONTROL_STEP LOG_STEP REST follow free_motion record",
     loops=(
-        "Load Response SecondOrderModel feedforward_system predicted_response "
-        "run_system score simulated_response smooth_pick_and_place"
+        "Load SecondOrderModel feedforward_system predicted_response run_system score "
+        "simulated_response smooth_pick_and_place"
     ),
-    residual="residual_torque rms",
 )

@@ -1,8 +1,4 @@
-"""Control loops around the arm: predicted, interconnected, measured.
-
-The linear prediction and the simulation of one loop give the same `Response`, so that they
-can be compared; Figure 2-1 is a python-control system; `score` judges any recording.
-"""
+"""Control loops around the arm: predicted, interconnected, measured."""
 
 from __future__ import annotations
 
@@ -23,15 +19,9 @@ from ddlib.trajectories import MOTION_SECONDS, Trajectory
 
 @dataclass(frozen=True)
 class Load:
-    """A constant torque that disturbs the joints, as an effect of the actuator.
+    """A constant torque that disturbs the joints, as an effect of the actuator."""
 
-    Parameters
-    ----------
-    torque : array_like, shape (2,) or (runs, 2)
-        N m per joint.
-    """
-
-    torque: tuple[float, float]
+    torque: tuple[float, float]  #: N m per joint, (2,) or (runs, 2).
 
     def __post_init__(self):
         finite_array("torque", self.torque, 2)
@@ -48,20 +38,11 @@ class SecondOrderModel:
     The mass matrix is that of the arm in one posture, with its off-diagonal entry. It is this
     book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
     section 1.1, after Asada, Kanade & Takeyama 1982). A vertical arm's weight is no part of it.
-
-    Parameters
-    ----------
-    arm : Arm
-        Whose mass matrix is taken.
-    posture : array_like, shape (2,)
-        Joint angles at which it is taken, rad.
-    viscous : array_like, shape (2,)
-        Viscous friction, N m s/rad.
     """
 
     arm: Arm
-    posture: tuple[float, float] = (0.0, 0.0)
-    viscous: tuple[float, float] = (0.0, 0.0)
+    posture: tuple[float, float] = (0.0, 0.0)  #: Where its mass matrix is taken, rad.
+    viscous: tuple[float, float] = (0.0, 0.0)  #: Viscous friction, N m s/rad.
 
     def __post_init__(self):
         finite_array("posture", self.posture, 2)
@@ -74,46 +55,21 @@ class SecondOrderModel:
 
 
 class Response(NamedTuple):
-    """How a position loop answers its reference and a load.
+    """How a position loop answers its reference and a load."""
 
-    Attributes
-    ----------
-    overshoot : float
-        Of a step of the reference, as a share of the step.
-    bandwidth : float
-        Frequency in rad/s from which a sine of the reference comes out smaller than
-        1/sqrt(2) of its size.
-    compliance : float
-        Angle by which a constant torque of 1 N m displaces the joint for good, rad/(N m).
-    """
-
-    overshoot: float
-    bandwidth: float
-    compliance: float
+    overshoot: float  #: Of a step of the reference, as a share of the step.
+    bandwidth: float  #: Frequency from which a sine comes out below 1/sqrt(2) of its size, rad/s.
+    compliance: float  #: Angle by which 1 N m displaces the joint for good, rad/(N m).
 
 
 def predicted_response(
     arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
     seconds=12.0,
 ) -> Response:  # fmt: skip
-    """Linear analysis of the sampled loop around a posture.
+    """Linear analysis of the sampled loop around a posture (rad), `viscous` friction in N m s/rad.
 
-    Gravity's torque in the posture is taken to be compensated; what it adds when the arm
-    leaves the posture is part of the loop.
-
-    Parameters
-    ----------
-    arm : Arm
-    controller : PID
-        One set of gains, shape (2,) each.
-    viscous : array_like, shape (2,)
-        Viscous friction, N m s/rad.
-    posture : array_like, shape (2,)
-        Joint angles, rad.
-    joint : {0, 1}
-        Whose reference steps, and on whom the load acts.
-    period, seconds : float
-        Control period and length of the step response, s.
+    The reference of one joint steps, and a load acts on it. Gravity's torque in the posture is
+    taken to be compensated; what it adds when the arm leaves the posture is part of the loop.
     """
     integer("joint", joint, 0, 1)
     posture = finite_array("posture", posture, 2)
@@ -125,7 +81,8 @@ def predicted_response(
     step = control.forced_response(loop, t, inputs).outputs[joint]
     omega = np.geomspace(0.5, 0.1 * np.pi / period, 4000)
     answer = np.abs(loop(np.exp(1j * omega * period))[joint, joint])
-    return Response(_overshoot(step), _half_power(omega, answer), loop.dcgain()[joint, 2 + joint])
+    overshoot, compliance = float(step.max() - 1), loop.dcgain()[joint, 2 + joint]
+    return Response(overshoot, _half_power(omega, answer), compliance)
 
 
 def simulated_response(
@@ -134,20 +91,9 @@ def simulated_response(
 ) -> Response:  # fmt: skip
     """The same measures from the full, non-linear simulation.
 
-    A constant torque holds the arm against gravity in the posture. One run steps the reference,
-    a second one carries a load. The bandwidth comes from the Fourier transform of the step
-    response's rate, so the loop must settle within `seconds`; one that rings longer has a
-    bandwidth of NaN.
-
-    Parameters
-    ----------
-    arm, controller, viscous, posture, joint, period, seconds
-        As in `predicted_response`.
-    step_deg : float
-        Size of the step, degrees; the load would displace a spring of stiffness ``kp`` by as
-        much.
-    effects : Effects
-        More effects, beside the viscous friction.
+    A constant torque holds the arm against gravity in the posture. One run steps the reference by
+    `step_deg`, a second one carries a load that would displace a spring of stiffness ``kp`` by as
+    much. A loop that rings longer than `seconds` has a bandwidth of NaN.
     """
     integer("joint", joint, 0, 1)
     number("step_deg", step_deg, 0.0, open_low=True)
@@ -171,21 +117,19 @@ def simulated_response(
     step = moved[0, 1:] / size
     late = np.hanning(t.size // 2)  # a window that averages what still swings
     compliance = (moved[1, -late.size :] * late).sum() / late.sum() / push
+    overshoot = float(step.max() - 1)
     if np.ptp(step[-t.size // 10 :]) > 0.01:
-        return Response(_overshoot(step), np.nan, compliance)
+        return Response(overshoot, np.nan, compliance)
+    # the Fourier transform of the step response's rate is the frequency response
     omega = np.geomspace(0.5, 0.1 * np.pi / period, 400)
     answer = np.abs(np.exp(-1j * np.outer(omega, t[1:])) @ np.diff(step, prepend=0.0))
-    return Response(_overshoot(step), _half_power(omega, answer), compliance)
+    return Response(overshoot, _half_power(omega, answer), compliance)
 
 
 def _gravity_stiffness(arm: Arm, posture) -> np.ndarray:
     """Derivative of an arm's gravity torque by its angles, N m/rad, shape (2, 2)."""
     g1, g2 = arm.gravity_moments * np.cos([posture[0], posture.sum()])
     return np.array([[g1 + g2, g2], [g2, g2]])
-
-
-def _overshoot(step) -> float:
-    return float(step.max() - 1)
 
 
 def _half_power(omega, answer) -> float:
@@ -202,13 +146,11 @@ def _half_power(omega, answer) -> float:
 def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.InterconnectedSystem:
     """Figure 2-1 of the paper as an interconnected python-control system.
 
-    Four blocks, by the names of the figure: ``inverse_arm``, ``feedback``, ``arm`` and the
-    two sums. Control is continuous here; only the simulator samples.
+    Control is continuous here; only the simulator samples.
 
     Parameters
     ----------
     arm : Arm
-        The arm that moves.
     model : callable
         ``model(q, qd, qdd) -> tau``, the box "inverse arm"; an `Arm` is accepted too.
     kp, kd : array_like, shape (2,)
@@ -315,45 +257,18 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
 
 
 class Score(NamedTuple):
-    """What a controller made of a motion; every field has the shape of the recording's runs.
+    """What a controller made of a motion; every field has the shape of the recording's runs."""
 
-    Attributes
-    ----------
-    largest : ndarray
-        Largest error of a joint, degrees.
-    whole, settled : ndarray
-        Root mean square error over joints and time, degrees; `settled` without the first third.
-    hand, turn : ndarray
-        Distance of the hand from its place, mm: root mean square without the first third, and
-        half-way through the motion.
-    effort : ndarray
-        Root mean square of the torque vector over the motion, N m.
-    """
-
-    largest: np.ndarray
-    whole: np.ndarray
-    settled: np.ndarray
-    hand: np.ndarray
-    turn: np.ndarray
-    effort: np.ndarray
+    largest: np.ndarray  #: Largest error of a joint, degrees.
+    whole: np.ndarray  #: Root mean square error over joints and time, degrees.
+    settled: np.ndarray  #: The same without the first third of the motion.
+    hand: np.ndarray  #: RMS distance of the hand from its place, without the first third, mm.
+    turn: np.ndarray  #: Distance of the hand from its place half-way through the motion, mm.
+    effort: np.ndarray  #: Root mean square of the torque vector over the motion, N m.
 
 
 def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score:
-    """What a controller made of a motion: errors and effort of every run, shape (...).
-
-    Parameters
-    ----------
-    arm : Arm
-        Gives the hand's place.
-    recording : Recording
-    seconds : float, optional
-        Length of the motion, which begins at 0 s; default: as the recording says. Its first
-        third is the transient.
-
-    Returns
-    -------
-    Score
-    """
+    """Errors and effort of every run over a motion of `seconds`, or as the recording says."""
     if seconds is not None:
         recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
     t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion

@@ -6,44 +6,28 @@ Positions and velocities are ``(..., 2)``: the joints. With a `FlexibleJoint` th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, StickSlipFriction
 
-PHASE = 0.25
-"""Largest turn of the fastest swing in one Runge-Kutta step, rad: its energy then decays by
-less than 2e-5 of itself a radian."""
+# Largest turn of the fastest swing in one Runge-Kutta step, rad: its energy then decays by less
+# than 2e-5 of itself a radian.
+_PHASE = 0.25
 
 
-@dataclass(frozen=True)
 class Plant:
-    """An arm with those effects that act inside it: friction, motor, transmission.
+    """An arm with those effects that act inside it: friction, motor, transmission."""
 
-    Parameters
-    ----------
-    arm : Arm
-    effects : Effects
-        Actuator and sensors are not the plant's; they are ignored.
-    """
-
-    arm: Arm
-    effects: Effects = IDEAL
-
-    def __post_init__(self):
-        friction = self.effects.friction
-        sticking = tuple(f for f in friction if isinstance(f, StickSlipFriction))
-        smooth = Effects(
-            friction=tuple(f for f in friction if not isinstance(f, StickSlipFriction))
-        )
-        joint = self.effects.transmission[0] if self.effects.transmission else None
-        links = joint.links(self.arm) if joint else self.arm
-        for name, value in (
-            ("_sticking", sticking), ("_smooth", smooth), ("_joint", joint), ("_links", links),
-        ):  # fmt: skip
-            object.__setattr__(self, name, value)
+    def __init__(self, arm: Arm, effects: Effects = IDEAL):
+        self.arm, self.motor = arm, effects.motor
+        sticks = [isinstance(f, StickSlipFriction) for f in effects.friction]
+        self._sticking = tuple(f for f, s in zip(effects.friction, sticks) if s)
+        self._smooth = Effects(friction=tuple(f for f, s in zip(effects.friction, sticks) if not s))
+        self._joint = effects.transmission[0] if effects.transmission else None
+        self._links = self._joint.links(arm) if self._joint else arm
 
     def rest(self, q):
         """Positions and velocities of an arm at rest at joint angles `q` (rad, ``(..., 2)``)."""
@@ -64,23 +48,16 @@ class Plant:
 
     def _shaft(self, x, v, tau):
         """Torque on the shafts: `tau` with the motors' ripple, less all smooth friction."""
-        for effect in self.effects.motor:
+        for effect in self.motor:
             tau = effect.shaft_torque(tau, x[..., -2:])
         if self._smooth.friction:
             tau = tau - self._smooth.friction_torque(v[..., -2:])
         return tau
 
     def advance(self, x, v, tau, step):
-        """One Runge-Kutta step under constant torque; returns new positions and velocities.
+        """Positions and velocities after one Runge-Kutta step under constant torque.
 
-        Parameters
-        ----------
-        x, v : ndarray, shape (..., 2) or (..., 4)
-            Positions (rad) and velocities (rad/s).
-        tau : ndarray, shape (..., 2)
-            Applied torque, N m.
-        step : float or ndarray, shape (..., 1)
-            In s; runs may have steps of their own.
+        Runs may have steps of their own, s, shape ``(..., 1)``.
         """
         if self._sticking:
             return self._advance_sticking(x, v, tau, step)
@@ -186,9 +163,9 @@ def _rk4(acceleration, x, v, step):
 
     def rate(state):
         x, v = state[..., :n], state[..., n:]
-        found = np.empty_like(state)
-        found[..., :n], found[..., n:] = v, acceleration(x, v)
-        return found
+        derivative = np.empty_like(state)
+        derivative[..., :n], derivative[..., n:] = v, acceleration(x, v)
+        return derivative
 
     k2 = rate(start + half * k1)
     k3 = rate(start + half * k2)
@@ -224,19 +201,8 @@ def substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
 
     Friction acts like a first-order decay of joint speed, fastest where its curve is
     steepest: at rest. A step of RK4 is stable up to 2.78 times the decay's time constant;
-    2 is used. Springs swing; a step covers at most `PHASE` of the fastest swing.
-
-    Parameters
-    ----------
-    arm, effects
-        The plant; frictions without a `slope` count as smooth.
-    step : float
-        Control period, s.
-
-    Returns
-    -------
-    ndarray of int, shape (...)
-        The shape of the runs among which the strengths of the effects differ.
+    2 is used. Frictions without a `slope` count as smooth. Springs swing; a step covers at most
+    `_PHASE` of the fastest swing.
     """
     slope = sum((np.asarray(f.slope) for f in effects.friction if hasattr(f, "slope")), np.zeros(2))
     elbow = np.linspace(0.0, np.pi, 13)
@@ -251,7 +217,7 @@ def substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     decay = np.linalg.eigvals(np.linalg.solve(joint.mass_matrix(arm, q), decay))
     swing = replace(joint, stiffness=np.asarray(joint.stiffness)[..., None, :])
     swing = swing.mode_frequencies(arm, q)
-    return np.maximum(_count(decay, step / 2), _count(swing, step / PHASE))
+    return np.maximum(_count(decay, step / 2), _count(swing, step / _PHASE))
 
 
 def _count(rates, share):

@@ -1,8 +1,4 @@
-"""Recordings: controller, arm and sensors at their own rates.
-
-The controller reads the encoder every 2 ms and holds its torque until the next
-reading; the log takes every fifth sample (10 ms), as on the real arm.
-"""
+"""Recordings: controller, arm and sensors at their own rates."""
 
 from __future__ import annotations
 
@@ -16,14 +12,9 @@ from ddlib.simulation.plant import Plant, substeps
 from ddlib.simulation.recording import Recording, equal_steps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
-CONTROL_STEP = 0.002
-"""Control period of the DD Arm II, s."""
-
-LOG_STEP = 0.010
-"""Sampling period of the recordings, s (Appendix I: 100 samples per second)."""
-
-REST = 0.5
-"""Rest recorded before and after a motion, s, so that every window is whole."""
+CONTROL_STEP = 0.002  #: Control period of the DD Arm II, s.
+LOG_STEP = 0.010  #: Sampling period of the recordings, s (Appendix I: 100 samples per second).
+REST = 0.5  #: Rest recorded before and after a motion, s, so that every window is whole.
 
 
 class _Streams:
@@ -80,7 +71,6 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     Parameters
     ----------
     arm : Arm
-        The arm that moves.
     q, qd : array_like, shape (..., 2)
         Initial angles (rad) and velocities (rad/s); motors behind a shaft have the same.
     seconds, step : float
@@ -93,6 +83,7 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     t : ndarray, shape (time,)
     q, qd : ndarray, shape (..., time, 2)
     """
+    _check_plant(arm, effects)
     q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
     number("seconds", seconds, 0.0, open_low=True)
     number("step", step, 0.0, seconds, open_low=True)
@@ -109,6 +100,20 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     states = [np.broadcast_arrays(*series) for series in zip(*states)]
     q, qd = (np.stack(series, -2)[..., :2] for series in states)
     return t, q, qd
+
+
+def _check_plant(arm, effects) -> None:
+    """Refuse what is no arm of two joints, and effects that are not collected in `Effects`."""
+    if not isinstance(arm, Arm):
+        raise TypeError(
+            "arm must be an Arm, which has two joints, with base parameters a, b, d and two "
+            f"lengths, got {arm!r:.80}"
+        )
+    if not isinstance(effects, Effects):
+        raise TypeError(
+            "effects must be Effects with its parts in tuples, like "
+            f"Effects(friction=(ViscousFriction((0.5, 0.15)),)), got {effects!r:.80}"
+        )
 
 
 def _moving(plant: Plant, q, qd):
@@ -132,9 +137,8 @@ def follow(
 ) -> Recording:
     """Drive the arm along a sampled reference and log what the sensors say.
 
-    Runs may differ in their
-    reference, in the gains of the controller, the strengths of the effects and the seed:
-    leading axes of all of them are broadcast. No run depends on which others it is
+    Runs may differ in their reference, the gains of the controller, the strengths of the effects
+    and the seed: leading axes of all of them are broadcast. No run depends on which others it is
     simulated with, except through a shared noise generator (`seed`).
 
     Parameters
@@ -167,6 +171,7 @@ def follow(
     ValueError
         If shapes or options do not fit, or the loop diverges.
     """
+    _check_plant(arm, effects)
     t = shaped("t", t, "(time,)")
     integer("samples of t", t.size, 2)
     q = shaped("reference.q", reference[0], f"(..., {t.size}, 2)")
@@ -188,12 +193,11 @@ def follow(
     rng = _generator(seed)
     law = controller.start(reference, step)
     plant, parts = Plant(arm, effects), substeps(arm, effects, step)
-
     x, v = _moving(plant, *start)
     tau = np.zeros_like(start[0])
     encoder = started(effects.encoder, x[..., -2:])
     actuator, torque_sensor = (started(e, tau) for e in (effects.actuator, effects.torque_sensor))
-    reading = encoder(x[..., -2:] - step * v[..., -2:], rng)
+    reading = encoder(x[..., -2:] - step * v[..., -2:], rng)  # one period ago
     log = []
     for k in range(t.size):
         if not np.abs(v).max() < 1e6:
@@ -203,7 +207,13 @@ def follow(
             )
         previous, reading = reading, encoder(x[..., -2:], rng)
         speed = v[..., -2:] if velocity == "tachometer" else (reading - previous) / step
-        before, tau = tau, actuator(law(k, reading, speed), rng)
+        wanted = law(k, reading, speed)
+        if np.shape(wanted)[-1:] != (2,):
+            raise ValueError(
+                "controller must return torques of shape (..., 2), one for each joint, got "
+                f"{wanted!r:.80} of shape {np.shape(wanted)}"
+            )
+        before, tau = tau, actuator(wanted, rng)
         if k % log_every == 0:
             now = before if late else tau
             log.append((reading, torque_sensor(now, rng), x[..., :2], v[..., :2], now))
@@ -221,19 +231,14 @@ def follow(
 
 def _initial_state(first, start):
     """Angles and velocities at the start of each run, checked, in the shape of the runs."""
+    if not hasattr(start, "__len__") or len(start) != 2:
+        raise ValueError(f"start must be a pair of angles and velocities, got {start!r}")
+    q, qd = (finite_array(f"start[{k}]", x, 2) for k, x in enumerate(start))
     try:
-        q, qd = start
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"start must be a pair of angles and velocities, got {start!r}") from error
-    pair = finite_array("start[0]", q, 2), finite_array("start[1]", qd, 2)
-    try:
-        q, qd, _ = np.broadcast_arrays(*pair, first)
+        return np.broadcast_arrays(q, qd, first)[:2]
     except ValueError as error:
-        raise ValueError(
-            f"start must fit to the runs {first.shape[:-1]}, got {pair[0].shape} and "
-            f"{pair[1].shape}"
-        ) from error
-    return q, qd
+        runs = first.shape[:-1]
+        raise ValueError(f"start must fit to the runs {runs}, got {q.shape}, {qd.shape}") from error
 
 
 def _time_first(x):
@@ -254,6 +259,9 @@ def record(
 ) -> Recording:
     """Record pick-and-place motions as in section 4 of the paper.
 
+    The controller reads the encoder every 2 ms and holds its torque until the next reading; the
+    log takes every fifth sample (10 ms), as on the real arm.
+
     Parameters
     ----------
     arm, controller
@@ -273,11 +281,6 @@ def record(
     -------
     Recording
         With ``duration / log_step`` samples of motion, 300 for the paper's.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of the wrong kind, shape or range.
     """
     number("control_step", control_step, 1e-5, 0.1)
     number("log_step", log_step, control_step, 1.0)

@@ -21,7 +21,7 @@ STATIC = Path(__file__).with_name("static")
 # Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
 # its style sheet. A class of its own kind adds its own after them.
 FRAME = ("elements.js", "frame.js")
-SCRIPT = ("baked.js", *FRAME, "reading.js", "charts.js", "controls.js", "curves.js")
+SCRIPT = ("baked.js", *FRAME, "reading.js", "charts.js", "dragging.js", "controls.js", "curves.js")
 STYLE = ("curves.css",)
 CHECKS = 200  # random settings at which the interpolation is compared with the function
 

@@ -100,7 +100,7 @@ class TrajectoryPicker(LiveWidget):
         ``(shoulder, elbow)``, at the extents `AXIS` of both joints.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "picker.js"))
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "clock.js", "picker.js"))
     _css = module(*STYLE, "picker.css")
 
     extents_deg = _Extents()

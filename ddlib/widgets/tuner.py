@@ -157,7 +157,7 @@ class PIDTuner(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "stage.js", "tuner.js"))
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "stage.js", "clock.js", "tuner.js"))
     _css = module(*STYLE, "tuner.css")
 
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)

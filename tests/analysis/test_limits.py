@@ -26,6 +26,8 @@ from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  
 from ddlib.experiments import exact_states, knobs, setups, two_harmonics  # fmt: skip
 from ddlib.identification import equations, regression  # fmt: skip
 from ddlib.learning import (  # fmt: skip
+    autograd,
+    descent,
     levenberg_marquardt,
     network,
     parity_networks,
@@ -60,7 +62,7 @@ def arm(**changes):
 
 
 def train(**options):
-    return training.train_ensemble(WEIGHTS, DATA, progress=False, **{"epochs": 1, **options})
+    return descent.train_ensemble(WEIGHTS, DATA, progress=False, **{"epochs": 1, **options})
 
 
 def solve(**options):
@@ -138,12 +140,12 @@ ROWS = [
     ("speed", lambda x: loops.smooth_pick_and_place((9, 9), T, x), [1e-3, 0.5], [0.0]),
     ("repetitions", lambda x: equations.repeat(
         ARM, pd((9, 9), (9, 9)), (9.0, 9.0), CMU_DD_ARM_II_EFFECTS, x), [1], [0, 1.0]),
-    ("hidden", lambda x: network.WindowNetwork(5, x), [1, 2], [0, 1.0]),
+    ("hidden", lambda x: autograd.WindowNetwork(5, x), [1, 2], [0, 1.0]),
     ("members", lambda x: network.Weights.random(x, 5), [1, 2], [0, 1.0]),
     ("width", lambda x: network.Weights.random(1, x), [1, 2], [0, 1.0]),
     ("hidden", lambda x: network.Weights.random(1, 5, x), [1, 2], [0, 1.0]),
     ("seed", lambda x: network.Weights.random(1, 5, seed=x), [0, 1], [-1, 1.0]),
-    ("initial", lambda x: network.WindowNetwork(5, initial=x), [1e-6, 0.5], [0.0]),
+    ("initial", lambda x: autograd.WindowNetwork(5, initial=x), [1e-6, 0.5], [0.0]),
     ("width", lambda x: noise.acceleration_noise_gain(x, 0.1), [3, 5], [2, 4, 3.0]),
     ("period", lambda x: noise.acceleration_noise_gain(5, x), [1e-6, 0.5], [0.0]),
     ("deviation", lambda x: noise.noise_floor(ARM, x, 5, 16, 0.1, 0.1),

@@ -25,20 +25,10 @@ def test_saturation_clips_and_clips_only_once(x):
     np.testing.assert_array_equal(once[inside], x[inside])
     np.testing.assert_array_equal(np.sign(once), np.sign(x))
     np.testing.assert_array_equal(np.abs(once)[~inside], np.array([100.0, 30.0])[~inside])
-
-
-@settings(deadline=None)
-@given(share=st.tuples(st.floats(-1, 1), st.floats(-1, 1)))
-def test_saturation_is_undone_within_its_range(share):
-    saturation = Saturation((100.0, 30.0))
-    y = np.array(share) * [100.0, 30.0]
-    np.testing.assert_array_equal(saturation.apply(saturation.inverse(y)), y)
-
-
-@pytest.mark.parametrize("y", [(101.0, 0.0), (0.0, -30.001), (np.nan, 0.0)])
-def test_saturation_cannot_be_undone_beyond_its_range(y):
-    with pytest.raises(ValueError, match=r"^y must"):
-        Saturation((100.0, 30.0)).inverse(y)
+    np.testing.assert_array_equal(saturation.inverse(once), once)
+    if not inside.all():
+        with pytest.raises(ValueError, match=r"^y must"):
+            saturation.inverse(x)
 
 
 @settings(deadline=None)
@@ -55,15 +45,7 @@ def test_dead_zone_is_undone_exactly_outside_the_zone(x, width):
     else:
         np.testing.assert_allclose(zone.inverse(left), x, rtol=1e-14)
     np.testing.assert_allclose(zone.apply(zone.inverse(x)), x, rtol=1e-14, atol=1e-13)
-    # what a saturation of the same size lets through is just what the zone swallows
-    swallowed = Saturation((width, 1.0)).apply(x)[0] if width else 0.0
-    assert left[0] == pytest.approx(x[0] - swallowed, rel=1e-14, abs=1e-13)
-
-
-def test_dead_zone_by_numbers():
-    zone = DeadZone((0.1, 0.2))
-    np.testing.assert_allclose(zone.apply(np.array([0.05, -0.5])), [0.0, -0.3])
-    np.testing.assert_allclose(zone.inverse([0.0, -0.3]), [0.0, -0.5])
+    np.testing.assert_allclose(DeadZone((0.1, 0.2)).apply(np.array([0.05, -0.5])), [0.0, -0.3])
 
 
 @settings(deadline=None)
@@ -79,16 +61,12 @@ def test_ripple_has_no_mean_over_a_turn(cycles, phase, tau, cogging, share):
     q = np.linspace(0, 2 * np.pi, 1201, endpoint=False)[:, None] * np.ones(2)
     torque = ripple.shaft_torque(np.array(tau), q) - tau
     np.testing.assert_allclose(torque.mean(0), 0.0, atol=1e-9)
+    crest = (np.pi / 2 - phase) / np.array(cycles)
+    top = ripple.shaft_torque(np.array(tau), crest) - tau
+    np.testing.assert_allclose(top, [cogging, share * tau[1]], atol=1e-9)
     assert (np.abs(torque) <= np.array([cogging, share * abs(tau[1])]) + 1e-9).all()
     turned = ripple.shaft_torque(np.array(tau), q + 2 * np.pi) - tau
     np.testing.assert_allclose(turned, torque, atol=1e-8)
-
-
-def test_ripple_by_numbers():
-    ripple = Ripple((0.1, 0.2), (0.5, 0.0), cycles=(1, 2))
-    q = np.array([np.pi / 2, np.pi / 4])
-    np.testing.assert_allclose(ripple.shaft_torque(np.array([10.0, 10.0]), q), [15.1, 10.2])
-    np.testing.assert_array_equal(Ripple().shaft_torque(np.array([10.0, -1.0]), q), [10.0, -1.0])
 
 
 # --- the flexible joint -----------------------------------------------------------------
@@ -99,16 +77,6 @@ def test_spring_with_play_by_numbers():
     twist, rate = np.array([[0.05, 0.05], [0.3, -0.3], [-0.3, 0.3]]), np.array([1.0, 1.0])
     expected = [[0.0, 0.5 + 3.0], [20.0 + 2.0, -3.0 + 3.0], [-20.0 + 2.0, 3.0 + 3.0]]
     np.testing.assert_allclose(shaft.spring_torque(twist, rate), expected, atol=1e-12)
-    np.testing.assert_allclose(shaft.energy(twist), [0.0125, 2.0 + 0.45, 2.0 + 0.45])
-
-
-@settings(deadline=None)
-@given(twist=st.floats(-1, 1), gap=st.floats(0, 0.5))
-def test_spring_torque_is_the_slope_of_its_energy(twist, gap):
-    shaft, h = FlexibleJoint((100.0, 10.0), (0.1, 0.1), gap=(gap, gap)), 1e-6
-    torque = shaft.spring_torque(np.array([twist, 0.0]), np.zeros(2))[0]
-    ends = np.array([[twist - h, 0.0], [twist + h, 0.0]])
-    assert torque == pytest.approx(np.diff(shaft.energy(ends))[0] / (2 * h), abs=1e-3)
 
 
 @ARMS
@@ -127,8 +95,9 @@ def test_links_and_motors_together_are_the_arm(arm):
     assert (np.linalg.eigvalsh(shaft.mass_matrix(arm, q)) > 0).all()
 
 
-def test_shoulder_mode_in_closed_form():
-    """With M12 = 0 and a light elbow motor the shoulder is two discs on a spring."""
+def test_modes_in_closed_form():
+    """Two discs on a spring: the shoulder with M12 = 0 and a light elbow motor; and the elbow
+    on a shoulder too heavy to move."""
     arm = Arm("uncoupled", a=3.0, b=0.5, d=0.2, lengths=(1.0, 1.0))
     q = np.array([0.7, np.arccos(-0.2 / 0.5)])  # here d + b cos q2 = 0
     shaft = FlexibleJoint((5000.0, 1e-3), (0.4, 1e-7))
@@ -137,10 +106,6 @@ def test_shoulder_mode_in_closed_form():
     modes = shaft.mode_frequencies(arm, q)
     assert modes.shape == (2,)
     assert np.abs(modes / expected - 1).min() < 1e-6
-
-
-def test_elbow_mode_in_closed_form():
-    """On a shoulder too heavy to move, the elbow is two discs on a spring."""
     arm = Arm("heavy shoulder", a=1e7, b=0.0, d=0.7, lengths=(1.0, 1.0))
     shaft = FlexibleJoint((1e-3, 6000.0), (1.0, 0.15))
     expected = np.sqrt(6000.0 * (1 / 0.15 + 1 / (0.7 - 0.15)))
@@ -160,46 +125,25 @@ def test_modes_are_the_poles_that_python_control_finds(arm):
         np.testing.assert_allclose(SHAFT.mode_frequencies(arm, q), swing, rtol=1e-6)
 
 
-def test_modes_of_many_postures_and_stiffnesses_at_once():
-    q = np.random.default_rng(0).normal(size=(5, 2))
-    stiffness = 1e4 * np.arange(1, 6)[:, None] * np.ones(2)
-    together = FlexibleJoint(stiffness, (0.4, 0.15)).mode_frequencies(CMU_DD_ARM_II, q)
-    for k in range(5):
-        alone = FlexibleJoint(tuple(stiffness[k]), (0.4, 0.15))
-        np.testing.assert_allclose(together[k], alone.mode_frequencies(CMU_DD_ARM_II, q[k]))
+def test_refusals():
+    def shaft(stiffness=(1.0, 1.0), motor_inertia=(0.1, 0.1), **options):
+        return FlexibleJoint(stiffness, motor_inertia, **options)
 
-
-def test_motors_must_be_part_of_the_arm():
+    for kind, name, *values in (
+        (Saturation, "limit", (0.0, 30.0), (100.0, np.inf)),
+        (DeadZone, "width", (-0.1, 0.1), (0.1,)),
+        (Ripple, "cogging", (-0.1, 0.1)),
+        (Ripple, "share", (0.1, 1.1)),
+        (Ripple, "cycles", (0, 1), (2.5, 1)),
+        (Ripple, "phase", np.nan),
+        (shaft, "stiffness", (0.0, 1.0)),
+        (shaft, "motor_inertia", (0.1, 0.0), [[0.1, 0.1]]),
+        (shaft, "damping", (-1, 0)),
+        (shaft, "gap", (0, -1)),
+        (ComputingTime, "seconds", -1e-3),
+    ):
+        for bad in values:
+            with pytest.raises(ValueError, match=rf"^{name} must"):
+                kind(**{name: bad})
     with pytest.raises(ValueError, match="motor_inertia must be part of the inertia of IMI"):
         FlexibleJoint((1e4, 1e4), (0.1, 0.2)).links(IMI_ARM)
-
-
-def test_computing_time_leaves_the_value_alone():
-    x = np.array([1.0, -2.0])
-    assert ComputingTime(0.0012).apply(x) is x
-
-
-@pytest.mark.parametrize(
-    "make, name",
-    [
-        (lambda: Saturation((0.0, 30.0)), "limit"),
-        (lambda: Saturation((100.0, -30.0)), "limit"),
-        (lambda: Saturation((100.0, np.inf)), "limit"),
-        (lambda: DeadZone((-0.1, 0.1)), "width"),
-        (lambda: DeadZone((0.1,)), "width"),
-        (lambda: Ripple(cogging=(-0.1, 0.1)), "cogging"),
-        (lambda: Ripple(share=(0.1, 1.1)), "share"),
-        (lambda: Ripple(cycles=(0, 1)), "cycles"),
-        (lambda: Ripple(cycles=(2.5, 1)), "cycles"),
-        (lambda: Ripple(phase=np.nan), "phase"),
-        (lambda: FlexibleJoint((0.0, 1.0), (0.1, 0.1)), "stiffness"),
-        (lambda: FlexibleJoint((1.0, 1.0), (0.1, 0.0)), "motor_inertia"),
-        (lambda: FlexibleJoint((1.0, 1.0), [[0.1, 0.1]]), "motor_inertia"),
-        (lambda: FlexibleJoint((1.0, 1.0), (0.1, 0.1), damping=(-1, 0)), "damping"),
-        (lambda: FlexibleJoint((1.0, 1.0), (0.1, 0.1), gap=(0, -1)), "gap"),
-        (lambda: ComputingTime(-1e-3), "seconds"),
-    ],
-)
-def test_bad_values_are_refused_when_the_effect_is_made(make, name):
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        make()

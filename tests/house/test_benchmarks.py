@@ -14,7 +14,7 @@ from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.dynamics import Link
 from ddlib.experiments import STATE_FEEDBACK
-from ddlib.learning import WindowNetwork, training
+from ddlib.learning import WindowNetwork, autograd, descent
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import ensembles
@@ -71,7 +71,7 @@ def test_the_eager_loop_is_the_reference():
     ours, reference = WindowNetwork(5), WindowNetwork(5)
     tensors = (torch.as_tensor(array, dtype=torch.float32) for array in (x, y))
     ensembles.eager_loop(ours, *tensors, rate=2.0, momentum=0.9, epochs=30)
-    training.train(reference, x, y, rate=2.0, momentum=0.9, epochs=30, progress=False)
+    autograd.train(reference, x, y, rate=2.0, momentum=0.9, epochs=30, progress=False)
     for a, b in zip(ours.parameters(), reference.parameters()):
         torch.testing.assert_close(a, b)
 
@@ -82,18 +82,18 @@ def test_a_warm_up_is_that_of_the_ensemble():
     network = WindowNetwork(5)
     weights = ensembles.Weights.stack([network.weights()])
     ensembles.eager_loop(network, x, y, **options)
-    model, *_ = training.train_ensemble(weights, data, progress=False, **options)
+    model, *_ = descent.train_ensemble(weights, data, progress=False, **options)
     np.testing.assert_allclose(
         model.weights.hidden_weights[0], network.weights().hidden_weights, atol=1e-4
     )
 
 
 def test_thread_counts_are_put_back():
-    before = torch.get_num_threads(), training.WORKERS
+    before = torch.get_num_threads(), descent.WORKERS
     with pytest.raises(KeyError), ensembles.threads(1):
-        assert (torch.get_num_threads(), training.WORKERS) == (1, 1)
+        assert (torch.get_num_threads(), descent.WORKERS) == (1, 1)
         raise KeyError
-    assert (torch.get_num_threads(), training.WORKERS) == before
+    assert (torch.get_num_threads(), descent.WORKERS) == before
 
 
 def test_mujoco_gets_the_same_arm():

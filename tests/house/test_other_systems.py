@@ -1,94 +1,58 @@
-"""Other systems than this one: imports without Unix, Python versions, declared dependencies."""
+"""Other systems than this one: Python versions, declared dependencies, pinned actions."""
 
 import ast
 import errno
 import json
 import re
-import subprocess
 import sys
 import tomllib
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
-import yaml
+from book_pages import ROOT
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+from test_imports import imported
 
 from ddlib.experiments import results
 from ddlib.learning import Scaler, TorqueModel, Weights
 
-ROOT = Path(__file__).parents[2]
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-
-EVERY_MODULE = """
-import importlib, pkgutil, sys
-sys.modules["resource"] = None  # as on Windows: an import fails
-import ddlib
-names = [m.name for m in pkgutil.walk_packages(ddlib.__path__, "ddlib.")]
-for name in names:
-    importlib.import_module(name)
-print(len(names))
-"""
+FOLDERS = ("ddlib", "book/workshop", "tests", "benchmarks", "book/_ext")
+TEXTS = {
+    folder: {path: path.read_text("utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
+    for folder in FOLDERS
+}
+HERE = {path.stem for f in ("tests", "benchmarks", "book/_ext") for path in TEXTS[f]}
+UNSEEN = {"pinocchio": ["pin"]}
+"""Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
 
 
-def test_every_module_loads_without_resource_and_without_a_warning():
-    command = [sys.executable, "-W", "error", "-c", EVERY_MODULE]
-    answer = subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
-    assert answer.returncode == 0, answer.stderr
-    files = set((ROOT / "ddlib").rglob("*.py")) - {ROOT / "ddlib" / "__init__.py"}
-    assert int(answer.stdout) == len(files)
-
-
-# --- files that may not be read ---------------------------------------------------------
+def test_the_syntax_is_that_of_the_oldest_python():
+    assert PYPROJECT["project"]["requires-python"] == ">=3.11"
+    assert PYPROJECT["tool"]["ruff"]["target-version"] == "py311"
+    for path, text in (pair for texts in TEXTS.values() for pair in texts.items()):
+        ast.parse(text, path.name, feature_version=(3, 11))
 
 
 def no_right(*_, **__):
     raise PermissionError(errno.EACCES, "Permission denied")
 
 
-def test_a_model_that_may_not_be_read_is_still_a_model(tmp_path, monkeypatch):
-    scaler = Scaler([0.0, 0.0], [1.0, 1.0])
-    path = tmp_path / "model.npz"
+def test_a_file_that_may_not_be_read_is_neither_damaged_nor_missing(tmp_path, monkeypatch):
+    scaler, path = Scaler([0.0, 0.0], [1.0, 1.0]), tmp_path / "model.npz"
     TorqueModel(Weights.random(1, 3), scaler, scaler).save(path)
     assert TorqueModel.load(path).weights.width == 3
-    with pytest.raises(IsADirectoryError if sys.platform != "win32" else PermissionError):
-        TorqueModel.load(tmp_path)
-    path.write_bytes(path.read_bytes()[:300])
-    with pytest.raises(ValueError, match="is not a model file"):
-        TorqueModel.load(path)
-    monkeypatch.setattr(Path, "read_bytes", no_right)
-    with pytest.raises(PermissionError):
-        TorqueModel.load(path)
-
-
-def test_a_result_that_may_not_be_read_is_not_missing(tmp_path, monkeypatch):
     monkeypatch.setattr(results, "FOLDER", tmp_path)
-    with pytest.raises(FileNotFoundError, match="make reproduce"):
-        results.read("none")
     (tmp_path / "half.json").write_text('{"a": 1')
     with pytest.raises(ValueError, match=r"result 'half' in .* is damaged"):
         results.read("half")
-    monkeypatch.setattr(Path, "read_text", no_right)
-    with pytest.raises(PermissionError):
-        results.read("half")
-
-
-# --- Python versions --------------------------------------------------------------------
-
-SOURCES = [
-    path
-    for folder in ("ddlib", "tests", "benchmarks", "book/_ext")
-    for path in sorted((ROOT / folder).rglob("*.py"))
-]
-
-
-def test_the_syntax_is_that_of_the_oldest_python():
-    oldest = PYPROJECT["project"]["requires-python"]
-    assert oldest == ">=3.11" and PYPROJECT["tool"]["ruff"]["target-version"] == "py311"
-    assert len(SOURCES) > 100
-    for path in SOURCES:
-        ast.parse(path.read_text(encoding="utf-8"), path.name, feature_version=(3, 11))
+    for method in ("read_bytes", "read_text", "open"):
+        monkeypatch.setattr(Path, method, no_right)
+    for read in (lambda: TorqueModel.load(path), lambda: results.read("half")):
+        with pytest.raises(PermissionError):
+            read()
 
 
 # --- dependencies -----------------------------------------------------------------------
@@ -96,82 +60,52 @@ def test_the_syntax_is_that_of_the_oldest_python():
 
 def named(lines) -> dict[str, Requirement]:
     """Requirements by the normal form of their names."""
-    found = [Requirement(line) for line in lines]
-    return {canonicalize_name(r.name): r for r in found}
-
-
-def pins() -> dict[str, Requirement]:
-    text = (ROOT / "requirements.txt").read_text(encoding="utf-8")
-    lines = (line.partition("#")[0].strip() for line in text.splitlines())
-    return named(line for line in lines if line)
+    return {canonicalize_name(r.name): r for r in map(Requirement, lines)}
 
 
 OWN = named(PYPROJECT["project"]["dependencies"])
-EXTRAS = {
-    name: named(lines) for name, lines in PYPROJECT["project"]["optional-dependencies"].items()
-}
+EXTRAS = {k: named(v) for k, v in PYPROJECT["project"]["optional-dependencies"].items()}
+PINS = named(
+    line
+    for text in (ROOT / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    if (line := text.partition("#")[0].strip())
+)
 
 
-def imported(source: str) -> set[str]:
-    """Top-level modules that a source imports anywhere, without those of its own folder."""
-    names = set()
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            names |= {alias.name.partition(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and not node.level:
-            names.add(node.module.partition(".")[0])
-    return names
-
-
-def cells() -> str:
+def notebooks() -> list[str]:
     """The code of all notebooks."""
-    parts = []
-    for path in sorted((ROOT / "book").glob("*.ipynb")):
-        content = json.loads(path.read_text(encoding="utf-8"))
-        code = [c["source"] for c in content["cells"] if c["cell_type"] == "code"]
-        parts += ["".join(lines) for lines in code if not "".join(lines).startswith("%")]
-    return "\n".join(parts)
+    pages = [json.loads(path.read_text("utf-8")) for path in sorted(ROOT.glob("book/*.ipynb"))]
+    cells = [c["source"] for page in pages for c in page["cells"] if c["cell_type"] == "code"]
+    return [code for lines in cells if not (code := "".join(lines)).startswith("%")]
 
 
-UNSEEN = {"pinocchio": "pin"}
-"""Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
-
-
-def distributions(source: str) -> set[str]:
-    """Distributions from which a source imports, in normal form; unknown modules as they are."""
-    scripts = (path for path in SOURCES if not path.is_relative_to(ROOT / "ddlib"))
-    here = {path.stem for path in scripts} | {"ddlib"}
-    known = packages_distributions() | {name: [own] for name, own in UNSEEN.items()}
-    names = imported(source) - set(sys.stdlib_module_names) - here
-    return {canonicalize_name(known.get(name, [name])[0]) for name in names}
-
-
-def everything_in(folder: str) -> str:
-    paths = [p for p in SOURCES if p.is_relative_to(ROOT / folder)]
-    return "\n".join(p.read_text(encoding="utf-8") for p in paths)
+def distributions(sources) -> set[str]:
+    """Distributions from which sources import, in normal form; unknown modules as they are."""
+    known = packages_distributions() | UNSEEN
+    tops = {name.partition(".")[0] for source in sources for name in imported(source)}
+    outside = tops - HERE - set(sys.stdlib_module_names) - {"ddlib", "workshop", ""}
+    return {canonicalize_name(known.get(name, [name])[0]) for name in outside}
 
 
 def test_the_package_declares_what_it_imports():
-    optional = set().union(*EXTRAS.values())
-    used = distributions(everything_in("ddlib"))
+    used = distributions(TEXTS["ddlib"].values())
     assert {"numpy", "torch", "traitlets", "ipython", "pyyaml"} <= used
-    assert used - optional <= OWN.keys(), "a dependency is missing in pyproject.toml"
+    used |= distributions(TEXTS["book/workshop"].values())
+    assert used - set().union(*EXTRAS.values()) <= OWN.keys(), "missing in pyproject.toml"
     # anywidget's own need, for whose look and buttons the pages rely on its version 8
     assert OWN.keys() - used == {"ipywidgets"}, "a dependency is declared and not imported"
 
 
-@pytest.mark.parametrize("folder", ["ddlib", "tests", "book/_ext", "benchmarks", "book"])
-def test_the_environment_declares_what_is_imported(folder):
-    used = distributions(cells() if folder == "book" else everything_in(folder))
-    assert used
-    declared = pins().keys() | (EXTRAS["bench"].keys() if folder == "benchmarks" else set())
-    assert used <= declared, "a dependency is missing in requirements.txt"
+def test_the_environment_declares_what_is_imported():
+    sources = {**{folder: texts.values() for folder, texts in TEXTS.items()}, "book": notebooks()}
+    for folder, texts in sources.items():
+        declared = PINS.keys() | (EXTRAS["bench"].keys() if folder == "benchmarks" else set())
+        assert distributions(texts) <= declared, f"{folder}: missing in requirements.txt"
 
 
 def test_the_pins_lie_in_the_packages_ranges():
-    pinned = pins()
     for name, wanted in {**OWN, **EXTRAS["dask"]}.items():
-        given = pinned[name]
+        given = PINS[name]
         if name == "torch":  # a range in both, on purpose
             assert given.specifier == wanted.specifier
         else:
@@ -181,26 +115,13 @@ def test_the_pins_lie_in_the_packages_ranges():
 
 # --- what CI runs -----------------------------------------------------------------------
 
-WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
-
 
 def test_actions_are_pinned_to_a_commit_and_say_which_version():
-    lines = [line for path in WORKFLOWS for line in path.read_text().splitlines()]
-    lines = [line for line in lines if "uses:" in line]
+    texts = [path.read_text() for path in sorted(ROOT.glob(".github/workflows/*.yml"))]
+    lines = [line for text in texts for line in text.splitlines() if "uses:" in line]
     assert len(lines) >= 6
-    for line in lines:
-        assert re.search(r"uses: [\w./-]+@[0-9a-f]{40}  # v\d+\.\d+\.\d+$", line), line
-    pinned = [re.search(r"uses: (\S+)@(\w+)", line).groups() for line in lines]
-    assert len({name for name, _ in pinned}) == len(set(pinned)), "one commit for each action"
-
-
-def test_ci_runs_the_oldest_and_the_newest_of_everything():
-    jobs = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text())["jobs"]
-    assert {"3.11", "3.14"} <= set(jobs["test"]["strategy"]["matrix"]["python"])
-    bounds = jobs["bounds"]["strategy"]["matrix"]["include"]
-    assert {(b["python"], b["resolution"]) for b in bounds} == {
-        ("3.11", "lowest-direct"),
-        ("3.14", "highest"),
-    }
-    text = json.dumps(jobs["bounds"])
-    assert "--resolution ${{ matrix.resolution }}" in text and "pytest" in text
+    pattern = re.compile(r"uses: ([\w./-]+)@([0-9a-f]{40})  # v\d+\.\d+\.\d+$")
+    pinned = {line: pattern.search(line) for line in lines}
+    assert not [line for line, match in pinned.items() if not match]
+    commits = {match.groups() for match in pinned.values()}
+    assert len({name for name, _ in commits}) == len(commits), "one commit for each action"

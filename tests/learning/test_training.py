@@ -1,8 +1,7 @@
-"""Descent with momentum: gradients, the rule of 1988, history, and runs that go astray."""
+"""Training sets, descent with momentum against plain sums, and what a run says of itself."""
 
 import re
 import warnings
-from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -18,18 +17,19 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     WindowNetwork,
+    WorseThanMean,
     cases,
-    check_points,
     default_rate,
+    descent,
     prepare,
     sliding_windows,
     train,
     train_ensemble,
-    training,
 )
+from ddlib.learning.network import FIELDS
+from ddlib.learning.training import check_points
 from ddlib.metrics import rmss
 
-NAMES = tuple(field.name for field in fields(Weights))
 WIDTH = 7
 
 
@@ -54,27 +54,31 @@ def other(data):
     return data.transform(*smooth_cases(50, seed=1))
 
 
+@pytest.fixture(autouse=True)
+def short_runs_may_end_anywhere():
+    """Some runs here are too short to get below a guess of the mean."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", WorseThanMean)
+        yield
+
+
 def parts(weights):
-    return [getattr(weights, name) for name in NAMES]
-
-
-def squared_error(tensors, x, y):
-    """Half the summed squared error of one network, written with sums over named axes."""
-    a, b, c, d, e = tensors
-    h = torch.sigmoid(torch.einsum("hjw,njw->nh", a, x) + b)
-    out = torch.sigmoid(torch.einsum("ojw,njw->no", d, x) + torch.einsum("oh,nh->no", c, h) + e)
-    return 0.5 * ((out - y) ** 2).sum()
+    return [getattr(weights, name) for name in FIELDS]
 
 
 def gradient(arrays, x, y):
-    """Its gradient in double precision."""
+    """Gradient of half the summed squared error of one network, in double precision."""
     tensors = [torch.tensor(p, dtype=torch.float64, requires_grad=True) for p in arrays]
-    squared_error(tensors, torch.tensor(x), torch.tensor(y)).backward()
+    a, b, c, d, e = tensors
+    x, y = torch.tensor(x), torch.tensor(y)
+    h = torch.sigmoid(torch.einsum("hjw,njw->nh", a, x) + b)
+    out = torch.sigmoid(torch.einsum("ojw,njw->no", d, x) + torch.einsum("oh,nh->no", c, h) + e)
+    (0.5 * ((out - y) ** 2).sum()).backward()
     return [t.grad.numpy() for t in tensors]
 
 
 def close(weights, wanted, rtol, atol=0.0):
-    for name, own, w in zip(NAMES, parts(weights), wanted):
+    for name, own, w in zip(FIELDS, parts(weights), wanted):
         np.testing.assert_allclose(own, w, rtol=rtol, atol=atol, err_msg=name)
 
 
@@ -109,9 +113,8 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
 @pytest.mark.parametrize(
     "windows, torque, words",
     [
-        (np.zeros((5, 2)), np.zeros((5, 2)), "(windows|torque) must have shape"),
-        (np.zeros((5, 2, 3)), np.zeros(5), "(windows|torque) must have shape"),
-        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "(windows|torque) must have shape"),
+        (np.zeros((5, 2)), np.zeros((5, 2)), "windows must have shape"),
+        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "torque must have shape"),
         (np.full((5, 2, 3), np.nan), np.zeros((5, 2)), "windows must be finite"),
         (np.zeros((5, 2, 3)), np.full((5, 2), np.inf), "torque must be finite"),
         (np.zeros((5, 2, 3)), np.zeros((5, 2)), "high must exceed low"),
@@ -126,7 +129,7 @@ def test_training_sets_refuse_bad_values(windows, torque, words):
 
 
 def test_double_gradient_is_right_by_finite_differences(data):
-    """The yardstick of the next tests, checked without autograd."""
+    """The yardstick of the next test, checked without autograd."""
     arrays = [p.copy() for p in parts(Weights.random(1, WIDTH, 4, initial=1.0)[0])]
     exact = gradient(arrays, data.x, data.y)
 
@@ -144,59 +147,32 @@ def test_double_gradient_is_right_by_finite_differences(data):
         assert (above - below) / 2e-5 == pytest.approx(slope[place], rel=1e-6)
 
 
-def test_one_ensemble_step_is_the_gradient_of_each_member(data):
-    start = Weights.random(3, WIDTH, initial=1.0, seed=4)
-    model, *_ = train_ensemble(start, data, rate=8.0, epochs=1, progress=False)
-    for k in range(3):
-        before = parts(start[k])
-        slopes = gradient(before, data.x, data.y)
-        for own, p, g, name in zip(parts(model.weights[k]), before, slopes, NAMES):
-            step = (p - own) * len(data.x) / 8.0
-            assert np.abs(g).max() > 0.01, name
-            np.testing.assert_allclose(step, g, atol=2e-4 * np.abs(g).max() + 1e-5, err_msg=name)
+@pytest.mark.parametrize("momentum, warm_up", [(0.0, 0), (0.9, 0), (0.9, 3), (0.3, 3)])
+def test_the_rule_of_1988(data, momentum, warm_up):
+    """``dw(t) = -eps dE/dw + alpha dw(t-1)``, recomputed step by step in double precision.
 
-
-@pytest.mark.parametrize("momentum", [0.0, 0.9])
-def test_the_rule_of_1988(data, momentum):
-    """``dw(t) = -eps dE/dw + alpha dw(t-1)``, recomputed step by step in double precision."""
+    The warm-up limits the momentum of the first steps to 0.5.
+    """
     start = Weights.random(2, WIDTH, 5, initial=0.5, seed=7)
-    epochs, rate = 8, 4.0
-    model, *_ = train_ensemble(
-        start, data, rate=rate, momentum=momentum, epochs=epochs, progress=False
-    )
+    before, rate = [p.copy() for p in parts(start)], 4.0
+    options = dict(rate=rate, momentum=momentum, epochs=8, progress=False)
+    model, *_ = train_ensemble(start, data, warm_up=warm_up, **options)
     network = WindowNetwork(WIDTH, 5, initial=0.5, seed=7)
-    train(network, data.x, data.y, rate=rate, momentum=momentum, epochs=epochs, progress=False)
+    train(network, data.x, data.y, **options)
     for k in range(2):
         w = [p.copy() for p in parts(start[k])]
         dw = [np.zeros_like(p) for p in w]
-        for _ in range(epochs):
+        for step in range(8):
+            alpha = min(momentum, 0.5) if step < warm_up else momentum
             slopes = gradient(w, data.x, data.y)
-            dw = [-rate / len(data.x) * g + momentum * d for g, d in zip(slopes, dw)]
+            dw = [-rate / len(data.x) * g + alpha * d for g, d in zip(slopes, dw)]
             w = [p + d for p, d in zip(w, dw)]
         moved = max(np.abs(a - b).max() for a, b in zip(w, parts(start[k])))
         assert moved > 0.05
         close(model.weights[k], w, rtol=0, atol=1e-4 * moved)
-        if k == 0:
+        if k == 0 and not warm_up:
             close(network.weights(), w, rtol=0, atol=1e-4 * moved)
-
-
-@pytest.mark.parametrize("momentum, first", [(0.9, 0.5), (0.3, 0.3)])
-def test_the_warm_up_limits_the_momentum(data, momentum, first):
-    """Three gentle steps, then five with the momentum asked for; the last step is carried on."""
-    start = Weights.random(2, WIDTH, 5, initial=0.5, seed=7)
-    options = dict(rate=4.0, momentum=momentum, epochs=8, progress=False)
-    model, *_ = train_ensemble(start, data, warm_up=3, **options)
-    w = [p.copy() for p in parts(start[1])]
-    dw = [np.zeros_like(p) for p in w]
-    for step in range(8):
-        alpha = first if step < 3 else momentum
-        slopes = gradient(w, data.x, data.y)
-        dw = [-4.0 / len(data.x) * g + alpha * d for g, d in zip(slopes, dw)]
-        w = [p + d for p, d in zip(w, dw)]
-    moved = max(np.abs(a - b).max() for a, b in zip(w, parts(start[1])))
-    close(model.weights[1], w, rtol=0, atol=1e-4 * moved)
-    with pytest.raises(ValueError, match="warm_up must be an integer from 0"):
-        train_ensemble(start, data, warm_up=-1, **options)
+    close(start, before, rtol=0)  # initial weights are not touched
 
 
 LONG = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
@@ -213,11 +189,11 @@ def reference(data):
     return trained
 
 
-@pytest.mark.parametrize("workers, block", [(1, 8), (2, 8), (2, 1), (5, 8)])
+@pytest.mark.parametrize("workers, block", [(1, 8), (2, 1), (5, 8)])
 def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers, block):
-    """200 epochs, five members in one to six blocks, against autograd member by member."""
-    monkeypatch.setattr(training, "WORKERS", workers)
-    monkeypatch.setattr(training, "BLOCK", block)
+    """200 epochs, five members in one to five blocks, against autograd member by member."""
+    monkeypatch.setattr(descent, "WORKERS", workers)
+    monkeypatch.setattr(descent, "BLOCK", block)
     model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
     assert history.training.shape == (len(check_points(200)), 5)
     for k, wanted in reference.items():
@@ -246,24 +222,6 @@ def test_members_may_have_their_own_rate_momentum_and_targets(data, other):
         assert errors.training[-1, k] == pytest.approx(wanted, rel=1e-5)
 
 
-@pytest.mark.parametrize(
-    "options, words",
-    [
-        (dict(rate=[1.0, 2.0]), r"rate must be one number or 3, got shape \(2,\)"),
-        (dict(rate=[1.0, 2.0, np.nan]), "rate must be finite"),
-        (dict(rate=[1.0, 2.0, 0.0]), "rate must lie in"),
-        (dict(momentum=[0.9, 0.9, 1.0]), "momentum must lie in"),
-        (dict(targets=np.zeros((3, 2))), "targets must have shape"),
-        (dict(targets=np.full((3, 80, 2), np.inf)), "targets must be finite"),
-        (dict(snapshots=[6]), "snapshots must be an integer from 0 to 5, got 6"),
-        (dict(snapshots=[-1]), "snapshots must be an integer from 0 to 5"),
-    ],
-)
-def test_options_per_member_are_checked(data, options, words):
-    with pytest.raises(ValueError, match=words):
-        train_ensemble(Weights.random(3, WIDTH), data, epochs=5, progress=False, **options)
-
-
 def test_training_learns(data, other):
     """Errors fall well below the constant guess, also on cases that were not seen."""
     model, history, _ = train_ensemble(
@@ -276,11 +234,44 @@ def test_training_learns(data, other):
     np.testing.assert_allclose(rmss(model.torque(windows), torque), history.training[-1], rtol=1e-5)
 
 
-def test_initial_weights_are_not_touched(data):
-    start = Weights.random(2, WIDTH)
-    before = [p.copy() for p in parts(start)]
-    train_ensemble(start, data, epochs=5, progress=False)
-    close(start, before, rtol=0)
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (dict(rate=[1.0, 2.0]), r"rate must be one number or 3, got shape \(2,\)"),
+        (dict(rate=[1.0, 2.0, 0.0]), "rate must lie in"),
+        (dict(momentum=[0.9, 0.9, 1.0]), "momentum must lie in"),
+        (dict(targets=np.zeros((3, 2))), "targets must have shape"),
+        (dict(targets=np.full((3, 80, 2), np.inf)), "targets must be finite"),
+        (dict(snapshots=[6]), "snapshots must be an integer from 0 to 5, got 6"),
+        (dict(weights=Weights.random(2, WIDTH + 2)), "weights must have the joints and width"),
+    ],
+)
+def test_options_per_member_are_checked(data, options, words):
+    options = {"weights": Weights.random(3, WIDTH), "epochs": 5, "progress": False, **options}
+    with pytest.raises(ValueError, match=words):
+        train_ensemble(data=data, **options)
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [
+        (dict(rate=0.0), "rate"),
+        (dict(rate="fast"), "rate"),
+        (dict(momentum=1.0), "momentum"),
+        (dict(epochs=0), "epochs"),
+        (dict(x=np.full((80, 2, WIDTH), np.nan)), "x"),
+        (dict(y=np.full((80, 2), np.inf)), "y"),
+        (dict(y=np.full((1, 2), 0.5)), "y"),
+        (dict(y=np.column_stack([np.arange(80.0), np.full(80, 0.5)])), "y"),  # a still column
+    ],
+)
+def test_bad_options_are_refused_before_any_work(data, change, name):
+    network = WindowNetwork(WIDTH)
+    before = parts(network.weights())
+    options = {"x": data.x, "y": data.y, "rate": 1.0, "epochs": 3, "progress": False, **change}
+    with pytest.raises((ValueError, TypeError), match=rf"^{name} must"):
+        train(network, **options)
+    close(network.weights(), before, rtol=0)
 
 
 # --- history ----------------------------------------------------------------------------
@@ -288,53 +279,52 @@ def test_initial_weights_are_not_touched(data):
 
 @given(epochs=st.integers(1, 30_000), points=st.integers(2, 100))
 def test_check_points_reach_from_first_to_last(epochs, points):
-    found = check_points(epochs, points)
-    assert found[0] == 1 and found[-1] == epochs and len(found) <= points
-    assert (np.diff(found) > 0).all()
-    late = found[found > 100]
+    at = check_points(epochs, points)
+    assert at[0] == 1 and at[-1] == epochs and len(at) <= points
+    assert (np.diff(at) > 0).all()
+    late = at[at > 100]
     if len(late) > 2:  # equal ratios, but for rounding to whole epochs
         ratios = late[1:] / late[:-1]
         assert ratios.max() / ratios.min() < 1.03
 
 
-def test_history_holds_the_error_at_its_epochs(data, other):
-    """Taken after the step by `train_ensemble`, before it by `train`."""
-    start = Weights.random(3, WIDTH, seed=2)
+def test_history_and_snapshots_are_those_of_their_epochs(data, other):
+    """Errors are taken after the step by `train_ensemble`, before it by `train`."""
+    start = Weights.random(5, WIDTH, seed=2)
     options = dict(rate=5.0, momentum=0.9, progress=False)
-    _, history, _ = train_ensemble(start, data, test=other, epochs=40, **options)
+    snapshots = (0, 13, 40)
+    model, history, kept = train_ensemble(
+        start, data, test=other, epochs=40, snapshots=snapshots, **options
+    )
     np.testing.assert_array_equal(history.epochs, check_points(40))
-    assert history.training.shape == history.test.shape == (len(history.epochs), 3)
-    for e in (1, 2, 13, 40):
-        model, *_ = train_ensemble(start, data, epochs=e, **options)
-        point = list(history.epochs).index(e)
-        for errors, x, y in (
-            (history.training, data.x, data.y),
-            (history.test, *other),
-        ):
-            own = rmss(model.weights.activity(x)[1], y)
+    assert history.training.shape == history.test.shape == (len(history.epochs), 5)
+    assert tuple(kept) == snapshots
+    close(kept[0], parts(start), rtol=0)
+    close(kept[40], parts(model.weights), rtol=0)
+    for epoch in (1, 13, 40):
+        shorter, *_ = train_ensemble(start, data, epochs=epoch, **options)
+        if epoch in kept:
+            close(kept[epoch], parts(shorter.weights), rtol=0, atol=1e-6)
+        point = list(history.epochs).index(epoch)
+        for errors, x, y in ((history.training, data.x, data.y), (history.test, *other)):
+            own = rmss(shorter.weights.activity(x)[1], y)
             np.testing.assert_allclose(errors[point], own, rtol=1e-5)
-    network = WindowNetwork(WIDTH, seed=2)
-    before = train(network, data.x, data.y, epochs=40, **options)
+    before = train(WindowNetwork(WIDTH, seed=2), data.x, data.y, epochs=40, **options)
     np.testing.assert_array_equal(before.epochs, check_points(40))
-    assert before.training.shape == (len(before.epochs), 1) and before.test.size == 0
+    assert before.test.size == 0
     first = rmss(start[0].activity(data.x)[1], data.y)
     np.testing.assert_allclose(before.training[0], first, rtol=1e-5)
     np.testing.assert_allclose(before.training[1:10, 0], history.training[:9, 0], rtol=1e-4)
 
 
-def test_snapshots_are_the_weights_of_their_epochs(data, monkeypatch):
-    monkeypatch.setattr(training, "WORKERS", 2)
-    start = Weights.random(5, WIDTH)
-    options = dict(rate=5.0, momentum=0.9, progress=False)
-    model, _, kept = train_ensemble(start, data, epochs=20, snapshots=(0, 7, 20), **options)
-    assert set(kept) == {0, 7, 20}
-    close(kept[0], parts(start), rtol=0)
-    close(kept[20], parts(model.weights), rtol=0)
-    seven, *_ = train_ensemble(start, data, epochs=7, **options)
-    close(kept[7], parts(seven.weights), rtol=0, atol=1e-6)
-
-
 def test_history_in_short():
+    history = History()
+    assert str(history) == "History: empty"
+    with pytest.raises(ValueError, match="two points or more, got 0"):
+        history.slope()
+    history.append(1, [2.0, 1.0, 9.0])
+    with pytest.raises(ValueError, match="no test errors"):
+        _ = history.best_test
     history = History()
     for epoch, a, b in ((1, [2.0, 1.0], [0.9, 3.0]), (5, [1.0, 0.5], [0.2, 4.0])):
         history.append(epoch, a, b)
@@ -343,67 +333,34 @@ def test_history_in_short():
     np.testing.assert_array_equal(history.best_test, [0.2, 3.0])
     np.testing.assert_array_equal(history.derailed, [False, True])
     assert history.training.shape == (3, 2)
-    scalar = History()
-    scalar.append(1, 0.5)
-    assert scalar.training.shape == (1, 1) and scalar.test.size == 0
+    one = History(np.array([1, 20_000]), np.array([[1.1], [0.104]]), np.array([[1.2], [0.211]]))
+    assert str(one) == "History: 20000 epochs, training RMSS 0.10, test RMSS 0.21"
 
 
 @given(power=st.floats(-2, 1), start=st.floats(0.01, 10))
-def test_slope_of_a_power_law_is_its_exponent(power, start):
-    history = History()
-    for epoch in check_points(20_000):
-        history.append(int(epoch), [start * epoch**power, 1.0])
-    np.testing.assert_allclose(history.slope(), [power, 0.0], atol=1e-9)
-
-
-def test_members_settle_when_the_slope_is_small():
-    history = History()
-    for epoch in check_points(1000):
-        history.append(int(epoch), [epoch**-0.05, epoch**-0.2, 1.0])
-    np.testing.assert_array_equal(history.settled(), [True, False, True])
-    np.testing.assert_array_equal(history.settled(0.3), [True, True, True])
-    with pytest.raises(ValueError, match="steepest must lie in"):
-        history.settled(-0.1)
-
-
-def test_histories_that_are_too_short_say_so():
-    history = History()
-    history.append(1, [0.5])
-    with pytest.raises(ValueError, match="two points or more, got 1"):
-        history.slope()
-    with pytest.raises(ValueError, match="no test errors"):
-        _ = history.best_test
-
-
-def test_slope_looks_at_the_end_only():
+def test_slope_of_a_power_law_is_its_exponent_and_small_ones_are_settled(power, start):
     """Fast descent that has stopped by half the epochs counts as stopped."""
     history = History()
-    for epoch in check_points(1000):
-        history.append(int(epoch), [1.0 / min(epoch, 300)])
-    assert history.slope() == pytest.approx(0.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("last, astray", [(0.3, False), (1.0, True), (np.nan, True)])
-def test_derailed_looks_at_the_end_only(last, astray):
-    history = History()
-    history.append(1, [9.0])
-    history.append(2, [last])
-    assert history.derailed == [astray]
+    for epoch in check_points(20_000):
+        history.append(int(epoch), [start * epoch**power, 1.0, 1.0 / min(epoch, 5000)])
+    np.testing.assert_allclose(history.slope(), [power, 0.0, 0.0], atol=1e-9)
+    assert history.settled()[1:].all() and history.settled(2.1).all()
+    if abs(abs(power) - 0.1) > 1e-6:
+        assert history.settled()[0] == (abs(power) < 0.1)
 
 
 # --- runs that go astray -----------------------------------------------------------------
 
 
 def with_member(start, k, value):
-    """`start` with all weights of member `k` multiplied by (or set to) a value."""
+    """`start` with all weights of member `k` multiplied by a value."""
     arrays = [p.copy() for p in parts(start)]
     for p in arrays:
         p[k] = p[k] * value
     return Weights(*arrays)
 
 
-@pytest.mark.parametrize("value", [1e4, np.nan, np.inf])
-@pytest.mark.filterwarnings("ignore:invalid value")
+@pytest.mark.parametrize("value", [1e4, np.nan])
 def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
     start = Weights.random(4, WIDTH)
     options = dict(test=other, epochs=60, momentum=0.9, progress=False)
@@ -411,7 +368,7 @@ def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
     model, history, _ = train_ensemble(with_member(start, 2, value), data, **options)
     np.testing.assert_array_equal(history.derailed, [False, False, True, False])
     assert not clean.derailed.any()
-    if not np.isfinite(value):
+    if np.isnan(value):
         assert np.isnan(history.training[:, 2]).all() and np.isnan(history.test[:, 2]).all()
     for k in (0, 1, 3):
         close(model.weights[k], parts(alone.weights[k]), rtol=1e-5, atol=1e-6)
@@ -419,31 +376,30 @@ def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
         np.testing.assert_allclose(history.test[:, k], clean.test[:, k], rtol=1e-5)
 
 
-def test_divergence_of_all_members_is_an_error_that_keeps_the_history(data):
-    start = Weights.random(2, WIDTH)
-    start = with_member(with_member(start, 0, np.nan), 1, np.nan)
-    with pytest.raises(TrainingDiverged, match=r"after 30 epochs: lower the rate \(2\.5\)") as info:
-        train_ensemble(start, data, rate=2.5, epochs=30, progress=False)
-    history = info.value.history
-    np.testing.assert_array_equal(history.epochs, check_points(30))
-    assert np.isnan(history.training).all() and history.training.shape[1] == 2
-    assert history.derailed.all()
-
-
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", FIELDS)
 def test_errors_of_members_without_finite_weights_are_nan(data, name):
     """Also if the step that lost one weight has not reached the others yet."""
     start = Weights.random(3, WIDTH)
     getattr(start, name)[1].flat[0] = np.inf
-    descent = Descent(start, data.x, data.y, 0.01, 0.9)
-    found = np.sqrt(descent.mean_square(*prepare(data.x, data.y)).mean(-1))
-    np.testing.assert_array_equal(np.isnan(found), [False, True, False])
+    many = Descent(start, data.x, data.y, 0.01, 0.9)
+    errors = np.sqrt(many.mean_square(*prepare(data.x, data.y)).mean(-1))
+    np.testing.assert_array_equal(np.isnan(errors), [False, True, False])
     out = start[0].activity(data.x)[1]
-    assert found[0] == pytest.approx(np.sqrt(((out - data.y) ** 2).mean()), rel=1e-5)
+    assert errors[0] == pytest.approx(np.sqrt(((out - data.y) ** 2).mean()), rel=1e-5)
 
 
-def test_divergence_of_one_network_is_an_error_that_keeps_the_history(data):
+def test_divergence_is_an_error_that_keeps_the_history_and_gives_threads_back(data):
     """Sigmoid units saturate at large steps; it takes one beyond float32 to lose the sum."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(2)
+    start = with_member(Weights.random(1, WIDTH), 0, np.nan)
+    with pytest.raises(TrainingDiverged, match=r"after 30 epochs: lower the rate \(2\.5\)") as info:
+        train_ensemble(start, data, rate=2.5, epochs=30, progress=False)
+    np.testing.assert_array_equal(info.value.history.epochs, check_points(30))
+    assert info.value.history.derailed.all()
+    train_ensemble(Weights.random(3, WIDTH), data, epochs=3, progress=False)
+    assert torch.get_num_threads() == 2
+    torch.set_num_threads(before)
     with pytest.raises(TrainingDiverged, match=r"lower the rate \(1e\+38\)") as info:
         train(WindowNetwork(WIDTH), data.x, data.y, rate=1e38, momentum=0.999, progress=False)
     history = info.value.history
@@ -452,119 +408,29 @@ def test_divergence_of_one_network_is_an_error_that_keeps_the_history(data):
     assert np.isfinite(history.training[0]).all() and not np.isfinite(history.training[-1]).any()
 
 
-def test_a_far_too_large_rate_is_seen_as_derailed(data):
+def test_a_far_too_large_rate_is_told(data):
+    """But not of an ensemble of which one member has learnt, or has targets of its own."""
+    start, options = Weights.random(3, WIDTH), dict(epochs=200, progress=False)
+    with pytest.warns(WorseThanMean, match=r"an RMSS of [\d.]+, worse .* rate \(1e\+06\)") as w:
+        _, history, _ = train_ensemble(start, data, rate=1e6, **options)
+    assert history.derailed.all() and w[0].filename == __file__
+    with pytest.warns(WorseThanMean, match=r"the rate \(1e\+06\) is too large"):
+        train(WindowNetwork(WIDTH), data.x, data.y, rate=1e6, **options)
+    targets = np.stack([data.y] * 3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        _, history, _ = train_ensemble(
-            Weights.random(3, WIDTH), data, rate=1e6, epochs=50, progress=False
-        )
-    assert history.derailed.all() and (history.training[-1] > 1).all()
-
-
-@pytest.mark.parametrize(
-    "options, name",
-    [
-        (dict(rate=0.0), "rate"),
-        (dict(rate=-1.0), "rate"),
-        (dict(rate=np.nan), "rate"),
-        (dict(rate=np.inf), "rate"),
-        (dict(rate=1e39), "rate"),
-        (dict(momentum=-0.1), "momentum"),
-        (dict(momentum=1.0), "momentum"),
-        (dict(momentum=np.nan), "momentum"),
-        (dict(epochs=0), "epochs"),
-        (dict(epochs=-5), "epochs"),
-    ],
-)
-def test_bad_options_are_refused_before_any_work(data, options, name):
-    network, start = WindowNetwork(WIDTH), Weights.random(1, WIDTH)
-    before = parts(network.weights())
-    options = {"rate": 1.0, "epochs": 3, "progress": False, **options}
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        train(network, data.x, data.y, **options)
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        train_ensemble(start, data, **options)
-    close(network.weights(), before, rtol=0)
-
-
-@pytest.mark.parametrize(
-    "options, name",
-    [(dict(rate="fast"), "rate"), (dict(momentum=None), "momentum"), (dict(epochs=10.0), "epochs")],
-)
-def test_options_of_the_wrong_kind(data, options, name):
-    options = {"rate": 1.0, "epochs": 3, "progress": False, **options}
-    with pytest.raises(TypeError, match=rf"^{name} must"):
-        train(WindowNetwork(WIDTH), data.x, data.y, **options)
-    with pytest.raises(TypeError, match=rf"^{name} must"):
-        train_ensemble(Weights.random(1, WIDTH), data, **options)
-
-
-def test_data_must_be_finite(data):
-    bad = np.where(data.x == data.x.max(), np.nan, data.x)
-    with pytest.raises(ValueError, match=r"^x must be finite"):
-        train(WindowNetwork(WIDTH), bad, data.y, rate=1.0, progress=False)
-    with pytest.raises(ValueError, match=r"^y must be finite"):
-        train(WindowNetwork(WIDTH), data.x, np.full_like(data.y, np.inf), rate=1.0, progress=False)
-
-
-@pytest.mark.parametrize("y", [np.full((80, 2), 0.5), np.full((1, 2), 0.5)], ids=["still", "short"])
-def test_targets_that_cannot_be_learnt_are_refused(data, y):
-    with pytest.raises(ValueError, match="y must"):
-        train(WindowNetwork(WIDTH), data.x, y, rate=1.0, progress=False)
-
-
-def test_every_column_of_the_targets_must_vary_and_no_row(data):
-    same = np.repeat(data.y[:, :1], 2, axis=1)
-    history = train(WindowNetwork(WIDTH), data.x, same, rate=1.0, epochs=2, progress=False)
-    assert np.isfinite(history.training).all()
-    still = np.column_stack([data.y[:, 0], np.full(len(data.y), 0.5)])
-    with pytest.raises(ValueError, match="vary in each column"):
-        train(WindowNetwork(WIDTH), data.x, still, rate=1.0, epochs=2, progress=False)
-
-
-def test_another_window_than_the_data_has_is_refused(data):
-    with pytest.raises(ValueError, match="width"):
-        train_ensemble(Weights.random(2, WIDTH + 2), data, epochs=2, progress=False)
-
-
-def test_a_single_network_is_not_an_ensemble(data):
-    with pytest.raises(TypeError, match="single network"):
-        train_ensemble(Weights.random(1, WIDTH)[0], data, epochs=2, progress=False)
-
-
-# --- rate, threads, progress ---------------------------------------------------------------
+        train_ensemble(start, data, rate=[1e6, 1e6, 3.0], **options)
+        train_ensemble(start, data, rate=1e6, targets=targets, **options)
+        train(WindowNetwork(WIDTH), data.x, data.y, rate=3.0, **options)
 
 
 def test_default_rate_is_in_inverse_proportion_to_the_fan_in(data):
     assert default_rate(11) == pytest.approx(3.0)
     assert default_rate(11) / default_rate(33) == pytest.approx(3.0)
-    for width, error in ((0, ValueError), (2.5, TypeError)):
-        with pytest.raises(error, match="width must"):
-            default_rate(width)
     start = Weights.random(2, WIDTH)
     default, *_ = train_ensemble(start, data, epochs=20, progress=False)
     named, *_ = train_ensemble(start, data, epochs=20, rate=33.0 / WIDTH, progress=False)
     close(default.weights, parts(named.weights), rtol=0)
-
-
-@pytest.fixture
-def two_threads():
-    before = torch.get_num_threads()
-    torch.set_num_threads(2)
-    yield
-    torch.set_num_threads(before)
-
-
-def test_torch_gets_its_threads_back(data, two_threads):
-    train_ensemble(Weights.random(3, WIDTH), data, epochs=3, progress=False)
-    assert torch.get_num_threads() == 2
-    with pytest.raises(TrainingDiverged):
-        bad = with_member(Weights.random(1, WIDTH), 0, np.nan)
-        train_ensemble(bad, data, epochs=3, progress=False)
-    assert torch.get_num_threads() == 2
-    with pytest.raises((RuntimeError, ValueError)):  # windows that do not fit
-        train_ensemble(Weights.random(3, WIDTH + 2), data, epochs=3, progress=False)
-    assert torch.get_num_threads() == 2
 
 
 def test_progress_is_shown_when_asked_for(data, capsys):

@@ -48,7 +48,11 @@ class ThrownArm(anywidget.AnyWidget):
         What *Code* copies, with ``{motion}`` for the trajectory's place in Appendix I.
     """
 
-    _esm = lean(module("elements.js", *ENGINE, "world.js", "running.js", "inside.js", "throw.js"))
+    _esm = lean(
+        module(
+            "elements.js", *ENGINE, "world.js", "canvas.js", "running.js", "inside.js", "throw.js"
+        )
+    )
     _css = module(*STYLE, "throw.css")
 
     spec = t.Dict(help="arm, controller, layout of the network, motions", read_only=True)

@@ -90,7 +90,7 @@ class NetworkTrainer(anywidget.AnyWidget):
 
     _esm = lean(
         module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module(*ENGINE, TRAINING, "trainer.js")
+        + module(*ENGINE, TRAINING, "canvas.js", "trainer.js")
     )
     _css = module(*STYLE, "trainer.css")
 

@@ -2,7 +2,6 @@
 // over the truth, its gain. Follows charts.js and frame.js; the encoder is physics.js's.
 
 const NEAR = 28; // px from a stem within which a touch takes it; elsewhere a swipe up or down scrolls
-const ASIDE = 8; // px sideways after which a touch elsewhere is a stroke
 const MINUS = (text) => text.replace("-", "−");
 
 // Outputs of a filter over readings, one for each sample of the truth, without their mean.
@@ -62,9 +61,8 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
   const over = make("g", {});
   const stems = levels.map((_, k) => {
     const stem = make("g", { class: "stem", role: "slider", tabindex: k === half ? 0 : -1 }, make("line", {}), make("circle", { class: "room", r: 9 }), make("circle", { class: "dot", r: 5 }));
-    const fixed = { "aria-orientation": "vertical", "aria-valuemin": -1, "aria-valuemax": 1 };
-    for (const [name, value] of Object.entries(fixed)) stem.setAttribute(name, value);
-    stem.setAttribute("aria-label", `Weight at ${MINUS(String((k - half) * step))} ms`);
+    const label = `Weight at ${MINUS(String((k - half) * step))} ms`;
+    put(stem, { "aria-orientation": "vertical", "aria-valuemin": -1, "aria-valuemax": 1, "aria-label": label });
     return stem;
   });
   const svg = make("svg", { class: "window", role: "group" }, grid, over, ...stems);
@@ -75,8 +73,7 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
 
   function resize(space, height) {
     place = { left: 30, right: space - 4, top: 8, bottom: height - 36 };
-    for (const [name, value] of [["width", space], ["height", height]]) svg.setAttribute(name, value);
-    svg.setAttribute("viewBox", `0 0 ${space} ${height}`);
+    put(svg, { width: space, height, viewBox: `0 0 ${space} ${height}` });
     const line = (at, kind) => make("line", { x1: place.left, x2: place.right, y1: short(y(at)), y2: short(y(at)), class: kind });
     grid.replaceChildren(
       ...[-1, 0, 1].flatMap((v) => [
@@ -94,15 +91,10 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     stems.forEach((stem, k) => {
       const [line, ...dots] = stem.children;
       const top = short(y(levels[k]));
-      const ends = { x1: short(x(k)), x2: short(x(k)), y1: short(y(0)), y2: top };
-      for (const [name, value] of Object.entries(ends)) line.setAttribute(name, value);
-      for (const dot of dots) {
-        dot.setAttribute("cx", short(x(k)));
-        dot.setAttribute("cy", top);
-      }
+      put(line, { x1: short(x(k)), x2: short(x(k)), y1: short(y(0)), y2: top });
+      for (const dot of dots) put(dot, { cx: short(x(k)), cy: top });
       const value = (levels[k] / most).toFixed(2);
-      stem.setAttribute("aria-valuenow", value);
-      stem.setAttribute("aria-valuetext", MINUS(value));
+      put(stem, { "aria-valuenow": value, "aria-valuetext": MINUS(value) });
     });
     over.replaceChildren(
       ...ghosts.map(([k, f]) => {
@@ -112,11 +104,8 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     );
   }
 
-  // A stroke begins anywhere. A touch beside the stems may also become a swipe that scrolls the page:
-  // it draws once it has gone sideways, or if it was a tap.
+  // A stroke begins anywhere; all stems between two of its places are set.
   let last = null;
-  let painter = null;
-  let waiting = null; // such a touch, until it is known what it becomes
   const at = (event) => {
     const box = svg.getBoundingClientRect();
     const [px, py] = [event.clientX - box.left, event.clientY - box.top];
@@ -138,7 +127,8 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     const ends = [y(0), y(levels[k])];
     return py > Math.min(...ends) - NEAR && py < Math.max(...ends) + NEAR;
   };
-  const paint = (to) => {
+  const paint = (event) => {
+    const to = at(event);
     const from = last ?? to;
     const count = Math.abs(to.k - from.k);
     for (let i = count ? 1 : 0; i <= count; i++) {
@@ -147,48 +137,21 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
     }
     last = to;
   };
-  const dab = (event) => {
+  draggable(svg, onStem, paint, (event) => {
     focus(at(event).k);
     last = null;
-    paint(at(event));
-  };
-  const begin = (event) => {
-    waiting = null;
-    svg.setPointerCapture(event.pointerId);
-    painter = event.pointerId;
-    dab(event);
-  };
-  svg.style.touchAction = "pan-y";
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button || painter !== null) return;
-    if (event.pointerType === "touch" && !onStem(event)) return void (waiting = event);
-    event.preventDefault();
-    begin(event);
+    paint(event);
   });
-  svg.addEventListener("pointermove", (event) => {
-    if (event.pointerId === waiting?.pointerId && Math.abs(event.clientX - waiting.clientX) > ASIDE) begin(waiting);
-    if (event.pointerId === painter) paint(at(event));
-  });
-  for (const end of ["pointerup", "pointercancel"]) {
-    svg.addEventListener(end, (event) => {
-      if (end === "pointerup" && event.pointerId === waiting?.pointerId) dab(waiting); // a tap
-      if (event.pointerId === painter) painter = null;
-      if (event.pointerId === waiting?.pointerId) waiting = null;
-    });
-  }
-  svg.addEventListener("touchstart", (event) => onStem(event.touches[0]) && event.preventDefault(), { passive: false });
-  svg.addEventListener("keydown", (event) => {
+  onKeys(svg, (event) => {
     const k = stems.indexOf(event.target);
-    if (k < 0 || event.ctrlKey || event.altKey || event.metaKey) return;
+    if (k < 0) return false;
     const far = most / (event.shiftKey ? 10 : 50);
     const moved = { ArrowUp: far, ArrowDown: -far, PageUp: most / 10, PageDown: -most / 10 };
     const next = { ArrowLeft: k - 1, ArrowRight: k + 1, Home: 0, End: width - 1 };
     if (event.key in next) focus(Math.min(width - 1, Math.max(0, next[event.key])));
     else if (event.key in moved) change(k, heights()[k] + moved[event.key]); // several presses may fall into a frame
     else if (event.key === "0" || event.key === "Delete") change(k, 0);
-    else return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+    else return false;
   });
   return { svg, resize, draw };
 }
@@ -196,13 +159,11 @@ function windowOf({ width, most, period }, { stems: heights, change }) {
 function build({ model, el }) {
   const spec = model.get("spec");
   const { width, levels: most, period } = spec;
-  const bytes = model.get("motion");
-  const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const values = numbersOf(model.get("motion"), "Float64");
   const count = spec.samples - width + 1;
-  if (data.byteLength !== 8 * (spec.samples + count)) {
-    throw new Error(`${data.byteLength} bytes of motion in place of ${8 * (spec.samples + count)}`);
+  if (values.length !== spec.samples + count) {
+    throw new Error(`${8 * values.length} bytes of motion in place of ${8 * (spec.samples + count)}`);
   }
-  const values = Float64Array.from({ length: data.byteLength / 8 }, (_, i) => data.getFloat64(8 * i, true));
   const [q, truth] = [values.subarray(0, spec.samples), values.subarray(spec.samples)];
   const seen = spec.zeros.map((zero) => q.map((x) => encoderReading(spec.step, x + zero) - zero));
   const scores = (f) => {
@@ -214,9 +175,7 @@ function build({ model, el }) {
   const least = rivals.find(({ key }) => key === "least").error;
   const shown = ["unit", "least"].map((key) => rivals.find((rival) => rival.key === key));
 
-  el.classList.add("ddlib-widget", "ddlib-curves", "ddlib-builder");
-  el.setAttribute("role", "group");
-  el.setAttribute("aria-label", spec.title);
+  dress(el, spec.title, "ddlib-builder");
 
   // State: the stems in levels; the starting point that they are, or ""; what has been tried.
   const levels = Array(width).fill(0);
@@ -229,7 +188,7 @@ function build({ model, el }) {
   const shift = () => (level && !start ? levels.reduce((sum, v) => sum + v, 0) / width : 0);
   const filter = () => named.get(start) ?? levels.map((v) => (v - shift()) / most);
 
-  const view = { id: `dd${Math.random().toString(36).slice(2, 10)}`, spec: { curves: spec.curves } };
+  const view = { id: freshId(), spec: { curves: spec.curves } };
   const frame = frameOf({
     el,
     key: "builder",
@@ -274,12 +233,7 @@ function build({ model, el }) {
   }
 
   const stage = windowOf({ width, most, period }, { stems: () => filter().map((v) => v * most), change });
-  const button = (text, act) => {
-    const made = make("button", { type: "button" }, text);
-    made.addEventListener("click", act);
-    return made;
-  };
-  const starts = spec.starts.map(([name]) => button(name, () => begin(name)));
+  const starts = spec.starts.map(([name]) => buttonOf(name, () => begin(name)));
   const toggle = (name, words, set) => {
     const box = make("input", { type: "checkbox", role: "switch", id: `${view.id}-${name}` });
     box.addEventListener("input", () => {
@@ -290,7 +244,7 @@ function build({ model, el }) {
   };
   const both = toggle("both", "Both sides alike", (on) => (mirror = on));
   const zero = toggle("zero", "Sum zero", (on) => (level = on));
-  const compare = button("Compare", () => {
+  const compare = buttonOf("Compare", () => {
     compared = !compared;
     rebuild();
     later();
@@ -394,16 +348,8 @@ function build({ model, el }) {
   function tabulate(own) {
     const textbook = spec.starts.slice(0, 4).map(([name, f]) => ({ name, ...scores(f) }));
     const rows = [{ name: "Yours", ...own }, ...textbook, ...rivals];
-    const cells = (kind, texts) => make("tr", {}, ...texts.map((text) => make(kind, {}, text)));
-    table.replaceChildren(
-      make(
-        "table",
-        {},
-        make("caption", {}, "Errors, least first"),
-        make("thead", {}, cells("th", ["weights", "here", "with other zeros"])),
-        make("tbody", {}, ...rows.sort((a, b) => a.error - b.error).map((row) => cells("td", [row.name, plain(row.error), range(row.others)]))),
-      ),
-    );
+    const texts = rows.sort((a, b) => a.error - b.error).map((row) => [row.name, plain(row.error), range(row.others)]);
+    table.replaceChildren(tableOf("Errors, least first", ["weights", "here", "with other zeros"], texts));
   }
 
   begin(spec.starts[0][0]);

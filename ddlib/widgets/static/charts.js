@@ -223,19 +223,16 @@ function chart(view, panel) {
     if (standing && base < bottom) {
       grid.append(make("line", { class: "zero", x1: left, x2: right, y1: base, y2: base }));
     }
-    const box = { x: left - 2, y: 3, width: right - left + 6, height: bottom - 1 };
-    for (const [name, value] of Object.entries(box)) clip.setAttribute(name, value);
-    for (const [name, value] of [["y1", 6], ["y2", bottom]]) cursor.setAttribute(name, value);
-    for (const [name, value] of [["y", 6], ["height", bottom - 6]]) span.setAttribute(name, value);
+    put(clip, { x: left - 2, y: 3, width: right - left + 6, height: bottom - 1 });
+    put(cursor, { y1: 6, y2: bottom });
+    put(span, { y: 6, height: bottom - 6 });
     for (const curve of fixed) draw(curve, curve.values);
   }
 
   function resize() {
     width = Math.max(160, Math.floor(el.clientWidth));
     height = Math.round(Math.min(260, Math.max(160, width * 0.6)));
-    svg.setAttribute("width", width);
-    svg.setAttribute("height", height);
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    put(svg, { width, height, viewBox: `0 0 ${width} ${height}` });
     layout();
   }
 
@@ -258,16 +255,14 @@ function chart(view, panel) {
     if (!x) return; // not laid out yet
     const inside = at >= ends[0] && at <= ends[1];
     cursor.setAttribute("visibility", inside ? "visible" : "hidden");
-    if (inside) for (const end of ["x1", "x2"]) cursor.setAttribute(end, short(x.place(at)));
+    if (inside) put(cursor, { x1: short(x.place(at)), x2: short(x.place(at)) });
   }
 
   function shade(a, b) {
     const [from, to] = [Math.min(a, b), Math.max(a, b)].map((v) =>
       x.place(Math.min(ends[1], Math.max(ends[0], v))),
     );
-    span.setAttribute("visibility", "visible");
-    span.setAttribute("x", short(from));
-    span.setAttribute("width", short(to - from));
+    put(span, { visibility: "visible", x: short(from), width: short(to - from) });
   }
 
   const told = (v, a, b) => (panel.y_scale === "power" ? powerText(v) : format(v, a, b));

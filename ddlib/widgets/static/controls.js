@@ -50,11 +50,7 @@ function choice(view, p, k) {
 // Buttons that set several parameters at once; pressed where they stand so.
 function presetsOf(view) {
   const { title, options } = view.spec.presets;
-  const buttons = options.map(([label, values]) => {
-    const button = make("button", { type: "button" }, label);
-    button.addEventListener("click", () => view.set(values));
-    return button;
-  });
+  const buttons = options.map(([label, values]) => buttonOf(label, () => view.set(values)));
   const update = () => {
     options.forEach(([, values], i) => {
       const stands = Object.entries(values).every(([name, value]) => view.get(name) === value);
@@ -64,42 +60,6 @@ function presetsOf(view) {
   const words = { class: "presets", role: "group", "aria-label": title };
   const heading = make("span", { "aria-hidden": "true" }, title);
   return { el: make("div", words, heading, ...buttons), update };
-}
-
-const GRIP = 24; // px around a handle in which a finger takes hold of it
-
-// Dragging in a drawing with a handle: by mouse or pen anywhere; by touch from the handle, or
-// sideways, or by a tap, so that a vertical swipe from beside the handle scrolls the page.
-//   move(event)  is called at every place that the pointer reaches
-function draggable(svg, handle, move) {
-  const near = ({ clientX, clientY }) => {
-    const box = handle.getBoundingClientRect();
-    const away = [clientX - box.x - box.width / 2, clientY - box.y - box.height / 2];
-    return Math.hypot(...away) <= Math.max(GRIP, box.width / 2);
-  };
-  let begun = null; // a touch beside the handle, until it is known what it becomes
-  svg.style.touchAction = "pan-y";
-  svg.addEventListener("touchstart", (event) => near(event.touches[0]) && event.preventDefault(), { passive: false });
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.button) return;
-    svg.focus({ preventScroll: true });
-    begun = event.pointerType === "touch" && !near(event) ? event : null;
-    if (begun) return;
-    svg.setPointerCapture(event.pointerId);
-    move(event);
-  });
-  svg.addEventListener("pointermove", (event) => {
-    if (begun && Math.abs(event.clientX - begun.clientX) > 8) {
-      begun = null;
-      svg.setPointerCapture(event.pointerId);
-    }
-    if (!begun && event.buttons && svg.hasPointerCapture(event.pointerId)) move(event);
-  });
-  svg.addEventListener("pointerup", (event) => {
-    if (begun) move(event); // a tap
-    begun = null;
-  });
-  svg.addEventListener("pointercancel", () => (begun = null));
 }
 
 const SHAPES = [
@@ -164,8 +124,7 @@ function padOf(view) {
     }),
     handle,
   );
-  svg.setAttribute("role", "application");
-  svg.setAttribute("aria-roledescription", "two-dimensional slider");
+  put(svg, { role: "application", "aria-roledescription": "two-dimensional slider" });
 
   const move = (fx, fy) => view.set({ [i]: fromFraction(px, fx), [j]: fromFraction(py, fy) });
   const away = (mark, fx, fy) => Math.hypot(toFraction(px, mark.x) - fx, toFraction(py, mark.y) - fy);
@@ -176,12 +135,10 @@ function padOf(view) {
     if (near) view.set({ [i]: near.x, [j]: near.y });
     else move(...at);
   };
-  draggable(svg, handle, drag);
-  svg.addEventListener("keydown", (event) => {
+  draggable(svg, besideOf(handle), drag);
+  onKeys(svg, (event) => {
     const way = WAYS[event.key];
-    if (!way || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+    if (!way) return false;
     const [fx, fy] = [toFraction(px, view.values[i]), toFraction(py, view.values[j])];
     const steps = event.key.startsWith("Arrow") ? (event.shiftKey ? 10 : 1) : 1e6; // or to the edge
     move(fx + steps * stepOf(px) * way[0], fy + steps * stepOf(py) * way[1]);

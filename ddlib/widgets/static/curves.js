@@ -22,7 +22,7 @@ function build({ model, el }) {
   if (spec?.live) checkSpec(spec);
   const tables = spec?.live ? null : readTables(spec, model.get("baked"));
   const names = spec.parameters.map((p) => p.name);
-  const view = { model, el, spec, id: `dd${Math.random().toString(36).slice(2, 10)}` };
+  const view = { model, el, spec, id: freshId() };
   view.resets = [];
   const frame = frameOf({
     ...{ el, key: spec.key, title: spec.title, linked: Boolean(model.kernelless) },
@@ -46,9 +46,7 @@ function build({ model, el }) {
     frame.keep(p.name, now, put, model.kernelless ? now() : String(p.value));
   }
   read();
-  el.classList.add("ddlib-widget", "ddlib-curves");
-  el.setAttribute("role", "group");
-  el.setAttribute("aria-label", spec.title);
+  dress(el, spec.title);
 
   view.charts = spec.panels.map((panel) => chart(view, panel));
   const controls = spec.parameters.map((p, k) => (p.options ? choice : slider)(view, p, k));
@@ -80,9 +78,7 @@ function build({ model, el }) {
     view.exact = fresh && exact?.byteLength === 4 * samplesOf(spec);
     problem.hidden = !(fresh && error);
     write(problem, problem.hidden ? "" : `The exact curves could not be computed. ${error}`);
-    if (!view.exact) return interpolate(spec, tables, view.values);
-    const data = new DataView(exact.buffer, exact.byteOffset, exact.byteLength);
-    return Float64Array.from({ length: data.byteLength / 4 }, (_, i) => data.getFloat32(4 * i, true));
+    return view.exact ? numbersOf(exact, "Float32") : interpolate(spec, tables, view.values);
   }
 
   view.after = [];
@@ -220,8 +216,8 @@ function valueOfText(p, text) {
 
 // The state as Python code: names in braces stand for values.
 function codeOf(spec, values) {
-  const named = Object.fromEntries(spec.parameters.map((p, k) => [p.name, python(values[k])]));
-  return spec.code.replace(/\{(\w+)\}/g, (whole, name) => named[name] ?? whole);
+  const texts = spec.parameters.map((p, k) => [p.name, python(values[k])]);
+  return filled(spec.code, Object.fromEntries(texts));
 }
 
 function footerText(model, spec) {

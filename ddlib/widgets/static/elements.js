@@ -8,9 +8,26 @@ const SVG_TAGS = new Set(
 // An element with attributes and children, SVG or HTML by its name.
 function make(tag, attributes = {}, ...children) {
   const el = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) el.setAttribute(name, value);
+  put(el, attributes);
   el.append(...children);
   return el;
+}
+
+function put(el, attributes) {
+  for (const [name, value] of Object.entries(attributes)) el.setAttribute(name, value);
+}
+
+function buttonOf(text, act, attributes = {}) {
+  const el = make("button", { type: "button", ...attributes }, text);
+  el.addEventListener("click", act);
+  return el;
+}
+
+// A table with a caption, from texts.
+function tableOf(caption, heads, rows) {
+  const cells = (kind, texts) => make("tr", {}, ...texts.map((text) => make(kind, {}, text)));
+  const body = make("tbody", {}, ...rows.map((row) => cells("td", row)));
+  return make("table", {}, make("caption", {}, caption), make("thead", {}, cells("th", heads)), body);
 }
 
 // Text in an element; the same text again would lay it out again.
@@ -20,6 +37,48 @@ function write(el, text) {
 
 // A number for a path, to hundredths of a pixel; quicker than toFixed.
 const short = (x) => Math.round(x * 100) / 100;
+
+// Keys pressed on an element: `act(event)` returns false for those that it leaves alone.
+function onKeys(el, act) {
+  el.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || act(event) === false) return;
+    event.preventDefault();
+    event.stopPropagation(); // a notebook has its own arrow keys
+  });
+}
+
+// The element of a widget, by its kind and its name for screen readers.
+function dress(el, label, ...kinds) {
+  el.classList.add("ddlib-widget", "ddlib-curves", ...kinds);
+  put(el, { role: "group", "aria-label": label });
+}
+
+// What the ids of a widget's elements begin with.
+const freshId = () => `dd${Math.random().toString(36).slice(2, 10)}`;
+
+const SIZES = { Float64: 8, Float32: 4, Int16: 2 };
+
+// The little-endian numbers in the bytes of a trait.
+function numbersOf(bytes, kind) {
+  if (!bytes?.buffer) throw new Error("bytes are missing");
+  const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const length = Math.floor(data.byteLength / SIZES[kind]);
+  return Float64Array.from({ length }, (_, i) => data[`get${kind}`](SIZES[kind] * i, true));
+}
+
+// Calls when the page changes its colours; returns a function that ends this.
+function onRecolour(callback) {
+  const themes = new MutationObserver(callback);
+  for (const root of [document.documentElement, document.body]) {
+    themes.observe(root, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] });
+  }
+  const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
+  media.forEach((list) => list.addEventListener("change", callback));
+  return () => {
+    themes.disconnect();
+    media.forEach((list) => list.removeEventListener("change", callback));
+  };
+}
 
 // Says in place of a figure what is wrong with it.
 function report(el, error) {

@@ -4,6 +4,7 @@
 // A plant is what plain.py writes: { arm, lengths, viscous, coulomb, smoothing, encoder, limit }.
 
 const JOINTS = [0, 1];
+const NAMES = ["shoulder", "elbow"];
 
 // The plant
 
@@ -102,6 +103,17 @@ function pickAndPlace(extents, t, duration) {
   const moving = t >= 0 && t < duration * (1 - 1e-12);
   const part = (factor, shape) => extents.map((x) => (moving ? factor * x * shape(omega * t) : 0));
   return { q: part(-1, Math.sin), qd: part(-omega, Math.cos), qdd: part(omega * omega, Math.sin) };
+}
+
+// A motion of that family, period by period, from `rest` periods before it begins.
+function referenceOf({ extents, periods, step, motion }, rest = 0) {
+  const reference = { q: [], qd: [], qdd: [] };
+  const moving = Math.round(motion / step);
+  for (let k = 0; k < periods; k++) {
+    const wanted = pickAndPlace(extents, ((k - rest) * motion) / moving, motion);
+    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
+  }
+  return reference;
 }
 
 // Follow a whole reference ({ q, qd, qdd }, a pair for each period); the log has every n-th sample.

@@ -31,8 +31,9 @@ function queryWith(key, state) {
 //   reset()  goes back to the start
 //   code()   the state as Python code, or "" for none
 // keep(name, read, write, start) adds a part of the state: read() is its text, write(text) restores
-// it and throws where the text is unfit; it starts as it is, or as `start`. What differs from the start is in the address; where that
-// already holds a text, it is written at once. changed() is to be called after every change.
+// it and throws where the text is unfit; it starts as it is, or as `start`. What differs from the
+// start is in the address; where that already holds a text, it is written at once. changed() is to
+// be called after every change.
 function frameOf({ el, key, title, linked, reset, code }) {
   const others = [...document.querySelectorAll("[data-widget]")].map((x) => x.dataset.widget);
   let name = key;
@@ -86,11 +87,7 @@ function frameOf({ el, key, title, linked, reset, code }) {
       said.textContent = "The browser does not copy by itself: press Ctrl+C";
     }
   }
-  const button = (text, words, action) => {
-    const made = make("button", { type: "button", "aria-label": words, title: words }, text);
-    made.addEventListener("click", action);
-    return made;
-  };
+  const button = (text, words, act) => buttonOf(text, act, { "aria-label": words, title: words });
   const link = () => new URL(`${address()}#${name}-widget`, location.href).href;
   const buttons = [
     button("Reset", "Reset to the start", () => {
@@ -111,6 +108,9 @@ function frameOf({ el, key, title, linked, reset, code }) {
   }
   return { el: make("div", { class: "frame-bar" }, bar, field), keep, changed, stop: () => clearTimeout(timer) };
 }
+
+// Python code with texts in place of their names in braces.
+const filled = (code, texts) => code.replace(/\{(\w+)\}/g, (whole, name) => texts[name] ?? whole);
 
 // A value as Python writes it.
 function python(value) {

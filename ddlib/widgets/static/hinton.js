@@ -46,8 +46,7 @@ function hintonOf(view) {
   const picture = make("g", { "aria-hidden": "true" }, ...back, ...drawn, ...ring);
   const svg = make("svg", { viewBox: `-3 -3 ${size[0] + 6} ${size[1] + 6}`, class: "hinton", tabindex: 0 });
   svg.append(picture, ...lines);
-  svg.setAttribute("role", "grid");
-  svg.setAttribute("aria-label", "Weights of all units; arrow keys choose one");
+  put(svg, { role: "grid", "aria-label": "Weights of all units; arrow keys choose one" });
 
   const now = () => [
     units.indexOf(view.get("unit")),
@@ -70,12 +69,10 @@ function hintonOf(view) {
   svg.addEventListener("pointermove", (event) => {
     if (event.buttons & 1 && event.pointerType !== "touch") pick(event);
   });
-  svg.addEventListener("keydown", (event) => {
+  onKeys(svg, (event) => {
     const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
     const move = moves[event.key];
-    if (!move || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+    if (!move) return false;
     const [k, j] = now();
     const column = Math.min(1, Math.max(0, (k % 2) + move[0]));
     const last = Math.ceil(units.length / 2) * rows.length - 1;
@@ -118,9 +115,7 @@ function hintonOf(view) {
     marked = options[k][j];
     marked.setAttribute("aria-selected", "true");
     svg.setAttribute("aria-activedescendant", marked.id);
-    for (const [name, value] of Object.entries(stripe(blobs[k], j))) {
-      ring.forEach((rect) => rect.setAttribute(name, value));
-    }
+    for (const rect of ring) put(rect, stripe(blobs[k], j));
   }
 
   const key = make("div", { class: "legend" });

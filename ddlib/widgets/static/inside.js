@@ -2,17 +2,12 @@
 // two measure while the arm moves. Follows world.js and running.js.
 
 function insideOf(world, spec, id) {
-  const joints = ["shoulder", "elbow"];
   const { net } = world.model;
   let chosen = spec.units[0];
   let fold = 1;
   let parts = null;
   let frame = 0;
 
-  const key = (colour, dash, text) => {
-    const line = make("path", { class: `key ${colour} ${dash}`, d: "M0 5H22" });
-    return make("span", {}, make("svg", { width: 22, height: 10, "aria-hidden": "true" }, line), text);
-  };
   const ink = { colour: "ink", width: 2.5, dash: [] };
   const orange = { colour: "c1", width: 2, dash: [6, 3] };
   const rows = [
@@ -47,7 +42,7 @@ function insideOf(world, spec, id) {
     row.stems = stems({ height: 84, label: "Weights", colour: row.colour });
     row.chart = timeChart({ height: k === 2 ? 110 : 84, label: what, low, high, lines, bottom: k === 2 });
     row.name = make("span");
-    const pair = row.pair ? [key("ink", "", row.pair[0]), key("c1", "dashed", row.pair[1])] : [];
+    const pair = row.pair ? [keyOf("ink", row.pair[0]), keyOf("c1 dashed", row.pair[1])] : [];
     return make(
       "div",
       { class: "fold-row" },
@@ -56,14 +51,12 @@ function insideOf(world, spec, id) {
     );
   });
 
-  const choices = spec.units.map((unit) => {
-    const button = make("button", { type: "button", "aria-pressed": "false" }, unit.label);
-    button.addEventListener("click", () => {
+  const choices = spec.units.map((unit) =>
+    buttonOf(unit.label, () => {
       choose(unit);
       unfold();
-    });
-    return button;
-  });
+    }, { "aria-pressed": "false" }),
+  );
   const slider = make("input", { id: `${id}-fold`, type: "range", min: 0, max: 100, step: 1 });
   const said = make("output", { for: slider.id });
   slider.addEventListener("input", () => {
@@ -91,7 +84,7 @@ function insideOf(world, spec, id) {
     const weights = net.hiddenWeights.subarray(at, at + net.width);
     parts = { ...folded(weights), largest: Math.max(...Array.from(weights, Math.abs)) };
     const [line, parabola] = parts.shares.map((x) => `${Math.round(100 * x)} %`);
-    const joint = joints[unit.joint];
+    const joint = NAMES[unit.joint];
     write(rows[1].title, `a line: ${line}`);
     write(rows[2].title, `a parabola: ${parabola}`);
     write(rows[0].name, `Activity of hidden unit ${unit.unit}`);

@@ -2,16 +2,10 @@
 // under the pad, the arm, its player, the verdict about the hull of the training trajectories, and
 // the button that records. The numbers stand beside the pad. Follows sliding.js.
 
-const NAMES = ["shoulder", "elbow"];
-
 // The recording of a trajectory to extents in rad, from the rest before it to the rest after it.
-function recordingOf({ plant, gains, step, every, periods, rest, motion }, extents) {
-  const reference = { q: [], qd: [], qdd: [] };
-  const moving = Math.round(motion / step);
-  for (let k = 0; k < periods; k++) {
-    const wanted = pickAndPlace(extents, ((k - rest) * motion) / moving, motion);
-    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
-  }
+function recordingOf(loop, extents) {
+  const { plant, gains, step, every, rest } = loop;
+  const reference = referenceOf({ ...loop, extents }, rest);
   return follow(plant, pid(gains, step), reference, step, every, "tachometer");
 }
 
@@ -21,9 +15,9 @@ function picked(loop, models, extents) {
   const wanted = times.map((t) => pickAndPlace(extents, t, motion));
   const rigid = wanted.map(({ q, qd, qdd }) => armTorque(arm, ...q, ...qd, ...qdd));
   const curves = {};
-  const put = (line, torques) =>
+  const lay = (line, torques) =>
     NAMES.forEach((joint, j) => (curves[`${joint} torque, ${line}`] = torques.map((tau) => tau[j])));
-  put(lines.rigid, rigid);
+  lay(lines.rigid, rigid);
   NAMES.forEach((joint, j) => {
     curves[`${joint} angle`] = wanted.map(({ q }) => (q[j] * 180) / Math.PI);
     curves[`peak ${joint}`] = [Math.max(...rigid.map((tau) => Math.abs(tau[j])))];
@@ -32,14 +26,14 @@ function picked(loop, models, extents) {
   const log = recordingOf(loop, extents);
   const recorded = log.tau.slice(...during);
   const sampled = (torques) => shown.map((k) => torques[k - during[0]]);
-  put(lines.recorded, sampled(recorded));
+  lay(lines.recorded, sampled(recorded));
   const positions = JOINTS.map((j) => Float64Array.from(log.reading, (q) => q[j]));
   for (const model of models) {
     const told = toldTorques(model, scaledOf(model, positions), ...during);
     let sum = 0;
     for (const j of JOINTS) told.forEach((tau, k) => (sum += ((tau[j] - recorded[k][j]) / scale[j]) ** 2));
     curves[`RMSS, ${model.name}`] = [Math.sqrt(sum / (2 * told.length))];
-    put(model.name, sampled(told));
+    lay(model.name, sampled(told));
   }
   return { curves, log };
 }
@@ -94,14 +88,13 @@ function mapOf(view) {
   }
 
   let shown = "";
-  const buttons = [...names, ""].map((name) => {
-    const button = make("button", { type: "button" }, name || "none");
-    button.addEventListener("click", () => {
+  const buttons = [...names, ""].map((name) => [
+    name,
+    buttonOf(name || "none", () => {
       show(name);
       view.changed();
-    });
-    return [name, button];
-  });
+    }),
+  ]);
   function show(name) {
     if (name && !errors[name]) throw new Error(`there is no network ${name}`);
     shown = name;
@@ -121,19 +114,15 @@ function mapOf(view) {
   view.keep("map", () => shown, show);
 }
 
-// Elbow and hand of two links of given lengths at given joint angles (rad), in pixels.
-function pose([l1, l2], q1, q2, scale) {
-  const elbow = [scale * l1 * Math.cos(q1), -scale * l1 * Math.sin(q1)];
-  const tip = [scale * l2 * Math.cos(q1 + q2), -scale * l2 * Math.sin(q1 + q2)];
-  return [elbow, [elbow[0] + tip[0], elbow[1] + tip[1]]];
-}
+// Elbow and hand at given joint angles (rad), in pixels.
+const pose = (lengths, q, scale) => placesOf(lengths, q).map(([x, y]) => [short(scale * x), short(-scale * y)]);
 
 function armOf(view) {
   const { lengths, angles, times } = view.model.get("arm");
   const scale = 230 / (lengths[0] + lengths[1]);
   const rad = (x) => (x * Math.PI) / 180;
   const far = angles.map((name) => rad(view.spec.curves.find((c) => c.name === name).low));
-  const [deepest] = pose(lengths, ...far, scale).slice(1); // to the right of and below the base
+  const [deepest] = pose(lengths, far, scale).slice(1); // to the right of and below the base
   const trail = make("path", { class: "trail" });
   const links = ["upper", "fore"].map((name) => make("line", { class: `link ${name}`, x1: 0, y1: 0 }));
   const elbow = make("circle", { class: "joint", r: 5 });
@@ -150,19 +139,18 @@ function armOf(view) {
 
   function path(curves) {
     joints = angles.map((name) => curves[name]);
-    const points = times.map((_, i) => pose(lengths, rad(joints[0][i]), rad(joints[1][i]), scale)[1]);
-    trail.setAttribute("d", `M${points.map((p) => p.map((v) => v.toFixed(1)).join(" ")).join("L")}`);
+    const points = times.map((_, i) => pose(lengths, joints.map((q) => rad(q[i])), scale)[1]);
+    trail.setAttribute("d", `M${points.map((p) => p.join(" ")).join("L")}`);
   }
   function stand(time) {
     const position = (time / times.at(-1)) * (times.length - 1);
     const i = Math.min(Math.floor(position), times.length - 2);
-    const [q1, q2] = joints.map((q) => rad(q[i] + (position - i) * (q[i + 1] - q[i])));
-    const [a, b] = pose(lengths, q1, q2, scale);
-    const put = (el, names, values) => names.forEach((n, k) => el.setAttribute(n, values[k].toFixed(2)));
-    put(links[0], ["x2", "y2"], a);
-    put(links[1], ["x1", "y1", "x2", "y2"], [...a, ...b]);
-    put(elbow, ["cx", "cy"], a);
-    put(hand, ["cx", "cy"], b);
+    const now = joints.map((q) => rad(q[i] + (position - i) * (q[i + 1] - q[i])));
+    const [a, b] = pose(lengths, now, scale);
+    put(links[0], { x2: a[0], y2: a[1] });
+    put(links[1], { x1: a[0], y1: a[1], x2: b[0], y2: b[1] });
+    put(elbow, { cx: a[0], cy: a[1] });
+    put(hand, { cx: b[0], cy: b[1] });
   }
   return { svg, path, stand, end: times.at(-1) };
 }
@@ -174,55 +162,10 @@ extras.push((view) => {
   view.el.picker = view; // for tests
   if (Object.keys(view.model.get("map").errors).length) mapOf(view);
 
-  // The player
-  const id = `${view.id}-time`;
-  const output = make("output", { for: id });
-  const scrub = make("input", { id, type: "range", min: 0, max: 300, step: 1 });
-  const button = make("button", { type: "button" }, "Play");
-  const label = make("label", { for: id }, "Time");
-  const time = make("div", { class: "slider" }, label, output, scrub);
-  const player = make("div", { class: "player" }, button, time);
-  const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  let now = arm.end / 2;
-  let started = 0; // the moment that stands for 0 s, or 0 when paused
-  let frame = 0;
-
-  function show() {
+  const clock = clockOf(view, { at: arm.end / 2, end: arm.end, step: arm.end / 300 }, (now) => {
     arm.stand(now);
-    scrub.value = (300 * now) / arm.end;
-    write(output, `${now.toFixed(2)}\u00a0s`);
-    scrub.setAttribute("aria-valuetext", output.textContent);
     view.charts.forEach((c) => c.point(now));
-  }
-  function run(moment) {
-    const passed = Math.max(0, moment - started) / 1000; // a frame may bear an earlier stamp
-    now = Math.min(arm.end, calm.matches ? Math.floor(passed * 2) / 2 : passed); // calm: poses
-    show();
-    if (now < arm.end) frame = requestAnimationFrame(run);
-    else pause();
-  }
-  function pause() {
-    cancelAnimationFrame(frame);
-    started = 0;
-    button.textContent = "Play";
-  }
-  button.addEventListener("click", () => {
-    if (started) return pause();
-    if (now >= arm.end) now = 0;
-    started = performance.now() - 1000 * now;
-    button.textContent = "Pause";
-    frame = requestAnimationFrame(run);
   });
-  scrub.addEventListener("input", () => {
-    stand((arm.end * scrub.value) / 300);
-    view.changed();
-  });
-  function stand(time) {
-    if (!(time >= 0 && time <= arm.end)) throw new Error(`time is ${time}`);
-    pause();
-    now = time;
-    show();
-  }
 
   // The verdict
   const verdict = make("p", { class: "verdict" });
@@ -233,9 +176,7 @@ extras.push((view) => {
   view.words = () => [words().slice(0, -1)];
 
   // The button that records
-  const record = make("button", { type: "button" }, "Record this trajectory");
   const said = make("p", { id: `${view.id}-said`, role: "status" });
-  record.setAttribute("aria-describedby", said.id);
   let waiting = 0;
   function done() {
     clearTimeout(waiting);
@@ -244,7 +185,7 @@ extras.push((view) => {
       ? "Recording needs a running kernel: open this chapter as a notebook."
       : model.get("record_status").text;
   }
-  record.addEventListener("click", () => {
+  const ask = () => {
     record.disabled = true;
     said.textContent = "Recording…";
     waiting = setTimeout(unanswered, 20000);
@@ -253,7 +194,8 @@ extras.push((view) => {
     } catch {
       unanswered(); // the connection is closed
     }
-  });
+  };
+  const record = buttonOf("Record this trajectory", ask, { "aria-describedby": said.id });
   function unanswered() {
     done();
     said.textContent = "The kernel does not answer: nothing was recorded.";
@@ -262,20 +204,21 @@ extras.push((view) => {
 
   const goTo = view.controls.querySelector(".presets");
   view.top.firstChild.append(goTo);
-  view.keep("time", () => now.toFixed(2), (text) => stand(Number(text)));
+  view.keep("time", () => clock.now().toFixed(2), (text) => clock.stand(Number(text)));
+  clock.slider.addEventListener("input", view.changed);
   view.top.firstChild.after(view.numbers); // beside the pad: seen while it is dragged
   view.controls.append(verdict, make("div", { class: "record" }, record, said));
-  view.top.append(make("div", { class: "arm-box" }, arm.svg, player));
+  view.top.append(make("div", { class: "arm-box" }, arm.svg, make("div", { class: "player" }, clock.play, clock.el)));
   const follow = (curves) => {
     arm.path(curves);
-    show();
+    clock.show();
     write(verdict, words());
   };
   view.after.push(follow);
   follow(view.curves);
   done();
   return () => {
-    pause();
+    clock.pause();
     clearTimeout(waiting);
     model.off("change:record_status", done);
   };

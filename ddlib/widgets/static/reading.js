@@ -38,8 +38,7 @@ function readerOf(plot) {
   function show(i) {
     index = Math.min(panel.x.length - 1, Math.max(0, i));
     const x = plot.samples()[index];
-    const ends = { x1: x, x2: x, y1: plot.top(), y2: plot.bottom() };
-    for (const [name, value] of Object.entries(ends)) line.setAttribute(name, value);
+    put(line, { x1: x, x2: x, y1: plot.top(), y2: plot.bottom() });
     curves.forEach((curve, k) => {
       const y = plot.place(curve, index);
       const inside = y >= plot.top() - 4 && y <= plot.bottom() + 4;
@@ -81,15 +80,12 @@ function readerOf(plot) {
     speaking = setTimeout(() => plot.say(text), 200); // not every sample of a key held down
   }
   svg.addEventListener("focus", () => index ?? speak(show(Math.floor(panel.x.length / 2))));
-  svg.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey) return;
+  onKeys(svg, (event) => {
     const step = event.shiftKey ? 10 : 1;
     const now = index ?? 0;
     const next = { ArrowRight: now + step, ArrowLeft: now - step, Home: 0, End: panel.x.length - 1 };
     if (event.key === "Escape") hide();
-    if (next[event.key] === undefined) return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+    if (next[event.key] === undefined) return false;
     speak(show(next[event.key]));
   });
   return () => index === null || show(index);

@@ -1,28 +1,12 @@
-// Charts that run with time, on canvases. Follows elements.js. Samples are the world's.
+// Charts that run with time, on canvases. Follows elements.js and canvas.js. Samples are the world's.
 
 const SHOWN = 300; // samples of a chart: 3 s
 const MARGIN = { left: 40, right: 6 };
 
-// A canvas as wide as its place, drawn in pixels of the page.
-function sheet(height, label) {
-  const el = make("canvas", { role: "img", "aria-label": label, style: `height: ${height}px` });
-  const pen = el.getContext("2d");
-  const place = { el, pen, width: 0, height };
-  place.resize = () => {
-    const ratio = window.devicePixelRatio || 1;
-    place.width = el.clientWidth;
-    el.width = Math.round(place.width * ratio);
-    el.height = Math.round(height * ratio);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  };
-  return place;
-}
-
-// The colours of the page, by the names of their variables.
-function coloursOf(el) {
-  const style = getComputedStyle(el);
-  const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+// A legend's entry: a line of a kind, and what it is.
+function keyOf(kind, text) {
+  const line = make("path", { class: `key ${kind}`, d: "M0 5H22" });
+  return make("span", {}, make("svg", { width: 22, height: 10, "aria-hidden": "true" }, line), text);
 }
 
 // A round step of which about `count` fill the range.
@@ -30,13 +14,6 @@ function roundStep(range, count) {
   const rough = range / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 2.5, 3, 4, 5, 10].find((m) => m * power >= rough * 0.999);
-}
-
-function stroke(pen, colour, width, dash = []) {
-  pen.strokeStyle = colour;
-  pen.lineWidth = width;
-  pen.setLineDash(dash);
-  pen.stroke();
 }
 
 // A chart of the last seconds. `lines`: { colour, width, dash, of(sample) -> number or undefined };

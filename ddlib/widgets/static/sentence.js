@@ -31,15 +31,13 @@ function signed(value, digits) {
 
 function render({ model, el }) {
   const spec = model.get("spec");
-  el.classList.add("ddlib-widget", "ddlib-curves", "ddlib-sentence");
-  el.setAttribute("role", "group");
-  el.setAttribute("aria-label", "A sentence whose numbers can be moved");
+  dress(el, "A sentence whose numbers can be moved", "ddlib-sentence");
   const updates = [];
 
   function numberOf({ name, label, unit, low, high, step }) {
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const get = () => model.get("values")[name];
-    const put = (value) => {
+    const set = (value) => {
       const round = Math.round(value / step) * step;
       const next = Number(Math.min(high, Math.max(low, round)).toFixed(digits));
       if (next === get()) return;
@@ -48,17 +46,13 @@ function render({ model, el }) {
       frame.changed();
     };
     const number = make("span", { class: "number", role: "spinbutton", tabindex: 0, "aria-label": label });
-    number.setAttribute("aria-valuemin", low);
-    number.setAttribute("aria-valuemax", high);
+    put(number, { "aria-valuemin": low, "aria-valuemax": high });
     const keys = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 };
-    number.addEventListener("keydown", (event) => {
-      if (event.ctrlKey || event.altKey || event.metaKey) return;
-      if (keys[event.key]) put(get() + keys[event.key] * step);
-      else if (event.key === "Home") put(low);
-      else if (event.key === "End") put(high);
-      else return;
-      event.preventDefault();
-      event.stopPropagation(); // a notebook has its own arrow keys
+    onKeys(number, (event) => {
+      if (keys[event.key]) set(get() + keys[event.key] * step);
+      else if (event.key === "Home") set(low);
+      else if (event.key === "End") set(high);
+      else return false;
     });
     let begun = null;
     number.addEventListener("pointerdown", (event) => {
@@ -69,21 +63,20 @@ function render({ model, el }) {
       begun = { x: event.clientX, value: get() };
     });
     number.addEventListener("pointermove", (event) => {
-      if (begun) put(begun.value + Math.round((event.clientX - begun.x) / PIXELS) * step);
+      if (begun) set(begun.value + Math.round((event.clientX - begun.x) / PIXELS) * step);
     });
     for (const end of ["pointerup", "pointercancel"]) number.addEventListener(end, () => (begun = null));
     // For fingers: they come with the focus, and the keyboard does without them.
     const nudge = (sign, by) => {
-      const button = make("button", { type: "button", tabindex: -1, "aria-hidden": "true" }, sign);
+      const move = () => set(get() + by * step);
+      const button = buttonOf(sign, move, { tabindex: -1, "aria-hidden": "true" });
       button.addEventListener("pointerdown", (event) => event.preventDefault()); // keeps the focus
-      button.addEventListener("click", () => put(get() + by * step));
       return button;
     };
     updates.push(() => {
       const text = `${signed(get(), digits)}${unit === "°" ? "" : "\u00a0"}${unit.replaceAll(" ", "\u00a0")}`;
       write(number, text);
-      number.setAttribute("aria-valuenow", get());
-      number.setAttribute("aria-valuetext", text);
+      put(number, { "aria-valuenow": get(), "aria-valuetext": text });
     });
     const stepper = make("span", { class: "stepper" }, nudge("−", -1), nudge("+", 1));
     return make("span", { class: "movable" }, number, stepper);
@@ -109,11 +102,10 @@ function render({ model, el }) {
       output.replaceChildren(...pieces.flatMap((piece, k) => (k ? [" ", piece] : [piece])));
     }
   };
-  const code = () =>
-    spec.code.replace(/\{(\w+)\}/g, (whole, name) => {
-      const value = model.get("values")[name];
-      return value === undefined ? whole : python(value);
-    });
+  const code = () => {
+    const texts = Object.entries(model.get("values")).map(([name, value]) => [name, python(value)]);
+    return filled(spec.code, Object.fromEntries(texts));
+  };
   const frame = frameOf({ el, key: spec.key, title: "", linked: Boolean(model.kernelless), code });
   for (const { name, low, high, value } of spec.numbers) {
     const read = () => String(model.get("values")[name]);

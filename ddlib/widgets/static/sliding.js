@@ -1,10 +1,8 @@
 // Window networks along a recording. Follows engine.js. Layouts, scalings and weights are what
 // `networks` in plain.py writes.
 
-function modelsOf(layouts, view) {
-  if (!view?.buffer) throw new Error("the weights are missing");
-  const data = new DataView(view.buffer, view.byteOffset, view.byteLength);
-  const all = Float64Array.from({ length: data.byteLength / 4 }, (_, i) => data.getFloat32(4 * i, true));
+function modelsOf(layouts, bytes) {
+  const all = numbersOf(bytes, "Float32");
   let at = 0;
   const models = layouts.map((model) => {
     const { hidden, outputs, joints, width } = model.layout;

@@ -21,8 +21,7 @@ function armsOf(lengths, kinds, [left, bottom, right, top], label) {
     const { line, hand } = arms.get(kind);
     const [elbow, end] = placesOf(lengths, q);
     line.setAttribute("d", `M${x(0)} ${y(0)}L${x(elbow[0])} ${y(elbow[1])}L${x(end[0])} ${y(end[1])}`);
-    hand.setAttribute("cx", x(end[0]));
-    hand.setAttribute("cy", y(end[1]));
+    put(hand, { cx: x(end[0]), cy: y(end[1]) });
   };
   return { svg, place, arms };
 }

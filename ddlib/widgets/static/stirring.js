@@ -15,7 +15,6 @@ extras.push((view) => {
   const scale = 300 / (x1 - x0);
   const x = (v) => short(scale * (v - x0));
   const y = (v) => short(scale * (y1 - v));
-  const put = (el, values) => Object.entries(values).forEach(([k, v]) => el.setAttribute(k, v));
   const places = ["distance", "bearing"].map((name) => spec.parameters.find((p) => p.name === name));
   const keys = places.map((p) => p.options.map(([key]) => key));
   const centreOf = (d, b) => [d * Math.cos((b * Math.PI) / 180), d * Math.sin((b * Math.PI) / 180)];
@@ -56,13 +55,11 @@ extras.push((view) => {
     const down = (event.clientY - frame.top) / frame.height;
     view.set(nearest(x0 + across * (x1 - x0), y1 - down * (y1 - y0)));
   };
-  draggable(svg, handle, drag);
+  draggable(svg, besideOf(handle), drag);
   const steps = { ArrowRight: [1, 1], ArrowLeft: [1, -1], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  svg.addEventListener("keydown", (event) => {
+  onKeys(svg, (event) => {
     const step = steps[event.key];
-    if (!step || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+    if (!step) return false;
     const [which, by] = step;
     const now = keys[which].indexOf(view.get(places[which].name));
     const next = Math.min(Math.max(now + by, 0), keys[which].length - 1);

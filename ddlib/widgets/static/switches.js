@@ -8,14 +8,11 @@ function lossy(width, law) {
 }
 
 // A run with effects of the named strengths, every period logged; without names, of the ideal arm.
-function switched({ plant, gains, share, levels, step, periods, motion, extents }, chosen) {
+function switched(loop, chosen) {
+  const { plant, gains, share, levels, step } = loop;
   const strength = (name) => levels[name][chosen?.[name] ?? "off"];
   const pair = (name) => share.map((part) => part * strength(name));
-  const reference = { q: [], qd: [], qdd: [] };
-  for (let k = 0; k < periods; k++) {
-    const wanted = pickAndPlace(extents, k * step, motion);
-    for (const name of Object.keys(reference)) reference[name].push(wanted[name]);
-  }
+  const reference = referenceOf(loop);
   const real = {
     ...plant,
     ...{ viscous: pair("friction"), coulomb: pair("friction") },
@@ -46,7 +43,7 @@ live = (view) => {
     torque: Float64Array.from(whole, (k) => run.tau[k][0]),
     "close-up": Float64Array.from(close, (tau) => tau[0]),
   };
-  ["shoulder", "elbow"].forEach((joint, j) => {
+  NAMES.forEach((joint, j) => {
     found[`${joint} position`] = rms((k) => (run.q[k][j] - view.ideal.q[k][j]) * DEGREES);
     found[`${joint} torque`] = rms((k) => run.tau[k][j] - view.ideal.tau[k][j]);
   });
@@ -69,13 +66,13 @@ extras.push((view) => {
       { "aria-label": `Strength: ${p.label}` },
       ...p.options.slice(1).map(([key, text]) => make("option", { value: key }, text)),
     );
-    const alone = make("button", { type: "button", "aria-label": `${p.label} alone` }, "Alone");
+    const only = () => view.set({ ...all("off"), [p.name]: strengths[p.name] });
+    const alone = buttonOf("Alone", only, { "aria-label": `${p.label} alone` });
     input.addEventListener("change", () => view.set({ [p.name]: input.checked ? strengths[p.name] : "off" }));
     strength.addEventListener("change", () => {
       strengths[p.name] = strength.value;
       view.set({ [p.name]: strength.value });
     });
-    alone.addEventListener("click", () => view.set({ ...all("off"), [p.name]: strengths[p.name] }));
     const update = () => {
       const now = view.get(p.name);
       input.checked = now !== "off";
@@ -87,18 +84,13 @@ extras.push((view) => {
     return { el, update };
   });
   const all = (key) => Object.fromEntries(spec.parameters.map((p) => [p.name, key]));
-  const button = (text, state) => {
-    const made = make("button", { type: "button" }, text);
-    made.addEventListener("click", () => view.set(state()));
-    return made;
-  };
   const start = () => Object.fromEntries(spec.parameters.map((p) => [p.name, p.value]));
   const whole = make(
     "div",
     { class: "whole" },
-    button("All off", () => all("off")),
-    button("All on", () => ({ ...strengths })),
-    button("As assumed", start),
+    buttonOf("All off", () => view.set(all("off"))),
+    buttonOf("All on", () => view.set({ ...strengths })),
+    buttonOf("As assumed", () => view.set(start())),
   );
   view.controls.replaceChildren(...rows.map(({ el }) => el), whole);
   view.el.classList.add("ddlib-switches");

@@ -9,7 +9,6 @@ function stageOf(world, spec) {
   const { lengths } = spec.plant;
   const reach = METRE * (lengths[0] + lengths[1]) + 14;
   const at = ([x, y]) => [short(METRE * x), short(-METRE * y)];
-  const put = (el, names, values) => names.forEach((name, k) => el.setAttribute(name, values[k]));
 
   // Where the hand was while the network was trained.
   const { low, gain } = spec.network.inputs;
@@ -52,32 +51,27 @@ function stageOf(world, spec) {
   };
   function draw() {
     const [a, b] = world.places().map(at);
-    put(links[0], ["x2", "y2"], a);
-    put(links[1], ["x1", "y1", "x2", "y2"], [...a, ...b]);
-    put(elbow, ["cx", "cy"], a);
+    put(links[0], { x2: a[0], y2: a[1] });
+    put(links[1], { x1: a[0], y1: a[1], x2: b[0], y2: b[1] });
+    put(elbow, { cx: a[0], cy: a[1] });
     handle.setAttribute("transform", `translate(${b[0]} ${b[1]})`);
     const held = world.mode === "held";
     rope.setAttribute("visibility", held ? "visible" : "hidden");
     if (!held) return;
     const force = world.force(world.angles()); // a newton is a centimetre
     const end = world.pull.place ? at(world.pull.place) : [b[0] + 2 * force[0], b[1] - 2 * force[1]];
-    put(rope, ["x1", "y1", "x2", "y2"], [...b, ...end]);
+    put(rope, { x1: b[0], y1: b[1], x2: end[0], y2: end[1] });
   }
   return { svg, handle, draw, placeOf };
 }
 
 function build({ model, el }) {
   const spec = model.get("spec");
-  const bytes = model.get("weights");
-  const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  const values = Array.from({ length: data.byteLength / 4 }, (_, i) => data.getFloat32(4 * i, true));
-  const world = worldOf(spec, values);
+  const world = worldOf(spec, numbersOf(model.get("weights"), "Float32"));
   const { width } = world.model.net;
-  const id = `dd${Math.random().toString(36).slice(2, 10)}`;
+  const id = freshId();
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  el.classList.add("ddlib-widget", "ddlib-curves", "ddlib-throw");
-  el.setAttribute("role", "group");
-  el.setAttribute("aria-label", spec.title);
+  dress(el, spec.title, "ddlib-throw");
 
   // It begins in the middle of a motion, so that there is something to see before anything moves.
   const motions = spec.trajectories.length;
@@ -88,11 +82,6 @@ function build({ model, el }) {
   for (let k = (spec.rest + 0.6 * spec.motion) / spec.step; k > 0; k--) world.period();
 
   const stage = stageOf(world, spec);
-  const button = (text, act) => {
-    const made = make("button", { type: "button" }, text);
-    made.addEventListener("click", act);
-    return made;
-  };
   const { low, gain, first } = spec.network.inputs;
   const apart = Math.round(1e3 * spec.step * spec.every);
   const band = strip({
@@ -123,10 +112,7 @@ function build({ model, el }) {
   const outside = make("p", { class: "outside", "aria-hidden": "true" });
   const errors = make("p", { class: "remark errors" });
   const legend = make("div", { class: "legend" });
-  for (const [kind, text] of [["ink", "true"], ["c1 dashed", "network, from positions alone"]]) {
-    const line = make("path", { class: `key ${kind}`, d: "M0 5H22" });
-    legend.append(make("span", {}, make("svg", { width: 22, height: 10, "aria-hidden": "true" }, line), text));
-  }
+  legend.append(keyOf("ink", "true"), keyOf("c1 dashed", "network, from positions alone"));
   function tell() {
     const rounded = (x) => x.toFixed(1);
     const [[s, ts], [e, te]] = world.errors();
@@ -200,7 +186,7 @@ function build({ model, el }) {
     write(play, running ? "Pause" : "Play");
   }
 
-  const play = button("Play", () => {
+  const play = buttonOf("Play", () => {
     several = true;
     if (world.mode === "play") {
       paused = !paused;
@@ -221,19 +207,19 @@ function build({ model, el }) {
     say("Thrown.");
     start();
   };
-  const toss = button("Throw", thrown);
-  inside.hint.append(button("Throw the arm", () => {
+  const toss = buttonOf("Throw", thrown);
+  inside.hint.append(buttonOf("Throw the arm", () => {
     thrown();
     look.focus(); // the hint goes
   }));
-  const back = button("Reset", () => {
+  const back = buttonOf("Reset", () => {
     several = false;
     paused = false;
     world.stand([0, 0]);
     say("Back at the start.");
     start();
   });
-  const look = button("Look inside", () => {
+  const look = buttonOf("Look inside", () => {
     inside.toggle();
     look.setAttribute("aria-expanded", inside.open);
     draw();
@@ -249,7 +235,7 @@ function build({ model, el }) {
     return `${url.origin === "null" ? "file://" : url.origin}${url.pathname}${url.search ? `${url.search}&` : "?"}${state}`;
   };
   const copies = (text, what, write) =>
-    button(text, () => {
+    buttonOf(text, () => {
       const copied = write();
       navigator.clipboard.writeText(copied).then(
         () => say(`${what} copied.`),
@@ -295,10 +281,8 @@ function build({ model, el }) {
     if (push.some(Boolean)) take({ push: push.map((x) => x / Math.hypot(...push)) });
     else release();
   }
-  handle.addEventListener("keydown", (event) => {
-    if (!PULLS[event.key] || event.ctrlKey || event.altKey || event.metaKey) return;
-    event.preventDefault();
-    event.stopPropagation(); // a notebook has its own arrow keys
+  onKeys(handle, (event) => {
+    if (!PULLS[event.key]) return false;
     if (event.repeat) return;
     pressed.set(event.key, performance.now());
     pull();
@@ -357,12 +341,7 @@ function build({ model, el }) {
     colours = coloursOf(el);
     draw();
   };
-  const themes = new MutationObserver(recolour);
-  for (const root of [document.documentElement, document.body]) {
-    themes.observe(root, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] });
-  }
-  const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
-  media.forEach((list) => list.addEventListener("change", recolour));
+  const stopRecolouring = onRecolour(recolour);
 
   // Once, when it comes into view, the motion goes on; nothing moves while it is out of sight.
   let greeted = calm.matches;
@@ -385,8 +364,8 @@ function build({ model, el }) {
   return () => {
     cancelAnimationFrame(frame);
     inside.stop();
-    for (const observer of [resize, themes, sight]) observer.disconnect();
-    media.forEach((list) => list.removeEventListener("change", recolour));
+    stopRecolouring();
+    for (const observer of [resize, sight]) observer.disconnect();
   };
 }
 

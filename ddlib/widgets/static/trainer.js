@@ -134,32 +134,28 @@ function schoolOf(spec, positions, torques, choice, { training, test } = casesOf
 
 // All filters as stems, two joints below each other in a cell; what has a name is coloured.
 function unitSheet(spec) {
-  const el = make("canvas", { role: "img" });
-  const pen = el.getContext("2d");
-  const cells = ["shoulder", "elbow", ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
-  const sheet = { el, width: 0 };
-  const columns = () => (sheet.width < 480 ? 4 : 6);
-  sheet.resize = () => {
-    const ratio = window.devicePixelRatio || 1;
-    sheet.width = el.clientWidth;
-    sheet.high = sheet.width < 480 ? 82 : 96;
-    sheet.height = sheet.high * Math.ceil(cells.length / columns());
-    el.style.height = `${sheet.height}px`;
-    el.width = Math.round(sheet.width * ratio);
-    el.height = Math.round(sheet.height * ratio);
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  const cells = [...NAMES, ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
+  const place = sheet(0);
+  const { el, pen } = place;
+  const narrow = () => el.clientWidth < 480;
+  const columns = () => (narrow() ? 4 : 6);
+  const high = () => (narrow() ? 82 : 96);
+  const fit = place.resize;
+  place.resize = () => {
+    place.height = high() * Math.ceil(cells.length / columns());
+    fit();
   };
-  sheet.draw = (school, colours, over) => {
+  place.draw = (school, colours, over) => {
     const { direct, hidden } = filtersOf(school.net);
     const all = [...direct, ...hidden];
     const names = [...school.names.direct, ...school.names.hidden];
-    const wide = sheet.width / columns();
-    const room = (sheet.high - 34) / 2;
-    pen.clearRect(0, 0, sheet.width, sheet.height);
+    const wide = place.width / columns();
+    const room = (high() - 34) / 2;
+    pen.clearRect(0, 0, place.width, place.height);
     pen.font = "12px system-ui, sans-serif";
     pen.textBaseline = "middle";
     cells.forEach((cell, c) => {
-      const [left, top] = [(c % columns()) * wide + 3, Math.floor(c / columns()) * sheet.high];
+      const [left, top] = [(c % columns()) * wide + 3, Math.floor(c / columns()) * high()];
       pen.fillStyle = colours.ink;
       pen.textAlign = "left";
       pen.fillText(cell, left, top + 9);
@@ -172,42 +168,32 @@ function unitSheet(spec) {
         pen.beginPath();
         pen.moveTo(left, base);
         pen.lineTo(left + wide - 12, base);
-        pen.strokeStyle = colours.line;
-        pen.lineWidth = 1;
-        pen.stroke();
+        stroke(pen, colours.line, 1);
         pen.beginPath();
         f.forEach((w, i) => {
           const x = left + (i + 0.5) * pitch;
           pen.moveTo(x, base);
           pen.lineTo(x, base - (w / tallest) * (room / 2 - 2));
         });
-        pen.strokeStyle = name ? colours[j ? "c2" : "c0"] : colours.soft;
-        pen.lineWidth = name ? 2.4 : 1.2;
-        pen.stroke();
+        const colour = name ? colours[j ? "c2" : "c0"] : colours.soft;
+        stroke(pen, colour, name ? 2.4 : 1.2);
         if (!name && !over) continue;
         pen.textAlign = "right";
-        pen.fillStyle = name ? colours[j ? "c2" : "c0"] : colours.soft;
+        pen.fillStyle = colour;
         pen.fillText(name ?? "none", left + wide - 12, base - room / 2 - 7);
       }
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
     el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
   };
-  return sheet;
+  return place;
 }
 
 function build({ model, el }) {
   const spec = model.get("spec");
-  const read = (name, size, get) => {
-    const bytes = model.get(name);
-    const data = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-    return Array.from({ length: Math.floor(data.byteLength / size) }, (_, i) => data[get](size * i, true));
-  };
-  const positions = read("positions", 2, "getInt16");
-  const torques = read("torques", 4, "getFloat32");
-  el.classList.add("ddlib-widget", "ddlib-curves", "ddlib-trainer");
-  el.setAttribute("role", "group");
-  el.setAttribute("aria-label", spec.title);
+  const positions = numbersOf(model.get("positions"), "Int16");
+  const torques = numbersOf(model.get("torques"), "Float32");
+  dress(el, spec.title, "ddlib-trainer");
 
   const start = { seed: 1, torques: "real", inputs: "centred", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
   const state = { ...start };
@@ -224,41 +210,28 @@ function build({ model, el }) {
   };
   enrol();
 
-  const view = { id: `dd${Math.random().toString(36).slice(2, 10)}`, spec: { curves: spec.curves } };
+  const view = { id: freshId(), spec: { curves: spec.curves } };
   const frame = frameOf({ el, key: "trainer", title: spec.title, linked: Boolean(model.kernelless), reset: restart, code });
   function code() {
-    const shifted = shift() === null ? "" : `, shifted=${shift()}`;
-    return [
-      "from ddlib.learning import train_ensemble",
-      "from ddlib.widgets.engine import trainer",
-      "",
-      `data, test = trainer.training_set("${state.inputs}"${shifted})`,
-      `start = trainer.first_weights(${state.seed})`,
-      `rate, momentum = ${Number((spec.rate * state.step).toPrecision(12))}, ${state.momentum}`,
-      "model, history, _ = train_ensemble(",
-      `    start, data, test=test, rate=rate, momentum=momentum, epochs=${school.epoch || spec.epochs}`,
-      ")",
-      "print(history.training[-1, 0], history.test[-1, 0])",
-    ].join("\n");
+    const rate = Number((spec.rate * state.step).toPrecision(12));
+    const scaling = `(${spec.inputs.ranges[state.inputs].join(", ")})`;
+    const { seed, momentum } = state;
+    const epochs = school.epoch || spec.epochs;
+    return filled(spec.code, { scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs });
   }
 
   // Controls
-  const button = (text, act) => {
-    const made = make("button", { type: "button" }, text);
-    made.addEventListener("click", act);
-    return made;
-  };
   const guesses = ["The error is small", "Direct weights measure acceleration", "A hidden filter has a name"];
   const guessed = guesses.map((text, k) =>
-    button(text, () => {
+    buttonOf(text, () => {
       state.guess = String(k);
       go();
       frame.changed();
     }),
   );
   const guess = make("div", { class: "guess", role: "group", "aria-label": "Guess first" }, make("span", {}, "Guess to begin. What comes first?"), ...guessed);
-  const play = button("Train", () => (running ? pause() : go()));
-  const once = button("Step", () => {
+  const play = buttonOf("Train", () => (running ? pause() : go()));
+  const once = buttonOf("Step", () => {
     if (over()) return;
     pause();
     school.advance();
@@ -268,7 +241,7 @@ function build({ model, el }) {
     told();
     frame.changed();
   });
-  const anew = button("New weights", () => seeded((state.seed % SEEDS) + 1));
+  const anew = buttonOf("New weights", () => seeded((state.seed % SEEDS) + 1));
   const seed = make("input", { id: `${view.id}-seed`, type: "range", min: 1, max: SEEDS, step: 1 });
   const drawing = make("output", { for: seed.id });
   seed.addEventListener("input", () => seeded(Number(seed.value)));
@@ -314,7 +287,7 @@ function build({ model, el }) {
   const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
   const list = make("dl", { class: "events" }, ...events.map(({ text, output }) => make("div", {}, make("dt", {}, text), output)));
-  const sheet = unitSheet(spec);
+  const units = unitSheet(spec);
   const drawn = spec.panels.map((panel) => chart(view, panel));
   const runs = make("div", { class: "runs", hidden: "" });
   const history = [];
@@ -330,7 +303,7 @@ function build({ model, el }) {
         make("div", { class: "buttons" }, play, once, anew),
         status,
         make("div", { class: "title" }, "Weights: direct to each output, then ten hidden units; the shoulder's window above the elbow's"),
-        sheet.el,
+        units.el,
         list,
         said,
       ),
@@ -353,12 +326,12 @@ function build({ model, el }) {
     const { low, gain, first } = spec.outputs;
     const torque = (list, j) => list.map((y) => low[j] + (y[j] - first) / gain[j]);
     const curves = { training: school.training, test: school.test };
-    ["shoulder", "elbow"].forEach((joint, j) => {
+    NAMES.forEach((joint, j) => {
       curves[`${joint} network`] = torque(outputs, j);
       curves[`${joint} true`] = truth[j];
     });
     drawn.forEach((one) => one.redraw(curves));
-    sheet.draw(school, colours, over());
+    units.draw(school, colours, over());
     const seen = school.training[Math.floor(school.epoch / spec.check)];
     const when = over() ? `Training is over, ${spec.epochs} epochs are done.` : `Epoch ${school.epoch}.`;
     write(status, `${when} Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
@@ -405,10 +378,9 @@ function build({ model, el }) {
     told();
     history.unshift({ ...state, events: [...school.events], error: school.test.at(-1) });
     history.length = Math.min(5, history.length);
-    const cells = (kind, texts) => make("tr", {}, ...texts.map((text) => make(kind, {}, text)));
     const heads = ["weights", "torques", "small error", "direct", "hidden", "error on 6"];
     const rows = history.map((h) => [String(h.seed), h.torques, ...h.events.map((e) => (e === null ? "never" : String(e))), plain(h.error)]);
-    runs.replaceChildren(make("table", {}, make("caption", {}, "Your last runs: first epoch of each event"), make("thead", {}, cells("th", heads)), make("tbody", {}, ...rows.map((row) => cells("td", row)))));
+    runs.replaceChildren(tableOf("Your last runs: first epoch of each event", heads, rows));
     runs.hidden = false;
     if (state.loop) later();
   }
@@ -471,8 +443,7 @@ function build({ model, el }) {
   let truth = measured();
   let colours = {};
   const recolour = () => {
-    const style = getComputedStyle(el);
-    colours = Object.fromEntries(["ink", "soft", "line", "c0", "c2"].map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+    colours = coloursOf(el);
     draw();
   };
 
@@ -509,25 +480,20 @@ function build({ model, el }) {
 
   const resize = new ResizeObserver(() => {
     drawn.forEach((one) => one.resize());
-    sheet.resize();
+    units.resize();
     recolour();
     if (goal && !waiting) reach();
   });
   resize.observe(el);
-  const themes = new MutationObserver(recolour);
-  for (const root of [document.documentElement, document.body]) {
-    themes.observe(root, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] });
-  }
-  const media = ["(prefers-color-scheme: dark)", "print"].map((query) => matchMedia(query));
-  media.forEach((list) => list.addEventListener("change", recolour));
+  const stopRecolouring = onRecolour(recolour);
   const sight = new IntersectionObserver(([entry]) => !entry.isIntersecting && running && pause());
   sight.observe(el);
   return () => {
     cancelAnimationFrame(due);
     clearTimeout(waiting);
     frame.stop();
-    for (const observer of [resize, themes, sight]) observer.disconnect();
-    media.forEach((list) => list.removeEventListener("change", recolour));
+    stopRecolouring();
+    for (const observer of [resize, sight]) observer.disconnect();
   };
 }
 

@@ -1,6 +1,5 @@
 // What PIDTuner (tuner.py) computes and shows. Follows loops.js and stage.js.
 
-const NAMES = ["shoulder", "elbow"];
 const PAUSE = 800; // ms without a change after which a setting is the one before the next
 const THOUGHT = 250; // ms without a change after which it is sought what would make a loop stable
 const NYQUIST = "fig-feedback-nyquist"; // figure of the chapter that explains margins
@@ -31,11 +30,7 @@ function tuned(loop, setting) {
 
 // Runs by their settings, the newest last.
 function memory(loop, most = 4) {
-  loop = { ...loop, reference: { q: [], qd: [], qdd: [] } };
-  for (let k = 0; k < loop.periods; k++) {
-    const wanted = pickAndPlace(loop.extents, k * loop.step, loop.motion);
-    for (const name of Object.keys(loop.reference)) loop.reference[name].push(wanted[name]);
-  }
+  loop = { ...loop, reference: referenceOf(loop) };
   const kept = new Map();
   return (setting) => {
     const key = JSON.stringify(setting);
@@ -85,10 +80,7 @@ extras.push((view) => {
   const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
   const stage = armsOf(lengths, kinds, box, "The arm from above, over the arm of the setting before");
   const end = (loop.periods - 1) * loop.step;
-  const id = `${view.id}-time`;
-  const output = make("output", { for: id });
-  const slider = make("input", { id, type: "range", min: 0, max: end, step: loop.step * loop.every });
-  const play = make("button", { type: "button" }, "Play");
+  const clock = clockOf(view, { at: 1, end, step: loop.step * loop.every }, draw, () => (over ? ", stopped" : ""));
   const verdict = make("p", { class: "verdict", role: "status" });
   const remedy = make("p", { class: "remedy", role: "status" });
   const chapter = "How close to instability?";
@@ -104,56 +96,27 @@ extras.push((view) => {
   };
   const legend = make("div", { class: "legend" });
   legend.append(key("now", "now"), key("ghost", "the setting before"), key("wanted", "wanted"));
-  const row = make("div", { class: "time" }, play);
-  row.append(make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider));
+  const row = make("div", { class: "time" }, clock.play, clock.el);
   view.top.append(make("div", { class: "told-so" }, verdict, remedy, pointer));
   view.top.append(make("div", { class: "scene" }, stage.svg, legend, row));
 
-  let time = 1.0;
-  let frame = 0;
-  let from = 0;
+  let over = false; // whether the run was stopped before
   const along = (list, k) => {
     const i = Math.min(Math.floor(k), list.length - 1);
     const next = list[Math.min(i + 1, list.length - 1)];
     const part = Math.min(1, k - i);
     return list[i].map((q, j) => q + part * (next[j] - q));
   };
-  function draw() {
+  function draw(time) {
     const { now, ghost } = view;
     const k = time / now.seconds;
     stage.place("wanted", along(now.wanted, k));
     stage.place("ghost", along(ghost.log.q, k));
     stage.place("now", along(now.log.q, k));
-    const over = now.log.stopped !== null && k >= now.log.stopped;
+    over = now.log.stopped !== null && k >= now.log.stopped;
     stage.arms.get("now").el.classList.toggle("stopped", over);
-    slider.value = time;
-    write(output, `${time.toFixed(2)}\u00a0s${over ? ", stopped" : ""}`);
-    slider.setAttribute("aria-valuetext", output.textContent);
     for (const c of view.charts) c.point(time);
   }
-  function halt() {
-    cancelAnimationFrame(frame);
-    frame = 0;
-    write(play, "Play");
-  }
-  function run(moment) {
-    time = Math.min(end, Math.max(0, (moment - from) / 1000));
-    draw();
-    if (time < end) frame = requestAnimationFrame(run);
-    else halt();
-  }
-  function start(at) {
-    halt();
-    from = performance.now() - 1000 * at;
-    write(play, "Pause");
-    frame = requestAnimationFrame(run);
-  }
-  play.addEventListener("click", () => (frame ? halt() : start(time < end ? time : 0)));
-  slider.addEventListener("input", () => {
-    halt();
-    time = Number(slider.value);
-    draw();
-  });
 
   // What is seen, in words
   const span = (rate) => {
@@ -205,9 +168,8 @@ extras.push((view) => {
     view.keeps = true;
     view.set(change[1]);
     view.schedule();
-    time = 0;
-    if (calm.matches) time = end;
-    else start(0);
+    if (calm.matches) clock.stand(end);
+    else clock.start(0);
   });
   view.top.before(ask);
 
@@ -222,7 +184,7 @@ extras.push((view) => {
     remedied();
     numbered();
     el.toggleAttribute("data-stopped", view.now.log.stopped !== null);
-    draw();
+    clock.show();
   };
   view.after.push(follow);
   el.tuner = view; // for tests
@@ -230,7 +192,7 @@ extras.push((view) => {
   model.on("change:before", redraw);
   follow();
   return () => {
-    halt();
+    clock.pause();
     clearTimeout(thinking);
     model.off("change:before", redraw);
   };
@@ -242,12 +204,7 @@ function asking(view, questions, show) {
   const question = make("span", { class: "question" });
   const choices = make("div", { class: "choices" });
   const told = make("p", { class: "told", role: "status" });
-  const button = (text, act) => {
-    const made = make("button", { type: "button" }, text);
-    made.addEventListener("click", act);
-    return made;
-  };
-  const tryIt = button("Try it", () => {
+  const tryIt = buttonOf("Try it", () => {
     const { right, why, settings, choices: texts } = questions[at];
     const chosen = choices.querySelector("input:checked");
     if (!chosen) return;
@@ -257,7 +214,7 @@ function asking(view, questions, show) {
     choices.hidden = true; // the answer stands in its place
     tryIt.disabled = true;
   });
-  const next = button("Next question", () => {
+  const next = buttonOf("Next question", () => {
     at = (at + 1) % questions.length;
     pose();
   });

@@ -1,16 +1,13 @@
 // What SlidingWindow (window.py) computes. Follows sliding.js.
 
-const NAMES = ["shoulder", "elbow"];
-
 // Positions (rad), joint by joint, and torques (N m) of the motion, from their bytes; positions reach
 // `reach` samples beyond it on either side.
-function recordedOf(view, samples, reach) {
-  const wanted = 8 * JOINTS.length * (2 * samples + 2 * reach);
-  if (view?.byteLength !== wanted) throw new Error(`${view?.byteLength} bytes in place of ${wanted}`);
-  let at = 0;
-  const next = (count) => Float64Array.from({ length: count }, () => view.getFloat64(8 * at++, true));
-  const positions = JOINTS.map(() => next(samples + 2 * reach));
-  return { positions, torques: JOINTS.map(() => next(samples)) };
+function recordedOf(bytes, samples, reach) {
+  const all = numbersOf(bytes, "Float64");
+  const [around, wanted] = [samples + 2 * reach, 2 * (2 * samples + 2 * reach)];
+  if (all.length !== wanted) throw new Error(`${all.length} numbers in place of ${wanted}`);
+  const cut = (from, length) => JOINTS.map((j) => all.subarray(from + j * length, from + (j + 1) * length));
+  return { positions: cut(0, around), torques: cut(2 * around, samples) };
 }
 
 live = (view) => {

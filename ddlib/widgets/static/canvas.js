@@ -1,0 +1,31 @@
+// Drawing on canvases in the colours of the page.
+
+// A canvas as wide as its place and `place.height` high, drawn in pixels of the page.
+function sheet(height, label = "") {
+  const el = make("canvas", { role: "img", "aria-label": label, style: `height: ${height}px` });
+  const pen = el.getContext("2d");
+  const place = { el, pen, width: 0, height };
+  place.resize = () => {
+    const ratio = window.devicePixelRatio || 1;
+    place.width = el.clientWidth;
+    el.style.height = `${place.height}px`;
+    el.width = Math.round(place.width * ratio);
+    el.height = Math.round(place.height * ratio);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  };
+  return place;
+}
+
+// The colours of the page, by the names of their variables.
+function coloursOf(el) {
+  const style = getComputedStyle(el);
+  const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2"];
+  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+}
+
+function stroke(pen, colour, width, dash = []) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.setLineDash(dash);
+  pen.stroke();
+}

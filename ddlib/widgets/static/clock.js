@@ -1,0 +1,47 @@
+// Time that is played or chosen by a slider. Follows elements.js.
+
+// `draw(now)` shows a moment (s), words() what stands after it; with reduced motion the clock jumps
+// from one half second to the next.
+function clockOf(view, { at, end, step }, draw, words = () => "") {
+  const id = `${view.id}-time`;
+  const output = make("output", { for: id });
+  const slider = make("input", { id, type: "range", min: 0, max: end, step });
+  const play = buttonOf("Play", () => (frame ? pause() : start(now < end ? now : 0)));
+  const el = make("div", { class: "slider" }, make("label", { for: id }, "Time"), output, slider);
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  let now = at;
+  let from = 0; // the moment that stands for 0 s
+  let frame = 0;
+  function show() {
+    draw(now);
+    slider.value = now;
+    write(output, `${now.toFixed(2)}\u00a0s${words()}`);
+    slider.setAttribute("aria-valuetext", output.textContent);
+  }
+  function pause() {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    write(play, "Play");
+  }
+  function run(moment) {
+    const passed = Math.max(0, moment - from) / 1000; // a frame may bear an earlier stamp
+    now = Math.min(end, calm.matches ? Math.floor(passed * 2) / 2 : passed);
+    show();
+    if (now < end) frame = requestAnimationFrame(run);
+    else pause();
+  }
+  function start(time) {
+    pause();
+    from = performance.now() - 1000 * time;
+    write(play, "Pause");
+    frame = requestAnimationFrame(run);
+  }
+  function stand(time) {
+    if (!(time >= 0 && time <= end)) throw new Error(`time is ${time}`);
+    pause();
+    now = time;
+    show();
+  }
+  slider.addEventListener("input", () => stand(Number(slider.value)));
+  return { el, play, slider, now: () => now, show, start, stand, pause };
+}

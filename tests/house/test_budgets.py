@@ -1,0 +1,78 @@
+"""What keeps the house small: lines of each room, sizes of modules and packages, public names."""
+
+import ast
+from pathlib import Path
+
+from book_pages import ROOT
+
+LINES = {
+    "ddlib, without figures and widgets": 6500,
+    "ddlib/figures": 1100,
+    "ddlib/widgets": 3400,
+    "ddlib/widgets, JavaScript": 4200,
+    "book/workshop/report": 4500,
+    "book/workshop/beyond": 7000,
+    "book/workshop/chapters": 4600,
+    "tests": 16000,
+}
+"""Lines that a room may have: raise one only with a reason in the commit's message."""
+
+LONGEST, LARGEST, NAMES = 400, 9, 700
+"""Lines of a module, modules of a package, public names of ddlib and the workshop together."""
+
+
+def files(folder: str, suffix: str = "py") -> list[Path]:
+    return sorted((ROOT / folder).rglob(f"*.{suffix}"))
+
+
+def lines(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+def lines_of(room: str) -> int:
+    if "without" in room:
+        aside = ROOT / "ddlib" / "figures", ROOT / "ddlib" / "widgets"
+        return sum(lines(p) for p in files("ddlib") if not set(aside) & set(p.parents))
+    folder, _, language = room.partition(", ")
+    return sum(map(lines, files(folder, "js" if language else "py")))
+
+
+def public_names(path: Path) -> list[str]:
+    """What a module defines at its top level without an underscore in front."""
+    names = []
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.append(node.name)
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            bound = [part for target in targets for part in ast.walk(target)]
+            names += [n.id for n in bound if isinstance(getattr(n, "ctx", 0), ast.Store)
+                      and isinstance(n, ast.Name)]  # fmt: skip
+    return [name for name in names if not name.startswith("_")]
+
+
+def test_what_is_public_is_counted(tmp_path):
+    path = tmp_path / "module.py"
+    path.write_text(
+        "import a\nx = y, _z = 1, 2\nb: int = 3\nc.d = e[f] = 4\n"
+        "def g(h): i = 5\nclass J:\n    k = 6\ndef _l(): ...\n"
+    )
+    assert public_names(path) == ["x", "y", "b", "g", "J"]
+
+
+def test_every_room_keeps_to_its_budget():
+    ours = [*files("ddlib"), *files("book/workshop")]
+    over = [
+        f"{room}: {count} lines of {most}"
+        for room, most in LINES.items()
+        if (count := lines_of(room)) > most
+    ]
+    every = [*ours, *files("tests")]
+    over += [f"{p}: {count} lines" for p in every if (count := lines(p)) > LONGEST]
+    packages = {path.parent for path in ours if path.name == "__init__.py"}
+    for package in sorted(packages):
+        count = len(list(package.glob("*.py"))) - 1
+        over += [f"{package}: {count} modules"] * (count > LARGEST)
+    count = sum(len(public_names(path)) for path in ours)
+    over += [f"{count} public names of {NAMES}"] * (count > NAMES)
+    assert not over, "\n".join(over).replace(f"{ROOT}/", "")
