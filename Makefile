@@ -102,7 +102,7 @@ lab: $(READY)  ## JupyterLab on the book
 	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
-	$(BIN)/python -m ddlib.experiments.reproduce
+	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce
 
 ONLY ?= ddlib.dynamics.*
 mutants: $(READY)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 import torch
 from measure import THREADS, interleaved, memory_row, ratio
 
-from ddlib.experiments import STATE_FEEDBACK, split
 from ddlib.learning import Weights, WindowNetwork, descent, training
+from ddlib.setups import STATE_FEEDBACK, split
 
 MEMBERS = 32
 MOMENTUM = 0.95

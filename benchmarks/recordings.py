@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from ddlib.dynamics import Arm
 from ddlib.effects import Effects
-from ddlib.experiments import STATE_FEEDBACK
+from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import pick_and_place, random_extents, time_grid
 

@@ -23,8 +23,9 @@ from pathlib import Path
 
 from measure import limit, memory_row, met, not_measured
 
-from ddlib.experiments import WINDOWS, results
+from ddlib.setups import WINDOWS
 from ddlib.tables import significant
+from workshop.report import results
 
 ROOT = Path(__file__).resolve().parent.parent
 BOOK_SECONDS = 100.0

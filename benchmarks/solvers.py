@@ -10,9 +10,9 @@ import torch
 from ensembles import eager_loop, threads, training_set
 from measure import memory_row, ratio
 
-from ddlib.experiments import STATE_FEEDBACK
 from ddlib.learning import NotConverged, Weights, WindowNetwork, default_rate, solve
 from ddlib.metrics import rmss
+from ddlib.setups import STATE_FEEDBACK
 
 TARGET = 50.0
 

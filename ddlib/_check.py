@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
-
-BOOK = Path(__file__).parents[1] / "book"  # in the repository; an installed package has none
 
 
 def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
@@ -90,14 +86,3 @@ def one_of(name: str, value, known) -> str:
     if value not in known:
         raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
     return value
-
-
-def book_file(path: Path) -> Path:
-    """`path` as it is, or a FileNotFoundError if it lies in the book and there is no book here."""
-    if path.is_relative_to(BOOK) and not BOOK.is_dir():
-        raise FileNotFoundError(
-            f"{path.relative_to(BOOK.parent).as_posix()} belongs to the book and does not come "
-            "with the installed package: work in a clone of the book's repository, after "
-            "`pip install -e .` there"
-        )
-    return path

@@ -11,8 +11,8 @@ import chromium
 import pytest
 from hypothesis import settings
 
-from ddlib.evidence import verdicts
-from ddlib.evidence.claims import SHARED
+from workshop.report.evidence import verdicts
+from workshop.report.evidence.claims import SHARED
 
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
 

@@ -109,17 +109,6 @@ def test_one_of_lists_what_it_knows():
         _check.one_of("mode", "Fast", ("fast", "slow"))
 
 
-def test_a_file_of_the_book_needs_the_book(tmp_path, monkeypatch):
-    inside = _check.BOOK / "results" / "none.json"
-    assert _check.book_file(inside) == inside  # whether it is there is asked by who reads it
-    monkeypatch.setattr(_check, "BOOK", tmp_path / "book")
-    with pytest.raises(FileNotFoundError, match=r"book/claims.yml belongs to the book.*clone"):
-        _check.book_file(tmp_path / "book" / "claims.yml")
-    assert _check.book_file(tmp_path / "mine.yml") == tmp_path / "mine.yml"
-    (tmp_path / "book").mkdir()
-    assert _check.book_file(tmp_path / "book" / "claims.yml")
-
-
 @pytest.mark.parametrize(
     "shape, fits, misses",
     [

@@ -15,7 +15,6 @@ from ddlib.analysis import decompose
 from ddlib.control import pd
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, Noise, Quantisation, ViscousFriction
-from ddlib.experiments import predict
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
@@ -28,6 +27,7 @@ from ddlib.identification import (
     true_parameters,
 )
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
+from ddlib.setups import predict
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 

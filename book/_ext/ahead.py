@@ -20,7 +20,7 @@ from types import ModuleType
 # What takes long to import is imported where it is needed: kernels read this module, too.
 
 TIMEOUT = 600  # seconds for one cell, as in _config.yml
-HERE = str(Path(__file__).parent)
+HERE = os.pathsep.join(map(str, Path(__file__).parents[:2]))
 PATHS = "PYTHONPATH"
 FEW = 4  # notebooks, for which a process to fork from is not worth its start
 PRELOADED = (
@@ -30,9 +30,8 @@ PRELOADED = (
     "matplotlib.figure",
     "sympy",
     "torch",
-    "ddlib.experiments.studies",
-    "ddlib.evidence.measures",
-    "ddlib.evidence.wall",
+    "workshop.report.measures",
+    "workshop.report.evidence.wall",
     "ddlib.figures.style",
     "ddlib.widgets.base",
     "warm",
@@ -111,7 +110,7 @@ def forked_kernels(wanted: bool = True) -> Iterator[None]:
 
 
 def start_importing() -> None:
-    """Let the server import, before the first kernel asks for it, from this folder as well."""
+    """Let the server import, before the first kernel asks for it, from this folder and the book's as well."""
     known = os.environ.get(PATHS)
     os.environ[PATHS] = os.pathsep.join(filter(None, (HERE, known)))
     multiprocessing.forkserver.ensure_running()

@@ -30,13 +30,13 @@ from pathlib import Path
 sys.modules["rfc3987_syntax"] = None
 
 import yaml
-from ddlib.evidence.claims import SHARED
-from jupyter_cache import get_cache
-from sphinx.util.console import strip_colors
-
 from ahead import execute
 from dd_book import PAGE_INPUTS, cache_path, digest
 from dd_failures import FAILURES, last_line, where
+from jupyter_cache import get_cache
+from sphinx.util.console import strip_colors
+
+from workshop.report.evidence.claims import SHARED
 
 # ipykernel says this at every start, of a kernel on the same machine.
 NOISE = "Kernel is running over TCP without encryption"

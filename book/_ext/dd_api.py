@@ -11,8 +11,8 @@ from pathlib import Path
 from docutils import nodes
 from sphinx import addnodes
 
-SHOWN = "ddlib.evidence.measures"
-"""Package whose source has pages."""
+SHOWN = ("workshop.report.measures", "workshop.beyond.measures")
+"""Packages whose source has pages."""
 
 
 def skip_field(app, what, name, obj, skip, options):
@@ -51,8 +51,9 @@ def shorten_values(app, doctree):
 def leave_sources(app, env, docnames):
     """Tell `sphinx.ext.viewcode` that there is no source of any other module."""
     root = Path(app.srcdir)
-    paths = (path.relative_to(root).with_suffix("") for path in root.glob("ddlib/**/*.py"))
-    names = (".".join(path.parts).removesuffix(".__init__") for path in paths)
+    tops = (root, "ddlib"), (root / "book", "workshop")
+    paths = [p.relative_to(top) for top, name in tops for p in top.glob(f"{name}/**/*.py")]
+    names = (".".join(path.with_suffix("").parts).removesuffix(".__init__") for path in paths)
     known = getattr(env, "_viewcode_modules", {})
     env._viewcode_modules = known | {name: False for name in names if not name.startswith(SHOWN)}
 

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import joblib
 from pybtex import plugin
+from slim import slim
 from sphinx import addnodes, builders
 from sphinx.environment.adapters import toctree
 from sphinx.util.parallel import make_chunks
 
-from slim import slim
+sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
 MATHJAX = "tex-svg-full.js"
 SKIP = {"__pycache__", ".ipynb_checkpoints"}
@@ -22,12 +23,12 @@ KEPT_CACHES = 3
 SMALL = 1  # a batch has the root of so many times the pages that fall to a process
 
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
-CELL_INPUTS = ("ddlib", "book/results", "book/*.yml", "requirements.txt")
+CELL_INPUTS = ("ddlib", "book/workshop", "book/results", "book/*.yml", "requirements.txt")
 PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml")
 
 
 def digest(root: Path, patterns: tuple[str, ...]) -> str:
-    """Hash of all files that the patterns name, folders included: see `ddlib.experiments.results`.
+    """Hash of all files that the patterns name, folders included: see `workshop.report.results`.
 
     What Python and Jupyter leave behind does not count.
     """

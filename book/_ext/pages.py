@@ -4,6 +4,8 @@ It imports what the pages need, and then waits for a line on standard input: a J
 pages that are not to be executed again. Without one it ends.
 """
 
+# ruff: noqa: E402
+
 from __future__ import annotations
 
 import gc
@@ -12,10 +14,14 @@ import os
 import pkgutil
 import sys
 import warnings
+from pathlib import Path
 
-import ddlib
+sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
 from dd_failures import UNEXECUTED
+
+import ddlib
+import workshop
 
 # Imported with nbformat, it compiles a grammar of addresses for more than a second. Nothing here
 # asks for it: jsonschema goes without.
@@ -40,7 +46,8 @@ def prepare():
     from jupyter_book import sphinx
     from jupyter_book.cli.main import main
 
-    documented = [module.name for module in pkgutil.walk_packages(ddlib.__path__, "ddlib.")]
+    rooms = (ddlib.__path__, "ddlib."), (workshop.__path__, "workshop.")
+    documented = [module.name for room in rooms for module in pkgutil.walk_packages(*room)]
     for name in (*EXTENSIONS, *documented):
         try:
             importlib.import_module(name)

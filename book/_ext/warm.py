@@ -4,6 +4,7 @@
 
 import ipykernel.zmqshell
 import matplotlib.backends.backend_svg
-from ddlib.evidence import claims
+
+from workshop.report.evidence import claims
 
 claims.load()

@@ -10,24 +10,6 @@
 - ``simplified``: what simpler models of the arm lose
 """
 
-from ddlib._names import hand_on
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_on(
-    __name__,
-    filters=(
-        "CLASSES DERIVATIVES Decomposition basis classify content decompose frequency_response "
-        "pure_part purest roughness savitzky_golay shares upright"
-    ),
-    following="followed LAYERS QUANTITIES Responses explained gains mean_gradient summary",
-    hidden_units=(
-        "ablation cancellation match net_inputs refitted saturated transition_width with_filters"
-    ),
-    response="calibrated Calibrated decoded decoded_sign heard unit_inputs with_jerk",
-    sensitivity="responses INPUTS input_shares shuffled transition_centre transition_range",
-    coverage="cells_reached principal_deviations log10_reachable_share used_dimensions",
-    overlap="nearest_distances shared_cells",
-    noise="acceleration_noise_gain noise_floor",
-    simplified=(
-        "OTHER_JOINT VELOCITY_TERMS linear_residual share_of_other_joint share_of_velocity_terms"
-    ),
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -9,18 +9,6 @@
 - ``counting``, ``costs``: multiplications and additions counted by running a formulation
 """
 
-from ddlib._names import hand_on
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_on(
-    __name__,
-    arm="Arm CMU_DD_ARM_II IMI_ARM Link REYES_KELLY_ARM STANDARD_GRAVITY with_load",
-    kinematics=(
-        "ELBOWS Unreachable around end_point_error follow_hand inverse_kinematics jacobian reach"
-    ),
-    serial="PUMA_560 PUMA_560_GEARS PUMA_560_ROTORS SerialArm SpatialLink",
-    joints="DD_ARM_II_IN_SPACE hand inertial_parameters locked mass_matrix regressor",
-    formulations="lagrange_euler newton_euler recursive_lagrange",
-    derivation="derive",
-    counting="Operations Tape",
-    costs="count table",
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -6,13 +6,6 @@
   part, where an encoder is rounded (`Quantisation`), noise, delay, backlash; the book's real arm
 """
 
-from ddlib._names import hand_on
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_on(
-    __name__,
-    real_arm=(
-        "Backlash CMU_DD_ARM_II_EFFECTS Delay Effects EncoderZero IDEAL Noise Quantisation started"
-    ),
-    friction="CoulombFriction StickSlipFriction StribeckFriction ViscousFriction",
-    actuators="ComputingTime DeadZone FlexibleJoint Ripple Saturation",
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -6,15 +6,6 @@
 - ``regression``: weighted least squares on them, `Estimate`, and the true parameters
 """
 
-from ddlib._names import hand_on
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_on(
-    __name__,
-    regression=(
-        "Equations Estimate FRICTION GRAVITY RIGID SIGN_SPEED columns excitation from_states "
-        "least_squares true_parameters"
-    ),
-    known_axes="FRICTION_TERMS joint_columns joint_terms",
-    recursive="RecursiveLeastSquares",
-    equations="SLOW by_differences by_modulation by_smoothing repeat",
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -6,14 +6,6 @@
 - ``loops``: responses of a loop, predicted and simulated; Figure 2-1; scores of a recording
 """
 
-from ddlib._names import hand_on
+import lazy_loader
 
-__getattr__, __dir__, __all__ = hand_on(
-    __name__,
-    recording="Recording residual_torque rms",
-    simulate="CONTROL_STEP LOG_STEP REST follow free_motion record",
-    loops=(
-        "Load SecondOrderModel feedforward_system predicted_response run_system score "
-        "simulated_response smooth_pick_and_place"
-    ),
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,11 +11,11 @@ import traitlets as t
 
 from ddlib._check import finite_array, number
 from ddlib.effects import IDEAL
-from ddlib.experiments import HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
+from ddlib.setups import HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module

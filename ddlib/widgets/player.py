@@ -6,8 +6,8 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import finite_array, integer
-from ddlib.experiments import errors
 from ddlib.learning import TorqueModel
+from ddlib.setups import errors
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
@@ -36,7 +36,7 @@ class TrainingPlayer(HintonWidget):
     epochs : array_like, shape (epochs,)
         Epochs after which weights were kept, 0 for the initial ones.
     model : TorqueModel
-        Weights with leading axes ``(epochs, members)``, as from `ddlib.experiments.results.course`.
+        Weights with leading axes ``(epochs, members)``, as from `workshop.report.results.course`.
     recording : Recording
         The six runs of Appendix I, on which the errors are taken.
     member : int

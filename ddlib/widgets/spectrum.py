@@ -28,7 +28,7 @@ class SpectrumExplorer(CurveWidget):
     Parameters
     ----------
     study : mapping
-        What `ddlib.experiments.studies.span.span` returns, or `results.read` of it.
+        What `workshop.report.studies.span.span` returns, or `results.read` of it.
     directions : sequence of Directions
         Of the training set of each cell of the study, in their order.
     **options

@@ -18,9 +18,9 @@ from ddlib.effects import (
     Saturation,
     ViscousFriction,
 )
-from ddlib.experiments import KD, KP
 from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module

@@ -11,9 +11,9 @@ import traitlets as t
 from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
-from ddlib.experiments import KD, KP
 from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module

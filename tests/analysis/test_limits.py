@@ -9,7 +9,10 @@ import warnings
 import numpy as np
 import pytest
 
-from ddlib import trajectories  # fmt: skip
+from ddlib import (
+    setups,
+    trajectories,  # fmt: skip
+)
 from ddlib.analysis import (  # fmt: skip
     coverage,
     filters,
@@ -19,22 +22,15 @@ from ddlib.analysis import (  # fmt: skip
     sensitivity,
     simplified,
 )
-from ddlib.control import PID, delays, linear, pd, velocity  # fmt: skip
+from ddlib.control import PID, linear, pd, velocity
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import Arm, Link, derivation, serial  # fmt: skip
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  # fmt: skip
-from ddlib.experiments import exact_states, knobs, setups, two_harmonics  # fmt: skip
 from ddlib.identification import equations, regression  # fmt: skip
-from ddlib.learning import (  # fmt: skip
-    autograd,
-    descent,
-    levenberg_marquardt,
-    network,
-    parity_networks,
-    training,
-    windows,
-)
+from ddlib.learning import autograd, descent, levenberg_marquardt, network, training, windows
 from ddlib.simulation import loops, simulate  # fmt: skip
+from workshop.beyond.control import delays
+from workshop.report import exact_states, knobs, parity_networks, two_harmonics
 
 OVER, UNDER = 1 + 1e-9, 1 - 1e-9
 JUST_BELOW = -1e-12

@@ -13,8 +13,8 @@ from ddlib.analysis import (
     transition_range,
 )
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.experiments import random_states, torque
 from ddlib.learning import TorqueModel, TrainingSet, Weights
+from workshop.report.exact_states import random_states, torque
 
 STATES = random_states(4000, seed=9)
 SCALE = torque(STATES).std(0)

@@ -199,7 +199,7 @@ def test_forked_kernels_are_like_others(tmp_path):
     """Fresh, in their folder, with the given surroundings; one that ends takes nothing with it."""
     tell = "import os, sys; print(os.getcwd(), os.environ['TOLD'], __name__, 'book' in dir());"
     tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0));"
-    tell += "from ddlib.evidence import claims; print('held', claims._parsed.cache_info().currsize)"
+    tell += "from workshop.report.evidence import claims; print('held', claims._parsed.cache_info().currsize)"
     sources = [(tell, "book = 1"), (tell,), ("import os; os._exit(1)",), ("1 / 0",)]
     for k, cells in enumerate(sources):
         (tmp_path / "book").mkdir(exist_ok=True)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ddlib.evidence import claims, wall
+from workshop.report.evidence import claims, wall
 
 pytestmark = pytest.mark.browser
 
@@ -85,7 +85,7 @@ def test_code_leads_to_the_lines_that_measure(ledger, site, visit):
     opened = ledger()
     link = opened.page.locator("details.claim a", has_text="code").first
     where = link.evaluate("(a) => a.href")
-    assert "/_modules/ddlib/evidence/measures/" in where
+    assert "/_modules/book/workshop/report/measures/" in where
     source = visit(where)
     name = where.partition("#")[2]
     assert f"def {name}" in source.page.locator(f'[id="{name}"]').inner_text()

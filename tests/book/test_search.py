@@ -82,7 +82,9 @@ def test_a_module_of_the_package_is_listed_once(built, visit):
     opened = visit((built / "search.html").as_uri() + "?q=regressor")
     hits(opened)
     links = "[...document.querySelectorAll('#search-results li a')].map((a) => a.hash)"
-    assert opened.page.evaluate(links).count("#module-ddlib.control.adaptive.regressor") == 1
+    assert (
+        opened.page.evaluate(links).count("#module-workshop.beyond.control.adaptive.regressor") == 1
+    )
     assert not opened.problems
 
 

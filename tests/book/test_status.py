@@ -11,7 +11,8 @@ import pytest
 from book_pages import CHAPTERS, PAGES, ROOT, source
 from bs4 import BeautifulSoup
 
-from ddlib.experiments import results, status
+from workshop.chapters import status
+from workshop.report import results
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_runtime

@@ -13,8 +13,8 @@ from book_pages import ROOT
 from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.dynamics import Link
-from ddlib.experiments import STATE_FEEDBACK
 from ddlib.learning import WindowNetwork, autograd, descent
+from ddlib.setups import STATE_FEEDBACK
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import ensembles

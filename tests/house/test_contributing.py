@@ -10,9 +10,10 @@ import yaml
 from book_pages import ROOT
 from chapter_rules import CHAPTER, EVERYWHERE
 
-from ddlib.evidence import claims
-from ddlib.evidence.measures import dynamics
-from ddlib.experiments import SETUPS, code_hash, reproduce, results
+from ddlib.setups import SETUPS
+from workshop.report import code_hash, reproduce, results
+from workshop.report.evidence import claims
+from workshop.report.measures import dynamics
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 ADDED = {"book/results/following.json"}  # by an example

@@ -42,7 +42,7 @@ def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path
 
 def test_jogs_reach_the_package(tmp_path):
     code = (
-        "from ddlib.experiments import STATE_FEEDBACK as s; from ddlib.learning import Weights;"
+        "from workshop.report import STATE_FEEDBACK as s; from ddlib.learning import Weights;"
         "print(Weights.random(1, 11).largest[0], s.record([10, 20]).tau.std())"
     )
     env = foreign.environment("jog-7", tmp_path)

@@ -22,7 +22,7 @@ ORDER = (
 WORKSHOP = {"report": {"report"}, "beyond": {"report", "beyond"}}
 """What a room of the workshop may import of it; all may import ddlib, and chapters everything."""
 
-TORCH = ("ddlib.learning", "ddlib.rivals", "workshop")
+TORCH = ("ddlib.learning", "workshop.beyond.rivals", "workshop")
 """Where torch may be imported."""
 
 

@@ -15,8 +15,8 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from test_imports import imported
 
-from ddlib.experiments import results
 from ddlib.learning import Scaler, TorqueModel, Weights
+from workshop.report import results
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 FOLDERS = ("ddlib", "book/workshop", "tests", "benchmarks", "book/_ext")

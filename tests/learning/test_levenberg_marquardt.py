@@ -11,8 +11,6 @@ import torch
 from scipy.optimize import least_squares, minimize
 
 from ddlib.analysis import roughness
-from ddlib.experiments import STATE_FEEDBACK, split
-from ddlib.experiments.results import read
 from ddlib.learning import (
     NotConverged,
     Objective,
@@ -26,6 +24,8 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.metrics import rmss
+from ddlib.setups import STATE_FEEDBACK, split
+from workshop.report.results import read
 
 NAMES = tuple(field.name for field in fields(Weights))
 WIDTH, HIDDEN = 7, 3

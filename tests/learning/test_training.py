@@ -9,7 +9,6 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ddlib.experiments import STATE_FEEDBACK
 from ddlib.learning import (
     Descent,
     History,
@@ -29,6 +28,7 @@ from ddlib.learning import (
 from ddlib.learning.network import FIELDS
 from ddlib.learning.training import check_points
 from ddlib.metrics import rmss
+from ddlib.setups import STATE_FEEDBACK
 
 WIDTH = 7
 

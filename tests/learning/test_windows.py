@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ddlib.experiments import STATE_FEEDBACK
 from ddlib.learning import Scaler, check_width, sliding_windows
+from ddlib.setups import STATE_FEEDBACK
 
 RNG = np.random.default_rng(11)
 

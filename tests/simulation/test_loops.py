@@ -6,7 +6,7 @@ import pytest
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.effects import CoulombFriction, Effects, StickSlipFriction, ViscousFriction
-from ddlib.experiments import KD, KP
+from ddlib.setups import KD, KP
 from ddlib.simulation import (
     Load,
     Recording,

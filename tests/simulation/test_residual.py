@@ -16,7 +16,7 @@ from ddlib.effects import (
     StickSlipFriction,
     ViscousFriction,
 )
-from ddlib.experiments import KD, KP
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record, residual_torque, rms
 from ddlib.trajectories import APPENDIX_I
 

@@ -60,7 +60,7 @@ def commands(jobs: int, root: Path) -> dict[str, list]:
         "-q",
         "-n",
         jobs,
-        "tests/evidence/test_claims.py",
+        "tests/report/test_claims.py",
         "-k",
         "verdicts_are",
     ]
@@ -91,20 +91,20 @@ def reproduce(name: str, jobs: int) -> list[str]:
             target = copy / file
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / file, target)
-        path = os.pathsep.join([str(copy), os.environ.get("PYTHONPATH", "")])
+        path = os.pathsep.join([str(copy), str(copy / "book"), os.environ.get("PYTHONPATH", "")])
         os.environ["PYTHONPATH"] = path
         env = environment(name, Path(folder, "measured"))
         command = [
             sys.executable,
             "-m",
-            "ddlib.experiments.reproduce",
+            "workshop.report.reproduce",
             "--force",
             "--jobs",
             str(jobs),
         ]
         if subprocess.run(command, env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
-        names = ("experiments/test_results", "evidence/test_ledger", "book/test_prose_numbers")
+        names = ("report/test_results", "report/test_ledger", "book/test_prose_numbers")
         files = [f"tests/{name}.py" for name in names]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
         told = subprocess.run(command, env=env, cwd=copy).returncode

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ddlib import paper
-from ddlib.evidence import claims
-from ddlib.experiments import WINDOWS, results
-from ddlib.experiments.studies.windows import SIZES
+from ddlib.setups import WINDOWS
+from workshop.report import results
+from workshop.report.evidence import claims
+from workshop.report.studies.windows import SIZES
 
 RESULT_WORDS = re.compile(
     r"\b(?:errors?|RMSS|torques?|times|per ?cent|factors?|medians?|correlations?|roughness|"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 
-from ddlib.evidence.claims import Claim
+from workshop.report.evidence.claims import Claim
 
 ABOVE = ("above", "more than", "over", "at least", "no less than", "larger than")
 BELOW = ("below", "less than", "under", "at most", "within", "fewer than", "no more than")

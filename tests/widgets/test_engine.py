@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 
+from ddlib import setups
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
 from ddlib.effects import (
@@ -24,13 +25,13 @@ from ddlib.effects import (
     StribeckFriction,
     ViscousFriction,
 )
-from ddlib.experiments import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, results, setups, split
-from ddlib.experiments.setups import KD, KP
 from ddlib.learning import TrainingSet, Weights, descent, sliding_windows
+from ddlib.setups import JOINT_DAMPING, KD, KP, SETUPS, STATE_FEEDBACK, split
 from ddlib.simulation import follow
 from ddlib.simulation.plant import substeps
 from ddlib.trajectories import pick_and_place, time_grid
 from ddlib.widgets.engine import physics, plain
+from workshop.report import results
 
 STEP = 0.002
 BOOK_ARMS = pytest.mark.parametrize(

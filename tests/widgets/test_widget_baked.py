@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+from ddlib.widgets.baking.sampled import Sampled, evaluate
 from traitlets import TraitError
 from widget_pages import settings
 from widget_samples import (
@@ -25,7 +26,6 @@ from widget_samples import (
 from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter
 from ddlib.widgets.baking.baked import MAX_BYTES, MAX_VALUES, Baked
 from ddlib.widgets.baking.compress import SHARE
-from ddlib.widgets.baking.sampled import Sampled, evaluate
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from reactions import first_answers
 from widget_pages import NEXT_FRAME, page_of
 
 from ddlib.analysis import followed, frequency_response
-from ddlib.experiments import JOINT_DAMPING, split
+from ddlib.setups import JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets import FilterBuilder, module
 from ddlib.widgets.engine import builder

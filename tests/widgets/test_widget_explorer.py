@@ -11,11 +11,12 @@ from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
-from ddlib.experiments import WINDOWS, results
 from ddlib.learning import TorqueModel, Weights
+from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import FLOOR, FREQUENCIES, FilterExplorer
 from ddlib.widgets.hinton import diagram, zero_padded
+from workshop.report import results
 
 CELLS = "weights of all units"
 MEMBERS = (1, 6)

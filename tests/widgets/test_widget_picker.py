@@ -15,18 +15,12 @@ from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of, saved, settings
 
 from ddlib.control import Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.experiments import (
-    POSITION_FEEDBACK,
-    STATE_FEEDBACK,
-    WINDOWS,
-    errors,
-    predict,
-    results,
-)
 from ddlib.metrics import rmss
+from ddlib.setups import POSITION_FEEDBACK, STATE_FEEDBACK, WINDOWS, errors, predict
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
 from ddlib.widgets.picker import AXIS
+from workshop.report import results
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, READ, page_of, settings
 
-from ddlib.experiments import STATE_FEEDBACK, split
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
+from ddlib.setups import STATE_FEEDBACK, split
 from ddlib.widgets.hinton import diagram
 from ddlib.widgets.player import TrainingPlayer
 

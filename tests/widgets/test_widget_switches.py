@@ -13,7 +13,7 @@ from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
-from ddlib.experiments import KD, KP
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import module

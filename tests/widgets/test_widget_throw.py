@@ -11,13 +11,13 @@ from ddlib.analysis import shares
 from ddlib.analysis.filters import savitzky_golay
 from ddlib.control import Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.experiments import JOINT_DAMPING, POSITION_FEEDBACK, STATE_FEEDBACK, results
-from ddlib.experiments.setups import KD, KP, Setup
 from ddlib.learning import sliding_windows
+from ddlib.setups import JOINT_DAMPING, KD, KP, POSITION_FEEDBACK, STATE_FEEDBACK, Setup
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import ThrownArm, module
 from ddlib.widgets.engine import plain
 from ddlib.widgets.engine.throw import REST
+from workshop.report import results
 
 WORLD = """([spec, weights, moves]) => {
   const world = worldOf(spec, weights);

@@ -12,12 +12,12 @@ from reactions import first_answers
 from widget_pages import NEXT_FRAME, page_of
 
 from ddlib.analysis import CLASSES, classify
-from ddlib.experiments import results
-from ddlib.experiments.studies.page import training as study
 from ddlib.learning import Descent, default_rate, prepare
 from ddlib.metrics import rmss
 from ddlib.widgets import NetworkTrainer, module
 from ddlib.widgets.engine import plain, trainer
+from workshop.report import results
+from workshop.report.studies.page import training as study
 
 SCHOOL = """([spec, positions, torques, choice, epochs]) => {
   const school = schoolOf(spec, positions, torques, choice);

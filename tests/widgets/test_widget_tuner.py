@@ -14,7 +14,7 @@ from widget_pages import NEXT_FRAME, PATHS, READ, page_of
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import Effects, ViscousFriction
-from ddlib.experiments import KD, KP
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import module

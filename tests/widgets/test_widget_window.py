@@ -11,10 +11,11 @@ import pytest
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, READ, page_of, saved, settings
 
-from ddlib.experiments import STATE_FEEDBACK, WINDOWS, results, split
 from ddlib.learning import sliding_windows
+from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import Recording
 from ddlib.widgets.window import SlidingWindow
+from workshop.report import results
 
 MEMBER = 1
 

@@ -10,9 +10,9 @@ import traitlets as t
 
 from ddlib._check import shaped
 from ddlib.analysis import frequency_response, savitzky_golay
-from ddlib.experiments import JOINT_DAMPING, split, true_states
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.baking.still import Still, still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, module

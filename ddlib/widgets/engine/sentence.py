@@ -12,8 +12,8 @@ import traitlets as t
 from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import IDEAL
-from ddlib.experiments import KD, KP
 from ddlib.figures import illustrate
+from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
 from ddlib.widgets.baking.still import START, Still, encoded
 from ddlib.widgets.base import FRAME, STYLE, module

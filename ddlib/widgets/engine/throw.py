@@ -7,10 +7,10 @@ import numpy as np
 import traitlets as t
 
 from ddlib.analysis import shares
-from ddlib.experiments import JOINT_DAMPING, Setup, predict
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY
+from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from ddlib.widgets.baking.still import Still, still_picture

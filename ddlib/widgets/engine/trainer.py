@@ -8,11 +8,10 @@ import traitlets as t
 
 from ddlib._check import integer, one_of
 from ddlib.analysis import CLASSES, basis
-from ddlib.experiments import JOINT_DAMPING, split
-from ddlib.experiments.setups import INITIAL
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
+from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.baking.still import Still, still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, module

@@ -1,0 +1,130 @@
+"""Adaptive computed torque, after Craig, Hsu & Sastry 1987: it needs the acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import non_negative, shaped
+from ddlib.control.controllers import ControlLaw
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.adaptive.regressor import (
+    PARAMETERS,
+    check_parameters,
+    unchecked_regressor,
+)
+from workshop.beyond.control.adaptive.running import RunningLaw
+
+MARGIN = 0.9
+"""Largest b of `CraigHsuSastry`, as a share of that which makes the mass matrix singular."""
+
+
+@dataclass(frozen=True)
+class CraigHsuSastry:
+    """Adaptive computed torque (Craig, Hsu & Sastry 1987): it needs the acceleration.
+
+    The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
+    move by ``rate Y(q, qd, qdd)' M^-1 (de/dt + weight e)`` and are held in a box, and b where M can
+    be inverted.
+
+    Parameters
+    ----------
+    kp, kd : array_like, shape (..., 2)
+        Gains, 1/s^2 and 1/s.
+    weight : array_like, shape (..., 2)
+        Of the error in the adaptation, 1/s; below `kd`, so that the error's equation passes
+        energy on without gaining any (it is strictly positive real).
+    rate, estimate, names
+        As in `SlotineLi`; the names begin with a, b, d.
+    low, high : array_like, shape (parameters,)
+        The box of the estimates; d above 0 and below a.
+    acceleration : callable, optional
+        ``acceleration(q, qd, torque)`` at a reading, under the torque held until then; default:
+        the difference of velocities.
+
+    Raises
+    ------
+    ValueError
+        If the box holds a and d for which no b makes the mass matrix positive definite, or
+        another number is out of range.
+    """
+
+    kp: tuple[float, float]
+    kd: tuple[float, float]
+    weight: tuple[float, float]
+    rate: Sequence[float]
+    estimate: Sequence[float]
+    low: Sequence[float]
+    high: Sequence[float]
+    names: Sequence[str] = PARAMETERS[:3]
+    acceleration: Callable | None = None
+
+    def __post_init__(self):
+        for name in ("kp", "kd", "weight"):
+            non_negative(name, getattr(self, name), 2)
+        if not (np.asarray(self.weight) < self.kd).all():
+            raise ValueError(f"weight must be below kd={self.kd}, got {self.weight}")
+        check_parameters(self)
+        if tuple(self.names[:3]) != PARAMETERS[:3]:
+            raise ValueError(f"names must begin with a, b, d, got {self.names}")
+        low, high = (shaped(n, getattr(self, n), (len(self.names),)) for n in ("low", "high"))
+        inside = (low <= self.estimate) & (np.asarray(self.estimate) <= high)
+        if not inside.all():
+            raise ValueError(f"estimate must lie between low and high, got {self.estimate}")
+        if not 0 < low[2] <= high[2] < low[0]:
+            raise ValueError(
+                "low and high must leave room for a positive definite mass matrix (0 < d < a), got "
+                f"d from {low[2]:g} to {high[2]:g}, a from {low[0]:g}"
+            )
+
+    def output(self, estimate, wanted: Trajectory, q, qd, qdd) -> tuple[np.ndarray, np.ndarray]:
+        """Torque and the estimate's rate of change in continuous time, outside the box too.
+
+        Parameters
+        ----------
+        estimate, wanted, q, qd
+            As in `SlotineLi.output`.
+        qdd : array_like, shape (..., 2)
+            Measured acceleration, rad/s^2.
+        """
+        estimate = np.asarray(estimate, float)
+        error, error_rate = wanted.q - q, wanted.qd - qd
+        asked = wanted.qdd + np.asarray(self.kd) * error_rate + np.asarray(self.kp) * error
+        Y = unchecked_regressor(q, qd, qd, asked, self.names)
+        torque = np.einsum("...jp,...p->...j", Y, estimate)
+        measured = unchecked_regressor(q, qd, qd, qdd, self.names)
+        filtered = error_rate + np.asarray(self.weight) * error
+        turned = np.linalg.solve(_mass(estimate, np.asarray(q)), filtered[..., None])[..., 0]
+        return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`; the acceleration is the difference of velocities."""
+        return RunningLaw(self, reference, step)
+
+    def advance(self, law, estimate, wanted, q, qd):
+        """Torque of a running law, and its estimate one period later."""
+        before, held = (qd, np.zeros(2)) if law.memory is None else law.memory
+        if self.acceleration is None:
+            qdd = (qd - before) / law.step
+        else:
+            qdd = self.acceleration(q, qd, held)
+        torque, change = self.output(estimate, wanted, q, qd, qdd)
+        law.memory = qd, torque
+        return torque, self._invertible(np.clip(estimate + law.step * change, self.low, self.high))
+
+    def _invertible(self, estimate):
+        a, b, d = np.moveaxis(estimate[..., :3], -1, 0)
+        most = MARGIN * np.sqrt(d * (a - d))
+        return np.concatenate(
+            [np.stack([a, np.clip(b, -most, most), d], -1), estimate[..., 3:]], -1
+        )
+
+
+def _mass(estimate, q) -> np.ndarray:
+    """Mass matrices of estimates whose first three numbers are a, b, d."""
+    a, b, d = np.moveaxis(estimate[..., :3], -1, 0)
+    c2 = np.cos(q[..., 1])
+    m11, m12, m22 = np.broadcast_arrays(a + 2 * b * c2, d + b * c2, d)
+    return np.stack([np.stack([m11, m12], -1), np.stack([m12, m22], -1)], -2)

@@ -1,0 +1,360 @@
+"""The window network inside the controller: its weights change while the arm moves.
+
+The controller runs every 2 ms, the network's samples are 10 ms apart. At each sample it learns
+once and gives the torques of the next control periods, from windows of *desired* positions.
+There are two ways to learn. From what happened: the window of measured positions around an
+earlier sample, and the torque that was applied there; the pair is true whatever the controller
+did. Or from what was wanted: the window of desired positions, and the torque that the feedback
+had to add (`workshop.beyond.control.feedback_error`).
+
+A learner outlives the run: a second run goes on with what it knows. Leading axes of its weights
+are runs, each with a network of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib._check import integer, non_negative, number, one_of
+from ddlib.control.controllers import ControlLaw, Controller, as_controller
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.windowed import reference_windows
+
+TEACHERS = ("torque", "feedback", "nobody")
+"""What a learner is taught by: measured windows with the applied torque, desired windows with the
+feedback's torque, or nothing at all."""
+
+NEAREST = 0.02
+"""Least distance of a scaled torque from the ends of the output unit, for `LastLayer`."""
+
+
+def _sigmoid(x):
+    return 0.5 * (1 + np.tanh(0.5 * x))
+
+
+def _with_one(x):
+    return np.concatenate([x, np.ones((*x.shape[:-1], 1))], -1)
+
+
+class OnlineNetwork:
+    """The window network with its scaling, in plain arrays that a learner replaces.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        Networks of `ddlib.learning`; leading axes of the weights are runs.
+
+    Attributes
+    ----------
+    hidden : ndarray, shape (..., hidden, joint width + 1)
+        Weights of the hidden units, the bias last.
+    output : ndarray, shape (..., 2, hidden + joint width + 1)
+        Weights of the output units: of hidden units, of the window, the bias.
+    """
+
+    def __init__(self, model):
+        w = model.weights
+        self.inputs, self.outputs = model.inputs, model.outputs
+        self._low, self._gain = (x[:, None] for x in (self.inputs.low, self.inputs.gain))
+        flat = [x.reshape(*x.shape[:-2], -1) for x in (w.hidden_weights, w.direct_weights)]
+        self.hidden = np.concatenate([flat[0], w.hidden_bias[..., None]], -1)
+        self.output = np.concatenate([w.output_weights, flat[1], w.output_bias[..., None]], -1)
+
+    def features(self, windows) -> tuple[np.ndarray, np.ndarray]:
+        """What the hidden units see, and what the output units see.
+
+        Parameters
+        ----------
+        windows : ndarray, shape (..., cases, joint, width)
+            rad.
+
+        Returns
+        -------
+        seen : ndarray, shape (..., cases, joint width + 1)
+        features : ndarray, shape (..., cases, hidden + joint width + 1)
+        """
+        x = self.inputs.target[0] + (windows - self._low) * self._gain
+        seen = _with_one(x.reshape(*x.shape[:-2], -1))
+        hidden = _sigmoid(seen @ np.swapaxes(self.hidden, -1, -2))
+        passed = np.broadcast_to(seen, (*hidden.shape[:-1], seen.shape[-1]))
+        return seen, np.concatenate([hidden, passed], -1)
+
+    def activity(self, features) -> np.ndarray:
+        """Output activities of features, shape (..., cases, 2)."""
+        return _sigmoid(features @ np.swapaxes(self.output, -1, -2))
+
+    def torque(self, windows) -> np.ndarray:
+        """Torques, shape (..., cases, 2), N m, of windows as in `features`."""
+        return self.newton_metres(self.activity(self.features(windows)[1]))
+
+    def scaled(self, torque) -> np.ndarray:
+        """Torques (N m) in the output units' range, last axis the joints."""
+        return self.outputs.target[0] + (torque - self.outputs.low) * self.outputs.gain
+
+    def newton_metres(self, activity) -> np.ndarray:
+        """Output activities as torques, N m."""
+        return self.outputs.low + (activity - self.outputs.target[0]) / self.outputs.gain
+
+    def gradient(self, windows, error=None, torque=None) -> tuple[np.ndarray, np.ndarray]:
+        """Backpropagation: how half the squared error falls, in scaled units, mean over cases.
+
+        Parameters
+        ----------
+        windows : ndarray, shape (..., cases, joint, width)
+        error : ndarray, shape (..., cases, 2)
+            Torque that is wanted beyond the network's, N m; or else
+        torque : ndarray, shape (..., cases, 2)
+            The torque that is wanted.
+
+        Returns
+        -------
+        hidden, output : ndarray
+            Of the shapes of the weights; their direction is the one to go.
+        """
+        seen, features = self.features(windows)
+        o = self.activity(features)
+        error = self.scaled(torque) - o if error is None else error * self.outputs.gain
+        delta = error * o * (1 - o)
+        count, units = delta.shape[-2], self.hidden.shape[-2]
+        h = features[..., :units]
+        back = delta @ self.output[..., :units] * h * (1 - h)
+        back, delta = np.swapaxes(back, -1, -2), np.swapaxes(delta, -1, -2)
+        return back @ seen / count, delta @ features / count
+
+
+class OnlineDescent(OnlineNetwork):
+    """All weights learn by gradient descent, a step for each sample.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        What it begins with; leading axes of the weights are runs.
+    rate : float or array_like
+        Of a step, in scaled units, 0 or more; of many: one for each run, with the runs' axes.
+    momentum : float
+        Share of the last step that is taken again.
+    replay : int
+        Earlier samples that are drawn and learnt again in each step.
+    memory : int
+        Samples that are kept for it, the youngest.
+    seed : int
+        Of the drawing, which is the same for all runs.
+    """
+
+    def __init__(self, model, rate, momentum=0.0, replay=0, memory=3000, seed=0):
+        super().__init__(model)
+        self.rate = non_negative("rate", np.asarray(rate, float))[..., None, None]
+        self.momentum = number("momentum", momentum, 0.0, 0.999)
+        self.replay, self.memory = integer("replay", replay, 0), integer("memory", memory, 1)
+        self._rng, self._kept, self._steps = np.random.default_rng(seed), [], (0.0, 0.0)
+
+    def learn(self, windows, torque) -> None:
+        """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
+        cases = [(windows, torque)]
+        if self.replay:
+            drawn = self._rng.integers(0, len(self._kept), self.replay) if self._kept else ()
+            cases += [self._kept[k] for k in drawn]
+            self._kept = [*self._kept[1 - self.memory :], (windows, torque)]
+        windows = np.stack([w for w, _ in cases], -3)
+        self._step(self.gradient(windows, torque=np.stack([t for _, t in cases], -2)))
+
+    def correct(self, windows, feedback) -> None:
+        """Learn that the torque of windows was short by what the feedback added, N m."""
+        self._step(self.gradient(windows[..., None, :, :], feedback[..., None, :]))
+
+    def _step(self, gradients):
+        self._steps = tuple(
+            self.momentum * last + self.rate * new for last, new in zip(self._steps, gradients)
+        )
+        self.hidden, self.output = self.hidden + self._steps[0], self.output + self._steps[1]
+
+
+class LastLayer(OnlineNetwork):
+    """The output units' weights learn by recursive least squares; the hidden units stay.
+
+    The target of a unit is the net input that would give the wanted torque.
+
+    Parameters
+    ----------
+    model : TorqueModel
+    recursion : callable
+        ``recursion(weights)`` gives the estimate that learns from these weights on: a
+        `ddlib.identification.RecursiveLeastSquares`.
+    """
+
+    def __init__(self, model, recursion):
+        super().__init__(model)
+        self.estimate = recursion(self.output)
+
+    def learn(self, windows, torque) -> None:
+        """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
+        features = self.features(windows[..., None, :, :])[1][..., 0, :]
+        wanted = np.clip(self.scaled(torque), NEAREST, 1 - NEAREST)
+        self.estimate.update(features, np.log(wanted / (1 - wanted)))
+        self.output = self.estimate.weights
+
+
+class LinearFilter:
+    """A linear filter of the window, without hidden units, by recursive least squares.
+
+    Parameters
+    ----------
+    inputs : Scaler
+        Of positions, rad.
+    weights : array_like, shape (..., 2, joint width + 1)
+        In N m per scaled unit; what it begins with.
+    recursion : callable
+        As in `LastLayer`.
+    """
+
+    def __init__(self, inputs, weights, recursion):
+        self._target, self._low, self._gain = (
+            inputs.target,
+            *(x[:, None] for x in (inputs.low, inputs.gain)),
+        )
+        self.estimate = recursion(np.asarray(weights, float))
+        self.weights = self.estimate.weights
+
+    def _features(self, windows):
+        x = self._target[0] + (windows - self._low) * self._gain
+        return _with_one(x.reshape(*x.shape[:-2], -1))
+
+    def torque(self, windows) -> np.ndarray:
+        """Torques, shape (..., cases, 2), N m, of windows ``(..., cases, joint, width)``."""
+        return self._features(windows) @ np.swapaxes(self.weights, -1, -2)
+
+    def learn(self, windows, torque) -> None:
+        """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
+        self.estimate.update(self._features(windows), torque)
+        self.weights = self.estimate.weights
+
+
+@dataclass(frozen=True)
+class OnlineFeedforward:
+    """A learner of windows as feedforward that goes on learning while it controls.
+
+    Parameters
+    ----------
+    learner
+        `OnlineDescent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)`` of windows
+        ``(..., cases, joint, width)`` and, by what teaches it, ``learn(windows, torque)`` or
+        ``correct(windows, feedback)`` of one window for each run. It outlives the run.
+    feedback : Controller or callable
+    width : int
+        Samples of a window, odd.
+    teacher : {"torque", "feedback", "nobody"}
+        As in `TEACHERS`. With "nobody" the learner is kept as it is when the run begins.
+    every : int
+        Control periods between two samples of a window.
+    limit : array_like, shape (2,)
+        Largest torques of the motors, N m: what is learnt is what they can have given.
+
+    Notes
+    -----
+    It learns from samples at which the reference of any run moves. Measured windows are learnt
+    half a window late, when their last sample is there. Before its first and after its last
+    sample the reference is taken to rest.
+    """
+
+    learner: object
+    feedback: Controller
+    width: int = 21
+    teacher: str = "torque"
+    every: int = 5
+    limit: Sequence[float] = (np.inf, np.inf)
+
+    def __post_init__(self):
+        if integer("width", self.width, 3) % 2 == 0:
+            raise ValueError(f"width must be odd, so that a window has a centre, got {self.width}")
+        integer("every", self.every, 1)
+        one_of("teacher", self.teacher, TEACHERS)
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        return _Law(self, reference, as_controller(self.feedback).start(reference, step))
+
+
+class _Law:
+    """A running learner: called once a control period."""
+
+    def __init__(self, controller: OnlineFeedforward, reference: Trajectory, feedback):
+        self._feedback, self._every, self._limit = feedback, controller.every, controller.limit
+        self._teacher, learner = controller.teacher, controller.learner
+        self._learner, half = learner, controller.width // 2
+        moving = (reference.qd != 0) | (reference.qdd != 0)
+        self._moving = moving.any(axis=(*range(moving.ndim - 2), -1))
+        self._half, self._read, self._applied = half, [], []
+        self._windows = reference_windows(reference.q, controller.width, self._every)
+        if self._teacher == "nobody":
+            self._ahead = learner.torque(self._windows)
+
+    def __call__(self, k, q, qd):
+        correction = self._feedback(k, q, qd)
+        if self._teacher == "nobody":
+            return self._ahead[..., k, :] + correction
+        part = k % self._every
+        if part == 0:
+            self._read.append(q)
+            self._teach(k, correction)
+            self._ahead = self._learner.torque(self._windows[..., k : k + self._every, :, :])
+        torque = self._ahead[..., part, :] + correction
+        if part == 0:
+            self._applied.append(np.clip(torque, -np.asarray(self._limit), self._limit))
+        return torque
+
+    def _teach(self, k, correction):
+        if self._teacher == "feedback" and self._moving[k]:
+            self._learner.correct(self._windows[..., k, :, :], correction)
+        centre = len(self._read) - 1 - self._half
+        if self._teacher == "torque" and centre >= self._half:
+            if self._moving[centre * self._every]:
+                window = np.stack(self._read[centre - self._half :], -1)
+                self._learner.learn(window, self._applied[centre])
+
+
+@dataclass(frozen=True)
+class Abreast:
+    """Several controllers in one batch, each for some rows of the first axis of runs.
+
+    Parameters
+    ----------
+    controllers : sequence of Controller
+    rows : sequence of int
+        How many rows each one has.
+    """
+
+    controllers: Sequence[Controller]
+    rows: Sequence[int]
+
+    def __post_init__(self):
+        if len(self.controllers) != len(self.rows) or not self.rows:
+            raise ValueError(f"rows must be one number for each controller, got {self.rows}")
+        for count in self.rows:
+            integer("rows", count, 1)
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law of all of them; ``law.laws`` are theirs."""
+        if reference.q.ndim < 3 or len(reference.q) != sum(self.rows):
+            raise ValueError(
+                f"reference must have {sum(self.rows)} rows of runs, got {reference.q.shape}"
+            )
+        return _Abreast(self, reference, step)
+
+
+class _Abreast:
+    """Laws that run side by side."""
+
+    def __init__(self, controller: Abreast, reference: Trajectory, step: float):
+        ends = np.cumsum(controller.rows)
+        self._parts = [slice(end - n, end) for end, n in zip(ends, controller.rows)]
+        self.laws = [
+            as_controller(c).start(Trajectory(*(x[part] for x in reference)), step)
+            for c, part in zip(controller.controllers, self._parts)
+        ]
+
+    def __call__(self, k, q, qd):
+        parts = zip(self.laws, self._parts)
+        return np.concatenate([law(k, q[part], qd[part]) for law, part in parts])

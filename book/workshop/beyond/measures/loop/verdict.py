@@ -1,0 +1,163 @@
+"""What all verdicts together say: how far they hang on a reading, on an arm, on a draw."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib.setups import STATE_FEEDBACK
+from ddlib.tables import Table, typeset
+from workshop.report.evidence import claims
+from workshop.report.evidence.claims import Claim
+from workshop.report.evidence.verdicts import Measured
+
+SHUFFLES = 10_000
+"""Permutations that stand for chance."""
+
+
+def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
+    """Sentences that are judged under several readings of "a proportional controller".
+
+    They have the same measure and arguments but for ``setup``; without it the reading is state
+    feedback.
+
+    Parameters
+    ----------
+    sentences : iterable of Claim
+
+    Returns
+    -------
+    list of dict
+        For each sentence its claim by the name of the reading; two readings or more.
+    """
+    found: dict[tuple, dict[str, Claim]] = {}
+    for claim in sentences:
+        if claim.measure:
+            rest = {k: v for k, v in claim.arguments.items() if k != "setup"}
+            key = (claim.measure, json.dumps(rest, sort_keys=True))
+            setup = claim.arguments.get("setup", STATE_FEEDBACK.name)
+            found.setdefault(key, {})[setup] = claim
+    return [group for group in found.values() if len(group) > 1]
+
+
+def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
+    """Verdicts of sentences by reading: a row for each, those that agree last.
+
+    Parameters
+    ----------
+    groups : iterable of dict
+        As from `by_reading`.
+    readings : iterable of str
+        Names of the readings, one column each.
+    """
+    readings, rows = tuple(readings), []
+    for group in groups:
+        first = next(iter(sorted(group.values(), key=lambda claim: len(claim.claim))))
+        verdicts = [group[name].verdict if name in group else "–" for name in readings]
+        same = len({claim.verdict for claim in group.values()}) == 1
+        rows.append((same, (f"{first.claim} ({first.where})", *verdicts)))
+    rows.sort(key=lambda row: row[0])
+    return Table(("sentence", *readings), [tuple(map(typeset, row)) for _, row in rows])
+
+
+class Agreement(NamedTuple):
+    """How often two lists of verdicts agree.
+
+    Attributes
+    ----------
+    pairs, same : int
+        How many there are, and how many of them are alike.
+    expected : float
+        How many would be alike if one list were shuffled.
+    chance : float
+        Share of the shuffles in which at least as many are.
+    """
+
+    pairs: int
+    same: int
+    expected: float
+    chance: float
+
+
+def agreement(pairs: Iterable[tuple[str, str]], seed: int = 0) -> Agreement:
+    """Whether pairs of verdicts agree more often than shuffled ones.
+
+    Parameters
+    ----------
+    pairs : iterable of (str, str)
+    seed : int
+        Of the shuffles.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two pairs.
+    """
+    pairs = list(pairs)
+    if len(pairs) < 2:
+        raise ValueError(f"pairs must be two or more, got {len(pairs)}")
+    first, second = np.array(pairs).T
+    same, rng = int((first == second).sum()), np.random.default_rng(seed)
+    drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(SHUFFLES)])
+    of = {name: (first == name).sum() * (second == name).sum() for name in set(first)}
+    expected = sum(of.values()) / len(pairs)
+    return Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
+
+
+def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
+    """How many decided verdicts rest on draws, and how many of them another draw would change.
+
+    The second number is the sum over the claims of the share of the draws that disagree: an
+    expectation needs no independence.
+
+    Parameters
+    ----------
+    sentences : iterable of Claim
+    """
+    found = [(claim.verdict, claim.shares()) for claim in sentences if claim.verdict != "undecided"]
+    agree = [shares.get(verdict, 0.0) for verdict, shares in found if shares]
+    return len(agree), float(len(agree) - sum(agree))
+
+
+def changed_by_reading() -> Measured:
+    """Share of the sentences judged under several readings whose verdict is not the same in all."""
+    groups = by_reading(claims.of_the_paper())
+    changed = sum(len({claim.verdict for claim in group.values()}) > 1 for group in groups)
+    return Measured(changed / len(groups), f"{changed} of {len(groups)} sentences")
+
+
+def carried_over(arm: str) -> Measured:
+    """Chance that shuffled verdicts agree as often as those on two arms do.
+
+    Parameters
+    ----------
+    arm : str
+        As in the field ``arm`` of a claim. Sentences that could not be tested on the first arm
+        are left out.
+    """
+    found = agreement(pairs_on(arm))
+    text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
+    return Measured(found.chance, text)
+
+
+def pairs_on(arm: str) -> list[tuple[str, str]]:
+    """Verdicts of sentences on the simulated arm and on another one, where both were tested.
+
+    Parameters
+    ----------
+    arm : str
+        As in the field ``arm`` of a claim.
+    """
+    pairs = [(first.verdict, again.verdict) for first, again in claims.judged_again(arm)]
+    return [pair for pair in pairs if "not testable" not in pair]
+
+
+def reproduced_share() -> Measured:
+    """Share of reproduced sentences among the paper's that could have been refuted."""
+    left_out = ("by construction", "not testable")
+    verdicts = [c.verdict for c in claims.of_the_paper() if c.verdict not in left_out]
+    count = verdicts.count("reproduced")
+    return Measured(count / len(verdicts), f"{count} of {len(verdicts)}")

@@ -1,0 +1,219 @@
+"""The filters of networks on a real arm: their names, gains and shares, beside fair nulls.
+
+Read from the result "real-arm". These networks learnt the whole recording; the nulls learnt
+currents of the same spectra that have nothing to do with the motion. The replicates draw networks.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib import paper
+from ddlib.analysis import CLASSES
+from ddlib.learning import p_value
+from ddlib.tables import significant
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured, judged, mean, median
+
+NAMED = ("velocity", "acceleration", "velocity + acceleration")
+"""Classes of filters that the paper finds."""
+
+WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
+"""Gains of a network, and what the identified model has in their place."""
+
+UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
+"""Units of these gains."""
+
+
+def row(width: int) -> dict:
+    """Networks of a window on the whole recording, and on unrelated currents."""
+    return results.read("real-arm")["windows"][str(width)]
+
+
+def named(ensemble: dict) -> np.ndarray:
+    """Share of an ensemble's filters that have one of the names in `NAMED`."""
+    which = [CLASSES.index(name) for name in NAMED]
+    hidden, direct = (
+        np.array(ensemble["classes"][x])[:, which].sum(-1) for x in ("hidden", "direct")
+    )
+    return (paper.HIDDEN_UNITS * hidden + 6 * direct) / (paper.HIDDEN_UNITS + 6)
+
+
+def excess(width: int = 21) -> Measured:
+    """Share of velocity and acceleration filters, less that on unrelated currents (judged).
+
+    Less the mean over the draws of the surrogate that gives most of them.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    found = row(width)
+    real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
+    told = "; ".join(
+        f"{n} {100 * x.mean():.0f} % (p {p_value(real.mean(), x, 'more'):.2f})"
+        for n, x in nulls.items()
+    )
+    before = 100 * named(found["untrained"]).mean()
+    return judged(
+        lambda one, *others: mean(one) - np.max([mean(x) for x in others], axis=0),
+        real,
+        *nulls.values(),
+        text=f"{100 * real.mean():.0f} %; {told}; untrained {before:.0f} %",
+    )
+
+
+def _off(gains, true) -> np.ndarray:
+    """How far the median gains are from the arm's, in the worst joint."""
+    return np.abs(np.median(gains, axis=-2) / true - 1).max(-1)
+
+
+def calibrated(what: str = "inertia", width: int = 21) -> Measured:
+    """How far the gains of networks on a joint's own motion are from the arm's: the worst (judged).
+
+    Parameters
+    ----------
+    what : {"inertia", "friction"}
+        Gains on acceleration, or on velocity.
+    width : int
+        Window size.
+    """
+    found, (name, wanted) = row(width), WORTH[what]
+    real, true = np.array(found["real"][name]), np.array(found["identified"][wanted])
+    typical = np.median(_off(real[:, None], true))  # of one network, as each of the nulls is
+    chance = max(
+        p_value(typical, _off(np.array(x[name])[:, None], true), "less")
+        for x in found["nulls"].values()
+    )
+    pairs = zip(np.median(real, 0), true)
+    told = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
+    text = f"{told} {UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
+    return judged(lambda each: _off(each, true), real, text=text)
+
+
+def _pearson(a, b) -> np.ndarray:
+    a, b = (x - x.mean(-1, keepdims=True) for x in (np.asarray(a), np.asarray(b)))
+    size = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
+    return (a * b).sum(-1) / np.where(size > 0, size, 1)
+
+
+def beyond_null(what: str = "friction", width: int = 11) -> Measured:
+    """Joints at which the gain is nearer the identified value than unrelated currents bring it.
+
+    At how many of six joints the typical network (the median of the distances of single networks)
+    is nearer than all but a twentieth of the networks on either surrogate (judged).
+
+    Parameters
+    ----------
+    what : {"inertia", "friction"}
+        Gains on acceleration, or on velocity.
+    width : int
+        Window size.
+    """
+    found, (name, wanted) = row(width), WORTH[what]
+    true = np.array(found["identified"][wanted])
+    real = np.array(found["real"][name])
+    nulls = [np.abs(np.array(x[name]) / true - 1) for x in found["nulls"].values()]
+    edge = np.min([np.percentile(x, 5, axis=0) for x in nulls], axis=0)
+
+    def joints(drawn):
+        return (np.median(np.abs(drawn / true - 1), axis=-2) < edge).sum(-1)
+
+    off = np.median(np.abs(real / true - 1), 0)
+    told = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
+    return judged(joints, real, text=f"off by {told} at joints 1 to 6, in brackets by chance")
+
+
+def follow(what: str = "friction", width: int = 11) -> Measured:
+    """Correlation over six joints of gains with the identified values, less that by chance.
+
+    Both in units of the joint's own deviations, of current over those of velocity or acceleration,
+    so that large motors do not count by their size. The median of single networks; by chance: the
+    95th percentile of single networks of unrelated currents.
+
+    Parameters
+    ----------
+    what : {"inertia", "friction"}
+    width : int
+        Window size.
+    """
+    found, (name, wanted) = row(width), WORTH[what]
+    unit = np.array(found["deviations"][name])
+    true = np.array(found["identified"][wanted]) * unit
+    real = np.array(found["real"][name]) * unit
+    nulls = [_pearson(np.array(x[name]) * unit, true) for x in found["nulls"].values()]
+    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    r = np.median(_pearson(real, true))
+    return judged(
+        lambda drawn: np.median(_pearson(drawn, true), axis=-1) - chance,
+        real,
+        text=f"r {r:.2f}; unrelated currents reach {chance:.2f} in one of twenty",
+    )
+
+
+def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
+    """Joints whose own filter follows a quantity more than on unrelated currents (judged).
+
+    Of the direct weights from a joint to its own motor: what the quantity explains of the filter's
+    output, and position and the other one do not. More than 19 of 20 networks on either surrogate;
+    how many of six joints.
+
+    Parameters
+    ----------
+    what : {"velocity", "acceleration"}
+    width : int
+        Window size.
+    """
+    found, name = row(width), f"unique {what}"
+    real = np.array(found["real"][name])
+    nulls = [np.array(x[name]) for x in found["nulls"].values()]
+    edge = np.max([np.percentile(x, 95, axis=0) for x in nulls], axis=0)
+    pairs = zip(np.median(real, 0), edge)
+    told = ", ".join(f"{100 * a:.0f} ({100 * b:.0f})" for a, b in pairs)
+    return judged(
+        lambda drawn: (np.median(drawn, axis=-2) > edge).sum(-1),
+        real,
+        text=f"{told} % at joints 1 to 6, in brackets by chance",
+    )
+
+
+def shares_follow(width: int = 21) -> Measured:
+    """Correlation over six joints of velocity's share in a filter and friction's in the current.
+
+    The filters are the direct weights from each joint to its own motor.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    found, name = row(width), "share of velocity"
+    true, real = np.array(found["friction"]), np.array(found["real"][name])
+    r = float(_pearson(np.median(real, 0), true))
+    typical = np.median(_pearson(real, true))  # of one network, as each of the nulls is
+    chance = [p_value(typical, _pearson(np.array(x[name]), true), "more")
+              for x in found["nulls"].values()]  # fmt: skip
+    text = f"r {r:.2f}; as high by chance: p {max(chance):.2f}"
+    return judged(lambda drawn: _pearson(np.median(drawn, axis=-2), true), real, text=text)
+
+
+def compensate_friction(width: int = 21) -> Measured:
+    """Share of the hidden units' non-linear part that friction and rigid body explain (judged).
+
+    Median of six outputs; least squares takes out what is linear in the window.
+
+    Told beside it: what single networks of unrelated currents reach, in the same median.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    cells = row(width)
+    found = np.array(cells["curved"])
+    told = ", ".join(significant(x, 2) for x in np.median(found, 0))
+    nulls = [np.median(x["curved"], axis=-1) for x in cells["nulls"].values()]
+    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
+    return judged(median, found, text=text)

@@ -1,0 +1,324 @@
+"""Gaussian processes: a prediction with its own uncertainty, from every case that was seen.
+
+- `GaussianProcess`: the exact one, with a squared exponential kernel (Rasmussen & Williams 2006)
+- `SemiParametric`: the arm's known equations and friction, and a process for what they leave
+  (Nguyen-Tuong & Peters 2010)
+- `RandomFeatures`: ridge regression on random cosines, the same kernel at a fixed size
+  (Rahimi & Recht 2007)
+
+The state of a process may be past positions, the window of the paper (Dalla Libera et al. 2020).
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import minimize
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
+from sklearn.kernel_approximation import RBFSampler
+from sklearn.linear_model import RidgeCV
+
+from ddlib._check import integer, one_of, positive
+from ddlib.dynamics import Operations
+from ddlib.identification import FRICTION, GRAVITY, RIGID
+from workshop.beyond.rivals.identified import Identified
+from workshop.beyond.rivals.protocol import KINDS, Rival
+
+STEPS = 100
+"""Iterations that a search for hyperparameters may take."""
+
+TINY = 1e-9
+"""Share of the torque below which what is left over counts as rounding."""
+
+
+class Inputs:
+    """Inputs of a kernel: each number standardised, or the leading directions of the windows.
+
+    Neighbouring positions are nearly equal, and what tells a torque is their small differences.
+    Directions are the principal ones of the training inputs, each scaled to unit variance, so that
+    a kernel sees small ones as well as large ones.
+
+    Parameters
+    ----------
+    x : ndarray, shape (cases, joint, rows)
+        Training inputs.
+    directions : int, optional
+        How many. Default: none, every number by itself.
+    """
+
+    def __init__(self, x, directions: int | None = None):
+        flat = x.reshape(len(x), -1)
+        self.mean = flat.mean(0)
+        if directions is None:
+            spread = flat.std(0)
+            self.matrix = np.diag(1 / np.where(spread > 0, spread, 1.0))
+        else:
+            kept = integer("directions", directions, 1, min(flat.shape))
+            _, size, basis = np.linalg.svd(flat - self.mean, full_matrices=False)
+            if not size[kept - 1] > 0:
+                raise ValueError(f"directions must be at most {(size > 0).sum()}, got {kept}")
+            self.matrix = basis[:kept].T * (np.sqrt(len(x)) / size[:kept])
+        self.diagonal = directions is None
+
+    def __call__(self, x) -> np.ndarray:
+        """Features ``(cases, features)`` of inputs ``(cases, joint, rows)``."""
+        return (x.reshape(len(x), -1) - self.mean) @ self.matrix
+
+    def count(self) -> int:
+        """Stored numbers."""
+        return self.mean.size + (self.mean.size if self.diagonal else self.matrix.size)
+
+    def operations(self) -> Operations:
+        """Arithmetic of one case."""
+        inputs, features = self.matrix.shape
+        if self.diagonal:
+            return Operations(inputs, inputs)
+        return Operations(inputs * features, inputs + (inputs - 1) * features)
+
+
+class GaussianProcess(Rival):
+    """An exact Gaussian process for each joint, squared exponential kernel and noise.
+
+    Each feature has a length of its own in the kernel. Lengths, size and noise maximise the
+    marginal likelihood of a subset of the cases; the process is then conditioned on all.
+
+    Parameters
+    ----------
+    kind : {"windows", "states"}
+    directions : int, optional
+        Principal directions of the inputs as features (`Inputs`). Default: every number.
+    subset : int
+        Cases for the search of hyperparameters, drawn at random.
+    restarts : int
+        Further searches, from random starts.
+    seed : int
+        Of the subset and the starts.
+    """
+
+    def __init__(
+        self,
+        kind: str = "windows",
+        *,
+        directions: int | None = None,
+        subset: int = 300,
+        restarts: int = 1,
+        seed: int = 0,
+    ):
+        self.kind = one_of("kind", kind, KINDS)
+        self.directions = directions
+        self.subset = integer("subset", subset, 2)
+        self.restarts = integer("restarts", restarts, 0)
+        self.seed = integer("seed", seed, 0)
+
+    def _fit(self, x, torque):
+        self.inputs = Inputs(x, self.directions)
+        self.level, self.unit = torque.mean(0), torque.std(0)
+        self.unit = np.where(self.unit > 0, self.unit, 1.0)
+        features, target = self.inputs(x), (torque - self.level) / self.unit
+        rng = np.random.default_rng(self.seed)
+        some = rng.choice(len(x), min(self.subset, len(x)), replace=False)
+        self.processes = [
+            self._process(features, y, some, int(rng.integers(2**31))) for y in target.T
+        ]
+
+    def _process(self, features, y, some, seed):
+        lengths = RBF(np.full(features.shape[1], 3.0), (0.1, 1e4))
+        kernel = ConstantKernel(1.0, (1e-3, 1e4)) * lengths + WhiteKernel(1e-2, (1e-7, 1e1))
+        search = GaussianProcessRegressor(
+            kernel, optimizer=_ascend, n_restarts_optimizer=self.restarts, random_state=seed
+        )
+        with warnings.catch_warnings():  # a length at its bound: the feature does not matter
+            warnings.simplefilter("ignore", ConvergenceWarning)
+            found = search.fit(features[some], y[some]).kernel_
+        return GaussianProcessRegressor(found, optimizer=None).fit(features, y)
+
+    def _torque(self, x):
+        features = self.inputs(x)
+        each = [process.predict(features) for process in self.processes]
+        return self.level + self.unit * np.stack(each, -1)
+
+    def deviation(self, x) -> np.ndarray:
+        """Standard deviation of the torque that would be measured, noise included.
+
+        Parameters
+        ----------
+        x : array_like, shape (cases, joint, rows)
+            As in `torque`, with its errors and warnings.
+
+        Returns
+        -------
+        ndarray, shape (cases, joint)
+        """
+        self.torque(x)
+        return self._deviation(np.asarray(x, dtype=float))
+
+    def _deviation(self, x):
+        features = self.inputs(x)
+        each = [process.predict(features, return_std=True)[1] for process in self.processes]
+        return self.unit * np.stack(each, -1)
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Lengths of the kernel, one a feature, shape (joint, features); long: no matter."""
+        return np.stack([process.kernel_.k1.k2.length_scale for process in self.processes])
+
+    @property
+    def noise(self) -> np.ndarray:
+        """Standard deviation of the noise that was found, shape (joint,), in units of torque."""
+        level = [process.kernel_.k2.noise_level for process in self.processes]
+        return self.unit * np.sqrt(level)
+
+    def count(self):
+        """Stored numbers: the cases, their weights, the kernels; intervals would need more."""
+        joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
+        kernel = features + 1
+        return self.inputs.count() + cases * features + joints * (cases + kernel + 2)
+
+    def operations(self):
+        """Arithmetic of the mean: every case of training is looked at."""
+        joints, (cases, features) = len(self.processes), self.processes[0].X_train_.shape
+        own = self.inputs.operations()
+        return Operations(
+            own.multiplications + joints * (cases * (2 * features + 1) + 1),
+            own.additions + joints * (cases * 2 * features + 1),
+            0,
+            joints * cases,
+        )
+
+
+class SemiParametric(Rival):
+    """The equations of a two-link arm with friction, and Gaussian processes for what they leave.
+
+    The parameters come first, by weighted least squares; the processes learn the residual.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Parameters, as in `ddlib.identification`.
+    **options
+        Of `GaussianProcess`, but for its kind.
+    """
+
+    def __init__(self, names: Sequence[str] = (*RIGID, *GRAVITY, *FRICTION), **options):
+        self.known = Identified(names)
+        self.rest = GaussianProcess("states", **options)
+
+    def _fit(self, x, torque):
+        self.known._fit(x, torque)
+        left = torque - self.parametric(x)
+        self.exact = bool((left.std(0) <= TINY * torque.std(0)).all())
+        if not self.exact:
+            self.rest._fit(x, left)
+
+    def parametric(self, x) -> np.ndarray:
+        """The part of the torque that the equations explain, ``(cases, joint)``."""
+        return self.known._torque(np.asarray(x, dtype=float))
+
+    def _torque(self, x):
+        return self.parametric(x) + (0.0 if self.exact else self.rest._torque(x))
+
+    def deviation(self, x) -> np.ndarray:
+        """As in `GaussianProcess`; the parameters count as known."""
+        self.torque(x)
+        x = np.asarray(x, dtype=float)
+        return np.zeros(x.shape[:2]) if self.exact else self.rest._deviation(x)
+
+    def count(self):
+        """Stored numbers: the parameters, and the processes."""
+        return self.known.count() + (0 if self.exact else self.rest.count())
+
+    def operations(self):
+        """Arithmetic of the equations and the processes."""
+        own = self.known.operations()
+        if self.exact:
+            return own
+        both = Operations(*(a + b for a, b in zip(own, self.rest.operations())))
+        return both._replace(additions=both.additions + 2)
+
+
+class RandomFeatures(Rival):
+    """Ridge regression on random cosines of the inputs.
+
+    Their products approach a squared exponential kernel as they become more, so this is a Gaussian
+    process at a fixed number of stored numbers. The length of the kernel and the penalty are those
+    of the least error when each case in turn is left out.
+
+    Parameters
+    ----------
+    kind : {"windows", "states"}
+    features : int
+        How many cosines.
+    directions : int, optional
+        As in `GaussianProcess`.
+    lengths : sequence of float
+        Lengths to try, in standard deviations of the inputs.
+    seed : int
+        Of the cosines.
+    """
+
+    PENALTIES = tuple(np.logspace(-10, 2, 13))
+
+    def __init__(
+        self,
+        kind: str = "windows",
+        features: int = 300,
+        *,
+        directions: int | None = None,
+        lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),
+        seed: int = 0,
+    ):
+        self.kind = one_of("kind", kind, KINDS)
+        self.features = integer("features", features, 1)
+        self.directions = directions
+        self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
+        self.seed = integer("seed", seed, 0)
+
+    def _fit(self, x, torque):
+        self.inputs = Inputs(x, self.directions)
+        self.level, self.unit = torque.mean(0), torque.std(0)
+        self.unit = np.where(self.unit > 0, self.unit, 1.0)
+        z, target = self.inputs(x), (torque - self.level) / self.unit
+        found = []
+        for length in self.lengths:
+            cosines = RBFSampler(
+                gamma=0.5 / length**2, n_components=self.features, random_state=self.seed
+            ).fit(z)
+            ridge = RidgeCV(self.PENALTIES, alpha_per_target=True).fit(cosines.transform(z), target)
+            found.append((float(np.sum(ridge.best_score_)), length, cosines, ridge))
+        _, self.length, self.cosines, self.ridge = max(found, key=lambda each: each[0])
+
+    def _torque(self, x):
+        found = self.ridge.predict(self.cosines.transform(self.inputs(x)))
+        return self.level + self.unit * found.reshape(len(x), -1)
+
+    def kernel(self, x, y) -> np.ndarray:
+        """What the products of the features say of the kernel, ``(cases of x, cases of y)``."""
+        first, second = (self.cosines.transform(self.inputs(np.asarray(z))) for z in (x, y))
+        return first @ second.T
+
+    def count(self):
+        """Stored numbers: cosines, weights and scaling."""
+        inputs, joints = self.inputs.matrix.shape[1], len(self.level)
+        return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
+
+    def operations(self):
+        """Arithmetic of all cosines and their sum."""
+        inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
+        return Operations(
+            own.multiplications + self.features * (inputs + joints),
+            own.additions + self.features * (inputs + joints) + joints,
+            0,
+            self.features,
+        )
+
+
+def _ascend(objective, start, bounds):
+    """Search of hyperparameters, cut off after `STEPS` iterations."""
+    found = minimize(
+        objective, start, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": STEPS}
+    )
+    return found.x, found.fun

@@ -1,0 +1,214 @@
+"""Rivals on somebody else's data: characters drawn by an arm with gravity, with a published table.
+
+Errors are those of the public code: squared errors of both joints summed, mean over the samples,
+(N m)^2. A predictor's parts are asked for as there, too: gravity is its torque at rest, inertia
+what an acceleration adds to that, Coriolis and centrifugal torque what a velocity adds.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib.dynamics import Arm
+from ddlib.identification import GRAVITY, RIGID
+from workshop.beyond.others import Characters
+from workshop.beyond.others import characters as data
+from workshop.beyond.rivals.bases import Fourier, Polynomial
+from workshop.beyond.rivals.cmac import CMAC
+from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures
+from workshop.beyond.rivals.identified import Identified, Linear
+from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
+from workshop.beyond.rivals.networks import ByAdam, BySolver
+from workshop.beyond.rivals.protocol import Cases, Rival
+from workshop.beyond.rivals.tables import CellTable, Nearest
+from workshop.report.code_hash import study
+
+SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}
+"""Characters of the test: by default of the public loader, and in the figure beside the table."""
+
+PUBLISHED = {"torque": 4.327e-4, "inertial": 7.338e-4, "coriolis": 2.227e-4, "gravity": 7.338e-4}
+"""Errors in the README of the public code; two of them are the same number."""
+
+ARM = Arm("characters", 1.3727291666666667, 0.5, 0.5176145833333333, (1.0, 1.0), (2.625, 1.5))
+"""The arm that drew the characters; its first angle counts from hanging down."""
+
+SEEDS = 5
+"""Of what starts at random."""
+
+MARKS = (50, 100, 200, 500, 1000, 1500)
+"""Epochs at which networks trained as published are tested; they stop at the last, which is early:
+the public code takes 10,000."""
+
+STARTS = 200
+"""Initial weights that are asked whether all of the mass matrix can be learnt from them."""
+
+
+class Entry(NamedTuple):
+    """How a rival is made from a seed, and whether the seed matters."""
+
+    make: Callable[[int], Rival]
+    random: bool = False
+
+
+ENTRIES = {
+    "equations, identified": Entry(lambda _: Identified(RIGID + GRAVITY)),
+    "Lagrangian network": Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
+    "Gaussian process": Entry(lambda k: GaussianProcess("states", restarts=0, seed=k), True),
+    "random features": Entry(lambda k: RandomFeatures("states", seed=k), True),
+    "network, by solver": Entry(lambda k: BySolver(kind="states", steps=40, seed=k), True),
+    "network, by Adam": Entry(lambda k: ByAdam(kind="states", epochs=1000, seed=k), True),
+    "polynomial": Entry(lambda _: Polynomial(4, ridge=1e-6)),
+    "Fourier series": Entry(lambda _: Fourier(3, ridge=1e-6)),
+    "CMAC": Entry(lambda _: CMAC(beyond="edge")),
+    "table of states": Entry(lambda _: CellTable(beyond="edge")),
+    "table of configurations": Entry(lambda _: CellTable(over="configurations", beyond="edge")),
+    "nearest case": Entry(lambda _: Nearest(beyond="edge")),
+    "linear": Entry(lambda _: Linear("states")),
+}
+"""Rivals with settings near those that their modules give; none was fitted to the test."""
+
+
+def states(drawn: Characters) -> Cases:
+    """States and torques of characters, the first angle from hanging down."""
+    q = drawn.q + np.array([np.pi / 2, 0.0])
+    return Cases(np.stack([q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
+
+
+def parts(torque: Callable, x) -> dict[str, np.ndarray]:
+    """What a predictor of torques says of their parts, and of the mass matrix.
+
+    Parameters
+    ----------
+    torque : callable
+        From states ``(cases, joint, 3)`` to torques ``(cases, joint)``.
+    x : ndarray, shape (cases, joint, 3)
+
+    Returns
+    -------
+    dict of ndarray
+        ``torque``, ``inertial``, ``coriolis`` and ``gravity``, of shape ``(cases, joint)``, N m;
+        ``mass_matrix``, of shape ``(cases, joint, joint)``, kg m^2.
+    """
+    rest, moved, pushed = x.copy(), x.copy(), x.copy()
+    rest[..., 1:], moved[..., 2], pushed[..., 1] = 0.0, 0.0, 0.0
+    gravity = torque(rest)
+    columns = []
+    for j in range(x.shape[1]):
+        unit = rest.copy()
+        unit[:, j, 2] = 1.0
+        columns.append(torque(unit) - gravity)
+    return {
+        "torque": torque(x),
+        "inertial": torque(pushed) - gravity,
+        "coriolis": torque(moved) - gravity,
+        "gravity": gravity,
+        "mass_matrix": np.stack(columns, -1),
+    }
+
+
+def errors(found: dict, drawn: Characters) -> dict[str, float]:
+    """Errors as in the public code; that of the mass matrix is relative (root mean square)."""
+    truth = {"torque": drawn.tau, "mass_matrix": drawn.mass_matrix}
+    result = {}
+    for name, value in found.items():
+        wanted = truth.get(name, getattr(drawn, name, None))
+        squared = (value - wanted) ** 2
+        result[name] = float(squared.sum(-1).mean())
+        if name == "mass_matrix":
+            result[name] = float(np.sqrt(squared.mean() / (wanted**2).mean()))
+    return result
+
+
+def _exact(x) -> np.ndarray:
+    return ARM.inverse_dynamics(*np.moveaxis(x, -1, 0))
+
+
+def hurried(torque: Callable, x) -> float:
+    """Error of torques at twice the speed: velocities doubled, accelerations times four.
+
+    Root mean square error of both joints over the deviation of these torques.
+
+    Parameters
+    ----------
+    torque, x
+        As in `parts`.
+    """
+    fast = x * [1.0, 2.0, 4.0]
+    truth = _exact(fast)
+    return float(np.sqrt(((torque(fast) - truth) ** 2).sum(-1).mean() / truth.var(0).sum()))
+
+
+def _tested(torque: Callable, drawn: Characters) -> dict:
+    x = states(drawn).x
+    return {**errors(parts(torque, x), drawn), "hurried": hurried(torque, x)}
+
+
+def _entry(entry: Entry, split) -> dict:
+    training, test = data().split(split)
+    row: dict = {"test": [], "training": [], "seconds": []}
+    for seed in range(SEEDS if entry.random else 1):
+        rival = entry.make(seed)
+        began = time.process_time()
+        rival.fit(states(training))
+        row["seconds"].append(time.process_time() - began)
+        row["test"].append(_tested(rival._torque, test))
+        row["training"].append(_tested(rival._torque, training)["torque"])
+    return row | {"count": rival.count(), "operations": list(rival.operations())}
+
+
+def _plain(drawn: Characters) -> Cases:
+    """As the public code takes them: the first angle from the horizontal."""
+    return Cases(np.stack([drawn.q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
+
+
+def _dead(rival: LagrangianNetwork, q) -> list[bool]:
+    """For each joint, whether its entry on L's diagonal is the floor at every position."""
+    lower = rival.triangle(q)
+    return [not lower[..., j, j].any() for j in range(lower.shape[-1])]
+
+
+def _as_published() -> dict:
+    """Networks with the public code's settings: their errors on the way, and dead joints."""
+    training, test = data().split()
+    cases, asked = _plain(training), _plain(test).x
+
+    def untrained(seed):
+        return LagrangianNetwork(**AS_PUBLISHED, epochs=0, seed=seed).fit(cases)
+
+    rows = []
+    for seed in range(SEEDS):
+        row: dict = {"dead at start": _dead(untrained(seed), training.q), "course": []}
+
+        def watch(epoch, rival, row=row):
+            if epoch in MARKS:
+                row["course"].append(errors(parts(rival._torque, asked), test))
+
+        rival = LagrangianNetwork(**AS_PUBLISHED, epochs=MARKS[-1], seed=seed, watch=watch)
+        began = time.process_time()
+        rival.fit(cases)
+        row |= {"seconds": time.process_time() - began, "dead at end": _dead(rival, training.q)}
+        rows.append(row)
+    starts = [any(_dead(untrained(seed), training.q)) for seed in range(STARTS)]
+    return {"marks": list(MARKS), "networks": rows, "dead starts": starts}
+
+
+@study
+def characters() -> dict:
+    """Every rival on both splits; the Lagrangian network also as published, on the loader's."""
+    found = {}
+    for split, test in SPLITS.items():
+        found[split] = {name: _entry(entry, test) for name, entry in ENTRIES.items()}
+        drawn = data().of(test)
+        found[split]["exact equations"] = {"test": [_tested(_exact, drawn)]}
+        found[split]["variance"] = float(drawn.tau.var(0).sum())
+    return {
+        "splits": SPLITS,
+        "published": PUBLISHED,
+        "seeds": SEEDS,
+        "rivals": found,
+        "as published": _as_published(),
+    }

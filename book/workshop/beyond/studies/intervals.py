@@ -1,0 +1,71 @@
+"""Whether a Gaussian process is right about how wrong it is, on recordings with noise."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from ddlib.identification import FRICTION, RIGID
+from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, split
+from ddlib.trajectories import OutsideFamilyWarning
+from workshop.beyond.rivals.gaussian import GaussianProcess, SemiParametric
+from workshop.beyond.rivals.identified import Identified
+from workshop.beyond.rivals.protocol import Cases, Estimating
+from workshop.report.code_hash import study
+
+DAYS, WIDTH, DIRECTIONS = 6, 21, 10
+"""Recordings; samples of a window; principal directions that a process of windows sees."""
+
+LEVEL, SIGMAS = 0.95, 1.959964
+"""What the intervals promise, and their half width in standard deviations."""
+
+KEPT = 0.2
+"""Share of the training cases that is kept out, to be asked between its neighbours."""
+
+PROCESSES = {
+    "directions of the window": lambda: GaussianProcess(directions=DIRECTIONS, restarts=0),
+    "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
+    "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
+    "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
+}
+"""What the processes see; known structure alone has no intervals of torques."""
+
+
+def _some(cases: Cases, rows) -> Cases:
+    return Cases(cases.x[rows], cases.torque[rows], cases.kind, cases.step)
+
+
+def _asked(rival, cases: Cases) -> dict:
+    within = isinstance(rival, Estimating)
+    deviation = getattr(rival.rival if within else rival, "deviation", None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideFamilyWarning)
+        found = rival.torque(cases.x)
+        row = {"rmss": float(rmss(found, cases.torque))}
+        if deviation is not None:
+            width = SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
+            row["covered"] = float((np.abs(found - cases.torque) <= width).mean())
+            row["half width"] = width.mean(0)
+    return row
+
+
+@study
+def gaussian_intervals() -> dict:
+    """Share of measured torques in the intervals of several processes, on several days.
+
+    Trained on `KEPT` less than all windows of trajectories 1 to 5; asked for those that were kept
+    out, which lie between others, and for trajectory 6.
+    """
+    rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in PROCESSES}
+    for day in range(1, DAYS + 1):
+        training, six = split(JOINT_DAMPING.repeated(day).record())
+        windows = Cases.windows(training, WIDTH)
+        out = np.random.default_rng(day).random(len(windows)) < KEPT
+        sets = {"kept out": _some(windows, out), "trajectory 6": Cases.windows(six, WIDTH)}
+        for name, make in PROCESSES.items():
+            rival = make().fit(_some(windows, ~out))
+            for part, cases in sets.items():
+                rows[name][part].append(_asked(rival, cases))
+    return {"days": DAYS, "level": LEVEL, "processes": rows}

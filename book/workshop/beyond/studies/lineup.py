@@ -1,0 +1,154 @@
+"""Who takes part in the study of rivals, at which sizes; a new rival is a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from ddlib.identification import FRICTION, RIGID
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
+from workshop.beyond.rivals.bases import Fourier, Polynomial
+from workshop.beyond.rivals.cmac import CMAC
+from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures, SemiParametric
+from workshop.beyond.rivals.identified import Identified, Linear
+from workshop.beyond.rivals.lagrangian import LagrangianNetwork
+from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver
+from workshop.beyond.rivals.protocol import Rival
+from workshop.beyond.rivals.sequences import Convolution, Recurrent
+from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
+
+DAYS, FEWER = 8, 5
+"""Recordings of a rival, and of one that takes seconds to train. A rival that starts at random
+starts otherwise on each."""
+
+
+class Line(NamedTuple):
+    """A rival at several sizes.
+
+    Attributes
+    ----------
+    make : callable
+        ``make(size, seed)`` gives a `Rival` that has learnt nothing.
+    sizes : tuple
+        What is varied, from few to many stored numbers.
+    varied : str
+        What that is, in words.
+    family : str
+        Panel of the figures that it stands in.
+    days : int
+        On how many recordings it is tried.
+    """
+
+    make: Callable[[object, int], Rival]
+    sizes: tuple
+    varied: str
+    family: str
+    days: int = DAYS
+
+
+REFERENCE = "network of 1988"
+"""The rival that all others are compared with: ten hidden units, by descent."""
+
+PENALTY = 1e-4
+"""On squared coefficients of polynomials and Fourier series: of those tried in ``rivals_1988``, the
+one that leaving out trajectories chooses."""
+
+
+def _descent(hidden, seed, **options):
+    """As `STATE_FEEDBACK` is trained: the book's reading of 1988."""
+    here = STATE_FEEDBACK
+    options = {"epochs": here.epochs, "rate": here.rate / 21, **options}
+    return ByDescent(
+        hidden, momentum=here.momentum, warm_up=here.warm_up, initial=INITIAL, seed=seed, **options
+    )
+
+
+def _solver(hidden, seed, **options):
+    """As `JOINT_DAMPING` is trained: what reaches Table 4-1."""
+    here = JOINT_DAMPING
+    options = {"steps": here.steps, "decay": here.decay, **options}
+    return BySolver(hidden, initial=INITIAL, seed=seed, **options)
+
+
+def _identified(count, _seed):
+    return Identified((RIGID + FRICTION)[:3] if count == 3 else RIGID + FRICTION)
+
+
+def _lagrangian(units, seed):
+    return LagrangianNetwork((units, units), gravity="none", friction=True, epochs=150, seed=seed)
+
+
+SEARCH = {"subset": 150, "restarts": 0}
+"""For the hyperparameters of Gaussian processes: cases that decide them, and further searches."""
+
+
+def _table(over):
+    return lambda cells, _: CellTable(cells, over, beyond="edge")
+
+
+LINES: dict[str, Line] = {
+    # tables
+    "nearest case": Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
+    "table of states": Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
+    "table of configurations": Line(
+        _table("configurations"), (1, 2, 3, 10), "cells an axis", "tables"
+    ),
+    "multilinear table": Line(
+        lambda cells, _: GridTable(cells, beyond="edge"), (1, 2), "cells an axis", "tables"
+    ),
+    "CMAC": Line(
+        lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3), "width of a cube",
+        "tables",
+    ),
+    # bases
+    "polynomial": Line(
+        lambda degree, _: Polynomial(degree, ridge=PENALTY), (1, 2, 3, 5), "degree", "polynomials"
+    ),
+    "Fourier series": Line(
+        lambda order, _: Fourier(order, ridge=PENALTY), (1, 2), "order", "polynomials"
+    ),
+    # known structure
+    "identified": Line(_identified, (3, 7), "parameters", "known structure"),
+    "linear filter": Line(
+        lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
+    ),
+    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", FEWER),
+    # Gaussian processes
+    "Gaussian process": Line(
+        lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **SEARCH),
+        (6, 9, 12), "directions", "Gaussian processes", FEWER,
+    ),
+    "process on states": Line(
+        lambda _, seed: GaussianProcess("states", seed=seed, **SEARCH), (6,), "quantities",
+        "Gaussian processes", FEWER,
+    ),
+    "structure and process": Line(
+        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **SEARCH), (6,),
+        "quantities", "Gaussian processes", FEWER,
+    ),
+    "random features": Line(
+        lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
+        (10, 50, 200), "features", "Gaussian processes", FEWER,
+    ),
+    # the paper's network
+    REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
+    "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
+    "Adam": Line(
+        lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
+        "the paper's network", FEWER,
+    ),
+    "on states": Line(
+        lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10),
+        "hidden units", "the paper's network",
+    ),
+    # other networks
+    "convolutions": Line(
+        lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
+        "other networks", FEWER,
+    ),
+    "recurrent": Line(
+        lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
+        FEWER,
+    ),
+}  # fmt: skip
+"""All rivals by the name that tables and figures use."""

@@ -1,0 +1,347 @@
+"""Adaptive control on the arm: what is learnt, what is not, and where it breaks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ddlib.dynamics import CMU_DD_ARM_II, with_load
+from ddlib.effects import (
+    IDEAL,
+    Backlash,
+    DeadZone,
+    Delay,
+    Effects,
+    Ripple,
+    StribeckFriction,
+)
+from ddlib.setups import (
+    JOINT_DAMPING,
+    JOINT_DAMPING_COULOMB,
+    JOINT_DAMPING_VISCOUS,
+    KD,
+    STATE_FEEDBACK,
+    Setup,
+)
+from ddlib.simulation import smooth_pick_and_place
+from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.studies.loop.runs.adaptive import (
+    FULL,
+    LAWS,
+    SIZES,
+    TRUTH,
+    Rounded,
+    by_law,
+    drawn,
+    excitation,
+    fixed,
+    gains,
+    make,
+    rounding,
+    sampled_lyapunov,
+    trial,
+    trials,
+)
+from workshop.report.code_hash import study
+
+SEEDS, TRIALS = 10, 4
+"""Runs of each setting, with other motions and other zeros of the encoders; motions of a course,
+with as many more after a load is taken up."""
+
+LOADS = (2.0, 5.0, 10.0)
+"""Loads of Han, Hemami & Yurkovich 1987, kg."""
+
+PICKED = 5.0
+"""Load that is taken up half-way, kg."""
+
+DELAYS = (1, 2, 4)
+"""Control periods by which torques come late, with `PICKED`."""
+
+BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)
+"""Encoders, bits a turn."""
+
+BEGIN = 0.5
+"""Share of the base parameters that is known at the start, where a load is not the question."""
+
+MOST = tuple(JOINT_DAMPING_COULOMB)
+"""Sizes of the unmodelled effects, N m: those of Coulomb friction."""
+
+PLAY = (3.5e-3, 3.5e-3)
+"""Backlash, rad: 0.2 degrees."""
+
+BED = {
+    "nothing else": lambda e: e,
+    "Stribeck": lambda e: replace(
+        e, friction=(e.friction[0], StribeckFriction(MOST, tuple(2 * x for x in MOST), 0.1))
+    ),
+    "backlash": lambda e: replace(e, encoder=(Backlash(PLAY), *e.encoder)),
+    "dead zone": lambda e: replace(e, actuator=(DeadZone(MOST), *e.actuator)),
+    "ripple": lambda e: replace(e, motor=(Ripple(cogging=MOST),)),
+}
+"""What is added to the set-up's effects."""
+
+FRICTION_TRUTH = np.concatenate([TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
+"""Of `JOINT_DAMPING`, in the order of the adapted parameters."""
+
+ZONE = (0.17, 0.14)
+"""Dead zone of the drift study, rad/s: friction of `JOINT_DAMPING` at the family's largest speed
+over the damping term."""
+
+FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))
+"""Rates of the map of stops, as multiples of those used elsewhere."""
+
+LATE = (0, 1, 2, 3, 5)
+"""Delays of that map, control periods."""
+
+
+def _course(setup: Setup, seed: int = 1) -> dict:
+    """Errors and estimates from trial to trial, before and after a load is taken up."""
+    start = np.broadcast_to(BEGIN * TRUTH, (SEEDS, 3))
+    laws = {
+        **fixed(setup),
+        **{law: make(law, setup, start) for law in LAWS},
+        "with friction, jumps": make("with friction", setup, start, jumps=True),
+    }
+    extents, effects = drawn(SEEDS, 2 * TRIALS, seed), rounding(setup, SEEDS, seed)
+    found, laws = trials(laws, extents[:TRIALS], setup.arm, effects)
+    loaded, laws = trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
+    found += loaded
+    known = [n for n in laws if n.startswith(LAWS)]
+    return {
+        "settled": by_law(found, laws),
+        "hand": by_law(found, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
+        "estimates": {
+            n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
+        },
+        "unloaded": {n: found[TRIALS - 1].laws[n].estimate for n in known},
+    }
+
+
+def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
+    """Errors with loads that nobody knows of, in the first and second motion."""
+    laws = {**fixed(setup), **{law: make(law, setup) for law in LAWS}}
+    effects, rows = rounding(setup, SEEDS, seed), []
+    settings = [(m, 0) for m in LOADS] + [(PICKED, late) for late in delays]
+    for mass, late in settings:
+        slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
+        found, _ = trials(laws, drawn(SEEDS, 2, seed), with_load(setup.arm, mass), slow)
+        rows.append({"load": mass, "late": late, "settled": by_law(found, laws)})
+    return {"rows": rows}
+
+
+def _sensors(seed: int = 3) -> dict:
+    """The third and fourth motion over the encoder, with a tachometer and without."""
+    runs, setup = len(BITS) * SEEDS, JOINT_DAMPING
+    step = np.repeat(2 * np.pi / 2 ** np.array(BITS), SEEDS)
+    effects, rows = rounding(setup, runs, seed, step), {}
+    extents = np.tile(drawn(SEEDS, TRIALS, seed), (1, len(BITS), 1))
+    start = np.broadcast_to(BEGIN * TRUTH, (runs, 3))
+
+    def exact(q, qd, torque):
+        limited = effects.actuator[0].apply(torque)
+        return setup.arm.forward_dynamics(q, qd, limited - effects.friction_torque(qd))
+
+    laws = {
+        "Slotine & Li": make("with friction", setup, start),
+        "Craig, differences": make("measured acceleration", setup, start),
+        "Craig, exact": make("measured acceleration", setup, start, acceleration=exact),
+    }
+    for velocity in ("tachometer", "difference"):
+        found, after = trials(laws, extents, setup.arm, effects, velocity=velocity)
+        rows[velocity] = {
+            name: {
+                "settled": errors[-1].reshape(len(BITS), SEEDS),
+                "estimate": after[name].estimate.reshape(len(BITS), SEEDS, -1),
+            }
+            for name, errors in by_law(found, laws).items()
+        }
+    return rows
+
+
+def _law(rate: float = 3.0) -> SlotineLi:
+    """Slotine & Li's law for the rigid body alone, from half of its parameters."""
+    slope, _ = gains(STATE_FEEDBACK)
+    return SlotineLi(KD, slope, rate * SIZES[:3] ** 2, BEGIN * TRUTH)
+
+
+def _lyapunov() -> dict:
+    """The function that never rises: in continuous time, and sampled with several sensors."""
+    law, extents = _law(), APPENDIX_I[0]
+
+    def rates(t, y):
+        wanted = Trajectory(*(x[0] for x in smooth_pick_and_place(extents, [t])))
+        torque, change = law.output(y[4:], wanted, y[:2], y[2:4])
+        return np.concatenate(
+            [y[2:4], CMU_DD_ARM_II.forward_dynamics(y[:2], y[2:4], torque), change]
+        )
+
+    t = np.arange(1, 1500) * 0.002
+    y0 = np.concatenate([np.zeros(4), law.estimate])
+    found = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
+    wanted = smooth_pick_and_place(extents, t)
+    truth = law.lyapunov(CMU_DD_ARM_II, TRUTH, found[:, 4:], wanted, found[:, :2], found[:, 2:4])
+    rows = {"continuous": _rises(truth)}
+    grid = np.arange(-50, 1550) * 0.002
+    step = 2 * np.pi / 2 ** np.array([np.inf, 16.0, 12.5])
+    for name, reference in (
+        ("smooth", smooth_pick_and_place(APPENDIX_I, grid)),
+        ("family", pick_and_place(APPENDIX_I, grid)),
+    ):
+        reference = Trajectory(*(np.broadcast_to(x, (3, *x.shape)) for x in reference))
+        effects = Effects(encoder=(Rounded(step[:, None, None], np.zeros(2)),))
+        values = sampled_lyapunov(law, reference, grid, effects)
+        for bits, each in zip(("perfect", "16 bits", "12.5 bits"), values):
+            rows[f"{name}, {bits}"] = [_rises(v, grid) for v in each]
+    return rows
+
+
+def _rises(values, t=None) -> dict:
+    """Largest rise in one step over the start, also away from 0 and 3 s; shares; what is left."""
+    steps = np.diff(values) / values[0]
+    calm = np.ones(steps.size, bool)
+    if t is not None:
+        near = np.minimum(np.abs(t), np.abs(t - MOTION_SECONDS))[1:]
+        calm = near > 0.005
+    return {
+        "largest": float(steps.max()),
+        "elsewhere": float(steps[calm].max()),
+        "share": float((steps > 1e-12).mean()),
+        "left": float(values[-1] / values[0]),
+    }
+
+
+def _excited(seed: int = 4, count: int = 10) -> dict:
+    """What is found along single motions, repeated, and along the family; no friction."""
+    extents = np.concatenate([APPENDIX_I, APPENDIX_I[:1]])
+    course = np.broadcast_to(extents, (count, *extents.shape)).copy()
+    course[:, -1] = drawn(1, count, seed)[:, 0]
+    start = np.broadcast_to(BEGIN * TRUTH, (len(extents), 3))
+    laws = {
+        "learning": make("rigid body", STATE_FEEDBACK, start),
+        "knowing": make("rigid body", STATE_FEEDBACK, factor=0.0),
+        "not learning": make("rigid body", STATE_FEEDBACK, start, factor=0.0),
+    }
+    found, laws = trials(laws, course, CMU_DD_ARM_II, IDEAL)
+    return {
+        "eigenvalues": np.linalg.eigvalsh(excitation(APPENDIX_I)),
+        "settled": by_law(found, laws),
+        "estimate": laws["learning"].estimate / TRUTH,
+    }
+
+
+def _drift(seed: int = 5, count: int = 10) -> dict:
+    """Estimates along trajectory 5 again and again: with rounding (first), and without."""
+    setup, runs = JOINT_DAMPING, 2 * SEEDS
+    whole = np.broadcast_to(FRICTION_TRUTH, (runs, 7))
+    laws = {
+        "plain": make("with friction", setup, whole, 10.0),
+        "dead zone": make("with friction", setup, whole, 10.0, dead_zone=ZONE),
+        "leakage": make("with friction", setup, whole, 10.0, leakage=0.3),
+        "friction unmodelled": make("rigid body", setup, whole[:, :3], 10.0),
+        "unmodelled, dead zone": make("rigid body", setup, whole[:, :3], 10.0, dead_zone=ZONE),
+    }
+    step = np.where(np.arange(runs) < SEEDS, setup.effects.encoder[0].step, 0.0)
+    course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
+    found, _ = trials(laws, course, setup.arm, rounding(setup, runs, seed, step))
+    return {
+        "settled": by_law(found, laws),
+        "estimates": {
+            n: np.stack([t.laws[n].estimate for t in found])[..., :3] / TRUTH for n in laws
+        },
+    }
+
+
+def _compensation(setup: Setup, seed: int = 6) -> dict:
+    """Friction alone adapted, the rigid body known, after Canudas et al. 1987."""
+    viscous, coulomb = (np.asarray(f.slope if k == 0 else f.level) for k, f in
+                        enumerate(setup.effects.friction))  # fmt: skip
+    right = np.concatenate([TRUTH, viscous, coulomb])
+    only = np.where(np.arange(len(FULL)) < 3, 0.0, 1.0)
+    laws = {
+        "none": make("with friction", setup, factor=0.0),
+        "adapted": make("with friction", setup, np.broadcast_to(TRUTH, (SEEDS, 3))),
+        "known": make("with friction", setup, right, factor=0.0),
+    }
+    inner = laws["adapted"].controller
+    laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
+    found, after = trials(laws, drawn(SEEDS, TRIALS, seed), setup.arm, rounding(setup, SEEDS, seed))
+    return {
+        "settled": by_law(found, laws),
+        "estimate": after["adapted"].estimate[:, 3:],
+        "truth": right[3:],
+    }
+
+
+def _bed(seed: int = 7, count: int = 3) -> dict:
+    """Unmodelled effects under laws that adapt what they have, from the right parameters."""
+    setup, rows = JOINT_DAMPING, {}
+    right = np.broadcast_to(FRICTION_TRUTH, (SEEDS, 7))
+    laws = {
+        "adapted": make("with friction", setup, right),
+        "held": make("with friction", setup, FRICTION_TRUTH, factor=0.0),
+    }
+    bare = {
+        "rigid, adapted": make("rigid body", setup, right[:, :3]),
+        "rigid, held": make("rigid body", setup, TRUTH, factor=0.0),
+    }
+    for k, (name, added) in enumerate(BED.items()):
+        given = laws if k else {**laws, **bare}
+        effects = added(rounding(setup, SEEDS, seed))
+        found, after = trials(given, drawn(SEEDS, count, seed), setup.arm, effects)
+        rows[name] = {
+            "settled": {n: x[-1] for n, x in by_law(found, given).items()},
+            "estimate": after["adapted"].estimate / FRICTION_TRUTH,
+        }
+        if given is not laws:
+            rows[name]["rigid"] = after["rigid, adapted"].estimate / TRUTH
+    return rows
+
+
+def _map(setup: Setup = JOINT_DAMPING) -> dict:
+    """Where runs are stopped: rate of adaptation against delay, and why."""
+    extents = np.tile(APPENDIX_I[[0, 5]], (len(FACTORS), 1))
+    factor, names = np.repeat(FACTORS, 2), LAWS[1:]
+    start, rows = np.broadcast_to(BEGIN * TRUTH, (len(extents), 3)), []
+    for late in LATE:
+        laws = {n: make(n, setup, start, factor) for n in names}
+        effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
+        first = trial(laws, extents, setup.arm, effects)
+        again = trial(first.laws, extents, setup.arm, effects)
+        ended = first.stops.stopped
+        time = np.where(ended, first.stops.time, 3.2 + again.stops.time)
+        reason = np.where(ended, first.stops.reason, again.stops.reason)
+        shape = (len(names), len(FACTORS), 2)
+        rows.append(
+            {
+                "late": late,
+                "time": np.where(np.isfinite(time), time, -1.0).reshape(shape),
+                "reason": reason.reshape(shape),
+                "settled": again.settled.reshape(shape),
+            }
+        )
+    return {"laws": list(names), "factors": FACTORS, "rows": rows}
+
+
+@study
+def adaptive() -> dict:
+    """Everything that the chapter on adaptive control says of runs."""
+    both = {s.name: s for s in (JOINT_DAMPING, STATE_FEEDBACK)}
+    return {
+        "course": {name: _course(s) for name, s in both.items()},
+        "loads": {
+            JOINT_DAMPING.name: _loads(JOINT_DAMPING, DELAYS),
+            STATE_FEEDBACK.name: _loads(STATE_FEEDBACK),
+        },
+        "bits": BITS,
+        "sensors": _sensors(),
+        "lyapunov": _lyapunov(),
+        "excitation": _excited(),
+        "drift": _drift(),
+        "compensation": {name: _compensation(s) for name, s in both.items()},
+        "bed": _bed(),
+        "map": _map(),
+    }

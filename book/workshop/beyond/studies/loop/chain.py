@@ -1,0 +1,277 @@
+"""Arms of one to seven joints on the report's family of motions: recordings without a simulator.
+
+The simulator of this book is for two joints. So here a motion is given and followed exactly:
+each joint answers its reference as its own loop would if the other joints did not move it, a linear
+oscillator; the torque is what the whole arm needs along that motion, friction included, with the
+noise of the torque sensor; positions are read through the encoder. What is left out is how the
+joints push each other off their ways, and how friction changes them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from scipy.linalg import expm
+
+from ddlib._check import integer, one_of, shaped
+from ddlib.dynamics import DD_ARM_II_IN_SPACE, SerialArm, locked, mass_matrix
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, EncoderZero, Quantisation
+from ddlib.setups import (
+    JOINT_DAMPING,
+    JOINT_DAMPING_COULOMB,
+    JOINT_DAMPING_KP,
+    JOINT_DAMPING_VISCOUS,
+    KD,
+    KP,
+    STATE_FEEDBACK,
+)
+from ddlib.simulation import LOG_STEP
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
+
+MOST = DD_ARM_II_IN_SPACE.joints
+"""Joints of the longest arm: six as the real one, and one of the book's."""
+
+RATIOS = (0.8, 1.15, 0.9, 1.25, 0.7)
+"""Frequencies of the loops of joints 3 to 7 over the elbow's. Assumed: no two ring alike."""
+
+NOISE = 0.024
+"""Torque noise of joints 3 to 7 as a share of their torque's deviation, as of the first two."""
+
+REACH = 10
+"""Samples of a window on either side of its centre: the report's window of 21."""
+
+SPACING = 5
+"""Of the 21 samples every so many are used, unless another number is asked for: 5 of them."""
+
+EVERY = 2
+"""Of the samples of a motion every so many are the centre of a window."""
+
+MOTIONS = ("answered", "sine")
+"""Ways to move: the answers of the joints' own loops, or the reference's sine itself, without
+beginning or end."""
+
+
+@dataclass(frozen=True)
+class Chain:
+    """An arm with all that a recording of it needs; arrays are joint by joint.
+
+    Attributes
+    ----------
+    arm : SerialArm
+    frequency, damping : ndarray
+        Of the joints' loops, rad/s and as a share of the critical one.
+    lead : ndarray
+        Share of the damping that acts on the error in velocity, not on the velocity.
+    viscous, coulomb : ndarray
+        Friction, N m s/rad and N m.
+    smoothing : float
+        Speed over which Coulomb friction turns, rad/s.
+    encoder : float
+        Step of the encoder, rad.
+    noise : ndarray
+        Deviation of the torque noise, N m.
+    """
+
+    arm: SerialArm
+    frequency: np.ndarray
+    damping: np.ndarray
+    lead: np.ndarray
+    viscous: np.ndarray
+    coulomb: np.ndarray
+    smoothing: float
+    encoder: float
+    noise: np.ndarray
+
+    @property
+    def joints(self) -> int:
+        """Number of joints."""
+        return self.arm.joints
+
+    def torque(self, states) -> np.ndarray:
+        """Torque along exact states ``(..., joint, 3)``, friction included, N m."""
+        q, qd, qdd = np.moveaxis(states, -1, 0)
+        friction = self.viscous * qd + self.coulomb * np.tanh(qd / self.smoothing)
+        return self.arm.inverse_dynamics(q, qd, qdd) + friction
+
+    def answer(self, t_steps: int, before: int, motion: str = "answered") -> np.ndarray:
+        """How each joint answers a reference of extent 1 rad.
+
+        Parameters
+        ----------
+        t_steps, before : int
+            Samples in all, and before the motion begins.
+        motion : str
+            One of `MOTIONS`.
+
+        Returns
+        -------
+        ndarray, shape (t_steps, joint, 3)
+            Position, velocity and acceleration, `LOG_STEP` apart.
+        """
+        one_of("motion", motion, MOTIONS)
+        omega = np.pi / MOTION_SECONDS
+        if motion == "sine":
+            t = omega * LOG_STEP * (np.arange(t_steps) - before)
+            states = np.stack([-np.sin(t), -omega * np.cos(t), omega**2 * np.sin(t)], -1)
+            return np.repeat(states[:, None], self.joints, 1)
+        end = round(MOTION_SECONDS / LOG_STEP)
+        found = np.zeros((t_steps, self.joints, 3))
+        for j, (f, z, lead) in enumerate(zip(self.frequency, self.damping, self.lead)):
+            pull = [-(f**2), -2 * z * f, f**2, 2 * z * f * lead]
+            flow = np.array([[0, 1, 0, 0], pull, [0, 0, 0, 1], [0, 0, -(omega**2), 0]])
+            step, state = expm(flow * LOG_STEP), np.array([0.0, 0.0, 0.0, -omega])
+            for k in range(t_steps - before):
+                if k == end:
+                    state[2:] = 0.0
+                found[before + k, j] = *state[:2], flow[1] @ state
+                state = step @ state
+        return found
+
+
+@cache
+def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
+    """The arm with its first joints free and the others locked, in a reading of the controller.
+
+    Parameters
+    ----------
+    joints : int
+        1 to `MOST`.
+    reading : str
+        "joint damping" or "state feedback": gains, friction and encoder of that set-up for
+        shoulder and elbow. Further joints have the elbow's damping ratio, frequencies by `RATIOS`
+        and friction in proportion to their inertia.
+    """
+    integer("joints", joints, 1, MOST)
+    one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))
+    inertia = np.diag(mass_matrix(DD_ARM_II_IN_SPACE, np.zeros(MOST)))
+    effects = {"joint damping": JOINT_DAMPING, "state feedback": STATE_FEEDBACK}[reading].effects
+    (encoder,) = effects.encoder
+    if reading == JOINT_DAMPING.name:
+        kp, kd = np.array(JOINT_DAMPING_KP), np.zeros(2)
+        viscous, coulomb = np.array(JOINT_DAMPING_VISCOUS), np.array(JOINT_DAMPING_COULOMB)
+    else:
+        kp, kd = np.array(KP), np.array(KD)
+        parts = CMU_DD_ARM_II_EFFECTS.friction
+        viscous, coulomb = np.array(parts[0].coefficient), np.array(parts[1].level)
+    frequency = np.sqrt(kp / inertia[:2])
+    damping = (kd + viscous) / (2 * inertia[:2] * frequency)
+    frequency = np.append(frequency, frequency[1] * np.array(RATIOS))
+    share = inertia[2:] / inertia[1]
+    viscous = np.append(viscous, viscous[1] * share * RATIOS)
+    coulomb = np.append(coulomb, coulomb[1] * share)
+    lead = kd / (kd + viscous[:2])
+    (noise,) = effects.torque_sensor
+    made = Chain(
+        locked(DD_ARM_II_IN_SPACE, joints),
+        frequency[:joints],
+        np.append(damping, [damping[1]] * 5)[:joints],
+        np.append(lead, [lead[1]] * 5)[:joints],
+        viscous[:joints],
+        coulomb[:joints],
+        effects.friction[1].smoothing,
+        encoder.step,
+        np.append(noise.std, np.zeros(5))[:joints],
+    )
+    tau = made.torque(moved(made, extents(joints, 64, 0))[:, ::5])
+    made.noise[2:] = NOISE * tau.std((0, 1))[2:]
+    return made
+
+
+def extents(joints: int, motions: int, seed: int) -> np.ndarray:
+    """Extents drawn in the way of Appendix I, degrees: uniform from 0 to 45 for each joint.
+
+    Parameters
+    ----------
+    joints, motions : int
+    seed : int
+        The first motions of a longer draw are those of a shorter one.
+
+    Returns
+    -------
+    ndarray, shape (motions, joints)
+    """
+    return np.random.default_rng((seed, joints)).uniform(0.0, MAX_EXTENT_DEG, (motions, joints))
+
+
+def moved(chain: Chain, extents_deg, motion: str = "answered") -> np.ndarray:
+    """True states of motions, `REACH` samples before and after them included.
+
+    Parameters
+    ----------
+    chain : Chain
+    extents_deg : array_like, shape (runs, joint)
+        Degrees.
+    motion : str
+        One of `MOTIONS`.
+
+    Returns
+    -------
+    ndarray, shape (runs, time, joint, 3)
+        rad, rad/s, rad/s^2.
+    """
+    extents_deg = shaped("extents_deg", extents_deg, f"(runs, {chain.joints})")
+    samples = round(MOTION_SECONDS / LOG_STEP) + 2 * REACH
+    unit = chain.answer(samples, REACH, motion)
+    return np.deg2rad(extents_deg)[:, None, :, None] * unit
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Cases of motions: what networks see, the torque that is measured, and the truth.
+
+    Attributes
+    ----------
+    windows : ndarray, shape (cases, joint, taps)
+        Measured positions, rad.
+    torque : ndarray, shape (cases, joint)
+        Measured, N m.
+    states : ndarray, shape (cases, joint, 3)
+        True position, velocity, acceleration at the centres.
+    runs : int
+        Motions; each has as many cases, one after the other.
+    """
+
+    windows: np.ndarray
+    torque: np.ndarray
+    states: np.ndarray
+    runs: int
+
+    def thinned(self, most: int) -> Sample:
+        """At most so many cases: of every motion each k-th."""
+        step = -(-len(self.torque) // most)
+        return Sample(*(x[::step] for x in (self.windows, self.torque, self.states)), self.runs)
+
+
+def recorded(
+    chain: Chain, extents_deg, seed: int, motion: str = "answered", spacing: int = SPACING
+) -> Sample:
+    """Follow motions exactly and cut what is measured into windows.
+
+    Parameters
+    ----------
+    chain : Chain
+    extents_deg : array_like, shape (runs, joint)
+    seed : int
+        Of the torque noise and of where the encoder has its zero.
+    motion : str
+        One of `MOTIONS`.
+    spacing : int
+        Samples from one tap of a window to the next.
+    """
+    states = moved(chain, extents_deg, motion)
+    rng = np.random.default_rng((seed, 7))
+    zero = tuple(rng.uniform(0.0, chain.encoder, chain.joints))
+    read = states[..., 0]
+    for effect in (EncoderZero(zero), Quantisation(chain.encoder), EncoderZero(-np.array(zero))):
+        read = effect.apply(read)
+    runs, samples = read.shape[:2]
+    centres = np.arange(REACH, samples - REACH, EVERY)
+    taps = centres[:, None] + np.arange(-REACH, REACH + 1, spacing)
+    windows = np.moveaxis(read[:, taps], -1, -2).reshape(-1, chain.joints, taps.shape[1])
+    true = states[:, centres]
+    tau = chain.torque(true)
+    tau = tau + rng.standard_normal(tau.shape) * chain.noise
+    joints = chain.joints
+    return Sample(windows, tau.reshape(-1, joints), true.reshape(-1, joints, 3), runs)

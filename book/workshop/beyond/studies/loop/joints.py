@@ -1,0 +1,389 @@
+"""Section 7.1, joints three and four: the window network on arms of one to seven joints.
+
+Recordings are those of `workshop.beyond.studies.loop.chain`. Every training set has
+`CASES` windows, however many motions they come from: what varies is their variety.
+"""
+
+from __future__ import annotations
+
+import warnings
+from itertools import pairwise
+
+import numpy as np
+
+from ddlib import paper
+from ddlib.analysis import gains, mean_gradient
+from ddlib.dynamics import (
+    DD_ARM_II_IN_SPACE,
+    count,
+    lagrange_euler,
+    locked,
+    mass_matrix,
+    newton_euler,
+    regressor,
+)
+from ddlib.identification import SIGN_SPEED
+from ddlib.learning import NotConverged, Solution, TrainingSet, Weights, solve, surrogate
+from ddlib.metrics import rmss
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.simulation import LOG_STEP
+from workshop.beyond.rivals.identified import Linear
+from workshop.beyond.rivals.protocol import Cases, derivative_filters
+from workshop.beyond.studies.loop.chain import (
+    EVERY,
+    MOTIONS,
+    REACH,
+    SPACING,
+    Chain,
+    Sample,
+    chain,
+    extents,
+    recorded,
+)
+from workshop.report.code_hash import study
+from workshop.report.exact_states import INITIAL as STATES_INITIAL
+
+CASES = 750
+"""Windows of a training set: what five motions have, every 20 ms."""
+
+STEPS, DECAY = 30, 1e-6
+"""Steps of Levenberg-Marquardt and weight decay; `JOINT_DAMPING` has 60 and the same decay."""
+
+MOTIONS_OF = {
+    1: (2, 3, 5, 10, 20, 40, 80),
+    2: (2, 3, 5, 7, 10, 20, 40, 80),
+    3: (5, 7, 10, 14, 20, 40, 80),
+    4: (5, 7, 10, 14, 20, 40, 80),
+    5: (5, 10, 14, 20, 40, 80),
+    7: (5, 10, 14, 20, 40, 80),
+}
+"""Training motions by number of joints."""
+
+SEEDS = 10
+"""Draws of motions, noise and weights."""
+
+TEST_MOTIONS, TEST_SEED = 20, 1000
+"""Motions on which all is tested, never in a training set, and the seed of their draw."""
+
+UNITS = (5, 20, 40)
+"""Hidden units besides the report's ten, at four joints."""
+
+STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000
+"""Random states: sizes of the training sets, steps of the solver, states of the test set."""
+
+MAIN = 20
+"""Training motions of the networks whose filters are read."""
+
+REST = SPACING * LOG_STEP
+"""From one tap of a window to the next, s."""
+
+
+def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
+    """One network of so many hidden units, trained on windows and their torque, or on states.
+
+    ``test`` holds windows and torques, too; ``seed`` is that of the initial weights, and
+    ``**options`` are their range, ``initial``, and those of the solver.
+    """
+    joints, width = windows.shape[1:]
+    data = TrainingSet.from_arrays(windows, torque)
+    initial = options.pop("initial", INITIAL)
+    start = Weights.random(1, width, hidden, joints, joints, initial=initial, seed=seed)
+    options = {"steps": STEPS, "decay": DECAY, **options}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
+        return solve(start, data, test=data.transform(*test), progress=False, **options)
+
+
+def sets(made: Chain, motions: int, seed: int, **options) -> Sample:
+    """A training set of `CASES` windows, of so many motions of the arm ``made``.
+
+    ``seed`` and ``**options`` are those of `workshop.beyond.studies.loop.chain.recorded`.
+    """
+    return recorded(made, extents(made.joints, motions, seed), seed, **options).thinned(CASES)
+
+
+def tested(made: Chain, **options) -> Sample:
+    """The test motions, every fourth of their windows."""
+    drawn = extents(made.joints, TEST_MOTIONS, TEST_SEED)
+    return recorded(made, drawn, TEST_SEED, **options).thinned(CASES)
+
+
+def linear(training: Sample, test: Sample) -> float:
+    """Error of a linear filter of the windows, its ridge chosen by leaving parts out."""
+    rival = Linear().fit(Cases(training.windows, training.torque, "windows", REST))
+    return float(rmss(rival._torque(test.windows), test.torque))
+
+
+def identified(made: Chain, training: Sample, test: Sample) -> tuple[float, float]:
+    """Errors of the equations of ``made`` with friction, by least squares: training, test.
+
+    States come from a polynomial through each window, whose degree is the one, of 3 and 4, that
+    fits the training torques better.
+    """
+    scale, found = training.torque.std(0), []
+    for degree in (3, 4):
+        first = equations(made, training.windows, degree)
+        matrix = (first / scale[:, None]).reshape(-1, first.shape[-1])
+        size = np.sqrt((matrix**2).mean(0))
+        size[size < 1e-9] = 1.0
+        wanted = (training.torque / scale).ravel()
+        values = np.linalg.lstsq(matrix / size, wanted, rcond=1e-6)[0] / size
+        found.append((float(rmss(first @ values, training.torque)), degree, values))
+    error, degree, values = min(found, key=lambda each: each[0])
+    answer = equations(made, test.windows, degree) @ values
+    return error, float(rmss(answer, test.torque))
+
+
+def equations(made: Chain, windows, degree: int) -> np.ndarray:
+    """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
+
+    Of the arm ``made`` at states that polynomials of this degree through the windows give.
+    """
+    states = windows @ derivative_filters(windows.shape[-1], REST, degree).T
+    speed, own = states[..., 1], np.eye(made.joints)
+    rigid = regressor(made.arm, *np.moveaxis(states, -1, 0))
+    sign = np.clip(speed / SIGN_SPEED, -1, 1)
+    return np.concatenate([rigid, own * speed[..., None], own * sign[..., None]], -1)
+
+
+# --- the parts of the study ---------------------------------------------------------------
+
+
+def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
+    """Errors of networks and of a linear filter in a reading of the controller.
+
+    ``ladder`` has the motions for each number of joints; ``seeds`` are draws of each.
+    """
+    rows = []
+    for joints, motions in ladder.items():
+        made = chain(joints, reading)
+        test = tested(made)
+        for count_of in motions:
+            row = {"joints": joints, "motions": count_of}
+            row |= {"training": [], "test": [], "by joint": [], "linear": []}
+            for seed in range(1, 1 + seeds):
+                training = sets(made, count_of, seed)
+                found = solved(
+                    training.windows, training.torque, (test.windows, test.torque), seed=seed
+                )
+                answer = found.model[0].torque(test.windows)
+                row["training"].append(float(found.history.training[-1, 0]))
+                row["test"].append(float(found.history.test[-1, 0]))
+                row["by joint"].append(rmss(answer, test.torque, pooled=False))
+                row["linear"].append(linear(training, test))
+            rows.append(row)
+    return rows
+
+
+def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> list[dict]:
+    """Errors of the identified equations, by joints and motions, one for each of the seeds."""
+    rows = []
+    for n in joints:
+        made = chain(n)
+        test = tested(made)
+        for m in motions:
+            each = [identified(made, sets(made, m, s), test) for s in range(1, 1 + seeds)]
+            training, errors = zip(*each)
+            rows.append({"joints": n, "motions": m, "training": training, "test": errors})
+    return rows
+
+
+def closed_loops(seeds: int = SEEDS) -> list[dict]:
+    """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
+    rows = []
+    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
+        made = chain(2, setup.name)
+        for motions in (5, MAIN):
+            drawn = [extents(2, motions, seed) for seed in range(1, 1 + seeds)]
+            loop = setup.record(np.vstack([extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
+            for spacing in (SPACING, 1) if motions == MAIN else (SPACING,):
+                kinds = ("closed loop", *MOTIONS) if spacing > 1 else ("closed loop", MOTIONS[0])
+                for kind in kinds:
+                    if kind == "closed loop":
+                        parts = _cut(loop, spacing, motions)
+                    else:
+                        options = {"motion": kind, "spacing": spacing}
+                        parts = [tested(made, **options)]
+                        parts += [sets(made, motions, s, **options) for s in range(1, 1 + seeds)]
+                    test, *trained = parts
+                    errors = [
+                        solved(x.windows, x.torque, (test.windows, test.torque), seed=s).history
+                        for s, x in enumerate(trained, 1)
+                    ]
+                    rows.append(
+                        {
+                            "reading": setup.name,
+                            "motions": motions,
+                            "taps": 2 * REACH // spacing + 1,
+                            "kind": kind,
+                            "deviation": test.torque.std(0),
+                            "training": [h.training[-1, 0] for h in errors],
+                            "test": [h.test[-1, 0] for h in errors],
+                        }
+                    )
+    return rows
+
+
+def _cut(loop, spacing: int, motions: int) -> list[Sample]:
+    """Test set and training sets of a recording of closed loops, cut as `recorded` does."""
+    centres = np.arange(loop.motion.start, loop.motion.stop, EVERY)
+    taps = centres[:, None] + np.arange(-REACH, REACH + 1, spacing)
+    windows, torque = np.moveaxis(loop.q[:, taps], -1, -2), loop.tau[:, centres]
+    ends = [0, *range(TEST_MOTIONS, len(windows) + 1, motions)]
+    made = []
+    for first, last in pairwise(ends):
+        x, y = windows[first:last], torque[first:last]
+        flat = x.reshape(-1, *x.shape[2:]), y.reshape(-1, 2)
+        made.append(Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
+    return made
+
+
+def units() -> list[dict]:
+    """Four joints with other numbers of hidden units."""
+    made = chain(4)
+    test = tested(made)
+    rows = []
+    for hidden in UNITS:
+        for motions in (5, MAIN) if hidden < 40 else (MAIN,):
+            found = []
+            for seed in range(1, 1 + SEEDS):
+                x = sets(made, motions, seed)
+                asked = test.windows, test.torque
+                found.append(solved(x.windows, x.torque, asked, hidden, seed).history)
+            row = {"units": hidden, "motions": motions}
+            row |= {"training": [h.training[-1, 0] for h in found]}
+            rows.append(row | {"test": [h.test[-1, 0] for h in found]})
+    return rows
+
+
+def random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random states of section 6 for more joints, and the rigid body's torque, N m.
+
+    So many samples of this seed, ``(samples, joint, 3)``, uniform in plus or minus pi: rad,
+    rad/s, rad/s^2.
+    """
+    rng = np.random.default_rng((seed, joints))
+    states = rng.uniform(-np.pi, np.pi, (samples, joints, 3))
+    return states, chain(joints).arm.inverse_dynamics(*np.moveaxis(states, -1, 0))
+
+
+def random_states() -> list[dict]:
+    """Errors on random states by joints, samples and hidden units."""
+    rows = []
+    for joints in MOTIONS_OF:
+        test = random_cube(joints, STATE_TEST, TEST_SEED)
+        plan = [(10, n) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
+        plan += [(20, n) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
+        for hidden, samples in plan:
+            found = []
+            for seed in range(1, 1 + SEEDS):
+                states, torque = random_cube(joints, samples, seed)
+                options = {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
+                found.append(solved(states, torque, test, hidden, seed, **options).history)
+            row = {"joints": joints, "units": hidden, "samples": samples}
+            row |= {"training": [h.training[-1, 0] for h in found]}
+            rows.append(row | {"test": [h.test[-1, 0] for h in found]})
+    return rows
+
+
+def pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
+    """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia.
+
+    Networks of unrelated torques are the null: each run's torques with random phases.
+    """
+    made = chain(joints)
+    test = tested(made)
+    inertia = mass_matrix(made.arm, test.states[..., 0]).mean(0)
+    found: dict = {"real": [], "unrelated": []}
+    used: dict = {"real": [], "unrelated": []}
+    for seed in range(1, 1 + seeds):
+        whole = recorded(made, extents(joints, MAIN, seed), seed)
+        runs = whole.torque.reshape(MAIN, -1, joints)
+        torques = {"real": runs, "unrelated": surrogate("phases", runs, seed)}
+        step = -(-len(whole.torque) // CASES)
+        for kind, torque in torques.items():
+            x, y = whole.windows[::step], torque.reshape(-1, joints)[::step]
+            model = solved(x, y, (test.windows, test.torque), seed=seed).model[0]
+            found[kind].append(gains(mean_gradient(model, test.windows), REST)[..., 2])
+            used[kind].append(_shuffled(model.torque, test.windows, y.std(0), seed))
+
+    def exact(states):
+        return made.torque(states)
+
+    return {
+        "joints": joints,
+        "inertia": inertia,
+        "gains": found,
+        "used": used,
+        "exact": _shuffled(exact, test.states, test.torque.std(0), 1),
+        "deviation": test.torque.std(0),
+        "acceleration": test.states[..., 2].std(0),
+    }
+
+
+def _shuffled(predict, x, scale, seed: int) -> np.ndarray:
+    """RMS change of each torque when one joint's window is that of another case, over `scale`."""
+    order = np.random.default_rng(seed).permutation(len(x))
+    before, changes = predict(x), []
+    for j in range(x.shape[1]):
+        other = x.copy()
+        other[:, j] = x[order, j]
+        changes.append(np.sqrt(((predict(other) - before) ** 2).mean(0)) / scale)
+    return np.stack(changes, -1)  # (torque, window)
+
+
+def interactions() -> dict:
+    """How much of each torque is owed to the other joints: RMS without them, over the deviation.
+
+    The others rest at zero; exact torques along the test motions.
+    """
+    found = {}
+    for joints in (2, 3, 4, 5, 7):
+        made = chain(joints)
+        states = tested(made).states
+        whole, alone = made.torque(states), np.zeros(states.shape[:2])
+        for j in range(joints):
+            only = np.zeros_like(states)
+            only[:, j] = states[:, j]
+            alone[:, j] = made.torque(only)[:, j]
+        left = whole - alone
+        found[str(joints)] = (left - left.mean(0)).std(0) / whole.std(0)
+    return found
+
+
+def costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
+    """Multiplications of the network, and of two formulations counted by running them."""
+    rows = []
+    for n in range(2, DD_ARM_II_IN_SPACE.joints + 1):
+        arm = locked(DD_ARM_II_IN_SPACE, n)
+        rows.append(
+            {
+                "joints": n,
+                "network": hidden * n * width + hidden * n + n * n * width,
+                "Newton-Euler, general": count(newton_euler, arm).multiplications,
+                "Newton-Euler, this arm": count(newton_euler, arm, "arm").multiplications,
+                "Lagrange-Euler, general": count(lagrange_euler, arm).multiplications,
+            }
+        )
+    return rows
+
+
+@study
+def joints() -> dict:
+    """All of it; what each part holds stands with its function."""
+    second = {n: (5, MAIN, 40) for n in (1, 2, 3, 4)}
+    return {
+        "cases": CASES,
+        "steps": STEPS,
+        "seeds": SEEDS,
+        "test motions": TEST_MOTIONS,
+        "windows": by_motions(JOINT_DAMPING.name, MOTIONS_OF, SEEDS),
+        "windows, state feedback": by_motions(STATE_FEEDBACK.name, second, SEEDS),
+        "known structure": known_structure(),
+        "closed loops": closed_loops(),
+        "units": units(),
+        "random states": random_states(),
+        "pairs": pairs(),
+        "interactions": interactions(),
+        "costs": costs(),
+    }

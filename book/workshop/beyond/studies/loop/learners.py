@@ -1,0 +1,278 @@
+"""What practises in the loop: draws of motions and networks, learners that outlive a run.
+
+Rates, penalties and the memory's settings were chosen on draws from `TUNED` on, which the study
+does not use.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.dynamics import follow_hand
+from ddlib.effects import EncoderZero
+from ddlib.identification import RecursiveLeastSquares
+from ddlib.learning import TorqueModel, Weights
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
+from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
+from ddlib.trajectories import MOTION_SECONDS, Trajectory, time_grid
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.feedback_error import (
+    FeedbackErrorLearning,
+    GenericTerms,
+    MotionMemory,
+    RigidBodyTerms,
+)
+from workshop.beyond.control.online import (
+    LastLayer,
+    LinearFilter,
+    OnlineDescent,
+    OnlineFeedforward,
+)
+from workshop.report import results
+
+SEEDS, TUNED = 10, 1000
+"""Draws of motions, encoder zeros and networks; the first of those on which rates were chosen."""
+
+TRIALS = 10
+"""Trials of one motion, or with one load."""
+
+WIDTH = 21
+"""Samples of a window."""
+
+NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")
+"""What the exact terms can represent: the arm and its friction."""
+
+RATE = 1.0
+"""Of terms: per second and N m, over each term's mean square and their number."""
+
+PENALTY, FORGETTING = 1e-3, 0.999
+"""Of recursive least squares; a sample counts half after seven seconds."""
+
+TRUST = 1.0
+"""Penalty where the network was trained off-line."""
+
+REPLAY = 15
+"""Earlier samples that are learnt again with each new one."""
+
+ONE_PASS, REPLAYED, TRAINED = 0.03, 1.0, 0.1
+"""Rates of descent from measured windows: one pass, with replay, and after off-line training."""
+
+BY_FEEDBACK = {JOINT_DAMPING.name: 0.003, STATE_FEEDBACK.name: 0.03}
+"""Rate of descent by the feedback's torque: of those tried the largest whose error did not rise
+again within the trials of one motion."""
+
+MEMORY = {JOINT_DAMPING.name: (0.1, 75, 10.0), STATE_FEEDBACK.name: (0.3, 25, 5.0)}
+"""Rate, lead and smoothing of the memory, the last two in control samples."""
+
+
+class Draw:
+    """Draws of one set-up: motions, encoder zeros and networks; their axis is that of the seeds.
+
+    Parameters
+    ----------
+    setup : Setup
+    first, seeds : int
+        The first seed, and how many.
+    """
+
+    def __init__(self, setup: Setup, first: int = 0, seeds: int = SEEDS):
+        self.setup, self.seeds = setup, seeds
+        rngs = [np.random.default_rng((77, first + k)) for k in range(seeds)]
+
+        def drawn(low, high, *shape):
+            return np.stack([rng.uniform(low, high, shape) for rng in rngs])
+
+        self.learnt, self.other = drawn(20, 45, 2), drawn(10, 45, 2)
+        self.second = drawn(4, 10, 2) * np.sign(drawn(-1, 1, 2))
+        self.family = drawn(5, 45, 2 * TRIALS, 2)
+        zero = drawn(0.0, setup.effects.encoder[0].step, 2)
+        encoder = (EncoderZero(zero), *setup.effects.encoder, EncoderZero(-zero))
+        self.effects = replace(setup.effects, encoder=encoder)
+        self.limit = setup.effects.actuator[0].limit
+        trained = results.networks(WIDTH, setup.name)
+        members = (first + np.arange(seeds)) % len(trained.weights)
+        self.trained = replace(trained, weights=trained.weights[members][None])
+        self.untrained = _untrained(self.trained, first)
+
+    def equations(self, q, qd, qdd) -> np.ndarray:
+        """The exact torque of a motion, friction included, N m."""
+        friction = sum(f.torque(qd) for f in self.effects.friction)
+        return self.setup.arm.inverse_dynamics(q, qd, qdd) + friction
+
+
+def _untrained(like: TorqueModel, first: int) -> TorqueModel:
+    """Networks that give no torque yet: only the weights of hidden units are drawn."""
+    _, seeds, hidden = like.weights.hidden_bias.shape
+    w = Weights.random(seeds, WIDTH, hidden, initial=INITIAL, seed=first)
+    nothing = like.outputs.scale(np.zeros(2))
+    bias = np.log(nothing / (1 - nothing)) + np.zeros((seeds, 2))
+    none = {n: np.zeros_like(getattr(w, n)) for n in ("output_weights", "direct_weights")}
+    return replace(like, weights=replace(w, output_bias=bias, **none)[None])
+
+
+def grid(duration: float = MOTION_SECONDS) -> np.ndarray:
+    """Control times of a motion with a tenth of it as rest before and after, s."""
+    return time_grid(CONTROL_STEP, duration / 10, duration)
+
+
+def motions(draw: Draw) -> dict[str, tuple[np.ndarray, Trajectory]]:
+    """Times and references, shape (seeds, time, 2), from rest to rest without a jump.
+
+    Parameters
+    ----------
+    draw : Draw
+    """
+    found = {}
+    for name, speed in (("the same", 1.0), ("in 2/3 of the time", 1.5), ("in half the time", 2.0)):
+        t = grid(MOTION_SECONDS / speed)
+        found[name] = t, smooth_pick_and_place(draw.learnt, t, speed)
+    t = grid()
+    found["other extents"] = t, smooth_pick_and_place(draw.other, t)
+    slow = smooth_pick_and_place(0.6 * draw.learnt, t)
+    third = 3 * t * ((t >= 0) & (t < MOTION_SECONDS))  # three turns in the time of one
+    fast = smooth_pick_and_place(draw.second, third % MOTION_SECONDS)
+    both = zip(slow, fast, (1, 3, 9))
+    moving = ((t >= 0) & (t < MOTION_SECONDS))[:, None]
+    found["two harmonics"] = t, Trajectory(*(a + moving * n * b for a, b, n in both))
+    found["circle"] = t, _round(draw, t)
+    return found
+
+
+def _round(draw: Draw, t) -> Trajectory:
+    """The hand goes once round a circle of 80 mm radius, from rest to rest; its place is drawn."""
+    arm, turn, radius = draw.setup.arm, 2 * np.pi / MOTION_SECONDS, 0.08
+    centre = arm.forward_kinematics(-np.deg2rad([5.0, 55.0] + draw.other / 3))[:, None, 1]
+    phase = turn * np.clip(t, 0, MOTION_SECONDS)[:, None]
+    angle, rate, gain = phase - np.sin(phase), turn * (1 - np.cos(phase)), turn**2 * np.sin(phase)
+    along = radius * np.concatenate([np.cos(angle), np.sin(angle)], -1)
+    across = radius * np.concatenate([-np.sin(angle), np.cos(angle)], -1)
+    path = (centre + along, rate * across, gain * across - rate**2 * along)
+    return follow_hand(arm, *(x + 0 * centre for x in path), elbow="negative")
+
+
+class Terms:
+    """Feedback-error learning of given terms, whose weights outlive a run."""
+
+    def __init__(self, terms, draw: Draw, rate=RATE):
+        t = grid()
+        extents = np.stack(np.meshgrid([10, 25, 40], [10, 25, 40]), -1).reshape(-1, 2)
+        size = (terms(*smooth_pick_and_place(extents, t)) ** 2).sum(-2).mean((0, 1))
+        self.terms, self.feedback = terms, draw.setup.controller
+        self.rate = np.asarray(rate, float)[..., None] / (size * len(size))
+        self.weights = np.zeros((1, draw.seeds, len(size)))
+
+    def controller(self, learning=True):
+        """A controller for one run, learning or as it is now."""
+        rate = self.rate if learning else 0 * self.rate
+        return Watched(FeedbackErrorLearning(self.terms, rate, self.weights, self.feedback))
+
+    def keep(self, watched):
+        """Go on from what the controller of a run has learnt."""
+        self.weights = watched.law.weights[..., -1, :]
+
+
+class Windows:
+    """A learner of windows."""
+
+    def __init__(self, learner, teacher: str, draw: Draw):
+        self.learner, self.teacher = learner, teacher
+        self.feedback, self.limit = draw.setup.controller, draw.limit
+
+    def controller(self, learning=True):
+        """A controller for one run, learning or as it is now."""
+        teacher = self.teacher if learning else "nobody"
+        return OnlineFeedforward(self.learner, self.feedback, WIDTH, teacher, limit=self.limit)
+
+    def keep(self, controller):
+        """Nothing to do: the learner has learnt during the run."""
+        pass
+
+
+class Memory:
+    """The memory of a motion; it learns after each trial."""
+
+    def __init__(self, draw: Draw):
+        self.memory = MotionMemory(draw.setup.controller, *MEMORY[draw.setup.name])
+
+    def controller(self, learning=True):
+        """A controller for one run, learning or as it is now."""
+        return Watched(self.memory)
+
+    def keep(self, watched):
+        """Go on from what the controller of a run has learnt."""
+        self.memory.learn(watched.law)
+
+
+def _recursion(penalty):
+    return lambda weights: RecursiveLeastSquares(weights, penalty, FORGETTING)
+
+
+def last_layer(model: TorqueModel, draw: Draw, penalty: float = PENALTY) -> Windows:
+    """The network whose last layer learns from measured windows, by recursive least squares.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        What it begins with.
+    draw : Draw
+    penalty : float
+        On the distance from it.
+    """
+    return Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
+
+
+def linear_filter(draw: Draw) -> Windows:
+    """A linear filter of the window that learns in the same way, from nothing."""
+    zero = np.zeros((1, draw.seeds, 2, 2 * WIDTH + 1))
+    return Windows(LinearFilter(draw.trained.inputs, zero, _recursion(PENALTY)), "torque", draw)
+
+
+def by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> Windows:
+    """The network that learns from desired windows and the feedback's torque.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        What it begins with.
+    draw : Draw
+    times : float or array_like
+        Multiple of the rate chosen.
+    """
+    rate = BY_FEEDBACK[draw.setup.name] * np.asarray(times)
+    return Windows(OnlineDescent(model, rate), "feedback", draw)
+
+
+def tiled(weights: Weights, count: int) -> Weights:
+    """Networks repeated along their first axis, `count` times."""
+    return Weights(*(np.repeat(x, count, axis=0) for x in vars(weights).values()))
+
+
+def lineup(draw: Draw) -> dict[str, object]:
+    """The learners that practise one motion, all from nothing."""
+    return {
+        "exact terms": Terms(RigidBodyTerms(NAMES), draw),
+        "generic terms": Terms(GenericTerms(), draw),
+        "network, by feedback": by_feedback(draw.untrained, draw),
+        "network, last layer": last_layer(draw.untrained, draw),
+        "linear filter": linear_filter(draw),
+        "memory": Memory(draw),
+    }
+
+
+def candidates(draw: Draw) -> dict[str, object]:
+    """The learners of the family: from nothing, and from networks trained off-line."""
+    return {
+        "one pass": Windows(OnlineDescent(draw.untrained, ONE_PASS), "torque", draw),
+        "replay": Windows(OnlineDescent(draw.untrained, REPLAYED, replay=REPLAY), "torque", draw),
+        "last layer": last_layer(draw.untrained, draw),
+        "by feedback": by_feedback(draw.untrained, draw),
+        "linear filter": linear_filter(draw),
+        "off-line, as it is": Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
+        "off-line, replay": Windows(
+            OnlineDescent(draw.trained, TRAINED, replay=REPLAY), "torque", draw
+        ),
+        "off-line, last layer": last_layer(draw.trained, draw, TRUST),
+        "off-line, by feedback": by_feedback(draw.trained, draw),
+    }

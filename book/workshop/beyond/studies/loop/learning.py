@@ -1,0 +1,196 @@
+"""Sections 1.2 and 7.1: learners in the loop, trial by trial.
+
+`learning_in_the_loop` has three parts. ``motion``: learners practise one motion, are asked for
+others, and go on to another one. ``family``: they practise members of the paper's family, with a
+load in the hand from half-way on. ``rates``: what too high a rate does.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.control import Feedforward
+from ddlib.dynamics import Arm, end_point_error, with_load
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.simulation import follow
+from ddlib.trajectories import Trajectory, pick_and_place
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.feedback_error import GenericTerms, RigidBodyTerms
+from workshop.beyond.control.guarded import Guarded
+from workshop.beyond.control.online import Abreast
+from workshop.beyond.studies.loop.learners import (
+    NAMES,
+    RATE,
+    TRIALS,
+    Draw,
+    Terms,
+    by_feedback,
+    candidates,
+    grid,
+    lineup,
+    motions,
+    tiled,
+)
+from workshop.report.code_hash import study
+
+LOAD = 5.0
+"""kg, in the hand from half-way on."""
+
+TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))
+"""Extents of the motions on which learners of the family are tested, degrees."""
+
+RATES = (0.1, 0.3, 1.0, 3.0, 10.0)
+"""What is tried of it, as multiples of the rates chosen."""
+
+
+def trial(draw: Draw, controllers, rows, references, t, arm: Arm | None = None):
+    """One trial of controllers abreast.
+
+    Parameters
+    ----------
+    draw : Draw
+    controllers, rows
+        As of `ddlib.control.Abreast`.
+    references : Trajectory
+        Shape (rows, seeds, time, 2).
+    t : ndarray, shape (time,)
+    arm : Arm, optional
+        Default: that of the set-up.
+
+    Returns
+    -------
+    errors : ndarray, shape (rows, seeds)
+        Root mean square end-point error over the motion, mm.
+    stops : Stops
+    """
+    arm, guard = arm or draw.setup.arm, Watched(Guarded(Abreast(controllers, rows)))
+    run = follow(arm, guard, references, t, effects=draw.effects)
+    off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
+    during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
+    return 1e3 * np.sqrt((off[..., during] ** 2).mean(-1)), guard.law.stops
+
+
+def _rows(reference: Trajectory, *others: Trajectory) -> Trajectory:
+    """References as rows of runs."""
+    return Trajectory(*(np.stack(parts) for parts in zip(reference, *others)))
+
+
+def _repeated(reference: Trajectory, count: int) -> Trajectory:
+    return Trajectory(*(np.broadcast_to(x, (count, *x.shape)) for x in reference))
+
+
+def _practise(draw, learners, reference, t, tested: Trajectory | None = None):
+    """Trials of one motion: errors by trial of each learner, and of a second motion on the way."""
+    errors = {name: [] for name in learners}
+    rows = [1] * len(learners) * (2 if tested else 1)
+    for _ in range(TRIALS):
+        now = [learner.controller() for learner in learners.values()]
+        frozen = [x.controller(False) for x in learners.values()] if tested else []
+        every = _repeated(reference, len(now))
+        if tested:
+            more = _repeated(tested, len(now))
+            every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
+        found = trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
+        for k, (name, learner) in enumerate(learners.items()):
+            errors[name].append(found[:, k])
+            learner.keep(now[k])
+    return {name: np.array(each) for name, each in errors.items()}
+
+
+def _motion(draw: Draw) -> dict:
+    """Practise one motion, be asked for others, go on to the other extents."""
+    learners, asked = lineup(draw), motions(draw)
+    t, reference = asked["the same"]
+    first = _practise(draw, learners, reference, t)
+    tests = {}
+    plain = [Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller),
+             Feedforward(draw.equations, draw.setup.controller)]  # fmt: skip
+    for name, (times, wanted) in asked.items():
+        frozen = [learner.controller(False) for learner in learners.values()]
+        learning = [copy.deepcopy(learner).controller() for learner in learners.values()]
+        count = len(plain) + 2 * len(learners)
+        found = trial(
+            draw, plain + frozen + learning, [1] * count, _repeated(wanted, count), times
+        )[0]
+        tests[name] = {
+            "no feedforward": found[0],
+            "exact equations": found[1],
+            "frozen": dict(zip(learners, found[2:])),
+            "learning": dict(zip(learners, found[2 + len(learners) :])),
+        }
+    second = _practise(draw, learners, asked["other extents"][1], t, reference)
+    return {
+        "practice": {name: x[:, 0] for name, x in first.items()},
+        "tests": tests,
+        "other": {name: x[:, 0] for name, x in second.items()},
+        "forgetting": {name: x[:, 1] for name, x in second.items()},
+    }
+
+
+def _family(draw: Draw, learners: Mapping | None = None) -> dict:
+    """Practise members of the paper's family; a load from half-way on; tests on three motions."""
+    learners, t = learners or candidates(draw), grid()
+    loaded = with_load(draw.setup.arm, LOAD)
+    tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in TESTS]
+    practice, tested = ({name: [] for name in ("no feedforward", *learners)} for _ in range(2))
+    plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
+    rows, size = [1 + len(TESTS)] + [1, len(TESTS)] * len(learners), 1 + len(TESTS)
+
+    def once(trial_number, arm, learning=True):
+        every = _rows(pick_and_place(draw.family[:, trial_number], t), *tests)
+        every = Trajectory(*(np.concatenate([x] * (1 + len(learners))) for x in every))
+        controllers = [plain]
+        for learner in learners.values():
+            controllers += [learner.controller(learning), learner.controller(False)]
+        found = trial(draw, controllers, rows, every, t, arm)[0]
+        return found.reshape(1 + len(learners), size, draw.seeds)
+
+    for k in range(2 * TRIALS):
+        for name, found in zip(practice, once(k, draw.setup.arm if k < TRIALS else loaded)):
+            practice[name].append(found[0])
+            tested[name].append(found[1:].mean(0))
+    after = once(0, draw.setup.arm, learning=False)
+    last = once(0, loaded, learning=False)
+    return {
+        "practice": {name: np.array(x) for name, x in practice.items()},
+        "tests": {name: np.array(x) for name, x in tested.items()},
+        "at the end": {name: x[1:].mean(0) for name, x in zip(practice, last)},
+        "without the load again": {name: x[1:].mean(0) for name, x in zip(practice, after)},
+    }
+
+
+def _rates(draw: Draw) -> dict:
+    """Six trials of one motion at several rates: the last error, and who was stopped."""
+    t, reference = motions(draw)["the same"]
+    many, rates = len(RATES), np.array(RATES)[:, None]
+    model = replace(draw.untrained, weights=tiled(draw.untrained.weights, many))
+    learners = {
+        "exact terms": Terms(RigidBodyTerms(NAMES), draw, RATE * rates),
+        "generic terms": Terms(GenericTerms(), draw, RATE * rates),
+        "network, by feedback": by_feedback(model, draw, rates + np.zeros(draw.seeds)),
+    }
+    every, stopped = _repeated(reference, many * len(learners)), False
+    for _ in range(TRIALS // 2):
+        now = [learner.controller() for learner in learners.values()]
+        errors, stops = trial(draw, now, [many] * len(now), every, t)
+        stopped = stopped | stops.stopped
+        for learner, controller in zip(learners.values(), now):
+            learner.keep(controller)
+    shape = (len(learners), many, draw.seeds)
+    errors, stopped = errors.reshape(shape), np.reshape(stopped, shape)
+    return {name: {"error": e, "stopped": s} for name, e, s in zip(learners, errors, stopped)}
+
+
+@study
+def learning_in_the_loop() -> dict:
+    """End-point errors of all learners, mm, for each reading of section 4."""
+    found = {}
+    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
+        draw = Draw(setup)
+        parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
+        found[setup.name] = parts
+    return {"setups": found, "rates": RATES, "trials": TRIALS, "load": LOAD}

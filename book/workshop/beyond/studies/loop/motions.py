@@ -1,0 +1,382 @@
+"""Families of motions beside Appendix I: circles of the hand, and several via points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from itertools import product
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from ddlib._check import integer, number, one_of, positive, shaped
+from ddlib.analysis import nearest_distances, shared_cells
+from ddlib.dynamics import ELBOWS, Arm, around
+from ddlib.setups import Setup, true_states
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MAX_EXTENT_DEG,
+    MOTION_SECONDS,
+    Trajectory,
+    random_extents,
+    time_grid,
+)
+from workshop.beyond.rivals.protocol import Cases
+
+FAMILIES = ("pick and place", "circles", "both", "via points")
+"""What is learnt from: 1,500 cases each. Five motions of Appendix I; five circles; every second
+case of those ten; five motions with `VIA` via points."""
+
+VIA, MOST = 3, 6
+"""Via points of the training motions, and most that are tested."""
+
+LEG = 1.5
+"""Time from point to point of motions whose pace does not depend on their number, s."""
+
+RADIUS = (0.04, 0.12)
+"""Range of the circles' radii, m."""
+
+PERIOD = (1.5, 3.0)
+"""Range of the time of a turn, s: one turn to two in the three seconds of a motion."""
+
+DISTANCE = (0.55, 0.75)
+"""Range of the centres' distances from the shoulder, m: the hand comes within 0.43 to 0.87 m."""
+
+BEARING = (-80.0, -40.0)
+"""Range of the centres' directions, degrees. With a negative elbow the shoulder then turns about
+where it does in pick-and-place."""
+
+SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-50.0, -25.0)}
+"""Ranges of circles that lie within the angles of pick-and-place, where only the way the joints
+move is new."""
+
+CELLS = 6
+"""Cells along each axis of the states."""
+
+AXES = {
+    "positions": [0, 3],
+    "velocities": [1, 4],
+    "accelerations": [2, 5],
+    "positions and velocities": [0, 1, 3, 4],
+    "all": list(range(6)),
+}
+"""Parts of a state: position, velocity and acceleration of the shoulder, then of the elbow."""
+
+TEST_DAY = 1000
+"""Seed of all tests: of their noise, and of the members that are drawn."""
+
+RAMP = 0.5
+"""Length of a smooth start or end, s."""
+
+
+@dataclass(frozen=True)
+class Circles:
+    """Circles of the hand: "extents" of a family, one value for each member.
+
+    Attributes
+    ----------
+    radius : ndarray, shape (runs,)
+        m.
+    period : ndarray, shape (runs,)
+        Of one turn, s.
+    distance : ndarray, shape (runs,)
+        Of the centre from the shoulder, m.
+    bearing_deg : ndarray, shape (runs,)
+        Direction of the centre, degrees from the x axis.
+    clockwise : ndarray of bool, shape (runs,)
+        Which way round.
+    """
+
+    radius: np.ndarray
+    period: np.ndarray
+    distance: np.ndarray
+    bearing_deg: np.ndarray
+    clockwise: np.ndarray
+
+    def __post_init__(self):
+        for name in ("radius", "period", "distance"):
+            object.__setattr__(self, name, positive(name, getattr(self, name), "(runs,)"))
+        runs = f"({len(self.radius)},)"
+        for name in ("period", "distance", "bearing_deg"):
+            object.__setattr__(self, name, shaped(name, getattr(self, name), runs))
+        way = np.asarray(self.clockwise)
+        if way.dtype != bool or way.shape != self.radius.shape:
+            raise ValueError(f"clockwise must hold {runs} truth values, got {self.clockwise!r}")
+        object.__setattr__(self, "clockwise", way)
+
+    def __len__(self):
+        return len(self.radius)
+
+    def __getitem__(self, runs) -> Circles:
+        """Some of the members: a slice or an array of indices."""
+        return Circles(*(getattr(self, field.name)[runs] for field in fields(self)))
+
+    @property
+    def centre(self) -> np.ndarray:
+        """Of the circles, from the shoulder, m, shape (runs, 2)."""
+        angle = np.deg2rad(self.bearing_deg)
+        return self.distance[:, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
+
+
+def random_circles(runs: int, seed: int) -> Circles:
+    """Members of the family, each quantity uniform in its range, either way round.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many; of the draw.
+    """
+    draw = np.random.default_rng(integer("seed", seed, 0))
+    shape = (integer("runs", runs, 1),)
+    ranges = (RADIUS, PERIOD, DISTANCE, BEARING)
+    return Circles(*(draw.uniform(*r, shape) for r in ranges), draw.random(shape) < 0.5)
+
+
+def pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray:
+    """Time as a motion sees it, with its two derivatives, shape (3, time).
+
+    Parameters
+    ----------
+    t : array_like, shape (time,)
+        Times, s; the motion lasts from 0 to `seconds`, and rests before and after.
+    start : {"jump", "smooth"}
+        "jump": full speed from the first moment to the last, as in Appendix I. "smooth": speed
+        rises and falls within `RAMP`, with continuous acceleration, so that the motion goes
+        less far.
+    seconds : float
+    """
+    t = shaped("t", t, "(time,)")
+    one_of("start", start, ("jump", "smooth"))
+    number("seconds", seconds, 2 * RAMP)
+    inside = np.clip(t, 0.0, seconds)
+    if start == "jump":
+        moving = (t >= 0) & (t < seconds * (1 - 1e-12))
+        return np.stack([inside, 1.0 * moving, np.zeros(t.size)])
+    up, down = (np.clip(x / RAMP, 0.0, 1.0) for x in (inside, seconds - inside))
+    # speed u^2 (3 - 2 u) in a ramp: its integral is u^3 - u^4 / 2
+    gone = RAMP * (up**3 - up**4 / 2) + np.clip(inside - RAMP, 0, seconds - 2 * RAMP)
+    gone += RAMP * (0.5 - down**3 + down**4 / 2)
+    change = (6 * up * (1 - up) - 6 * down * (1 - down)) / RAMP
+    return np.stack([gone, np.minimum(up, down) ** 2 * (3 - 2 * np.minimum(up, down)), change])
+
+
+def stirred(
+    arm: Arm, circles: Circles, t, elbow: str = "negative", start: str = "jump"
+) -> Trajectory:
+    """References of the family, each from the point of its circle farthest from the shoulder.
+
+    Parameters
+    ----------
+    arm : Arm
+    circles : Circles
+    t : array_like, shape (time,)
+        Times, s; the motion is from 0 to `MOTION_SECONDS`.
+    elbow : {"positive", "negative"}
+        Sign of the elbow angle; in pick-and-place it is negative.
+    start : {"jump", "smooth"}
+        As in `pace`.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape (runs, time, 2).
+
+    Raises
+    ------
+    Unreachable
+        If part of a circle cannot be reached.
+    """
+    one_of("elbow", elbow, ELBOWS)
+    turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period
+    angle, rate, change = turning[:, None] * pace(t, start)[:, None]
+    first = np.deg2rad(circles.bearing_deg)[:, None]
+    return around(arm, circles.centre, circles.radius, (first + angle, rate, change), elbow)
+
+
+def via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
+    """From rest at zero through some points and back, by splines of degree five.
+
+    The points follow each other at equal times; position, velocity and acceleration and two more
+    derivatives are continuous; the first two vanish at both ends.
+
+    Parameters
+    ----------
+    points : array_like, shape (runs, points, 2)
+        Angles, rad.
+    t : array_like, shape (time,)
+        Times, s.
+    seconds : float
+        Length of the motion, from 0 s on.
+    """
+    points, t = shaped("points", points, "(runs, points, 2)"), shaped("t", t, "(time,)")
+    number("seconds", seconds, 0.0, open_low=True)
+    y = np.pad(points, ((0, 0), (1, 1), (0, 0))).swapaxes(0, 1)
+    rest = [(k, np.zeros(y.shape[1:])) for k in (1, 2)]
+    spline = make_interp_spline(np.linspace(0, seconds, len(y)), y, 5, bc_type=(rest, rest))
+    moving = ((t >= 0) & (t <= seconds))[:, None, None]
+    inside = np.clip(t, 0.0, seconds)
+    return Trajectory(*((spline(inside, k) * moving).swapaxes(0, 1) for k in range(3)))
+
+
+def random_points(runs: int, points: int, seed: int) -> np.ndarray:
+    """Via points, uniform over the square that pick-and-place turns in, shape (runs, points, 2).
+
+    Parameters
+    ----------
+    runs, points, seed : int
+        How many motions, via points of each; of the draw.
+    """
+    draw = np.random.default_rng(integer("seed", seed, 0))
+    shape = (integer("runs", runs, 1), integer("points", points, 1), 2)
+    return -np.deg2rad(draw.uniform(0.0, MAX_EXTENT_DEG, shape))
+
+
+def times(seconds: float = MOTION_SECONDS) -> np.ndarray:
+    """Times of the control samples of a motion with its rests, s."""
+    return time_grid(CONTROL_STEP, REST, seconds)
+
+
+def recorded(
+    setup: Setup, reference: Trajectory, seconds: float = MOTION_SECONDS, controller=None
+) -> Recording:
+    """Drive the arm of a set-up along references and log what its sensors say.
+
+    Parameters
+    ----------
+    setup : Setup
+    reference : Trajectory
+        At `times`, shape (..., time, 2).
+    seconds : float
+        Length of the motion.
+    controller : Controller, optional
+        In place of the set-up's own.
+    """
+    return follow(
+        setup.arm,
+        setup.controller if controller is None else controller,
+        reference,
+        times(seconds),
+        effects=setup.effects,
+        seed=setup.seed,
+        log_every=round(LOG_STEP / CONTROL_STEP),
+        duration=seconds,
+    )
+
+
+def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
+    """Windows of each of `FAMILIES`: the same number of cases.
+
+    Parameters
+    ----------
+    runs : dict
+        As from `workshop.beyond.studies.loop.runs.days.training`.
+    width : int
+        Samples of a window.
+    """
+    found = {name: Cases.windows(run, width) for name, run in runs.items()}
+    halves = [found[name] for name in ("pick and place", "circles")]
+    x, torque = (np.concatenate([getattr(c, n)[::2] for c in halves]) for n in ("x", "torque"))
+    found["both"] = Cases(x, torque, "windows", LOG_STEP)
+    return {name: found[name] for name in FAMILIES}
+
+
+def small_circles(runs: int, seed: int) -> Circles:
+    """Members with the ranges of `SMALL` in place of the family's.
+
+    Parameters
+    ----------
+    runs, seed : int
+        How many; of the draw.
+    """
+    whole, draw = random_circles(runs, seed), np.random.default_rng((seed, 1))
+    return replace(whole, **{name: draw.uniform(*r, runs) for name, r in SMALL.items()})
+
+
+def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
+    """Recordings of the tests: another draw of each family, and what lies beyond both.
+
+    Parameters
+    ----------
+    setup : Setup
+    members : int
+        Of each test.
+    vias : bool
+        Whether motions with via points are among them, quick ones (all in 3 s) and steady ones
+        (`LEG` from point to point).
+    """
+    today, t, arm = setup.repeated(TEST_DAY), times(), setup.arm
+    circles = random_circles(members, TEST_DAY)
+    references = {
+        "circles": stirred(arm, circles, t),
+        "circles, smooth start": stirred(arm, circles, t, start="smooth"),
+        "circles, other elbow": stirred(arm, circles, t, "positive"),
+        "small circles": stirred(arm, small_circles(members, TEST_DAY), t),
+    }
+    found = {
+        "pick and place": today.record(random_extents(members, TEST_DAY)),
+        "trajectory 6": today.record(APPENDIX_I[5:]),
+        **{name: recorded(today, reference) for name, reference in references.items()},
+    }
+    for count in range(1, MOST + 1) if vias else ():
+        points, seconds = random_points(members, count, TEST_DAY), LEG * (count + 1)
+        found[f"{count} via points"] = recorded(today, via_points(points, t))
+        steady = via_points(points, times(seconds), seconds)
+        found[f"{count} via points, steady"] = recorded(today, steady, seconds)
+    return found
+
+
+def states(recording: Recording, setup: Setup) -> np.ndarray:
+    """Every fifth true state of a recording's motions, shape (states, 6), as in `AXES`.
+
+    Parameters
+    ----------
+    recording : Recording
+        With an axis of runs.
+    setup : Setup
+        Whose arm it is.
+    """
+    return true_states(recording, setup)[:, ::5].reshape(-1, 6)
+
+
+def coverage(setup: Setup, tests: dict, members: int) -> dict:
+    """Whether two families share their states, both ways, beside a second draw of the same one.
+
+    Of the cells that the first family reaches, the share that the second one reaches; and the
+    median distance from a state of the first to the nearest of the second, in standard
+    deviations of all states. "tied": correlation of position and acceleration, by joint.
+
+    Parameters
+    ----------
+    setup : Setup
+    tests : dict
+        As from `asked`.
+    members : int
+        Of each family.
+    """
+    today, pair = setup.repeated(TEST_DAY), ("pick and place", "circles")
+    again = (
+        today.record(random_extents(members, TEST_DAY + 1)),
+        recorded(today, stirred(setup.arm, random_circles(members, TEST_DAY + 1), times())),
+    )
+    first = {name: states(tests[name], setup) for name in pair}
+    second = {name: states(run, setup) for name, run in zip(pair, again)}
+    every = np.concatenate([*first.values(), *second.values()])
+    low, high, deviation = every.min(0), every.max(0), every.std(0)
+    named = first | {f"{name} again": x for name, x in second.items()}
+    cube = {n: np.clip((2 * x - low - high) / (high - low), -1, 1) for n, x in named.items()}
+    found: dict = {"tied": {}}
+    for name, x in first.items():
+        found["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
+    for (part, axes), (name, other) in product(AXES.items(), (pair, pair[::-1])):
+        mine = (first[name] / deviation)[:, axes]
+        found.setdefault(part, {})[name] = {
+            kind: {
+                "shared": shared_cells(cube[name][:, axes], cube[label][:, axes], CELLS),
+                "distance": np.median(nearest_distances(mine, (x / deviation)[:, axes])),
+            }
+            for kind, label, x in (
+                ("other family", other, first[other]),
+                ("same family", f"{name} again", second[name]),
+            )
+        }
+    return found

@@ -1,0 +1,355 @@
+"""Section 7.1's next step: torques at run time, and what they do to the end-point error."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.control import PID, plant
+from ddlib.dynamics import end_point_error, with_load
+from ddlib.effects import CoulombFriction, Delay, ViscousFriction
+from ddlib.learning import sliding_windows
+from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
+from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.guarded import Guarded
+from workshop.beyond.control.windowed import (
+    MeasuredWindows,
+    WindowFeedforward,
+    past_slopes,
+    poles_inside,
+)
+from workshop.beyond.rivals.gaussian import GaussianProcess
+from workshop.beyond.rivals.identified import Identified, Linear
+from workshop.beyond.rivals.lagrangian import LagrangianNetwork
+from workshop.beyond.rivals.networks import BySolver
+from workshop.beyond.rivals.protocol import Cases, Estimating
+from workshop.beyond.studies.loop.run_time_parts import (
+    EXTENTS,
+    FEWER,
+    POINTS,
+    WIDTH,
+    T,
+    computed_torque,
+    drive,
+    exact,
+    given,
+    linear_loop,
+    logged_error,
+    networks,
+    planned,
+    predicted,
+    rounded,
+    score,
+    through_loop,
+    through_window,
+    told,
+    with_impulse,
+)
+from workshop.beyond.studies.loop.runs import lines as batch
+from workshop.report import results
+from workshop.report.code_hash import study
+
+READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
+
+MEMBERS, FEW = 25, 10
+"""Networks: of each cell of Table 4-1, and in the side experiments and inside the loop.
+Every one runs on a day of its own; feedforwards without networks run on `FEW` days."""
+
+RIVALS: dict[str, Callable] = {
+    "identified": lambda day: Estimating(Identified()),
+    "linear filter": lambda day: Linear(),
+    "Gaussian process": lambda day: GaussianProcess(directions=9, subset=150, restarts=0, seed=day),
+    "Lagrangian network": lambda day: Estimating(
+        LagrangianNetwork((16, 16), gravity="none", friction=True, epochs=150, seed=day)
+    ),
+    "network, two hidden units": lambda day: BySolver(2, steps=60, decay=1e-6, seed=day),
+}
+"""Rivals that learn the windows of five recordings, each on `FEW` days. They run on the same day,
+with a straight line between samples of the log."""
+
+ROUNDED = (0.0, 0.02, 0.05, 0.1, 0.2)
+"""Lengths over which corners of the reference are averaged, s."""
+
+LOADS, FRICTIONS, LATE = (0.0, 2.0, 5.0, 10.0), (0.5, 1.0, 2.0), (0, 1, 3, 5)
+"""Load in kg (Han, Hemami & Yurkovich 1987), friction as a factor, delay in control periods."""
+
+GAINS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)
+"""Factors on all gains of the feedback."""
+
+SHARES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+"""How much of the measured deviation a model inside the loop sees."""
+
+LATE_INSIDE = (0, 5)
+"""Delays of the loop with a model inside, control periods."""
+
+CORNERS = (16, 24, 32, 45, 48)
+"""Trajectories of the square that are tried with a model inside the loop."""
+
+LIMIT = (4.0, 4.0)
+"""Joint speeds at which the guard stops a run there, rad/s: five times the family's largest."""
+
+SHOWN = (-0.1, 1.0)
+"""The part of a motion that is shown over time, s."""
+
+
+def _nothing(q, qd, qdd):
+    return np.zeros_like(q)
+
+
+def _lines(setup: Setup) -> dict[str, list]:
+    """Feedforwards by name: one model for all days, or one for each."""
+    return {
+        "none": [_nothing],
+        "exact": [exact(setup)],
+        "exact, with its impulses": [with_impulse(setup)],
+        **{f"exact, window {w}": [through_window(exact(setup), w)] for w in WINDOWS},
+        **{f"network, window {w}": networks(setup, MEMBERS, w) for w in WINDOWS},
+    }
+
+
+def _few(setup: Setup) -> dict[str, list]:
+    """Those of the side experiments."""
+    return {
+        "none": [_nothing],
+        "exact": [exact(setup)],
+        "exact, window": [through_window(exact(setup))],
+        "network": networks(setup, FEW),
+    }
+
+
+def _days(models: list) -> range:
+    return range(1, 1 + (len(models) if len(models) > 1 else FEW))
+
+
+def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
+    """Scores of all lines over the square, and the torques of the networks."""
+    rows, torques = {}, {}
+    for name, models in _lines(setup).items():
+        torque = planned(models, reference)
+        log = drive(setup, given(torque, setup.controller), reference, _days(models))
+        rows[name] = told(score(setup.arm, log))
+        if name.startswith("network"):
+            torques[name] = torque
+    days = range(1, 1 + FEW)
+    log = drive(setup, computed_torque(setup), reference, days)
+    rows["computed torque"] = told(score(setup.arm, log))
+    return rows, torques
+
+
+def _rivals(setup: Setup, reference: Trajectory) -> dict:
+    """Rivals of windows as feedforwards, with their error on trajectory 6."""
+    made: dict = {name: ([], []) for name in RIVALS}
+    days = range(1, 1 + FEW)
+    for day in days:
+        training, six = (Cases.windows(part, WIDTH) for part in split(setup.repeated(day).record()))
+        for name, make in RIVALS.items():
+            rival = make(day).fit(training)
+            feedforward = WindowFeedforward(rival.torque, WIDTH, between="line", step=LOG_STEP)
+            torques, scores = made[name]
+            scores.append(rmss(rival.torque(six.x), six.torque))
+            torques.append(_by_run(feedforward, reference))
+    rows = {}
+    for name, (torques, scores) in made.items():
+        log = drive(setup, given(np.stack(torques), setup.controller), reference, days)
+        rows[name] = {**told(score(setup.arm, log)), "RMSS": scores}
+    return rows
+
+
+def _by_run(model: WindowFeedforward, reference: Trajectory) -> np.ndarray:
+    """Torques run by run: a process keeps a product of all windows with all it has learnt."""
+    runs = (Trajectory(*(x[k] for x in reference)) for k in range(len(reference.q)))
+    return np.stack([model(*run) for run in runs])
+
+
+def _course(setup: Setup) -> dict:
+    """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
+    reference = rounded(APPENDIX_I[5:], 0.0)
+    log, parts = batch.driven(setup, _made(_lines(setup), reference), reference)
+    shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
+    gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
+    joints = np.rad2deg(log.tracking_error)
+    found = {
+        name: {
+            "hand": np.median(gap[part], (0, 1))[shown],
+            "joints": np.median(joints[part], (0, 1))[shown],
+        }
+        for name, part in parts.items()
+    }
+    return {**found, "time": log.t[shown]}
+
+
+def _made(lines: dict, reference) -> dict:
+    """Torques of lines along a reference, with the days of their members."""
+    return {name: (planned(models, reference), _days(models)) for name, models in lines.items()}
+
+
+def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:
+    """The same, and computed torque."""
+    days = range(1, 1 + FEW)
+    log = drive(setup, computed_torque(setup), reference, days, **changed)
+    middle = np.median(score(setup.arm, log).whole, -1)
+    return batch.errors(setup, made, reference, **changed) | {"computed torque": middle}
+
+
+def _corner(setup: Setup) -> dict:
+    """Corners of the reference rounded, and a reference without corners."""
+    lines = _few(setup)
+
+    def along(reference):
+        return batch.errors(setup, _made(lines, reference), reference)
+
+    found = {f"{seconds:g}": along(rounded(FEWER, seconds)) for seconds in ROUNDED}
+    return {"rounded": found, "smooth": along(smooth_pick_and_place(FEWER, T))}
+
+
+def _rates(setup: Setup, reference) -> dict:
+    """What is done between the samples of the log, and windows at the wrong period."""
+    options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
+    options["2 ms apart"] = {"every": 1, "step": None}
+    lines = {name: networks(setup, FEW, **how) for name, how in options.items()}
+    return batch.errors(setup, _made(lines, reference), reference)
+
+
+def _changed(setup: Setup, made: dict, reference) -> dict:
+    """Load, friction and delay that no feedforward was made for."""
+    found: dict = {"load": {}, "friction": {}, "delay": {}}
+    for load in LOADS:
+        arm = with_load(setup.arm, load)
+        knows = _made({"exact, window, knows": [through_window(exact(setup, arm))]}, reference)
+        found["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
+    viscous, coulomb = setup.effects.friction
+    for factor in FRICTIONS:
+        friction = (
+            ViscousFriction(factor * np.asarray(viscous.coefficient)),
+            CoulombFriction(factor * np.asarray(coulomb.level)),
+        )
+        effects = replace(setup.effects, friction=friction)
+        found["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
+    for late in LATE:
+        effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
+        found["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
+    return found
+
+
+def _gains(setup: Setup, made: dict, reference) -> dict:
+    """Softer and stiffer feedback, without and with feedforwards."""
+    found = {}
+    for factor in GAINS:
+        kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
+        other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
+        found[f"{factor:g}"] = batch.errors(other, made, reference)
+    return found
+
+
+def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
+    """Each network's error as the report measures it, and other predictors of the end point's."""
+    found = {}
+    recording = setup.record()
+    for width in WINDOWS:
+        name = f"network, window {width}"
+        model = results.networks(width, setup.name)
+        found[str(width)] = {
+            "end point": rows[name]["whole"],
+            "RMSS": errors(model, recording).test,
+            "through the loop": logged_error(setup, model, split(recording)[1]),
+            "planned": np.median(predicted(setup, torques[name], reference), -1),
+        }
+    return found
+
+
+def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
+    """Largest answer of the linear loop to bounded torques, and what networks make of theirs.
+
+    Runs with a network are compared with runs with exact equations behind a window: their
+    torques differ by a bounded signal, whatever the reference does.
+    """
+    elbow = float(reference.q[..., 1].mean())
+    system = linear_loop(setup, elbow)
+    knock = np.zeros((2, 5000, 2))
+    knock[[0, 1], 0, [0, 1]] = 1.0
+    gain = np.abs(through_loop(system, knock)).sum(1).T  # (angle, torque), rad/(N m)
+    days = range(1, 1 + len(torques))
+    other = planned([through_window(exact(setup))], reference)
+    runs = [
+        drive(setup, given(torque, setup.controller), reference, days)
+        for torque in (torques, other)
+    ]
+    apart = np.abs(runs[0].q_true - runs[1].q_true).max(-2)
+    largest = np.abs(torques - other).max(-2)
+    return {
+        "gain": np.rad2deg(gain),
+        "torque": np.median(largest, 1),
+        "apart": np.rad2deg(np.median(apart, 1)),
+        "share": (apart / (largest @ gain.T)).max((1, 2)),
+    }
+
+
+def _inside(setup: Setup) -> dict:
+    """Models inside the loop: which runs the guard stops, the error of the others."""
+    reference = rounded(EXTENTS[list(CORNERS)], 0.0)
+    shares, found = np.array(SHARES)[:, None], {}
+    models = {"exact, window": [through_window(exact(setup))], "network": networks(setup, FEW)}
+    day = setup.repeated(1).effects
+    for name, several in models.items():
+        for late in LATE_INSIDE:
+            effects = replace(day, actuator=(*day.actuator, Delay(late)))
+            row: dict = {"stopped": [], "error": [], "poles": []}
+            for model in several:
+                law = Watched(
+                    Guarded(MeasuredWindows(model, setup.controller, shares), speeds=LIMIT)
+                )
+                log = follow(setup.arm, law, reference, T, effects=effects, duration=3.0)
+                row["stopped"].append(law.law.stops.stopped.mean(1))
+                row["error"].append(np.median(score(setup.arm, log).whole, 1))
+                row["poles"].append(_largest_poles(setup, model, reference, late))
+            found[f"{name}, {late}"] = row
+    return found
+
+
+def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int) -> list[float]:
+    """Size of the largest pole of the linear loop with a model inside, at each of `SHARES`."""
+    windows = sliding_windows(reference.q[..., 250:1750:5, :], WIDTH).reshape(-1, 2, WIDTH)
+    past = past_slopes(model.model, windows[::10])
+    viscous = np.asarray(setup.effects.friction[0].coefficient)
+    joints = plant(setup.arm.mass_matrix([0.0, float(windows[:, 1].mean())]), viscous)
+    poles = [
+        poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in SHARES
+    ]
+    return [float(np.abs(each).max()) for each in poles]
+
+
+@study
+def run_time() -> dict:
+    """Feedforwards of the square of extents under two readings of the controller.
+
+    End-point errors in mm, root mean squares over a motion; a value for each member (a network
+    or a day) is the median over the square.
+    """
+    reference = rounded(EXTENTS, 0.0)
+    found: dict = {"points": POINTS, "extents": EXTENTS, "shares": SHARES, "limit": LIMIT}
+    found["readings"] = {}
+    fewer = rounded(FEWER, 0.0)
+    for setup in READINGS:
+        made = _made(_few(setup), fewer)
+        rows, torques = _square(setup, reference)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", OutsideFamilyWarning)
+            rows |= _rivals(setup, reference)
+        found["readings"][setup.name] = {
+            "square": rows,
+            "course": _course(setup),
+            "corner": _corner(setup),
+            "rates": _rates(setup, fewer),
+            "changed": _changed(setup, made, fewer),
+            "gains": _gains(setup, made, fewer),
+            "scatter": _scatter(setup, rows, torques, reference),
+            "bound": _bound(setup, torques[f"network, window {WIDTH}"], reference),
+            "inside": _inside(setup),
+        }
+    return found

@@ -1,0 +1,255 @@
+"""Section 7.1: on what four findings about closed loops hang, tried after they were found.
+
+Whether the plan itself has to be smoothed, whether training was tuned too far, whether there were
+enough windows, and which motion is practised.
+"""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.control import Feedforward
+from ddlib.learning import NotConverged
+from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
+from ddlib.simulation import smooth_pick_and_place
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MOTION_SECONDS,
+    OutsideFamilyWarning,
+    Trajectory,
+    pick_and_place,
+)
+from ddlib.trajectories import random_extents as random_members
+from workshop.beyond.control.feedback_error import RigidBodyTerms
+from workshop.beyond.control.windowed import WindowFeedforward
+from workshop.beyond.rivals.identified import Identified
+from workshop.beyond.rivals.networks import BySolver
+from workshop.beyond.rivals.protocol import Cases, Estimating
+from workshop.beyond.studies.loop import joints, learners, learning, motions, stirring
+from workshop.beyond.studies.loop import run_time_parts as run_time
+from workshop.beyond.studies.loop.chain import Sample, chain, extents, recorded
+from workshop.beyond.studies.loop.runs import lines as batch
+from workshop.beyond.studies.loop.runs.days import recorded as recorded_days
+from workshop.report.code_hash import study
+
+COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)
+"""Seconds over which the copy of the plan is smoothed that exact equations are given."""
+
+STEPS = (5, 15, 60)
+"""Steps of the solver among which leaving one training run out may choose; 60 made Table 4-1."""
+
+DECAYS = (1e-6, 1e-3, 1e-2)
+"""Weight decays among which leaving one motion of four joints out may choose."""
+
+LATER, MEMBERS, TEST = 500, 12, 4711
+"""First of the days of these trials; test motions of a family, and their seed."""
+
+
+def _copies(setup: Setup, days) -> dict:
+    """End-point errors on the paper's own plan, equations given a smoothed copy of it, mm."""
+    plan, equations = run_time.rounded(run_time.FEWER, 0.0), run_time.exact(setup)
+    torques = {"none": 0 * plan.q[None]}
+    torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in COPIES}
+    torques["network"] = run_time.planned(run_time.networks(setup, len(days)), plan)
+    made = {name: (torque, days) for name, torque in torques.items()}
+    return batch.errors(setup, made, plan)
+
+
+def _cases(run, every: int) -> Cases:
+    found = Cases.windows(run, stirring.WIDTH)
+    return Cases(found.x[::every], found.torque[::every], found.kind, found.step)
+
+
+def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
+    rival = BySolver(10, steps, decay=JOINT_DAMPING.decay, initial=INITIAL, seed=day)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
+        rival.fit(cases)
+    return rival
+
+
+def _chosen_steps(run, day: int) -> int:
+    """Steps with the least error on the runs of pick-and-place that are left out in turn.
+
+    One descent passes through all of `STEPS`.
+    """
+    wrong = np.zeros(len(STEPS))
+    for out in range(len(run.q)):
+        rest = _cases(run[[k for k in range(len(run.q)) if k != out]], 4)
+        asked = _cases(run[[out]], 4)
+        course = joints.solved(
+            rest.x, rest.torque, (asked.x, asked.torque), seed=day,
+            steps=max(STEPS), decay=JOINT_DAMPING.decay,
+        ).history.test[:, 0]  # fmt: skip
+        wrong += course[np.minimum(STEPS, len(course) - 1)] ** 2
+    return STEPS[int(wrong.argmin())]
+
+
+def _stopped(setup: Setup, days, circles: bool) -> dict:
+    """Hands on circles and on pick-and-place, with training stopped by pick-and-place itself.
+
+    With ``circles`` also those of networks that learnt twenty circles.
+    """
+    t = motions.times()
+    asked = {
+        "circles": motions.stirred(setup.arm, motions.random_circles(MEMBERS, TEST), t),
+        "pick and place": pick_and_place(random_members(MEMBERS, TEST), t),
+    }
+    steps, models = [], {"chosen": [], "60": [], "identified": []}
+    for day, run in zip(days, recorded_days(setup, [_five(t)] * len(days), days)):
+        whole = _cases(run, 1)
+        steps.append(_chosen_steps(run, day))
+        models["60"].append(_fitted(STEPS[-1], whole, day))
+        stops = steps[-1] < STEPS[-1]
+        models["chosen"].append(_fitted(steps[-1], whole, day) if stops else models["60"][-1])
+        models["identified"].append(Estimating(Identified()).fit(whole))
+    if circles:
+        drawn = [motions.stirred(setup.arm, motions.random_circles(20, day), t) for day in days]
+        models["twenty circles"] = [
+            _fitted(STEPS[-1], _cases(run, 4), day)
+            for day, run in zip(days, recorded_days(setup, drawn, days))
+        ]
+    today = setup.repeated(TEST)
+    hands = {motion: _hands(today, models, reference) for motion, reference in asked.items()}
+    return {"steps": steps, "hands": hands}
+
+
+def _five(t) -> Trajectory:
+    return pick_and_place(APPENDIX_I[:5], t)
+
+
+def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
+    """Median over a family of the hand's error, one for each model of each name, mm."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideFamilyWarning)
+        torques = {
+            name: [WindowFeedforward(m._torque, stirring.WIDTH)(*reference) for m in several]
+            for name, several in models.items()
+        }
+    torques = {"none": [0 * reference.q], **torques}
+    every = np.stack([torque for several in torques.values() for torque in several])
+    middle = np.median(stirring.off(setup, stirring.through(setup, every, reference)), -1)
+    ends = np.cumsum([len(several) for several in torques.values()])[:-1]
+    return dict(zip(torques, np.split(middle, ends)))
+
+
+def _windows(seeds: int) -> dict:
+    """Errors with four joints: fewer windows of twenty motions, and five with chosen training."""
+    made = chain(4)
+    test, found = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
+    found["as it is"] = []
+    for seed in range(LATER, LATER + seeds):
+        for count in (300, 750):
+            part = recorded(made, extents(4, 20, seed), seed).thinned(count)
+            found[f"{count} of twenty"].append(_error(part, test, seed))
+        five = recorded(made, extents(4, 5, seed), seed).thinned(joints.CASES)
+        found["as it is"].append(_error(five, test, seed))
+        decay, steps = _chosen_decay(five, seed)
+        found["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
+    return found
+
+
+def _course(training: Sample, test: Sample, seed: int, **options) -> np.ndarray:
+    """Errors on a test after each step of the solver."""
+    pair = (test.windows, test.torque)
+    return joints.solved(training.windows, training.torque, pair, seed=seed, **options).history.test
+
+
+def _error(training: Sample, test: Sample, seed: int, **options) -> float:
+    return float(_course(training, test, seed, **options)[-1, 0])
+
+
+def _chosen_decay(five: Sample, seed: int) -> tuple[float, int]:
+    """Decay and number of steps with the least error on motions that are left out in turn."""
+    run, best = np.repeat(np.arange(5), len(five.torque) // 5), (np.inf, 0.0, 1)
+    for decay in DECAYS:
+        courses = []
+        for out in range(5):
+            rest, asked = (_part(five, np.flatnonzero(keep)) for keep in (run != out, run == out))
+            courses.append(_course(rest, asked, seed, decay=decay)[:, 0])
+        length = min(map(len, courses))
+        mean = np.median([course[:length] for course in courses], 0)
+        step = int(mean[1:].argmin()) + 1
+        best = min(best, (float(mean[step]), decay, step))
+    return best[1:]
+
+
+def _part(sample: Sample, cases: np.ndarray) -> Sample:
+    runs = len(cases) * sample.runs // len(sample.torque)
+    return Sample(sample.windows[cases], sample.torque[cases], sample.states[cases], runs)
+
+
+def _practised(setup: Setup, seeds: int) -> dict:
+    """One motion practised, then frozen on others, mm: three motions, and a scaled memory."""
+    draw = learners.Draw(setup, first=LATER, seeds=seeds)
+    asked = learning.motions(draw)
+    practise = {
+        "in step": asked["the same"],
+        "out of step": (learners.grid(), _out_of_step(draw)),
+        "two harmonics": asked["two harmonics"],
+    }
+    return {name: _after(draw, *motion, asked) for name, motion in practise.items()}
+
+
+def _out_of_step(draw) -> Trajectory:
+    """The extents of the practised motion; the elbow starts three tenths of it later."""
+    share, t = 0.7, learners.grid()
+    early, late = (
+        smooth_pick_and_place(draw.learnt, (t - wait) / share, 1.0)
+        for wait in (0.0, (1 - share) * MOTION_SECONDS)
+    )
+    pairs = zip(early, late, (1, share, share**2))
+    return Trajectory(*(np.stack([a[..., 0], b[..., 1]], -1) / s for a, b, s in pairs))
+
+
+def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
+    terms = RigidBodyTerms(learners.NAMES)
+    taught = {
+        "exact terms": learners.Terms(terms, draw),
+        "exact terms, slower": learners.Terms(terms, draw, 0.3 * learners.RATE),
+        "network, last layer": learners.last_layer(draw.untrained, draw),
+        "linear filter": learners.linear_filter(draw),
+        "memory": learners.Memory(draw),
+    }
+    learning._practise(draw, taught, reference, t)
+    found: dict = {}
+    for motion, (times, wanted) in asked.items():
+        speed = {"in 2/3 of the time": 1.5, "in half the time": 2.0}.get(motion, 1.0)
+        scaled = copy.deepcopy(taught["memory"].memory)
+        scaled.torque = scaled.torque * speed**2
+        plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
+        every = {"none": plain} | {k: x.controller(False) for k, x in taught.items()}
+        every["memory, scaled"] = scaled
+        many = learning._repeated(wanted, len(every))
+        errors, _ = learning.trial(draw, list(every.values()), [1] * len(every), many, times)
+        found[motion] = dict(zip(every, errors))
+    return found
+
+
+@study
+def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
+    """Four findings under other conditions, both set-ups where they were found in both.
+
+    Parameters
+    ----------
+    days : int
+        Of recordings.
+    seeds : int
+        Draws of four joints, and of practised motions.
+    """
+    both = (JOINT_DAMPING, STATE_FEEDBACK)
+    solved = replace(STATE_FEEDBACK, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
+    later = range(LATER, LATER + days)
+    return {
+        "copies": {s.name: _copies(s, later) for s in both},
+        "stopped": {
+            s.name: _stopped(s, later, circles)
+            for s, circles in ((JOINT_DAMPING, True), (solved, False))
+        },
+        "windows": _windows(seeds),
+        "practised": {JOINT_DAMPING.name: _practised(JOINT_DAMPING, seeds)},
+    }

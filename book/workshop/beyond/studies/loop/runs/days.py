@@ -1,0 +1,79 @@
+"""Recordings of several days as one batch: the same motions or others on each, its own noise."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import shaped
+from ddlib.setups import Setup
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow
+from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from workshop.beyond.studies.loop import motions
+from workshop.beyond.studies.loop.run_time_parts import on_days
+
+TRAINED = 5
+"""Motions of a family on a day: as many as Appendix I has for training."""
+
+
+def recorded(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
+    """Drive the arm along the references of each day and log what its sensors say.
+
+    Parameters
+    ----------
+    setup : Setup
+    references : list of Trajectory
+        Of each day, at `motions.times`, shape (runs, time, 2).
+    days : sequence of int
+        Each with its own zero of the encoders, as in `Setup.repeated`, and its own torque noise:
+        a run's does not depend on what else is recorded.
+
+    Returns
+    -------
+    list of Recording
+        A recording for each day.
+
+    Raises
+    ------
+    ValueError
+        If there is not one reference for each day, or their shapes differ.
+    """
+    days = shaped("days", days, f"({len(references)},)").astype(int)
+    together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
+    runs = np.arange(together.q.shape[1])
+    log = follow(
+        setup.arm,
+        setup.controller,
+        together,
+        motions.times(),
+        effects=on_days(setup.effects, setup, days),
+        seed=1000 * (1 + days[:, None]) + runs,
+        log_every=round(LOG_STEP / CONTROL_STEP),
+        duration=MOTION_SECONDS,
+    )
+    return [log[k] for k in range(len(days))]
+
+
+def training(setup: Setup, days) -> list[dict[str, Recording]]:
+    """Recordings of five motions of each family, for each day.
+
+    Parameters
+    ----------
+    setup : Setup
+    days : sequence of int
+        The seeds of circles and via points, too.
+    """
+    t = motions.times()
+    references = {
+        "pick and place": lambda day: pick_and_place(APPENDIX_I[:TRAINED], t),
+        "circles": lambda day: motions.stirred(setup.arm, motions.random_circles(TRAINED, day), t),
+        "via points": lambda day: motions.via_points(
+            motions.random_points(TRAINED, motions.VIA, day), t
+        ),
+    }
+    each = [[make(day) for make in references.values()] for day in days]
+    joined = [Trajectory(*(np.concatenate(parts) for parts in zip(*day))) for day in each]
+    logs = recorded(setup, joined, days)
+    return [
+        {name: log[k * TRAINED : (k + 1) * TRAINED] for k, name in enumerate(references)}
+        for log in logs
+    ]

@@ -1,0 +1,135 @@
+"""What a reader sees who picks a learner for the loop: its errors and estimates, by motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddlib.control import pd
+from ddlib.dynamics import with_load
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
+from workshop.beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
+from workshop.beyond.studies.loop.runs.adaptive import (
+    FULL,
+    SMOOTH,
+    Behind,
+    drawn,
+    make,
+    rates,
+    trial,
+)
+from workshop.report.code_hash import study
+
+LOADS = (0, 5)
+"""Loads in the hand, kg."""
+
+SPEEDS = {
+    "a tenth": 0.1,
+    "as in the chapter": 1.0,
+    "ten times": 10.0,
+    "a hundred times": 100.0,
+}
+"""Rates of adaptation, as multiples of the chapter's."""
+
+LEARNERS = ("none", "Slotine & Li", "Craig, Hsu & Sastry", "feedback-error learning")
+"""Who learns."""
+
+MOTIONS = 6
+"""Motions one after another: the family's, with random extents."""
+
+
+@dataclass(frozen=True)
+class _FeedbackError:
+    """Feedback-error learning with the terms of the other laws; `estimate` are its weights."""
+
+    estimate: np.ndarray
+    factor: np.ndarray
+
+    def start(self, reference, step):
+        # with one gain for all joints it would be Slotine & Li's law at the desired state
+        rate = rates("with friction", JOINT_DAMPING, self.factor) / KD[0]
+        feedback = pd(JOINT_DAMPING.controller.kp, KD)
+        learner = FeedbackErrorLearning(RigidBodyTerms(FULL), rate, self.estimate, feedback)
+        return _Kept(learner.start(reference, step))
+
+
+class _Kept:
+    def __init__(self, law):
+        self._law = law
+
+    def __call__(self, k, q, qd):
+        return self._law(k, q, qd)
+
+    @property
+    def estimate(self):
+        return self._law.weights[..., -1, :]
+
+
+def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Errors (mm) and estimates of all learners, with and without friction, at all rates.
+
+    Parameters
+    ----------
+    load : int
+        kg.
+
+    Returns
+    -------
+    dict
+        By learner: errors of shape (friction, rate, motions), friction off first, and estimates
+        of shape (friction, rate, motions + 1, parameters).
+    """
+    setup, speeds = JOINT_DAMPING, list(SPEEDS.values())
+    runs = 2 * len(speeds)
+    factor = np.tile(speeds, 2)
+    on = np.repeat([0.0, 1.0], len(speeds))[:, None]
+    effects = Effects(
+        friction=(
+            ViscousFriction(on * JOINT_DAMPING_VISCOUS), CoulombFriction(on * JOINT_DAMPING_COULOMB)
+        ),
+        actuator=setup.effects.actuator,
+        encoder=setup.effects.encoder,
+    )  # fmt: skip
+    arm = with_load(setup.arm, load)
+    laws = {
+        LEARNERS[0]: make("with friction", setup, factor=0.0),
+        LEARNERS[1]: make("with friction", setup, factor=factor),
+        LEARNERS[2]: make("measured acceleration", setup, factor=factor),
+        LEARNERS[3]: Behind(_FeedbackError(start(), factor), SMOOTH),
+    }
+    begin = start()
+    errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(FULL)))]
+    for extents in drawn(1, MOTIONS, seed=11):
+        done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
+        laws = done.laws
+        errors.append(np.minimum(done.settled, 1e3))  # of a stopped run it is infinite
+        estimates.append(
+            np.stack([np.broadcast_to(x.estimate, (runs, len(FULL))) for x in laws.values()])
+        )
+    errors, estimates = np.stack(errors, -1), np.stack(estimates, -2)
+    shape = (2, len(speeds))
+    return {
+        name: (errors[k].reshape(*shape, -1), estimates[k].reshape(*shape, MOTIONS + 1, -1))
+        for k, name in enumerate(LEARNERS)
+    }
+
+
+def start() -> np.ndarray:
+    """What all learners begin with: the arm without a load, and no friction."""
+    return make("with friction", JOINT_DAMPING).estimate
+
+
+@study
+def loop_learner() -> dict:
+    """`learned` of each of the `LOADS`: errors (mm) and estimates by load and learner."""
+    return {
+        "loads": {
+            str(load): {
+                name: {"errors": errors, "estimates": estimates}
+                for name, (errors, estimates) in learned(load).items()
+            }
+            for load in LOADS
+        }
+    }

@@ -1,0 +1,167 @@
+"""All rivals on the same recordings: error, stored numbers, arithmetic, training time."""
+
+from __future__ import annotations
+
+import warnings
+from itertools import product
+
+import numpy as np
+
+from ddlib.analysis import noise_floor
+from ddlib.setups import JOINT_DAMPING, split, square, true_states
+from ddlib.simulation import LOG_STEP
+from ddlib.trajectories import OutsideFamilyWarning
+from workshop.beyond.rivals.protocol import Cases, Estimating, trial
+from workshop.beyond.studies.lineup import DAYS, LINES, REFERENCE
+from workshop.report import results
+from workshop.report.code_hash import study
+
+WIDTH = 21
+"""Samples of the windows: the paper's best."""
+
+GRID = 9
+"""Trajectories in a row of the square of extents."""
+
+EVERY, SHOWN = 4, 10
+"""Of the square's samples every so many are tested, and every so many are kept to be shown."""
+
+BUDGET = 540
+"""Stored numbers of the paper's network: ten hidden units, window 21, two scalings of torque."""
+
+TORQUES = results.FOLDER / "rivals-torques.npz"
+"""Measured and predicted torques on the square of extents: each rival at its largest size within
+the budget, or at its smallest."""
+
+INPUTS = ("positions", "exact states")
+"""What rivals see: windows of measured positions, or states without noise."""
+
+
+def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
+    """What rivals learn from and are tested on, on one day.
+
+    Parameters
+    ----------
+    day : int
+        As in `Setup.repeated`.
+
+    Returns
+    -------
+    sets : dict
+        For each of `INPUTS` cases by name: training, trajectory 6; inside and outside, the
+        trajectories of the square on either side of the training hull, every `EVERY` samples.
+    asked : Cases
+        Windows of the whole square, every `SHOWN` samples.
+    """
+    setup = JOINT_DAMPING.repeated(day)
+    training, six = split(setup.record())
+    whole = square(setup, GRID)
+    parts = {
+        "training": (training, 1),
+        "trajectory 6": (six, 1),
+        "inside": (whole.recording[whole.inside], EVERY),
+        "outside": (whole.recording[~whole.inside], EVERY),
+    }
+    seen: dict = {inputs: {} for inputs in INPUTS}
+    for name, (part, every) in parts.items():
+        seen["positions"][name] = _every(Cases.windows(part, WIDTH), every)
+        exact = Cases.states(part, true_states(part, setup))
+        seen["exact states"][name] = _every(exact, every)
+    return seen, _every(Cases.windows(whole.recording, WIDTH), SHOWN)
+
+
+def _every(cases: Cases, step: int) -> Cases:
+    return Cases(cases.x[::step], cases.torque[::step], cases.kind, cases.step)
+
+
+def _seen(line, inputs: str, size, seed: int):
+    """A rival for what it is to see, or None if it cannot."""
+    rival = line.make(size, seed)
+    if inputs == "positions" and rival.kind == "states":
+        return Estimating(rival)
+    return None if inputs == "exact states" and rival.kind == "windows" else rival
+
+
+def floors(sets: dict) -> dict:
+    """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `INPUTS`.
+
+    Parameters
+    ----------
+    sets : dict
+        Cases by name.
+    """
+    (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
+    bits = float(np.log2(2 * np.pi / encoder.step))
+    found = {inputs: {} for inputs in INPUTS}
+    for name, cases in sets.items():
+        deviation = cases.torque.std(0)
+        share = float(np.sqrt(np.mean((np.array(noise.std) / deviation) ** 2)))
+        known = JOINT_DAMPING.arm, deviation, WIDTH, bits, share, LOG_STEP
+        found["positions"][name], found["exact states"][name] = noise_floor(*known), share
+    return found
+
+
+@study
+def rivals() -> dict:
+    """Every line of `LINES` at all its sizes, on several days.
+
+    A row for each rival, size and kind of inputs; errors and times have a value for each day. The
+    torques of the first day all over the square go into a file of their own (`TORQUES`).
+    """
+    rows, torques, floor = {}, {}, None
+    for day in range(1, DAYS + 1):
+        sets, asked = recorded(day)
+        floor = floor or floors(sets["positions"])
+        for name, line in LINES.items():
+            for inputs, size in product(INPUTS, line.sizes if day <= line.days else ()):
+                rival = _seen(line, inputs, size, day)
+                if rival is None:
+                    continue
+                found = trial(rival, sets[inputs]["training"], sets[inputs])
+                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, found))
+                row["seconds"].append(found.seconds)
+                for part, error in found.rmss.items():
+                    row["errors"][part].append(error)
+                affordable = name not in torques or found.count <= BUDGET
+                if day == 1 and inputs == "positions" and affordable:
+                    torques[name] = _asked(rival, asked)
+        if day == 1:
+            _keep(torques, asked)
+    return {
+        "days": DAYS,
+        "width": WIDTH,
+        "reference": REFERENCE,
+        "budget": BUDGET,
+        "floor": floor,
+        "lines": {
+            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
+        },
+        "rows": list(rows.values()),
+    }
+
+
+def _row(name, inputs, size, found) -> dict:
+    return {
+        "rival": name,
+        "inputs": inputs,
+        "size": size,
+        "count": found.count,
+        "operations": list(found.operations),
+        "seconds": [],
+        "errors": {part: [] for part in found.rmss},
+    }
+
+
+def _asked(rival, asked: Cases) -> np.ndarray:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OutsideFamilyWarning)
+        return rival.torque(asked.x)
+
+
+def _keep(torques: dict, asked: Cases) -> None:
+    """Measured and predicted torques of the square, shape (rivals + 1, runs, samples, joint)."""
+    shape = (-1, GRID**2, len(asked) // GRID**2, 2)
+    values = np.stack([asked.torque, *torques.values()]).reshape(shape)
+    part = TORQUES.with_name(TORQUES.name + ".part")
+    with open(part, "wb") as file:
+        np.savez_compressed(file, names=["measured", *torques], torque=values.astype(np.float16))
+    part.replace(TORQUES)

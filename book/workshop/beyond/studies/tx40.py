@@ -1,0 +1,286 @@
+"""The real arm's recording as cases, its blocks, and the models that are no networks.
+
+Cases are the same hundred moments a second at every sampling rate; what differs is the window
+around them, and over how long a current is averaged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from ddlib._check import integer
+from ddlib.analysis import savitzky_golay
+from ddlib.identification import joint_columns
+from workshop.beyond.others import RealArm, staubli
+
+BLOCKS = 5
+"""Contiguous parts of the recording; each is predicted by what was learnt on the others."""
+
+RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}
+"""Windows that were tried, by samples a second; 100 are the paper's."""
+
+SLOTS = slice(40, 860)
+"""The recording's hundredths of a second that all windows fit around."""
+
+RIDGES = tuple(10.0 ** np.arange(-10, 1))
+"""Penalties of which ridge regression takes the best, as shares of the inputs' variance."""
+
+PIECES = 15
+"""Into how many pieces the recording is cut to choose a penalty by."""
+
+DEGREE = 3
+"""Of the polynomial whose derivatives stand for a window's states."""
+
+
+@cache
+def recorded(rate: int) -> RealArm:
+    """The recording at so many samples a second."""
+    return staubli().at(rate)
+
+
+@dataclass(frozen=True)
+class Windowed:
+    """Windows of the real arm at the moments of `SLOTS`, and the currents there.
+
+    Attributes
+    ----------
+    rate, width : int
+        Samples a second; samples of a window.
+    x : ndarray, shape (cases, 6, width)
+        Positions, rad.
+    current : ndarray, shape (cases, 6)
+        A.
+    """
+
+    rate: int
+    width: int
+    x: np.ndarray
+    current: np.ndarray
+
+    @classmethod
+    def of(cls, rate: int, width: int) -> Windowed:
+        """The cases of a sampling rate and window size.
+
+        Parameters
+        ----------
+        rate : int
+            100, 200 or 500 samples a second.
+        width : int
+            Odd; at most 0.81 s.
+        """
+        found, many = recorded(rate), rate // 100
+        integer("width", width, 3, 81 * many)
+        centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
+        around = np.arange(width) - width // 2
+        x = found.q[centres[:, None] + around]
+        return cls(rate, width, np.moveaxis(x, 1, 2), found.current[centres])
+
+    @property
+    def step(self) -> float:
+        """Sampling period, s."""
+        return 1 / self.rate
+
+    @property
+    def states(self) -> np.ndarray:
+        """Positions, velocities, accelerations by a cubic in each window, ``(cases, 6, 3)``."""
+        degree = min(DEGREE, self.width - 1)
+        filters = [savitzky_golay(self.width, k, self.step, degree) for k in range(3)]
+        return self.x @ np.stack(filters, -1)
+
+    def fold(self, block: int) -> tuple[np.ndarray, np.ndarray]:
+        """Cases to learn from and cases to be tested on, as masks.
+
+        No window of one reaches into a window of the other.
+
+        Parameters
+        ----------
+        block : int
+            Which one is tested, 0 to 4.
+        """
+        return fold(len(self.x), block, self.gap)
+
+    @property
+    def gap(self) -> int:
+        """Cases from one to the next whose windows have no sample in common."""
+        return -(-self.width * 100 // self.rate)
+
+
+def fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
+    """Masks of training and test cases: a block is tested, and none within `gap` of it is learnt.
+
+    Parameters
+    ----------
+    cases : int
+    block : int
+        From 0 on.
+    gap : int
+        Least distance from a training case to a test case.
+    blocks : int
+        Into how many blocks the cases are cut.
+    """
+    size, place = cases / blocks, np.arange(cases)
+    first, last = (round((integer("block", block, 0, blocks - 1) + k) * size) for k in (0, 1))
+    test = (place >= first) & (place < last)
+    return (place <= first - gap) | (place >= last - 1 + gap), test
+
+
+def least_squares(x, y, new) -> np.ndarray:
+    """Predictions for `new` rows of the linear fit of `y` to the rows of `x`, with a constant."""
+    centre, size = x.mean(0), x.std(0)
+    size = np.where(size > 0, size, 1)
+    factors = np.linalg.lstsq((x - centre) / size, y - y.mean(0), rcond=1e-10)[0]
+    return y.mean(0) + (new - centre) / size @ factors
+
+
+class Ridge:
+    """Linear filters of the window with a penalty on their squares, one for each output.
+
+    Parameters
+    ----------
+    x : array_like, shape (cases, inputs)
+    y : array_like, shape (cases, outputs)
+    """
+
+    def __init__(self, x, y):
+        self.centre, self.mean = x.mean(0), y.mean(0)
+        x = x - self.centre
+        power, self.axes = np.linalg.eigh(x.T @ x)
+        self.power = np.clip(power, 0, None)
+        self.unit = self.power.mean()
+        self.along = self.axes.T @ (x.T @ (y - self.mean))
+
+    def filters(self, penalty) -> np.ndarray:
+        """Factors ``(inputs, outputs)`` for a penalty, or one for each output.
+
+        Parameters
+        ----------
+        penalty : float or array_like, shape (outputs,)
+            As a share of the mean variance of the inputs.
+        """
+        return self.axes @ (self.along / (self.power[:, None] + np.asarray(penalty) * self.unit))
+
+    def predict(self, new, penalty) -> np.ndarray:
+        """Outputs for other rows, ``(cases, outputs)``."""
+        return self.mean + (new - self.centre) @ self.filters(penalty)
+
+
+def best_penalty(data: Windowed, training) -> float:
+    """The penalty of `RIDGES` with the least error on pieces left out of the training cases.
+
+    Parameters
+    ----------
+    data : Windowed
+    training : ndarray of bool, shape (cases,)
+        What may be looked at.
+    """
+    x, total = data.x.reshape(len(data.x), -1), 0.0
+    for piece in range(PIECES):
+        kept, tried = fold(len(x), piece, data.gap, PIECES)
+        kept, tried = kept & training, tried & training
+        if tried.any():
+            made = Ridge(x[kept], data.current[kept])
+            error = [made.predict(x[tried], p) - data.current[tried] for p in RIDGES]
+            total = total + (np.square(error) / data.current[training].var(0)).sum((1, 2))
+    return RIDGES[int(np.argmin(total))]
+
+
+def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
+    """Currents by least squares on the terms that the axes give, joint by joint.
+
+    Parameters
+    ----------
+    states, current : array_like, shapes (cases, 6, 3) and (cases, 6)
+        What is fitted.
+    new : array_like, shape (others, 6, 3)
+        States whose currents are wanted.
+    friction : bool
+        Whether friction is among the terms.
+
+    Returns
+    -------
+    ndarray, shape (others, 6)
+    """
+    return np.stack(
+        [
+            _fitted(joint_columns(states, j, friction), current[:, j])
+            @ joint_columns(new, j, friction).T
+            for j in range(current.shape[1])
+        ],
+        -1,
+    )
+
+
+def _fitted(a, y) -> np.ndarray:
+    size = np.sqrt((a**2).mean(0))
+    return np.linalg.lstsq(a / size, y, rcond=1e-8)[0] / size
+
+
+@dataclass(frozen=True)
+class Identified:
+    """Gains of the identified model, joint by joint.
+
+    Attributes
+    ----------
+    inertia : ndarray, shape (6,)
+        Current on the joint's own acceleration, averaged over the cases, A s^2/rad.
+    slope : ndarray, shape (6,)
+        Current on the joint's own velocity that friction gives, by least squares along the
+        motion, A s/rad.
+    viscous, coulomb : ndarray, shape (6,)
+        A s/rad and A.
+    friction, rest : ndarray, shape (cases, 6)
+        The friction's current, and that of all other terms, A.
+    """
+
+    inertia: np.ndarray
+    slope: np.ndarray
+    viscous: np.ndarray
+    coulomb: np.ndarray
+    friction: np.ndarray
+    rest: np.ndarray
+
+
+def identified(states, current) -> Identified:
+    """The known structure fitted to all cases.
+
+    Parameters
+    ----------
+    states : array_like, shape (cases, 6, 3)
+    current : array_like, shape (cases, 6)
+    """
+    speed, found = states[..., 1], []
+    for j in range(current.shape[1]):
+        a, free = joint_columns(states, j), joint_columns(states, j, friction=False)
+        factors = _fitted(a, current[:, j])
+        own = a.shape[1] - free.shape[1]
+        place = free.shape[1] - 1  # the offset stands last in both
+        rubbing = a[:, place : place + own] @ factors[place : place + own]
+        pushed = states.copy()
+        pushed[:, j, 2] += 1.0
+        more = (joint_columns(pushed, j) - a) @ factors
+        slope = np.linalg.lstsq(speed - speed.mean(0), rubbing - rubbing.mean(), rcond=None)[0][j]
+        rest = a @ factors - rubbing
+        found.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
+    inertia, slope, viscous, coulomb, rubbing, rest = zip(*found)
+    arrays = map(np.array, (inertia, slope, viscous, coulomb))
+    return Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
+
+
+def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """Medians of current in groups of equally many cases of like speed.
+
+    Parameters
+    ----------
+    speed, current : array_like, shape (cases,)
+    bins : int
+        Number of groups.
+
+    Returns
+    -------
+    speed, current : ndarray, shape (bins,)
+    """
+    groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
+    return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))

@@ -1,0 +1,126 @@
+"""The loop with a learner inside: errors and estimates from motion to motion."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib.dynamics import with_load
+from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.parts.parameters import Choice
+from workshop.beyond.studies.page.learner import LEARNERS, LOADS, MOTIONS, SPEEDS
+from workshop.report import results
+
+SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}
+"""Estimates that are shown, and their places among the parameters."""
+
+LABELS = dict(zip(SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
+"""What the chart calls them."""
+
+MOST_ERROR = 20.0
+"""Largest error that is shown, mm; a run that the guard stopped has a larger one, too."""
+
+BOUNDS = (-2.0, 6.0)
+"""Smallest and largest multiple of a true value that is shown."""
+
+NOTE = (
+    "Damped joints, an encoder of 12.5 bits, a tachometer; it begins with the base parameters of "
+    "the arm without a load, and no friction. The hand's error is its root mean square over a "
+    "motion, without the first third. A triangle: the error is larger, or the guard stopped the "
+    "motion, or the estimate has left the chart."
+)
+
+
+@cache
+def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Committed errors (mm) and estimates of all learners, with and without friction.
+
+    Parameters
+    ----------
+    load : int
+        kg, one of `workshop.beyond.studies.page.learner.LOADS`.
+
+    Returns
+    -------
+    dict
+        By learner, as from `workshop.beyond.studies.page.learner.learned`.
+    """
+    found = results.read("loop-learner")["loads"][str(load)]
+    return {
+        name: tuple(np.array(one[key], dtype=float) for key in ("errors", "estimates"))
+        for name, one in found.items()
+    }
+
+
+class LoopLearner(CurveWidget):
+    """Pick a load, friction, a learner and its rate; see the error fall, and the estimates.
+
+    Parameters
+    ----------
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    def __init__(self, **options):
+        motions = np.arange(1, MOTIONS + 1)
+        super().__init__(
+            _curves,
+            [
+                Choice("load", "Load", {m: f"{m} kg" for m in LOADS}, 5, "slider"),
+                Choice("friction", "Friction", {False: "off", True: "on"}, True, "switch"),
+                Choice("learner", "Learner", list(LEARNERS), LEARNERS[1]),
+                Choice("rate", "Rate", list(SPEEDS), "as in the chapter"),
+            ],
+            [
+                Panel(
+                    "Error of the hand, mm",
+                    {"error": "with the learner", "nobody": "nothing learnt"},
+                    "motion, number",
+                    motions,
+                    y_fit=True,
+                    limits=(None, MOST_ERROR),
+                ),
+                Panel(
+                    "Estimates over true values",
+                    LABELS,
+                    "motions done, number",
+                    np.arange(MOTIONS + 1),
+                    y_fit=True,
+                    limits=BOUNDS,
+                ),
+            ],
+            **{
+                "alt": "Error of the hand from motion to motion with Slotine and Li's learner and "
+                "without; below, estimates of a, b, d and of the shoulder's viscous and Coulomb "
+                "friction as multiples of the true values.",
+                "title": "The loop with a learner inside",
+                "note": NOTE,
+                "depends": {"nobody": ["load", "friction"]},
+                **options,
+            },
+        )
+
+
+def truth(load: int) -> np.ndarray:
+    """The parameters that an arm with a load and friction has, in the order of `FULL`.
+
+    Parameters
+    ----------
+    load : int
+        kg.
+    """
+    arm = with_load(JOINT_DAMPING.arm, load)
+    return np.array([arm.a, arm.b, arm.d, *JOINT_DAMPING_VISCOUS, *JOINT_DAMPING_COULOMB])
+
+
+def _curves(load, friction, learner, rate) -> dict:
+    found, k = learned(load), list(SPEEDS).index(rate)
+    errors, estimates = found[learner]
+    relative = estimates[int(friction), k] / truth(load)
+    curves = {name: np.clip(relative[:, place], *BOUNDS) for name, place in SHOWN.items()}
+    nobody = found[LEARNERS[0]][0][int(friction), 0]
+    shown = np.minimum(errors[int(friction), k], MOST_ERROR)
+    return {"error": shown, "nobody": nobody, **curves}

@@ -1,0 +1,109 @@
+"""All rivals on every trajectory of the square: torques of one, errors of all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ddlib._check import one_of
+from ddlib.figures import JOINTS
+from ddlib.metrics import rmss
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.parts.parameters import Choice
+from workshop.beyond.studies.lineup import REFERENCE
+from workshop.beyond.studies.rivals import GRID, TORQUES
+
+MEASURED = "measured"
+
+NOTE = (
+    "Each rival sees measured positions, learnt from the five training recordings, and has the "
+    "size within the stored numbers of the network of 1988, or its smallest. RMSS: root mean "
+    "square error over the standard deviation of all measured torques of the square."
+)
+
+
+class RivalPicker(CurveWidget):
+    """Pick a trajectory and a rival; see its torque there, and the errors of all rivals.
+
+    Parameters
+    ----------
+    path : path
+        What the study ``rivals`` kept: names, and torques of shape ``(names, runs, samples, 2)``,
+        the measured ones first.
+    rival : str
+        Shown at the start.
+    **options
+        Passed on to `CurveWidget`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such rival.
+    """
+
+    def __init__(self, path: Path = TORQUES, rival: str = "linear filter", **options):
+        with np.load(path) as kept:
+            names, torque = kept["names"].tolist(), kept["torque"].astype(float)
+        self._torque = dict(zip(names, torque))
+        rivals = [name for name in names if name != MEASURED]
+        one_of("rival", rival, rivals)
+        measured = self._torque[MEASURED]
+        scale = measured.reshape(-1, len(JOINTS)).std(0)
+        self._errors = np.stack([rmss(self._torque[n], measured, scale=scale) for n in rivals], -1)
+        times = np.arange(torque.shape[2]) * MOTION_SECONDS / torque.shape[2]
+        labels = {name: f"{k}: {name}" for k, name in enumerate(rivals, 1)}
+        extents = {k: f"{MAX_EXTENT_DEG * k / GRID:g}°" for k in range(1, GRID + 1)}
+        lines = (MEASURED, REFERENCE, "rival")
+        panels = [
+            *(
+                Panel(
+                    f"{joint.title()} torque, N m",
+                    {f"{joint}, {line}": line for line in lines},
+                    "time, s",
+                    times,
+                    y_fit=True,
+                )
+                for joint in JOINTS
+            ),
+            Panel(
+                "RMSS of all rivals",
+                {"errors": "RMSS"},
+                "rival, number in the menu",
+                np.arange(1, len(rivals) + 1),
+                kind="bars",
+                ticks=[(k, str(k)) for k in range(1, len(rivals) + 1, 2)],
+                y_fit=True,
+            ),
+        ]
+        place = ["shoulder", "elbow"]
+        depends = {f"{j}, {line}": place for j in JOINTS for line in lines[:2]}
+        super().__init__(
+            self._curves,
+            [
+                Choice("shoulder", "Shoulder extent", extents, 7, "slider"),
+                Choice("elbow", "Elbow extent", extents, 7, "slider"),
+                Choice("rival", "Rival", labels, rival),
+            ],
+            panels,
+            **{
+                "alt": f"Torques of both joints over time: measured, by the {REFERENCE} and by "
+                f"the {rival}; below, bars with the errors of {len(rivals)} rivals.",
+                "title": "Picker of rivals",
+                "note": NOTE,
+                "depends": {**depends, "errors": place},
+                **options,
+            },
+        )
+
+    def _curves(self, shoulder, elbow, rival) -> dict:
+        run = (shoulder - 1) * GRID + elbow - 1
+        lines = {MEASURED: MEASURED, REFERENCE: REFERENCE, "rival": rival}
+        curves = {
+            f"{joint}, {line}": self._torque[name][run, :, j]
+            for line, name in lines.items()
+            for j, joint in enumerate(JOINTS)
+        }
+        return {**curves, "errors": self._errors[run]}

@@ -1,0 +1,1 @@
+"""What one chapter alone shows: ``status``, tables of the page *Status*."""

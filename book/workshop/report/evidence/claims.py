@@ -1,0 +1,397 @@
+"""The paper's claims: read from ``book/claims.yml``, measured, judged.
+
+An entry has these fields:
+
+``id``
+    A name, unique.
+``where``
+    Section, table, figure or appendix of the paper, like "section 3.1" or "Figure 5-4".
+``arm``, ``again``
+    Left out for most. Whose arm it is judged on if not on the simulated ones of this book, like
+    "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
+    judged like the others and not counted twice among the paper's.
+``chapter``
+    The page of the book that deals with it; `LEDGER` if there is no other.
+``claim``
+    What the paper says, in a few words of our own or a short quotation.
+``printed``
+    The printed value: a number, or text such as "by eye"; `OWN` for what this book claims itself.
+``measure``, ``with``
+    A function of `workshop.report.measures` as "module.function", and its keyword arguments.
+``band``, ``loose``
+    What makes the claim "reproduced", and what still makes it "qualitative": ``{factor: 1.5}``
+    (of the printed number), ``{from: 0.9}``, ``{to: 2}``, both, or ``{is: true}``. Without
+    ``loose`` a claim that misses its band is "not reproduced".
+``verdict``
+    What the band gives, written down so that a change of verdict is seen. Two are chosen by hand:
+    "by construction" if the band could hardly be missed; then it has no ``loose``, and a miss is
+    "not reproduced". And "not testable"; then without bands, and a ``measure`` only tells from
+    which value of an assumed parameter on the claim would turn.
+``why``
+    One sentence: the reason for the verdict, the assumption that decides it.
+``refuted``
+    One sentence, by the verdict: the outcome that would have made it "not reproduced"; for a claim
+    that is, the outcome that would have made it better; why there is none, if by construction;
+    what a test would need, if not testable. An outcome is a noun with what belongs to it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+import os
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
+from pathlib import Path
+
+import joblib
+import numpy as np
+import yaml
+
+from ddlib._check import one_of
+from workshop import BOOK
+from workshop.report.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
+
+FILE = BOOK / "claims.yml"
+"""Where the claims are kept."""
+
+LEDGER = "ledger"
+"""The page of all claims, and the chapter of those that no other page deals with."""
+
+SHARED = "DDLIB_MEASURED"
+"""Environment variable with a folder in which notebooks that are built together share what they
+measured. Who sets it takes a new folder for other code or results."""
+
+OWN = "not in the paper"
+"""As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
+like the others, in its chapter, and is not counted among the paper's."""
+
+SECTIONS = {
+    "0": "Abstract",
+    "1": "1. Introduction",
+    "2": "2. Problem definition",
+    "3": "3. Network architecture",
+    "4": "4. Results",
+    "5": "5. Analysis",
+    "6": "6. Preliminary results from simulation",
+    "7": "7. Conclusion",
+    "8": "Appendix I. Trajectories used",
+}
+"""Titles of the paper's sections; abstract and appendix are numbered so that they sort."""
+
+_PLACE = re.compile(
+    r"(?P<abstract>Abstract)|(?P<appendix>Appendix I\b)"
+    r"|section (?P<section>[1-7])(?:\.(?P<part>\d))?"
+    r"|(?P<float>Table|Figure) (?P<in>[1-7])-(?P<no>\d)"
+)
+
+
+class MeasureError(RuntimeError):
+    """A claim's measuring function failed; the message names the claim."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One entry of the claims file; see the module for the fields."""
+
+    id: str
+    where: str
+    chapter: str
+    claim: str
+    printed: float | str
+    verdict: str
+    why: str
+    refuted: str
+    measure: str = ""
+    arguments: Mapping = field(default_factory=dict)
+    band: Mapping = field(default_factory=dict)
+    loose: Mapping = field(default_factory=dict)
+    arm: str = ""
+    again: str = ""
+
+    def __post_init__(self):
+        for name in ("id", "where", "chapter", "claim", "why", "refuted"):
+            value = getattr(self, name)
+            if not isinstance(value, str) or not value.strip():
+                raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
+        self.place()
+        one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
+        testable = self.verdict != "not testable"
+        if testable != bool(self.band) or (testable and not self.measure):
+            raise ValueError(
+                f"claim {self.id!r} must have measure and band, or be 'not testable' without band"
+            )
+        if self.loose and self.verdict in ("by construction", "not testable"):
+            raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
+        if self.again and not self.arm:
+            raise ValueError(
+                f"claim {self.id!r} must name the arm on which it judges {self.again!r} again"
+            )
+        for bounds in (self.band, self.loose):
+            self._check_band(bounds)
+
+    def _check_band(self, bounds):
+        kinds = set(bounds)
+        if kinds and kinds not in ({"factor"}, {"is"}, {"from"}, {"to"}, {"from", "to"}):
+            raise ValueError(
+                f"band of claim {self.id!r} must be factor, is, from, to, or from and to, "
+                f"got {sorted(kinds)}"
+            )
+        if "factor" in kinds and (isinstance(self.printed, str) or not bounds["factor"] >= 1):
+            raise ValueError(
+                f"factor of claim {self.id!r} must be at least 1 and the printed value a number, "
+                f"got {bounds['factor']} and {self.printed!r}"
+            )
+
+    def place(self) -> tuple[str, int, int]:
+        """Where the claim stands: key of `SECTIONS`, subsection, number of a table or figure.
+
+        What comes first in ``where`` counts. Tables and figures come after their section's
+        text, whose subsections come in order: sort by this.
+
+        Raises
+        ------
+        ValueError
+            If ``where`` names none of the paper's parts.
+        """
+        found = _PLACE.search(self.where)
+        if found is None:
+            raise ValueError(
+                f"where of claim {self.id!r} must name a section from 1 to 7, a table, a figure, "
+                f"'Appendix I' or 'Abstract' of the paper, got {self.where!r}"
+            )
+        if found["abstract"] or found["appendix"]:
+            return "0" if found["abstract"] else "8", 0, 0
+        if found["float"]:
+            return found["in"], 10 if found["float"] == "Table" else 20, int(found["no"])
+        return found["section"], int(found["part"] or 0), 0
+
+    def measured(self) -> Measured:
+        """What we find, by the claim's measuring function.
+
+        Raises
+        ------
+        ValueError
+            If the claim is not testable.
+        MeasureError
+            If its function is missing, fails, or returns what cannot be judged.
+        """
+        if not self.measure:
+            raise ValueError(f"claim {self.id!r} is not testable: it has no measure")
+        try:
+            return _measured(self.measure, json.dumps(dict(self.arguments), sort_keys=True))
+        except Exception as error:
+            given = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
+            raise MeasureError(
+                f"claim {self.id!r} could not be measured by {self.measure}({given}): "
+                f"{type(error).__name__}: {error}"
+            ) from error
+
+    def judge(self) -> str:
+        """The verdict: the written one while it stands, else what the measurement gives.
+
+        Whether it stands: `workshop.report.evidence.verdicts`. Without replicates it has to be `fresh`.
+        """
+        if not self.band:
+            return "not testable"
+        found = self.shares()
+        return self.verdict if found and stands(self.verdict, found) else self.fresh()
+
+    def fresh(self) -> str:
+        """The verdict of the bands for the measured value alone, whatever is written."""
+        if not self.band:
+            return "not testable"
+        found = self.shares()
+        return fresh(found) if found else self.of(self.measured().value)
+
+    def shares(self) -> dict[str, float]:
+        """Share of the replicates in which each verdict comes out; empty without replicates."""
+        replicates = self.measured().replicates if self.band else None
+        return {} if replicates is None else shares(self._of_each(replicates))
+
+    def of(self, value: float) -> str:
+        """The verdict that the bands give for one value."""
+        return str(self._of_each([value])[0])
+
+    def _of_each(self, values) -> np.ndarray:
+        """The verdicts that the bands give for many values."""
+        values = np.asarray(values)
+        best = "by construction" if self.verdict == "by construction" else "reproduced"
+        nearly = self._within(self.loose, values) if self.loose else False
+        rest = np.where(nearly, "qualitative", "not reproduced")
+        return np.where(self._within(self.band, values), best, rest)
+
+    def edges(self) -> list[float]:
+        """Values at which the verdict turns."""
+        found = []
+        for bounds in (self.band, self.loose):
+            found += [bounds[name] for name in ("from", "to") if name in bounds]
+            if "factor" in bounds:
+                found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
+        return sorted(set(found))
+
+    def _within(self, bounds, values: np.ndarray) -> np.ndarray:
+        if "is" in bounds:
+            return values.astype(bool) == bounds["is"]
+        if "factor" in bounds:
+            ratios = values / self.printed
+            return (1 / bounds["factor"] <= ratios) & (ratios <= bounds["factor"])
+        return (bounds.get("from", -np.inf) <= values) & (values <= bounds.get("to", np.inf))
+
+
+@cache
+def _measured(measure: str, arguments: str) -> Measured:
+    """`_measure`, once in a process, and once in all that share the folder `SHARED` names."""
+    folder = os.environ.get(SHARED)
+    if not folder:
+        return _measure(measure, arguments)
+    return joblib.Memory(folder, verbose=0).cache(_measure)(measure, arguments)
+
+
+def function(measure: str) -> Callable:
+    """The function of `workshop.report.measures` that a claim names as "module.function"."""
+    room, _, place = measure.partition(".")
+    module, _, name = place.rpartition(".")
+    return getattr(importlib.import_module(f"workshop.{room}.measures.{module}"), name)
+
+
+def _measure(measure: str, arguments: str) -> Measured:
+    result = function(measure)(**json.loads(arguments))
+    if not isinstance(result, Measured):
+        raise TypeError(f"{measure} must return a Measured, got {result!r}")
+    unclear = result.replicates is not None and np.isnan(result.replicates).any()
+    if not math.isfinite(result.value) or unclear or not str(result.text).strip():
+        raise ValueError(f"{measure} must return a finite value and a text, got {result!r}")
+    return result
+
+
+class Printed(float):
+    """A number that keeps the digits it is printed with."""
+
+    def __new__(cls, text: str):
+        made = super().__new__(cls, text)
+        made.text = text
+        return made
+
+    def __getnewargs__(self):
+        return (self.text,)
+
+
+# The parsers in C are seven times as fast; not every machine has them.
+_VALUES = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+
+
+def load(path: Path = FILE) -> list[Claim]:
+    """All claims, in the order of the file.
+
+    Raises
+    ------
+    ValueError
+        If an entry has unknown or missing fields, an id twice, or repeats a claim that is not
+        there.
+    """
+    return list(_parsed(path.read_text(encoding="utf-8")))
+
+
+@lru_cache(maxsize=4)
+def _parsed(text: str) -> tuple[Claim, ...]:
+    """The claims of a file's text; a ledger asks for the same ones many times."""
+    claims, seen = [], set()
+    for entry, plain in zip(yaml.load(text, _VALUES), yaml.load(text, _TEXTS)):
+        entry = dict(entry)
+        entry["arguments"] = entry.pop("with", {})
+        if isinstance(entry.get("printed"), float):
+            entry["printed"] = Printed(plain["printed"])
+        try:
+            claim = Claim(**entry)
+        except TypeError as error:
+            raise ValueError(
+                f"claim {entry.get('id')!r} must have the known fields: {error}"
+            ) from None
+        if claim.id in seen:
+            raise ValueError(f"id must be unique, got {claim.id!r} twice")
+        seen.add(claim.id)
+        claims.append(claim)
+    for claim in claims:
+        if claim.again and claim.again not in seen:
+            raise ValueError(f"again of claim {claim.id!r} must be an id, got {claim.again!r}")
+    return tuple(claims)
+
+
+def of_the_paper() -> list[Claim]:
+    """All claims but this book's own and those that are judged again on another arm."""
+    return [claim for claim in load() if claim.printed != OWN and not claim.arm]
+
+
+def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
+    """Sentences of the paper that are judged twice: the first claim and the one on another arm.
+
+    Parameters
+    ----------
+    arm : str
+        As in the field ``arm``, like "a real arm".
+    """
+    first = {claim.id: claim for claim in load()}
+    return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
+
+
+def of_chapter(chapter: str) -> list[Claim]:
+    """The claims that a page of the book deals with; an error if there are none."""
+    found = [claim for claim in load() if claim.chapter == chapter]
+    if not found:
+        raise ValueError(f"chapter must have claims in {FILE.name}, got {chapter!r}")
+    return found
+
+
+def printed(claim: Claim) -> str:
+    """What the paper prints, for a table.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    if isinstance(claim.printed, (str, Printed)):
+        return getattr(claim.printed, "text", claim.printed)
+    return f"{claim.printed:,g}"
+
+
+def here(claim: Claim) -> str:
+    """What we find, for a table.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    return claim.measured().text if claim.measure else "–"
+
+
+def sure(claim: Claim) -> str:
+    """The verdict, and in which share of the draws it comes out where that was found.
+
+    Parameters
+    ----------
+    claim : Claim
+    """
+    verdict, found = claim.judge(), claim.shares()
+    if not found:
+        return verdict
+    if verdict == "undecided":
+        words = ", ".join(f"{100 * share:.0f} % {name}" for name, share in found.items())
+        return f"undecided: {words} of draws"
+    return f"{verdict}, {100 * found[verdict]:.0f} % of draws"
+
+
+def of_section(section: str) -> list[Claim]:
+    """The claims of a section of the paper, in the paper's order.
+
+    Parameters
+    ----------
+    section : str
+        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
+    """
+    one_of("section", section, tuple(SECTIONS))
+    return sorted((c for c in of_the_paper() if c.place()[0] == section), key=Claim.place)

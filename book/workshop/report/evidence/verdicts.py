@@ -1,0 +1,269 @@
+"""What a measure returns, how sure its value is, and the verdict that follows.
+
+A statistic over networks is one draw: another processor rounds otherwise, and 20,000 epochs of
+descent make other networks of the same initial weights. So such a measure brings replicates of
+its value, from a bootstrap over the networks, and its verdict is what most replicates get:
+
+- The *fresh* verdict is the one that at least `DECIDED` of the replicates get, and "undecided"
+  if none has so many.
+- The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
+  (`workshop.report.evidence.judging`). Results made anew on another machine are another draw; there it
+  *stands* until the replicates contradict it: a decided one while at least `STANDS` of them agree,
+  "undecided" while no verdict has `CONTRADICTS`.
+
+Measures without replicates, of exact mathematics or a deterministic simulation, have one value
+and one verdict, and a written one that differs is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib._check import integer, one_of
+
+VERDICTS = (
+    "reproduced",
+    "qualitative",
+    "not reproduced",
+    "undecided",
+    "by construction",
+    "not testable",
+)
+"""All verdicts. The first three are decided by bands, best first."""
+
+DRAWS = 2000
+"""Draws of a bootstrap."""
+
+FEWEST = 5
+"""Members from which a bootstrap draws at least: of fewer it has hardly any draws that differ."""
+
+DECIDED = 0.95
+"""Share of the draws that makes a verdict."""
+
+STANDS = 0.05
+"""Share of the draws down to which a written verdict stands: below, they exclude it as surely as
+they had to agree before. Between two ensembles a value moves by 1.4 standard errors, so a verdict
+at the edge of being decided falls in 1 new ensemble of 100, where 0.8 would fell 29."""
+
+CONTRADICTS = 1.0
+"""Share of the draws for one verdict that ends a written "undecided"."""
+
+
+class Measured(NamedTuple):
+    """What a measuring function returns.
+
+    Attributes
+    ----------
+    value : float or bool
+        What the bands judge; a median, if there are many.
+    text : str
+        What the tables show, spread included.
+    replicates : ndarray, shape (draws,), optional
+        The value in each draw of a bootstrap over networks or other independent parts.
+    """
+
+    value: float | bool
+    text: str
+    replicates: np.ndarray | None = None
+
+
+def bootstrap(
+    statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0, nested: bool = False
+) -> np.ndarray:
+    """A statistic of members drawn with replacement, again and again.
+
+    Parameters
+    ----------
+    statistic : callable
+        ``statistic(*cells)`` for arrays that have one more leading axis, of draws; returns one
+        number for each draw. Its axes are best counted from the end.
+    *cells : array_like, shape (members, ...), or tuple of such
+        Independent groups of members, each drawn by itself. The arrays of a tuple belong to
+        the same members and are drawn together; the statistic gets them as a tuple.
+    draws, seed : int
+        Number of draws, 2,000 or more; seed of the drawing.
+    nested : bool
+        Members have members, like recordings and the networks trained on each, in the second
+        axis: those are drawn anew, too, for each member that was drawn.
+
+    Returns
+    -------
+    ndarray, shape (draws,)
+
+    Raises
+    ------
+    ValueError
+        If the arrays of a tuple differ in their members, there are fewer than `FEWEST`, or the
+        statistic returns no number for each draw.
+
+    Notes
+    -----
+    The percentile bootstrap of Efron & Tibshirani, *An Introduction to the Bootstrap* (1993),
+    chapter 13. Of a largest or least of several medians the draws are biased outwards: the noise
+    of each cell adds to it, so such a statistic is furthest from 1, or largest, too often. Where
+    a verdict hangs on it near an edge, the shares of the draws are rough.
+    """
+    integer("draws", draws, DRAWS)
+    rng = np.random.default_rng(seed)
+    drawn = _picked(cells, lambda n: rng.integers(0, n, (draws, n)), rng if nested else None)
+    found = np.asarray(statistic(*drawn))
+    if found.shape != (draws,):
+        raise ValueError(
+            f"statistic must give one number for each of {draws} draws, got shape {found.shape}"
+        )
+    return found
+
+
+def _picked(cells, pick: Callable, rng=None) -> list:
+    """The cells with members picked by ``pick(members)``, of shape ``(draws, members)``.
+
+    With `rng` the members of each member are drawn, too.
+    """
+    drawn = []
+    for cell in cells:
+        parts = [np.asarray(part) for part in (cell if isinstance(cell, tuple) else (cell,))]
+        members = {part.shape[0] for part in parts}
+        if len(members) != 1 or not min(members):
+            raise ValueError(f"cells must have the same members in a tuple, got {sorted(members)}")
+        integer("members", *members, FEWEST)
+        picked = (pick(*members),)
+        if rng is not None:
+            inner = parts[0].shape[1]
+            picked = picked[0][..., None], rng.integers(0, inner, (*picked[0].shape, inner))
+        parts = tuple(part[picked] for part in parts)
+        drawn.append(parts if isinstance(cell, tuple) else parts[0])
+    return drawn
+
+
+def median(cell) -> np.ndarray:
+    """Median over all members and all that is theirs, one for each draw.
+
+    Parameters
+    ----------
+    cell : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets it.
+    """
+    return np.median(cell.reshape(len(cell), -1), axis=-1)
+
+
+def mean(cell) -> np.ndarray:
+    """Mean over all members and all that is theirs, one for each draw.
+
+    Parameters
+    ----------
+    cell : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets it.
+    """
+    return cell.reshape(len(cell), -1).mean(-1)
+
+
+def over_members(statistic: Callable, *cells, nested: bool = False) -> tuple[float, np.ndarray]:
+    """A statistic of all members, and its replicates from `bootstrap`.
+
+    Parameters
+    ----------
+    statistic, *cells, nested
+        As in `bootstrap`.
+
+    Returns
+    -------
+    value : float
+    replicates : ndarray, shape (draws,)
+    """
+    once = _picked(cells, lambda n: np.arange(n)[None])
+    return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells, nested=nested)
+
+
+def judged(
+    statistic: Callable, *cells, text: str | Callable[[float], str], nested: bool = False
+) -> Measured:
+    """A statistic of all members with its replicates, and a text or a function of the value.
+
+    Parameters
+    ----------
+    statistic, *cells, nested
+        As in `bootstrap`.
+    text : str or callable
+        What the tables show, or ``text(value)`` that returns it.
+    """
+    value, replicates = over_members(statistic, *cells, nested=nested)
+    return Measured(value, text(value) if callable(text) else text, replicates)
+
+
+def largest_median(*cells) -> np.ndarray:
+    """The largest of the medians of some cells, one for each draw.
+
+    Parameters
+    ----------
+    *cells : ndarray, shape (draws, members, ...)
+        As a statistic of `bootstrap` gets them.
+    """
+    return np.max([median(cell) for cell in cells], axis=0)
+
+
+def shares(verdicts) -> dict[str, float]:
+    """Share of the draws in which each verdict comes out, the most frequent first.
+
+    Parameters
+    ----------
+    verdicts : array_like of str, shape (draws,)
+        The verdict of each draw.
+    """
+    names, counts = np.unique(verdicts, return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    return {str(names[k]): float(counts[k] / counts.sum()) for k in order}
+
+
+def fresh(found: Mapping[str, float]) -> str:
+    """The verdict that shares of draws give by themselves; "undecided" if none is decided.
+
+    Parameters
+    ----------
+    found : mapping
+        As from `shares`.
+    """
+    best = max(found, key=found.get)
+    return best if found[best] >= DECIDED else "undecided"
+
+
+def stands(written: str, found: Mapping[str, float]) -> bool:
+    """Whether shares of draws do not contradict a written verdict; see the module.
+
+    Parameters
+    ----------
+    written : str
+        One of `VERDICTS`.
+    found : mapping
+        As from `shares`.
+    """
+    one_of("written", written, VERDICTS)
+    if written == "undecided":
+        return max(found.values()) < CONTRADICTS
+    return found.get(written, 0.0) >= STANDS
+
+
+def turns_at(values, shares, level: float) -> float:
+    """Value of an assumed parameter at which a claim would turn, from a few that were tried.
+
+    Parameters
+    ----------
+    values : array_like, shape (n,)
+        Values tried, positive.
+    shares : array_like, shape (n,)
+        What the claim would be judged by at each, positive.
+    level : float
+        Where the verdict turns. Between the values both go linearly on logarithmic scales.
+
+    Raises
+    ------
+    ValueError
+        If the shares do not reach from below the level to above it.
+    """
+    order = np.argsort(shares)
+    tried, found = (np.log(np.asarray(x, dtype=float)[order]) for x in (values, shares))
+    if not found[0] <= np.log(level) <= found[-1]:
+        raise ValueError(f"shares must reach across {level:g}, got {np.exp(found)}")
+    return float(np.exp(np.interp(np.log(level), found, tried)))

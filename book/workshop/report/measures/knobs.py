@@ -1,0 +1,197 @@
+"""Table 4-1 by joint damping: which knobs decide it, and what its numbers speak for."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ddlib import paper
+from ddlib.setups import JOINT_DAMPING, WINDOWS
+from ddlib.tables import significant
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured, judged, median
+from workshop.report.knobs import Emulator, knobs_of, left_out, shares, spread_evenly, weigh
+
+CELLS = tuple((column, width) for column in ("training", "test") for width in WINDOWS)
+"""The six cells of Table 4-1."""
+
+WEIGHTS = tuple(("largest weight", width) for width in WINDOWS)
+"""The largest weights that Figures 5-1 to 5-3 print."""
+
+
+def printed(wanted=CELLS) -> np.ndarray:
+    """Logarithms of printed numbers, as `CELLS` and `WEIGHTS` name them."""
+    tables = {"largest weight": paper.LARGEST_WEIGHT}
+    for column in ("training", "test"):
+        tables[column] = {w: getattr(row, column) for w, row in paper.TABLE_4_1.items()}
+    return np.log([tables[column][width] for column, width in wanted])
+
+
+class Screen(NamedTuple):
+    """What the design says of the six cells.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The knobs.
+    places : ndarray, shape (runs, knobs)
+    values : ndarray, shape (runs, networks, cells)
+        Logarithms of the errors.
+    covariance : ndarray, shape (cells, cells)
+        Of one network on one recording around the mean of its run.
+    emulators : tuple of Emulator
+    scores : ndarray, shape (cells, runs)
+        Each run less what the others predict, in the standard deviations of that.
+    """
+
+    names: tuple[str, ...]
+    places: np.ndarray
+    values: np.ndarray
+    covariance: np.ndarray
+    emulators: tuple[Emulator, ...]
+    scores: np.ndarray
+
+    def predict(self, places) -> tuple[np.ndarray, np.ndarray]:
+        """Means and their variances at some places, ``(places, cells)``.
+
+        Where runs left out were foretold worse than the emulator thought, it is made less sure.
+        """
+        pairs = [emulator.predict(places) for emulator in self.emulators]
+        wider = np.maximum(1.0, (self.scores**2).mean(1))
+        return np.stack([m for m, _ in pairs], -1), np.stack([v for _, v in pairs], -1) * wider
+
+
+def screen_of(places, values, names) -> Screen:
+    """Emulators of some cells.
+
+    Parameters
+    ----------
+    places : array_like, shape (runs, knobs)
+    values : array_like, shape (runs, networks, cells)
+    names : sequence of str
+    """
+    places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
+    runs, networks, cells = values.shape
+    means = values.mean(1)
+    apart = (values - means[:, None]).reshape(-1, cells)
+    covariance = apart.T @ apart / (runs * (networks - 1))
+    variances = np.diag(covariance) / networks
+    emulators = [Emulator.fit(places, means[:, k], variances[k]) for k in range(cells)]
+    scores = [left_out(places, means[:, k], variances[k]) for k in range(cells)]
+    return Screen(tuple(names), places, values, covariance, tuple(emulators), np.array(scores))
+
+
+def logarithms(method: str, wanted=CELLS) -> np.ndarray:
+    """Logarithms of what the design's runs gave, ``(runs, networks, wanted)``.
+
+    Parameters
+    ----------
+    method : {"descent", "solver"}
+    wanted : sequence of (column, width)
+    """
+    rows = results.read("screened")["methods"][method]
+    found = [[row["windows"][str(w)][column] for column, w in wanted] for row in rows]
+    return np.log(found).transpose(0, 2, 1)
+
+
+@cache
+def screen(method: str, wanted=CELLS) -> Screen:
+    """The emulators of some numbers by a method, from the committed design."""
+    rows = results.read("screened")["methods"][method]
+    return screen_of([row["places"] for row in rows], logarithms(method, wanted), knobs_of(method))
+
+
+def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
+    """Share of the variance that each knob makes, products with others included.
+
+    Parameters
+    ----------
+    method : {"descent", "solver"}
+    column : {"training", "test"}
+        Means over its three windows.
+    draws : int
+        Of the regression's coefficients.
+
+    Returns
+    -------
+    dict
+        ``{knob: (10 %, median, 90 %)}`` of the draws.
+    """
+    here = screen(method)
+    total = [
+        shares(emulator.draws(draws, seed=k), len(here.names))[:, 1]
+        for k, (emulator, cell) in enumerate(zip(here.emulators, CELLS))
+        if cell[0] == column
+    ]
+    levels = np.quantile(np.mean(total, 0), (0.1, 0.5, 0.9), axis=0)
+    return dict(zip(here.names, map(tuple, levels.T)))
+
+
+class Posterior(NamedTuple):
+    """Places of the knobs, spread evenly, and what the printed numbers make of them.
+
+    Attributes
+    ----------
+    places : ndarray, shape (places, knobs)
+    weights : ndarray, shape (places,)
+    evidence : float
+        Logarithm of the mean likelihood.
+    """
+
+    places: np.ndarray
+    weights: np.ndarray
+    evidence: float
+
+    @property
+    def effective(self) -> float:
+        """How many places of equal weight would count as much."""
+        return float(1 / (self.weights**2).sum())
+
+    def quantiles(self, levels=(0.1, 0.5, 0.9)) -> np.ndarray:
+        """Places below which some share of the weight lies, ``(levels, knobs)``."""
+        order = np.argsort(self.places, axis=0)
+        total = np.cumsum(self.weights[order], axis=0)
+        placed = np.take_along_axis(self.places, order, 0)
+        at = [(total < level).sum(0).clip(max=len(placed) - 1) for level in levels]
+        return np.array([placed[k, np.arange(placed.shape[1])] for k in at])
+
+
+@cache
+def posterior(method: str, wanted=CELLS, count: int = 2**14) -> Posterior:
+    """Posterior of the knobs of a method, given printed numbers; default: the six errors.
+
+    One network on one recording was printed, so an observation scatters as ours do.
+
+    Parameters
+    ----------
+    method : str
+        "descent" or "solver".
+    wanted : sequence
+        The printed numbers that are given, as in `CELLS`.
+    count : int
+        Places at which the posterior is weighed.
+    """
+    here = screen(method, wanted)
+    places = spread_evenly(count, len(here.names))
+    weights, evidence = weigh(*here.predict(places), here.covariance, printed(wanted))
+    return Posterior(places, weights, evidence)
+
+
+def coarse_encoder(width: int = 11) -> Measured:
+    """Training error with an encoder of 16 bits over that with the coarse one of joint damping.
+
+    Parameters
+    ----------
+    width : int
+        Window size.
+    """
+    setups = results.read("recordings")["setups"]
+    coarse, fine = (
+        np.array(setups[name][str(width)]["training"]) for name in (JOINT_DAMPING.name, "16 bits")
+    )
+    text = f"{significant(np.median(fine), 2)} for {significant(np.median(coarse), 2)}"
+    return judged(
+        lambda a, b: median(a) / median(b), fine, coarse, text=f"{text} at {width}", nested=True
+    )

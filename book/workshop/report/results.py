@@ -1,0 +1,157 @@
+"""Committed results: where they are, and how they are written and read.
+
+What is kept from one run to the next is used again under two conditions, and no others:
+
+- A result of a study, and a setting that a sweep has finished, while their `code_hash` is the
+  same. A result is committed, and a test compares the hash in it.
+- What the build keeps in ``_build``, while the files are the same, byte for byte: ``digest`` in
+  ``book/_ext/dd_book.py``. Of ddlib, results, ``book/*.yml`` and requirements it names the folder
+  of executed notebooks, in which a notebook is known by its cells and in which claims that one of
+  them has measured (`workshop.report.evidence.claims`) lie for the others; of everything, it says whether
+  the pages are up to date.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from ddlib.learning import TorqueModel
+from ddlib.setups import COURSE, STATE_FEEDBACK
+from workshop import BOOK
+
+FOLDER = BOOK / "results"
+"""Where `make reproduce` writes and the chapters read."""
+
+
+def stamp(seconds: float) -> dict:
+    """What is kept beside a result: time, the machine's kernels, versions."""
+    from ddlib.learning import kernels  # needs PyTorch
+
+    return {
+        "seconds": round(seconds, 1),
+        "machine": f"{platform.system()} {platform.machine()}, {kernels()}",
+        "python": platform.python_version(),
+        "versions": {name: version(name) for name in ("numpy", "torch", "scipy")},
+    }
+
+
+def write_json(path: Path, content: dict) -> None:
+    """Write a JSON file in one step, so that an interrupted run leaves no half file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(path.name + ".part")
+    text = json.dumps(_plain(content), indent=1, allow_nan=False)
+    temporary.write_text(text + "\n", encoding="utf-8")
+    os.replace(temporary, path)
+
+
+def _plain(value):
+    """Floats with five digits (null if not finite), arrays as lists; the rest is refused."""
+    if isinstance(value, dict):
+        return {key: _plain(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return [_plain(v) for v in value] if value.ndim else _plain(value[()])
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.5g}") if np.isfinite(value) else None
+    if isinstance(value, (np.integer, np.bool_)):
+        return value.item()
+    if value is None or isinstance(value, (str, int)):
+        return value
+    raise TypeError(f"{type(value).__name__} does not go into a results file")
+
+
+def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained networks of a cell of Table 4-1.
+
+    Parameters
+    ----------
+    width : int
+        Window size, one of `ddlib.setups.WINDOWS`.
+    setup : str
+        Name of one of `ddlib.setups.SETUPS`.
+    """
+    return TorqueModel.load(networks_path(setup, width))
+
+
+def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+    """The trained network of a cell of Table 4-1 whose test error is the median.
+
+    Parameters
+    ----------
+    width, setup
+        As in `networks`.
+    """
+    errors = read("table-4-1")["setups"][setup][str(width)]["errors"]["test"]
+    return networks(width, setup)[int(np.argsort(errors)[len(errors) // 2])]
+
+
+def networks_path(setup: str, width: int) -> Path:
+    """File of the trained networks of one cell of Table 4-1."""
+    return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
+
+
+def course_path(width: int) -> Path:
+    """File of the first two networks of a window size on their way through training."""
+    return FOLDER / f"course-{width}.npz"
+
+
+def course(width: int) -> tuple[np.ndarray, TorqueModel]:
+    """The first two networks (state feedback) of a window size, all along their training.
+
+    Parameters
+    ----------
+    width : int
+        Window size, among those of Table 4-1.
+
+    Returns
+    -------
+    epochs : ndarray, shape (epochs,)
+        `ddlib.setups.COURSE`: 0 stands for the initial weights.
+    model : TorqueModel
+        Weights with leading axes ``(epochs, 2)``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such result.
+    """
+    return np.array(COURSE), TorqueModel.load(course_path(width))
+
+
+_parsed = lru_cache(maxsize=8)(json.loads)  # a chapter asks for a large one hundreds of times
+
+
+def read(name: str) -> dict:
+    """The committed result `name`; all who read it share what comes back, so leave it as it is.
+
+    Parameters
+    ----------
+    name : str
+        Name of a file in `FOLDER`, without its ending.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such result; says how to make it.
+    ValueError
+        If the file is damaged.
+    """
+    path = FOLDER / f"{name}.json"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise FileNotFoundError(
+            f"no result {name!r} in {FOLDER}: run `make reproduce` first"
+        ) from error
+    try:
+        return _parsed(text)
+    except ValueError as error:
+        raise ValueError(f"result {name!r} in {FOLDER} is damaged: {error}") from error

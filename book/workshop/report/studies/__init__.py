@@ -1,0 +1,14 @@
+"""What is too slow for a chapter: the studies that ``make reproduce`` repeats.
+
+A study is a function without required arguments and with the decorator `study`, which returns a
+plain dictionary. ``python -m workshop.report.reproduce NAME`` runs one.
+
+- ``table``, ``knobs``: Table 4-1, on other days, longer, with clean sensors; which knobs decide it
+- ``windows``, ``inputs``: window sizes, hidden units, states in place of windows, acceleration
+- ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
+- ``span``: learning curves along the directions of the windows
+- ``states``, ``states_sizes``: section 6
+- ``beyond``: Part IV, rivals and a real arm
+- ``loop``: Part IV, closing the loop
+- ``page``: what readers try in the pages: networks trained there, a learner in the loop
+"""

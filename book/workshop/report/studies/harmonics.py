@@ -1,0 +1,57 @@
+"""Section 5.1 with motions in which position and acceleration differ: what becomes of filters?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ddlib.analysis import summary
+from ddlib.learning import cases
+from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows, true_states
+from workshop.report import results
+from workshop.report.code_hash import study
+from workshop.report.two_harmonics import ORDER, record_two_harmonics
+
+NAME = "two harmonics"
+"""Name of the setup, under which its networks are kept."""
+
+VARIED = ((ORDER, 1), (3, 0))
+"""Orders of the second sine and seeds of its amplitudes that are tried besides."""
+
+
+def _cell(order, seed, width, members):
+    setup = replace(STATE_FEEDBACK, name=NAME)
+    recording = record_two_harmonics(setup, order, seed)
+    model, history, _ = train_windows(setup, recording, width, members)
+    training, _ = split(recording)
+    windows, _ = cases(training, width)
+    states = true_states(training, setup).reshape(-1, 2, 3)
+    own, other = errors(model, recording), errors(model, setup.record())
+    cell = {
+        "training": own.training,
+        "test": own.test,
+        "one sine": {"runs 1 to 5": other.training, "trajectory 6": other.test},
+        "best test": history.best_test,
+        "derailed": history.derailed,
+        "largest weight": model.weights.largest,
+        **summary(model, windows, states),
+    }
+    return cell, model
+
+
+@study
+def harmonics(members=12, fewer=6) -> dict:
+    """Networks of Table 4-1 trained on two harmonics; the networks go into ``.npz`` files.
+
+    The arm, the controller, the noise, the five training runs and the test run, their extents
+    and the training are those of Table 4-1. Other draws and another second harmonic are tried
+    with `fewer` networks of window 21.
+    """
+    windows = {}
+    for width in WINDOWS:
+        windows[str(width)], model = _cell(ORDER, 0, width, members)
+        model.save(results.networks_path(NAME, width))
+    varied = [
+        {"order": order, "seed": seed, "width": 21, **_cell(order, seed, 21, fewer)[0]}
+        for order, seed in VARIED
+    ]
+    return {"members": members, "fewer": fewer, "windows": windows, "varied": varied}

@@ -1,0 +1,64 @@
+"""Which knobs decide Table 4-1: a screening design over recordings and learning."""
+
+from __future__ import annotations
+
+from ddlib.setups import WINDOWS, errors, train_windows
+from workshop.report.code_hash import code_hash, study
+from workshop.report.knobs import METHODS, knobs_of, screening, setup, without_start
+from workshop.report.sweeps import sweep
+
+TRIES = 3
+"""Initial weights tried for a network at most: one that derails is begun anew, as anyone would."""
+
+
+def _run(method: str, places: list, seeds: list) -> dict:
+    """One run of the design: for each seed a recording and a network for each window."""
+    values = {
+        name: float(knob.value(x)) for (name, knob), x in zip(knobs_of(method).items(), places)
+    }
+    here, found, derailed = setup(values, method), [], 0
+    for seed in seeds:
+        recording = without_start(here.repeated(seed).record(), values["start left out"])
+        row = {}
+        for width in WINDOWS:
+            for again in range(TRIES):
+                model, history, _ = train_windows(
+                    here, recording, width, 1, seed=seed + 1000 * again, progress=False
+                )
+                derailed += bool(history.derailed[0])
+                if not history.derailed[0]:
+                    break
+            measured = errors(model, recording)
+            row[width] = (
+                measured.training,
+                measured.test,
+                history.best_test,
+                model.weights.largest,
+            )
+        found.append(row)
+    names = ("training", "test", "best test", "largest weight")
+    cells = {
+        str(w): {name: [float(row[w][k][0]) for row in found] for k, name in enumerate(names)}
+        for w in WINDOWS
+    }
+    return {"values": values, "places": list(places), "derailed": derailed, "windows": cells}
+
+
+@study
+def screened(networks=2) -> dict:
+    """The six errors at each run of the design, by both methods; every network has its own day."""
+    settings = [
+        {
+            "method": method,
+            "places": [float(x) for x in row[: len(knobs_of(method))]],
+            "seeds": [1 + networks * k + i for i in range(networks)],
+        }
+        for method in METHODS
+        for k, row in enumerate(screening())
+    ]
+    rows = sweep(_run, settings, code=code_hash("screened"), backend="sequential", label="knobs")
+    half = len(settings) // len(METHODS)
+    return {
+        "networks": networks,
+        "methods": {m: rows[k * half : (k + 1) * half] for k, m in enumerate(METHODS)},
+    }

@@ -1,0 +1,376 @@
+"""Where filters come from: targets unrelated to the motion, other starts, other ends."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.analysis import (
+    CLASSES,
+    LAYERS,
+    calibrated,
+    cancellation,
+    classify,
+    decoded,
+    decoded_sign,
+    heard,
+    pure_part,
+    refitted,
+    roughness,
+    saturated,
+    transition_width,
+    unit_inputs,
+    with_filters,
+    with_jerk,
+)
+from ddlib.learning import (
+    MATCHED,
+    TorqueModel,
+    TrainingSet,
+    Weights,
+    cases,
+    related,
+    solve,
+    surrogates,
+    train_ensemble,
+)
+from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
+from ddlib.simulation import LOG_STEP, Recording
+from workshop.report.code_hash import study
+from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
+
+EPOCHS = 4000
+"""Epochs of the trial, for real and surrogate torques alike."""
+
+LONGER = 50_000
+"""Epochs of the row that asks what the rest of the training adds."""
+
+DESCENT = {
+    "scaling": (-1.0, 1.0), "rate": 66.0, "momentum": 0.995, "warm_up": 1000, "steps": 0,
+    "decay": 0.0, "epochs": EPOCHS,
+}  # fmt: skip
+"""How the trial descends, with centred inputs, which gets far in few epochs."""
+
+RIDGE = 1e-2
+"""Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques
+do best, so that the comparison favours them."""
+
+TRIAL = replace(JOINT_DAMPING, **DESCENT)
+"""The recording of the third set-up, with this descent in place of its solver."""
+
+_STARTS = 1000  # seed of the first null network: none shares its start with a real one
+
+
+class _Trial:
+    """One recording and window size: its cases, and what networks make of them."""
+
+    def __init__(self, setup: Setup, recording: Recording, width: int):
+        self.setup, self.width = setup, width
+        training, test = split(recording)
+        self.torques = training.tau[..., training.motion, :]
+        self.data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
+        self.windows, self.torque = cases(training, width)
+        self.test_windows, self.answer = cases(test, width)
+        states = with_jerk(true_states(training, setup))
+        self.states = states.reshape(-1, 2, 4)
+        self.test_states = with_jerk(true_states(test, setup))
+
+    def train(self, targets, seed: int) -> tuple[Weights, Weights]:
+        """Networks of one target each, ``(members, runs, time, joint)`` N m: trained, untrained."""
+        setup, count = self.setup, len(targets)
+        scaled = self.data.outputs.scale(targets.reshape(count, -1, 2))
+        start = Weights.random(count, self.width, setup.hidden, initial=setup.initial, seed=seed)
+        label = f"{setup.name}, window {self.width}"
+        if setup.steps:
+            found = [
+                solve(
+                    start[k : k + 1], replace(self.data, y=scaled[k]), steps=setup.steps,
+                    decay=setup.decay, label=label,
+                ).model.weights
+                for k in range(count)
+            ]  # fmt: skip
+            return Weights.concatenate(found), start
+        model, *_ = train_ensemble(
+            start, self.data, targets=scaled, rate=setup.rate / self.width,
+            momentum=setup.momentum, warm_up=setup.warm_up, epochs=setup.epochs, label=label,
+        )  # fmt: skip
+        return model.weights, start
+
+    def model(self, weights: Weights) -> TorqueModel:
+        return TorqueModel(weights, self.data.inputs, self.data.outputs, LOG_STEP)
+
+    def described(self, weights: Weights, start: Weights, targets) -> dict:
+        """What is counted and measured on networks, one value or array for each of them."""
+        model = self.model(weights)
+        found: dict = {
+            "error": rmss(model.torque(self.windows), targets.reshape(len(targets), -1, 2))
+        }
+        hidden = weights.activity(self.data.x)[0]
+        held = weights.activity(model.scaled(self.test_windows))[0]
+        inputs = unit_inputs(model, self.windows)
+        for layer, attribute in LAYERS.items():
+            f, before = getattr(weights, attribute), getattr(start, attribute)
+            found[layer] = {"classes": _counted(f), **_responded(inputs[layer], self.states)}
+            moved = (np.abs(f - before) > 1e-9).any()
+            found[layer]["changes"] = _counted(f - before) if moved else _counted(f)
+            found[layer]["roughness"] = np.median(roughness(f), (1, 2))
+        found["saturated"] = np.median(saturated(hidden), -1)
+        found["cancelled"] = cancellation(model, self.windows).mean(-1)
+        found["transition"] = np.median(transition_width(inputs["hidden"]), -1)
+        gained = calibrated(model, self.windows)
+        found |= {"gains, direct": gained.direct, "gains": gained.whole}
+        found |= self._probed(hidden, held)
+        found["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])
+        return found
+
+    def _probed(self, hidden, held) -> dict:
+        target = self.states[..., 1:3].reshape(len(self.states), -1)
+        answer = self.test_states[..., 1:3].reshape(len(held[0]), -1)
+        speed, speed_there = target[:, [0, 2]], answer[:, [0, 2]]
+        return {
+            "probe": np.array([decoded(h, target, t, answer, RIDGE) for h, t in zip(hidden, held)]),
+            "probe of sign": np.array(
+                [decoded_sign(h, speed, t, speed_there, RIDGE) for h, t in zip(hidden, held)]
+            ),
+        }
+
+    def refit(self, hidden, held, direct: bool = True) -> np.ndarray:
+        """Errors with the output layer fitted anew: training, trajectory 6."""
+        parts = [hidden], [held]
+        if direct:
+            parts[0].append(self.windows.reshape(len(self.windows), -1))
+            parts[1].append(self.test_windows.reshape(len(self.test_windows), -1))
+        x, new = (np.column_stack(part) for part in parts)
+        return refitted(x, self.torque, new, self.answer)
+
+    def errors(self, model: TorqueModel) -> np.ndarray:
+        """RMSS in training and on trajectory 6, shape (members, 2)."""
+        pair = ((self.windows, self.torque), (self.test_windows, self.answer))
+        return np.stack([rmss(model.torque(x), y) for x, y in pair], -1)
+
+    def replaced(self, weights: Weights, filters) -> dict:
+        """Errors when hidden filters are replaced: as it is, and with the output layer refitted."""
+        other = with_filters(self.model(weights), filters)
+        x = self.data.x, other.scaled(self.test_windows)
+        pairs = zip(*(other.weights.activity(inputs)[0] for inputs in x))
+        return {
+            "at once": self.errors(other),
+            "refitted": np.array([self.refit(h, t) for h, t in pairs]),
+        }
+
+
+def _counted(f) -> dict:
+    names = classify(f)
+    return {name: (names == name).mean((1, 2)) for name in CLASSES}
+
+
+def _responded(inputs, states) -> dict:
+    """Medians over the units of a network of what they follow, and how many follow what best."""
+    found = heard(inputs, states)
+    best = found.strongest
+    return {
+        "alone": np.median(found.alone, 1),
+        "unique": np.median(found.unique, 1),
+        "together": np.median(found.together, 1),
+        "strongest": np.stack([(best == k).mean(1) for k in range(states.shape[-1])], -1),
+    }
+
+
+def _mean(found, draws: int):
+    """Means over the networks of each draw, all through a dictionary."""
+    if isinstance(found, dict):
+        return {name: _mean(part, draws) for name, part in found.items()}
+    return found.reshape(draws, -1, *found.shape[1:]).mean(1)
+
+
+def _nulls(trial: _Trial, kinds, draws: int, each: int) -> tuple[dict, dict]:
+    """Networks of each kind of surrogate, `each` for a draw: means by draw, and the weights."""
+    found, kept = {}, {}
+    for number, kind in enumerate(kinds):
+        drawn = surrogates(kind, trial.torques, draws, seed=100 * number)
+        targets = np.repeat(drawn, each, 0)
+        weights, start = trial.train(targets, _STARTS * (number + 1))
+        found[kind] = _mean(trial.described(weights, start, targets), draws)
+        found[kind]["related"] = np.array([related(d.reshape(-1, 2), trial.windows) for d in drawn])
+        kept[kind] = weights[::each]
+    return found, kept
+
+
+def _row(setup: Setup, recording: Recording, width: int, members: int, draws: int, each: int,
+         kinds=MATCHED, more: bool = False) -> dict:  # fmt: skip
+    """Real torques, no training, and surrogates, on one recording and window size."""
+    trial = _Trial(setup, recording, width)
+    targets = np.repeat(trial.torques[None], members, 0)
+    weights, start = trial.train(targets, 0)
+    row = {
+        "real": trial.described(weights, start, targets),
+        "real, errors": trial.errors(trial.model(weights)),
+        "untrained": _mean(trial.described(start, start, targets), min(members, 5)),
+    }
+    row["nulls"], kept = _nulls(trial, kinds, draws, each)
+    if more:
+        white, _ = _nulls(trial, ("shuffled",), 5, members // 5)
+        row["nulls"] |= white
+        row["interventions"] = _intervened(trial, weights, start, kept)
+        row["other motions"] = _elsewhere(trial, {"real": weights, "untrained": start, **kept})
+    return row
+
+
+def _intervened(trial: _Trial, weights: Weights, start: Weights, nulls: dict) -> dict:
+    f = weights.hidden_weights
+    others = {kind: kept.hidden_weights for kind, kept in nulls.items()}
+    cycled = {k: x[np.arange(len(f)) % len(x)] for k, x in others.items()}
+    hidden, held = (
+        weights.activity(x)[0]
+        for x in (trial.data.x, trial.model(weights).scaled(trial.test_windows))
+    )
+    nothing = np.zeros((len(trial.windows), 0)), np.zeros((len(trial.test_windows), 0))
+    return {
+        "as trained": trial.replaced(weights, f),
+        "pure parts": trial.replaced(weights, pure_part(f)),
+        "without pure parts": trial.replaced(weights, f - pure_part(f)),
+        "untrained": trial.replaced(weights, start.hidden_weights),
+        **{kind: trial.replaced(weights, x) for kind, x in cycled.items()},
+        "linear filter alone": trial.refit(*nothing),
+        "hidden units alone": np.array(
+            [trial.refit(h, t, direct=False) for h, t in zip(hidden, held)]
+        ),
+    }
+
+
+def _elsewhere(trial: _Trial, networks: dict) -> dict:
+    """What the same units follow on motions whose acceleration is not their position."""
+    setup = trial.setup
+    motions = {
+        "two sines": split(record_two_harmonics(setup))[0],
+        "quintic": record_quintic(setup),
+        "circle": record_circle(setup),
+    }
+    found: dict = {}
+    for name, motion in motions.items():
+        windows = cases(motion, trial.width)[0]
+        states = with_jerk(true_states(motion, setup)).reshape(-1, 2, 4)
+        found[name] = {}
+        for kind, weights in networks.items():
+            inputs = unit_inputs(trial.model(weights), windows)
+            told = {layer: _responded(inputs[layer], states) for layer in LAYERS}
+            found[name][kind] = {layer: _mean(x, 5) for layer, x in told.items()}
+    return found
+
+
+@study
+def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
+    """Filters of networks trained on real torques beside those of networks trained on surrogates.
+
+    For each window size `members` networks on the recorded torques, as many untrained, `draws`
+    draws of each matched surrogate with `each` networks, and some on shuffled torques, all of
+    `TRIAL` and trained alike. The draw is what a p-value counts, hence many draws of few
+    networks. Nulls are means by draw.
+
+    Parameters
+    ----------
+    members, draws, each : int
+        Networks on the real torques, draws of each surrogate, networks of a draw.
+    """
+    recording = TRIAL.record()
+    windows = {str(w): _row(TRIAL, recording, w, members, draws, each, more=True) for w in WINDOWS}
+    return {"members": members, "draws": draws, "each": each, "epochs": EPOCHS, "windows": windows}
+
+
+@study
+def filter_trial_elsewhere(
+    members: int = 10, draws: int = 20, each: int = 1, width: int = 21
+) -> dict:
+    """The trial of the filters with one thing changed at a time, smaller.
+
+    Other noise and another zero of the encoders, two sines in place of one, a window between
+    those of Table 4-1, state feedback with its own descent on inputs of 0 to 1; shifted and
+    phase-randomised torques. Then `LONGER` epochs, and the third set-up with its own solver in
+    place of descent: half as many networks, phase-randomised torques only.
+
+    Parameters
+    ----------
+    members, draws, each : int
+        Networks on the real torques, draws of each surrogate, networks of a draw.
+    width : int
+        Window size of all rows but one.
+    """
+    kinds = ("shifted", "phases")
+    other = TRIAL.repeated(1)
+    old = replace(STATE_FEEDBACK, epochs=EPOCHS)
+    rows = {
+        "other noise": (other, other.record(), width),
+        "two sines": (TRIAL, record_two_harmonics(TRIAL), width),
+        "window 31": (TRIAL, TRIAL.record(), 31),
+        "state feedback": (old, old.record(), width),
+    }
+    found = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
+    slow = {"longer": replace(TRIAL, epochs=LONGER), "solver": JOINT_DAMPING}
+    for name, setup in slow.items():
+        found[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
+    return {"members": members, "draws": draws, "each": each, "longer": LONGER, "rows": found}
+
+
+@study
+def null_controls(
+    members: int = 4, steps: int = 400, few: int = 120, tolerance: float = 1e-4
+) -> dict:
+    """Networks of window 21 that started elsewhere, or went on to an optimum.
+
+    The starts are other initial weights, descended for `EPOCHS`. The optima are those of the
+    error with a penalty on the squared weights ("weight decay"), reached by Levenberg-Marquardt:
+    the gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended.
+    The error alone has no end within reach: its row is what `few` steps give.
+
+    Parameters
+    ----------
+    members : int
+        Networks of each row.
+    steps, few : int
+        Most steps of the solver with a penalty, and without.
+    tolerance : float
+        As of `ddlib.learning.solve`.
+    """
+    trial = _Trial(TRIAL, TRIAL.record(), 21)
+    targets = np.repeat(trial.torques[None], members, 0)
+    test = trial.data.transform(trial.test_windows, trial.answer)
+
+    def row(weights: Weights) -> dict:
+        errors = trial.errors(trial.model(weights))
+        return {
+            "training": errors[:, 0],
+            "test": errors[:, 1],
+            "largest weight": weights.largest,
+            "roughness, hidden": np.median(roughness(weights.hidden_weights), (-2, -1)),
+            "classes": _counted(weights.hidden_weights),
+            "direct": _counted(weights.direct_weights),
+        }
+
+    rows = []
+    for initial in (0.03, 0.3, 1.0):
+        other = _Trial(replace(TRIAL, initial=initial), TRIAL.record(), 21)
+        weights, _ = other.train(targets, 0)
+        rows.append({"kind": "descent", "initial": initial, **row(weights)})
+    for penalty in ({"decay": 1e-5}, {"decay": 1e-3}, {}):
+        solution = solve(
+            Weights.random(members, 21, initial=TRIAL.initial),
+            trial.data,
+            test=test,
+            steps=steps if penalty else few,
+            tolerance=tolerance,
+            label=f"optimum {penalty or 'without penalty'}",
+            **penalty,
+        )
+        rows.append(
+            {
+                "kind": "optimum",
+                "penalty": penalty,
+                "gradient": solution.gradient,
+                "ended": list(map(str, solution.ended)),
+                "steps": solution.steps,
+                **row(solution.model.weights),
+            }
+        )
+    return {"members": members, "tolerance": tolerance, "few": few, "rows": rows}

@@ -1,0 +1,148 @@
+"""What a reader sees who trains a network in the page: when the error goes, and the shapes come."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.analysis import classify
+from ddlib.learning import (
+    Descent,
+    TrainingSet,
+    Weights,
+    cases,
+    default_rate,
+    prepare,
+    surrogate,
+)
+from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from workshop.report.code_hash import study
+
+WIDTH = 21
+"""Window of the networks."""
+
+EVERY = 5
+"""Of the training windows the page shows every fifth; of trajectory 6 all."""
+
+EPOCHS = 2000
+"""Epochs of a run in the page."""
+
+CHECK = 5
+"""Epochs between two looks at errors and shapes."""
+
+LEVEL = 0.2
+"""RMSS in training below which the error counts as gone."""
+
+MOMENTUM = 0.98
+"""Acceleration of the page's descent at its start; its step is `default_rate`."""
+
+EVENTS = ("error", "direct", "hidden")
+"""What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
+the first hidden filter with any name."""
+
+SHIFTS = 5
+"""Draws of torques shifted in time."""
+
+
+def page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
+    """Training set of the page, and scaled windows and torques of trajectory 6.
+
+    Parameters
+    ----------
+    scaling : tuple of float
+        Range of the inputs.
+    shifted : int, optional
+        Seed of a draw that shifts each training run's torques in time; default: not shifted.
+    """
+    training, test = split(JOINT_DAMPING.record())
+    torque = training.tau[:, training.motion]
+    if shifted is not None:
+        torque = surrogate("shifted", torque, shifted)
+    windows, _ = cases(training, WIDTH)
+    whole = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=scaling)
+    samples = torque.shape[1]
+    kept = np.arange(len(windows)).reshape(-1, samples)[:, ::EVERY].ravel()
+    data = replace(whole, x=whole.x[kept], y=whole.y[kept], step=training.step)
+    return data, data.transform(*cases(test, WIDTH))
+
+
+def events(weights: Weights, training: np.ndarray) -> np.ndarray:
+    """Which of `EVENTS` hold for each network, shape (members, 3).
+
+    Parameters
+    ----------
+    weights : Weights
+        With a leading axis of members.
+    training : ndarray, shape (members,)
+        Their RMSS in training.
+    """
+    direct = classify(weights.direct_weights) == "acceleration"
+    hidden = classify(weights.hidden_weights) != "not analysable"
+    shapes = [x.reshape(len(weights), -1).any(-1) for x in (direct, hidden)]
+    return np.stack([training < LEVEL, *shapes], -1)
+
+
+def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
+    """Train, looking every `CHECK` epochs; what was seen of each network.
+
+    Parameters
+    ----------
+    weights : Weights
+        Initial weights with a leading axis of members.
+    data, test
+        As from `page_set`.
+    epochs : int
+        As many are trained.
+
+    Returns
+    -------
+    dict
+        For each of `EVENTS` the epoch at which it was first seen (None: not within the run);
+        ``training`` and ``test``, RMSS at the end; ``named``, share of the hidden filters that
+        then have a name.
+    """
+    rate = default_rate(WIDTH) / len(data.x)
+    descent = Descent(weights, data.x, data.y, rate, MOMENTUM)
+    spreads = data.y.std(0), test[1].std(0)
+    sets = (descent.inputs, descent.targets), prepare(*test)
+    first = np.full((len(weights), len(EVENTS)), np.nan)
+    for epoch in range(0, epochs + 1, CHECK):
+        errors = [
+            np.sqrt((descent.mean_square(*s) / spread**2).mean(-1))
+            for s, spread in zip(sets, spreads)
+        ]
+        now = descent.weights()
+        first[events(now, errors[0]) & np.isnan(first)] = epoch
+        for _ in range(CHECK if epoch < epochs else 0):
+            descent.epoch()
+    named = classify(now.hidden_weights) != "not analysable"
+    return {
+        **dict(zip(EVENTS, first.T)),
+        "training": errors[0],
+        "test": errors[1],
+        "named": named.reshape(len(weights), -1).mean(-1),
+    }
+
+
+@study
+def page_training(members: int = 25) -> dict:
+    """Networks of window 21 trained as the page trains them, on torques real and shifted.
+
+    Parameters
+    ----------
+    members : int
+        Networks on the real torques, and on all shifted ones together.
+    """
+    rows = {}
+    for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
+        start = Weights.random(members, WIDTH, initial=INITIAL)
+        rows[f"{name}, real"] = watched(start, *page_set(scaling))
+        shares = np.array_split(np.arange(members), SHIFTS)
+        runs = [
+            watched(start[share], *page_set(scaling, shifted=k)) for k, share in enumerate(shares)
+        ]
+        rows[f"{name}, shifted"] = {
+            key: np.concatenate([run[key] for run in runs]) for key in runs[0]
+        }
+    return {"members": members, "epochs": EPOCHS, "every": EVERY, "level": LEVEL, "rows": rows}

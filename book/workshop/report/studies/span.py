@@ -1,0 +1,151 @@
+"""Why the filters are smooth: learning curves along the windows' directions, and predicted ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.analysis import roughness
+from ddlib.learning import Directions, Lazy, TrainingSet, Weights
+from ddlib.paper import EPOCHS
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, split, train_windows
+from workshop.report.code_hash import study
+
+COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
+"""Epochs of the learning curves: 4 in each decade."""
+
+CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
+"""State feedback with inputs around zero, against the printed "0.0 to 1.0"."""
+
+DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
+"""The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
+the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors."""
+
+READINGS = (STATE_FEEDBACK, CENTRED, DAMPED)
+
+SHOWN = 12
+"""Directions whose curves are kept, the steepest first."""
+
+
+def _rmss(error, y) -> np.ndarray:
+    """Pooled RMSS of scaled errors ``(..., cases, output)``."""
+    return np.sqrt((error**2).mean(-2) / y.var(0)).mean(-1)
+
+
+def _rough(hidden_weights) -> np.ndarray:
+    return np.median(roughness(hidden_weights), (-2, -1))
+
+
+def _correlation(a, b) -> float:
+    return float(np.corrcoef(np.log(a), np.log(b))[0, 1])
+
+
+def _seen(along, weights, error, y) -> dict:
+    """Changes and errors of one network along its training; directions last."""
+    start = weights[0]
+    change = weights.hidden_weights - start.hidden_weights
+    lengths = [np.sqrt((w**2).sum((-3, -2, -1))) for w in (change, start.hidden_weights)]
+    return {
+        "change": along.energy(weights, start),
+        "error": np.sqrt(((along.cases.T @ error) ** 2 / (len(y) * y.var(0))).mean(-1)),
+        "rmss": _rmss(error, y),
+        "moved": lengths[0] / lengths[1],
+        "roughness, change": _rough(change[-1]),
+        "roughness, trained": _rough(weights.hidden_weights[-1]),
+    }
+
+
+def _cell(setup, recording, width, members) -> dict:
+    """One window size: measured and predicted courses of its networks, and what follows."""
+    data = TrainingSet.from_recording(split(recording)[0], width, scaling=setup.scaling)
+    along = Directions.of(data)
+    _, _, kept = train_windows(setup, recording, width, members, snapshots=COURSE)
+    courses = Weights.stack([kept[epoch] for epoch in COURSE])
+    how = (setup.rate / width, COURSE, setup.momentum, setup.warm_up)
+    order = np.random.default_rng(0).permutation(len(data.y))
+    seen = {"measured": [], "predicted": [], "shuffled": []}
+    for member in range(members):
+        weights = courses[:, member]
+        lazy = Lazy(weights[0], data)
+        error = weights.activity(data.x)[1] - data.y
+        seen["measured"].append(_seen(along, weights, error, data.y))
+        seen["predicted"].append(_seen(along, *lazy.predict(*how), data.y))
+        null = lazy.predict(*how, targets=data.y[order])
+        seen["shuffled"].append({"change": along.energy(null.weights, weights[0])})
+    correlation = _correlations(seen, along.values**2)
+    del seen["shuffled"]
+    start = along.energy(kept[0])
+    found = {
+        "setup": setup.name,
+        "scaling": setup.scaling,
+        "width": width,
+        "variance": (along.values / along.values[0]) ** 2,
+        "correlation": correlation,
+        "roughness, start": _rough(kept[0].hidden_weights),
+    }
+    every = {w: {k: np.array([c[k] for c in each]) for k in each[0]} for w, each in seen.items()}
+    for who, courses in every.items():
+        change = courses["change"] / start[:, None]
+        found[who] = {
+            "change over start": np.sqrt(np.median(change[..., :SHOWN], 0)),
+            "last change over start": np.sqrt(np.median(change[:, -1], 0)),
+            "learnt": (change[:, -1] > 1).sum(-1),
+            "error": np.median(courses["error"][..., :SHOWN], 0),
+            "rmss": courses["rmss"][:, -1],
+            "halves": [_halves(each[:, :SHOWN]) for each in courses["error"]],
+            "moved": np.median(courses["moved"], 0),
+            **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
+        }
+    ratio = every["measured"]["change"] / every["predicted"]["change"]
+    apart = np.exp(np.abs(np.log(ratio[:, 1:, :SHOWN])) / 2)
+    return {**found, "factor": np.median(apart, -1)}
+
+
+def _halves(error) -> np.ndarray:
+    """First epoch at which a part of the error ``(epochs, directions)`` is half its first value.
+
+    Between recorded epochs it goes linearly on logarithmic scales; NaN if it never is.
+    """
+    epochs, found = np.log(COURSE[1:]), []
+    for each in np.log(2 * error[1:] / error[0]).T:
+        k = np.argmax(each <= 0)
+        if each[k] > 0:
+            found.append(np.nan)
+        else:
+            before = max(k - 1, 0)
+            found.append(np.exp(np.interp(0.0, each[[k, before]], epochs[[k, before]])))
+    return np.array(found)
+
+
+def _correlations(seen, variance) -> dict:
+    """How well changes are predicted, on a log scale over all directions, for each network.
+
+    By its own tangent at every epoch but 0; at the end also by the next network's tangent, by
+    its own with the torques in shuffled order, and by the windows' spectrum alone.
+    """
+    true, own, null = ([c["change"] for c in each] for each in seen.values())
+    end = [change[-1] for change in true]
+    others = {
+        "of another": own[1:] + own[:1],
+        "of shuffled torques": null,
+        "of the spectrum": [variance[None]] * len(end),
+    }
+    return {
+        "own": [[_correlation(a, b) for a, b in zip(t[1:], o[1:])] for t, o in zip(true, own)],
+        **{name: [_correlation(a, b[-1]) for a, b in zip(end, o)] for name, o in others.items()},
+    }
+
+
+@study
+def span(members=5) -> dict:
+    """Learning curves of `members` networks along the directions of their windows.
+
+    By state feedback with both scalings of the inputs, and on the arm with damped joints; three
+    windows each.
+    """
+    cells = []
+    for setup in READINGS:
+        recording = setup.record()
+        cells += [_cell(setup, recording, width, members) for width in WINDOWS]
+    return {"members": members, "epochs": COURSE, "cells": cells}

@@ -1,0 +1,116 @@
+"""How the error of Table 6-1 depends on samples, hidden units and the length of training."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib import paper
+from ddlib.learning import TrainingSet, Weights, solve, train_ensemble
+from workshop.report.code_hash import study
+from workshop.report.exact_states import (
+    EPOCHS,
+    INITIAL,
+    MOMENTUM,
+    RATE,
+    SAMPLES,
+    WARM_UP,
+    random_states,
+    torque,
+)
+
+TEST_SAMPLES, TEST_SEED = 5000, 1000
+"""Size and seed of the random set on which every error is measured."""
+
+STEPS = 80
+"""Steps of Levenberg-Marquardt: the same for all sizes; most of the way, not to the end."""
+
+DRAWS = {100: 8, SAMPLES: 8, 1000: 6, 3000: 6, 10_000: 4, 30_000: 3, 100_000: 2}
+"""Samples of a training set, and draws of it that are solved (one network each)."""
+
+DESCENT_DRAWS = {100: 2, SAMPLES: 2, 1000: 2, 3000: 1}
+"""The same for momentum descent, with `DESCENT_MEMBERS` networks each."""
+
+DESCENT_MEMBERS = 4
+"""Networks that descend together on one draw."""
+
+UNITS = (5, 10, 20, 40, 80)
+"""Hidden units of the networks that descend on set A."""
+
+SOLVED_UNITS, SOLVED_SAMPLES, SOLVED_DRAWS = (5, 10, 20, 40), 1000, 3
+"""Hidden units that are solved, samples of their training sets, draws of each."""
+
+
+def _data(samples, seed):
+    states = random_states(samples, seed)
+    data = TrainingSet.from_arrays(states, torque(states))
+    test = random_states(TEST_SAMPLES, TEST_SEED)
+    return data, data.transform(test, torque(test))
+
+
+def _errors(histories) -> dict:
+    """Final training and test errors and the best test error on the way, all networks."""
+    return {
+        "training": np.concatenate([h.training[-1] for h in histories]),
+        "test": np.concatenate([h.test[-1] for h in histories]),
+        "best test": np.concatenate([h.best_test for h in histories]),
+    }
+
+
+def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100):
+    histories = []
+    for draw in range(draws):
+        data, test = _data(samples, first + draw)
+        weights = Weights.random(DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
+        label = f"{samples:,} samples, {hidden} units, descent {draw + 1} of {draws}"
+        options = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": epochs}
+        histories.append(train_ensemble(weights, data, test=test, label=label, **options)[1])
+    return histories
+
+
+def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
+    """Errors after `STEPS` steps of the solver, and the gradients that it stopped with."""
+    found = []
+    for draw in range(draws):
+        data, test = _data(samples, 100 + draw)
+        weights = Weights.random(1, 3, hidden, initial=INITIAL, seed=draw)
+        label = f"{samples:,} samples, {hidden} units, solver {draw + 1} of {draws}"
+        found.append(solve(weights, data, test=test, steps=STEPS, label=label))
+    errors = _errors([solution.history for solution in found])
+    return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
+
+
+@study
+def state_space_sizes() -> dict:
+    """Errors by number of samples, by number of hidden units, and over five times the epochs."""
+    samples = [
+        {
+            "samples": n,
+            "solver": _solve(n, draws),
+            "descent": _errors(_descend(n, DESCENT_DRAWS[n])) if n in DESCENT_DRAWS else None,
+        }
+        for n, draws in DRAWS.items()
+    ]
+    units = [
+        {
+            "units": hidden,
+            "descent": _errors(_descend(SAMPLES, 1, hidden, first=0)),
+            "solver": _solve(SOLVED_SAMPLES, SOLVED_DRAWS, hidden)
+            if hidden in SOLVED_UNITS
+            else None,
+        }
+        for hidden in UNITS
+    ]
+    (longer,) = _descend(SAMPLES, 1, epochs=5 * EPOCHS, first=0)
+    return {
+        "test samples": TEST_SAMPLES,
+        "steps": STEPS,
+        "samples": samples,
+        "units": units,
+        "solver's samples in units": SOLVED_SAMPLES,
+        "longer": {
+            "epochs": longer.epochs,
+            "training": longer.training.T,
+            "test": longer.test.T,
+            "slope": longer.slope(),
+        },
+    }

@@ -1,0 +1,148 @@
+"""Table 4-1, and what the length of training and the sensors decide in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ddlib.analysis import saturated
+from ddlib.control import pd
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS
+from ddlib.learning import TorqueModel, Weights, cases
+from ddlib.setups import (
+    COURSE,
+    JOINT_DAMPING,
+    KP,
+    LITERATURE,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    errors,
+    split,
+    train_windows,
+)
+from workshop.report import results
+from workshop.report.code_hash import study
+
+
+def _cell(setup, recording, width, members, snapshots=()):
+    model, history, kept = train_windows(setup, recording, width, members, snapshots=snapshots)
+    cell = {
+        "errors": errors(model, recording).named(),
+        "best test": history.best_test,
+        "largest weight": model.weights.largest,
+        "slope": history.slope(),
+        "derailed": history.derailed,
+        "history": {
+            "epochs": history.epochs,
+            "training": history.training.T,
+            "test": history.test.T,
+        },
+    }
+    return cell, model, kept
+
+
+@study
+def table_4_1(members=25) -> dict:
+    """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
+    table = {}
+    for setup in SETUPS.values():
+        recording = setup.record()
+        table[setup.name] = {}
+        for width in WINDOWS:
+            followed = COURSE if setup is STATE_FEEDBACK else ()
+            cell, model, kept = _cell(setup, recording, width, members, followed)
+            table[setup.name][str(width)] = cell
+            model.save(results.networks_path(setup.name, width))
+            if kept:
+                course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
+                TorqueModel(course, model.inputs, model.outputs).save(results.course_path(width))
+    return {"members": members, "setups": table}
+
+
+def _ablations() -> dict:
+    """`JOINT_DAMPING` with one thing changed at a time, and with nothing tuned, by name."""
+    whole = JOINT_DAMPING
+    viscous, coulomb = whole.effects.friction
+    default = CMU_DD_ARM_II_EFFECTS
+
+    def effects(**parts):
+        return replace(whole, effects=replace(whole.effects, **parts))
+
+    descent = replace(whole, steps=0, decay=0.0)
+    return {
+        "joint damping": whole,
+        "damping in the controller": replace(
+            effects(friction=(default.friction[0], coulomb)),
+            controller=pd(whole.controller.kp, viscous.coefficient),
+        ),
+        "no Coulomb friction": effects(friction=(viscous,)),
+        "16 bits": effects(encoder=default.encoder),
+        "default gain": replace(whole, controller=replace(whole.controller, kp=KP)),
+        "default descent": descent,
+        "descent, inputs -1 to 1": replace(
+            descent, scaling=(-1.0, 1.0), epochs=50_000, momentum=0.995, rate=66.0
+        ),
+        "nothing tuned, solver": replace(LITERATURE, steps=whole.steps, decay=whole.decay),
+        LITERATURE.name: LITERATURE,
+    }
+
+
+@study
+def recordings(days=5, networks=5, fewer=1) -> dict:
+    """Joint damping and its ablations on several days (`Setup.repeated`).
+
+    `networks` for each day and window of the set-up itself, `fewer` of the ablations. Errors and
+    largest weights have the shape ``(days, networks)``.
+    """
+    rows = {}
+    for name, setup in _ablations().items():
+        members = networks if setup is JOINT_DAMPING else fewer
+        cells = {str(w): [] for w in WINDOWS}
+        for day in range(1, days + 1):
+            recording = setup.repeated(day).record()
+            for w in WINDOWS:
+                model, history, _ = train_windows(
+                    setup, recording, w, members, seed=100 * day, progress=False
+                )
+                found = errors(model, recording)
+                cells[str(w)].append(
+                    {
+                        "training": found.training,
+                        "test": found.test,
+                        "best test": history.best_test,
+                        "largest weight": model.weights.largest,
+                        "saturated": _saturated(model, recording, w),
+                    }
+                )
+        rows[name] = {
+            w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()
+        }
+    return {"days": days, "networks": networks, "fewer": fewer, "setups": rows}
+
+
+def _saturated(model, recording, width) -> np.ndarray:
+    """Share of the hidden units' activities at one of their ends on runs 1 to 5, per network."""
+    windows, _ = cases(split(recording)[0], width)
+    members = (model[k] for k in range(len(model.weights)))
+    return np.array([saturated(m.weights.activity(m.scaled(windows))[0]).mean() for m in members])
+
+
+@study
+def longer(members=8, epochs=60_000) -> dict:
+    """State feedback trained three times as long: where do the errors go?"""
+    setup = replace(STATE_FEEDBACK, epochs=epochs)
+    recording = setup.record()
+    windows = {str(w): _cell(setup, recording, w, members)[0] for w in WINDOWS}
+    return {"members": members, "epochs": epochs, "windows": windows}
+
+
+@study
+def clean(members=8) -> dict:
+    """State feedback on an arm without friction, quantisation and torque noise."""
+    effects = STATE_FEEDBACK.effects.without("friction", "encoder", "torque_sensor")
+    setup = replace(STATE_FEEDBACK, effects=effects, name="perfect sensors, no friction")
+    recording = setup.record()
+    windows = {str(w): _cell(setup, recording, w, members)[0] for w in WINDOWS}
+    return {"members": members, "windows": windows}

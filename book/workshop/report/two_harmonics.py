@@ -1,0 +1,160 @@
+"""Controls for the paper's family: motions in which position and acceleration differ.
+
+One sine is proportional to its own second derivative, so along the paper's reference a filter
+cannot tell position from acceleration. A second, faster sine of drawn amplitude and sign tells
+them apart, at nearly the same extents and speeds. Two single motions do so, too: a polynomial of
+degree five out and back, and a circle of the hand.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib._check import integer, shaped
+from ddlib.setups import STATE_FEEDBACK, Setup
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MAX_EXTENT_DEG,
+    MOTION_SECONDS,
+    Trajectory,
+    pick_and_place,
+    time_grid,
+)
+
+ORDER = 5
+"""Frequency of the second sine over that of the first. Odd: then both are symmetric about the
+middle of the motion, where half of the paper's sine turns."""
+
+SHARE = 2.0
+"""Largest acceleration of the second sine over that of the first one at 45 degrees."""
+
+
+NEUTRAL = (-0.35, -0.55)
+"""Joint angles about which the hand's circle lies, rad: inside the family's range."""
+
+
+def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
+    """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``.
+
+    They rest at zero before 0 s and from 3 s on, like the paper's family, which they are for
+    ``rho = 0``.
+
+    Parameters
+    ----------
+    extents_deg, second_deg : array_like, shape (..., 2)
+        Amplitudes theta and rho of shoulder and elbow in degrees.
+    t : array_like, shape (time,)
+        Times, s.
+    order : int
+        2 or more.
+
+    Returns
+    -------
+    Trajectory
+        Arrays of shape ``(..., time, 2)``.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an argument is not numeric, not finite or of the wrong shape.
+    """
+    first = pick_and_place(extents_deg, t)
+    rho = np.deg2rad(shaped("second_deg", second_deg, np.shape(extents_deg)))
+    t = np.asarray(t, dtype=float)
+    omega = integer("order", order, 2) * np.pi / MOTION_SECONDS
+    moving = (t >= 0) & (t < MOTION_SECONDS)
+    sine, cosine = (f(omega * t) * moving for f in (np.sin, np.cos))
+    second = (-sine, -omega * cosine, omega**2 * sine)
+    return Trajectory(*(x + rho[..., None, :] * y[:, None] for x, y in zip(first, second)))
+
+
+def second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
+    """Amplitudes of the second sine for the six runs, degrees, shape (6, 2).
+
+    Uniform, of either sign, up to the amplitude whose acceleration is `SHARE` times that of the
+    first sine at 45 degrees.
+
+    Parameters
+    ----------
+    order, seed : int
+        As in `two_harmonics`; seed of the draw.
+    """
+    most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
+    draw = np.random.default_rng(integer("seed", seed, 0))
+    return draw.uniform(-most, most, APPENDIX_I.shape)
+
+
+def record_two_harmonics(
+    setup: Setup = STATE_FEEDBACK, order: int = ORDER, seed: int = 0
+) -> Recording:
+    """The six runs of Appendix I with a second sine on top, recorded as the paper's are.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects, controller and the seed of the noise.
+    order, seed : int
+        As in `second_amplitudes`.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    reference = two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order)
+    return follow(
+        setup.arm,
+        setup.controller,
+        reference,
+        t,
+        effects=setup.effects,
+        seed=setup.seed,
+        log_every=round(LOG_STEP / CONTROL_STEP),
+        duration=MOTION_SECONDS,
+    )
+
+
+def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
+    """Both joints out and back by polynomials of degree five, at rest at either end of each.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects and controller.
+    degrees : float
+        How far out.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    half = MOTION_SECONDS / 2
+    away = np.clip(np.where(t < half, t, MOTION_SECONDS - t) / half, 0, 1)
+    q = np.deg2rad(degrees) * np.polyval([6, -15, 10, 0, 0, 0], away)
+    return _followed(setup, t, np.stack([q, 0.6 * q], -1))
+
+
+def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
+    """The hand goes round a circle about where `NEUTRAL` puts it.
+
+    Parameters
+    ----------
+    setup : Setup
+        Arm, effects and controller.
+    radius : float
+        In m.
+    turns : int
+        In the time of a motion.
+    """
+    t = time_grid(CONTROL_STEP, REST)
+    angle = 2 * np.pi * turns * np.clip(t, 0, MOTION_SECONDS) / MOTION_SECONDS
+    first, second = setup.arm.lengths
+    sums = np.cumsum(NEUTRAL)
+    centre = np.array([f(NEUTRAL[0]) * first + f(sums[1]) * second for f in (np.cos, np.sin)])
+    x, y = centre[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
+    elbow = -np.arccos((x**2 + y**2 - first**2 - second**2) / (2 * first * second))
+    shoulder = np.arctan2(y, x) - np.arctan2(second * np.sin(elbow), first + second * np.cos(elbow))
+    return _followed(setup, t, np.stack([shoulder, elbow], -1))
+
+
+def _followed(setup: Setup, t, q) -> Recording:
+    speed = np.gradient(q, CONTROL_STEP, axis=0)
+    reference = Trajectory(q, speed, np.gradient(speed, CONTROL_STEP, axis=0))
+    return follow(
+        setup.arm, setup.controller, reference, t, effects=setup.effects, seed=setup.seed,
+        log_every=round(LOG_STEP / CONTROL_STEP), duration=MOTION_SECONDS,
+    )  # fmt: skip

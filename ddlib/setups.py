@@ -1,0 +1,443 @@
+"""The experiment of section 4, as this book repeats it: one place for every choice made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from ddlib import paper
+from ddlib._check import finite_array, integer, number
+from ddlib.control import Controller, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    CoulombFriction,
+    Effects,
+    EncoderZero,
+    Quantisation,
+    ViscousFriction,
+)
+from ddlib.learning import (
+    History,
+    Solution,
+    TorqueModel,
+    TrainingSet,
+    Weights,
+    cases,
+    sliding_windows,
+    solve,
+    train_ensemble,
+)
+from ddlib.metrics import rmss
+from ddlib.simulation import Recording, record
+from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
+
+KP = (300.0, 90.0)
+"""Gains on the position error of shoulder and elbow, N m/rad. Assumed: stiff enough to follow
+the family within a few degrees. Softer and stiffer ones are compared in the book."""
+
+KD = (35.0, 10.0)
+"""Gains on the velocity error, N m s/rad. Assumed: damping ratios of about 0.4 and 0.6."""
+
+WINDOWS = tuple(paper.TABLE_4_1)
+"""Window sizes of Table 4-1."""
+
+MOMENTUM = 0.98
+"""Acceleration factor. Assumed; Lang (1988) used 0.95, which leaves the training error far
+from its asymptote after the paper's 20,000 epochs."""
+
+WARM_UP = 1000
+"""Epochs at the start with a momentum of 0.5. Assumed; Lang (1988) raised it from .5 to .95.
+Without them a few networks in a hundred saturate early and never recover."""
+
+COURSE = (*sorted({0, *(round(10 ** (k / 14)) for k in range(61))}), paper.EPOCHS)
+"""Epochs after which the weights of the first networks are kept: 14 in each decade."""
+
+INITIAL = 0.3
+"""Initial weights are uniform in plus or minus this (Rumelhart, Hinton & Williams 1986)."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """Arm, effects, controller and training: everything that decides Table 4-1.
+
+    Parameters
+    ----------
+    name : str
+        What tables call it.
+    controller : Controller
+    arm : Arm
+    effects : Effects
+    epochs, warm_up : int
+    momentum, initial : float
+    rate : float
+        Step size per case times the width of the window (`ddlib.learning.training.default_rate`).
+    scaling : tuple of float
+        Range that the network's inputs are scaled to.
+    hidden : int
+        Number of hidden units.
+    seed : int
+        Seed of the sensor noise of the recording.
+    steps : int
+        Steps of Levenberg-Marquardt in place of descent; 0: descent, as in 1988. Training ends
+        after them, converged or not.
+    decay : float
+        Weight decay of Levenberg-Marquardt (`ddlib.learning.levenberg_marquardt.solve`).
+    """
+
+    name: str
+    controller: Controller
+    arm: Arm = CMU_DD_ARM_II
+    effects: Effects = CMU_DD_ARM_II_EFFECTS
+    epochs: int = paper.EPOCHS
+    momentum: float = MOMENTUM
+    warm_up: int = WARM_UP
+    initial: float = INITIAL
+    rate: float = 33.0
+    scaling: tuple[float, float] = (0.0, 1.0)
+    hidden: int = paper.HIDDEN_UNITS
+    seed: int = 0
+    steps: int = 0
+    decay: float = 0.0
+
+    def __post_init__(self):
+        integer("steps", self.steps, 0)
+        number("decay", self.decay, 0.0)
+        if self.decay and not self.steps:
+            raise ValueError(f"decay must be 0 for descent (steps = 0), got {self.decay:g}")
+
+    def record(self, extents_deg=APPENDIX_I, **options) -> Recording:
+        """The recording of all runs, noise included; default: the six of Appendix I.
+
+        Parameters
+        ----------
+        extents_deg : array_like, shape (2,) or (runs, 2)
+            Extents in degrees.
+        **options
+            Duration, rests and periods, as in `ddlib.simulation.simulate.record`.
+        """
+        options = {"effects": self.effects, "seed": self.seed, **options}
+        return record(self.arm, self.controller, extents_deg, **options)
+
+    def repeated(self, seed: int) -> Setup:
+        """The same experiment on another day: other torque noise, another zero of the encoders.
+
+        Rounding is no noise: without another zero every recording would round alike.
+
+        Parameters
+        ----------
+        seed : int
+            Of both; 0 or more.
+        """
+        integer("seed", seed, 0)
+        steps = [effect.step for effect in self.effects.encoder if hasattr(effect, "step")]
+        zero = np.random.default_rng((seed, len(steps))).uniform(0.0, max(steps, default=0.0), 2)
+        shifted = (EncoderZero(tuple(zero)), *self.effects.encoder, EncoderZero(tuple(-zero)))
+        effects = replace(self.effects, encoder=shifted if steps else self.effects.encoder)
+        return replace(self, effects=effects, seed=seed)
+
+
+POSITION_FEEDBACK = Setup("position feedback", proportional(KP))
+"""First reading of "a proportional controller": torque proportional to the position error."""
+
+STATE_FEEDBACK = Setup("state feedback", pd(KP, KD))
+"""Second reading: the reference is "position and velocity" (section 2), so the torque is
+proportional to the errors in both. The arm follows without ringing."""
+
+JOINT_DAMPING_KP = (750.0, 225.0)
+"""Gains of `JOINT_DAMPING`, N m/rad: 2.5 times `KP`. Tuned to Table 4-1."""
+
+JOINT_DAMPING_VISCOUS = (5.3, 1.1)
+"""Viscous friction of `JOINT_DAMPING`, N m s/rad: what public code gives for the IMI arm, another
+planar direct-drive arm. Not tuned."""
+
+JOINT_DAMPING_COULOMB = (1.5, 0.45)
+"""Coulomb friction of `JOINT_DAMPING`, N m: three times the default. Tuned to Table 4-1."""
+
+JOINT_DAMPING_BITS = 12.5
+"""Encoder of `JOINT_DAMPING`, bits: the 16 that are remembered cannot make the training error at
+window 11. Tuned to Table 4-1."""
+
+JOINT_DAMPING_STEPS = 60
+"""Levenberg-Marquardt steps of `JOINT_DAMPING`: it is stopped there, not converged. Tuned."""
+
+JOINT_DAMPING_DECAY = 1e-6
+"""Weight decay of `JOINT_DAMPING`. Tuned; it decides the size of the largest weights."""
+
+JOINT_DAMPING = Setup(
+    "joint damping",
+    proportional(JOINT_DAMPING_KP),
+    effects=replace(
+        CMU_DD_ARM_II_EFFECTS,
+        friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB)),
+        encoder=(Quantisation(2 * np.pi / 2**JOINT_DAMPING_BITS),),
+    ),
+    steps=JOINT_DAMPING_STEPS,
+    decay=JOINT_DAMPING_DECAY,
+)
+"""Third reading: torque proportional to the position error alone, and joints that are damped by
+themselves. Arm and torque noise are the default ones."""
+
+LITERATURE = replace(
+    POSITION_FEEDBACK,
+    name="joint damping, nothing tuned",
+    effects=replace(
+        CMU_DD_ARM_II_EFFECTS,
+        friction=(ViscousFriction(JOINT_DAMPING_VISCOUS), *CMU_DD_ARM_II_EFFECTS.friction[1:]),
+    ),
+)
+"""The same idea with nothing tuned to the table: `POSITION_FEEDBACK` with the IMI arm's viscous
+friction; gains, Coulomb friction, 16 bits and training are the default ones."""
+
+SETUPS = {setup.name: setup for setup in (POSITION_FEEDBACK, STATE_FEEDBACK, JOINT_DAMPING)}
+"""The three readings of "a proportional controller" by name."""
+
+
+def split(recording: Recording) -> tuple[Recording, Recording]:
+    """Training runs 1 to 5 and test run 6 of an Appendix I recording: split by trajectory."""
+    if recording.q.ndim != 3 or len(recording.q) != len(APPENDIX_I):
+        raise ValueError(
+            f"recording must hold the six runs of Appendix I, got shape {recording.q.shape}"
+        )
+    return recording[:5], recording[5]
+
+
+def train_windows(
+    setup: Setup,
+    recording: Recording,
+    width: int,
+    members: int,
+    *,
+    seed=0,
+    snapshots=(),
+    progress=True,
+) -> tuple[TorqueModel, History, dict[int, Weights]]:
+    """Train `members` networks of one window size on runs 1 to 5, following run 6.
+
+    Parameters
+    ----------
+    setup : Setup
+    recording : Recording
+        The six runs of Appendix I.
+    width, members, seed : int
+        Window size, number of networks, seed of the first one's weights.
+    snapshots, progress
+        As in `ddlib.learning.train_ensemble`.
+
+    Returns
+    -------
+    model, history, snapshots
+        As from `ddlib.learning.train_ensemble`; of `Setup.steps` steps of
+        Levenberg-Marquardt there are no snapshots.
+    """
+    if setup.steps:
+        solution = solve_windows(setup, recording, width, members, seed=seed, progress=progress)
+        return solution.model, solution.history, {}
+    weights, data, test = _start(setup, recording, width, members, seed)
+    return train_ensemble(
+        weights,
+        data,
+        test=test,
+        rate=setup.rate / width,
+        momentum=setup.momentum,
+        epochs=setup.epochs,
+        warm_up=setup.warm_up,
+        snapshots=snapshots,
+        progress=progress,
+        label=f"{setup.name}, window {width}",
+    )
+
+
+def solve_windows(
+    setup: Setup, recording: Recording, width: int, members: int, *, seed=0, progress=True
+) -> Solution:
+    """`train_windows` of a set-up with Levenberg-Marquardt, with all that the solver tells.
+
+    It stops after ``setup.steps`` steps and warns of members that have not converged by then;
+    `Solution.gradient` says how far they are.
+
+    Parameters
+    ----------
+    setup, recording, width, members, seed, progress
+        As in `train_windows`.
+
+    Returns
+    -------
+    Solution
+    """
+    integer("setup.steps", setup.steps, 1)
+    weights, data, test = _start(setup, recording, width, members, seed)
+    return solve(
+        weights,
+        data,
+        test=test,
+        decay=setup.decay,
+        steps=setup.steps,
+        progress=progress,
+        label=f"{setup.name}, window {width}",
+    )
+
+
+def _start(setup, recording, width, members, seed) -> tuple:
+    """Initial weights, the training set, and the scaled test set."""
+    integer("members", members, 1)
+    training, test = split(recording)
+    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
+    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
+    return weights, data, data.transform(*cases(test, width))
+
+
+@dataclass(frozen=True)
+class Errors:
+    """RMSS on an Appendix I recording, in each way the paper may have meant.
+
+    Attributes
+    ----------
+    training, test : ndarray, shape (members,)
+        Pooled over the joints, each set divided by its own standard deviation.
+    by_training_deviation : ndarray, shape (members,)
+        Of trajectory 6, divided by the training set's standard deviation.
+    shoulder, elbow : ndarray, shape (members,)
+        Of trajectory 6, one joint.
+    desired : ndarray, shape (members,)
+        Of trajectory 6 when the network sees the reference in place of measured positions.
+    """
+
+    training: np.ndarray
+    test: np.ndarray
+    by_training_deviation: np.ndarray
+    shoulder: np.ndarray
+    elbow: np.ndarray
+    desired: np.ndarray
+
+    def named(self) -> dict[str, np.ndarray]:
+        """The same under the names that results and tables use."""
+        return {NAMES[field.name]: getattr(self, field.name) for field in fields(self)}
+
+
+NAMES = {
+    "training": "training",
+    "test": "test",
+    "by_training_deviation": "test by training deviation",
+    "shoulder": "test shoulder",
+    "elbow": "test elbow",
+    "desired": "test, desired positions",
+}
+"""What results and tables call the fields of `Errors`."""
+
+
+def errors(model: TorqueModel, recording: Recording) -> Errors:
+    """RMSS of a model on an Appendix I recording, one value per member each."""
+    width = model.weights.width
+    training, test = split(recording)
+    (x, y), (x6, y6) = cases(training, width), cases(test, width)
+    desired = sliding_windows(test.reference.q, width, test.motion)
+    predicted = model.torque(x6)
+    by_joint = rmss(predicted, y6, pooled=False)
+    return Errors(
+        training=rmss(model.torque(x), y),
+        test=rmss(predicted, y6),
+        by_training_deviation=rmss(predicted, y6, scale=y.std(0)),
+        shoulder=by_joint[..., 0],
+        elbow=by_joint[..., 1],
+        desired=rmss(model.torque(desired), y6),
+    )
+
+
+def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
+    """Torque that a model gives along the motion of a recording, ``(..., time, joint)``, N m.
+
+    A model that knows its sampling period refuses a recording with another one.
+    """
+    finite_array("recording.q", recording.q, 2)
+    if model.step is not None and abs(recording.step / model.step - 1) > 1e-6:
+        raise ValueError(
+            f"recording must have the model's sampling period of {model.step:g} s, "
+            f"got {recording.step:g} s"
+        )
+    return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))
+
+
+HULL = ConvexHull(APPENDIX_I[:5])
+"""Of the extents of the training trajectories."""
+
+
+def inside_hull(extents_deg) -> np.ndarray:
+    """Whether extents lie in the hull of the training trajectories.
+
+    Parameters
+    ----------
+    extents_deg : array_like, shape (..., 2)
+        Extents of shoulder and elbow, degrees.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+    """
+    extents_deg = finite_array("extents_deg", extents_deg, 2)
+    distances = extents_deg @ HULL.equations[:, :2].T + HULL.equations[:, 2]
+    return (distances <= 1e-9).all(-1)
+
+
+class Square(NamedTuple):
+    """Recordings of a grid of trajectories.
+
+    Attributes
+    ----------
+    extents_deg : ndarray, shape (runs, 2)
+        Shoulder and elbow, degrees; the elbow's changes fastest.
+    inside : ndarray of bool, shape (runs,)
+        Whether they lie in the hull of the training trajectories.
+    recording : Recording
+        All runs.
+    """
+
+    extents_deg: np.ndarray
+    inside: np.ndarray
+    recording: Recording
+
+
+def square(setup: Setup, points: int = 9) -> Square:
+    """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
+
+    Parameters
+    ----------
+    setup : Setup
+        Which arm, controller and sensors.
+    points : int
+        Extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that each
+        joint moves in all.
+    """
+    integer("points", points, 2)
+    edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
+    extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
+    return Square(extents, inside_hull(extents), setup.record(extents))
+
+
+def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:
+    """What perfect sensors would have read in the motion: position, velocity, acceleration.
+
+    Parameters
+    ----------
+    recording : Recording
+    setup : Setup
+        Its arm and its friction give the acceleration from the torque.
+    skip : float
+        Seconds left out at the start of the motion, where the transient is; less than its length.
+
+    Returns
+    -------
+    ndarray, shape (..., samples, joint, 3)
+        In rad, rad/s and rad/s^2.
+    """
+    motion, (begin, end) = recording.motion, recording.span
+    number("skip", skip, 0.0, end - begin - recording.step)
+    inside = slice(motion.start + round(skip / recording.step), motion.stop)
+    q, qd, tau = (
+        x[..., inside, :] for x in (recording.q_true, recording.qd_true, recording.tau_true)
+    )
+    driving = tau - setup.effects.friction_torque(qd)
+    return np.stack([q, qd, setup.arm.forward_dynamics(q, qd, driving)], -1)

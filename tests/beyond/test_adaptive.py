@@ -1,0 +1,217 @@
+"""Adaptive controllers: their equations, the function that never rises, what they refuse."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import cumulative_simpson, solve_ivp
+
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.simulation import follow, record, rms
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.adaptive.craig import CraigHsuSastry
+from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+
+ARM = CMU_DD_ARM_II
+TRUTH = np.array([ARM.a, ARM.b, ARM.d])
+BOX = dict(low=0.6 * TRUTH, high=1.5 * TRUTH)
+LAW = SlotineLi((40.0, 10.0), (8.0, 8.0), (2.0, 0.5, 0.2), 0.5 * TRUTH)
+
+
+def stirring(t) -> Trajectory:
+    """Two sines a joint: enough motion for three parameters."""
+    phase = np.multiply.outer(np.asarray(t), [[2.0, 5.0], [3.0, 4.0]])
+    speed = np.array([[2.0, 5.0], [3.0, 4.0]])
+    size = np.array([[0.5, 0.2], [0.6, 0.3]])
+    return Trajectory(
+        (size * np.sin(phase)).sum(-1),
+        (size * speed * np.cos(phase)).sum(-1),
+        (-size * speed**2 * np.sin(phase)).sum(-1),
+    )
+
+
+states = st.lists(st.floats(-3, 3), min_size=8, max_size=8)
+
+
+@given(states)
+def test_regressor_is_linear_form_of_the_equations_of_motion(numbers):
+    q, qd, v, a = np.reshape(numbers, (4, 2))
+    arm = REYES_KELLY_ARM
+    base = [arm.a, arm.b, arm.d, *arm.gravity_moments]
+    expected = arm.mass_matrix(q) @ a + arm.coriolis_matrix(q, qd) @ v + arm.gravity(q)
+    found = mixed_regressor(q, qd, v, a, PARAMETERS[:5]) @ base
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(
+        mixed_regressor(q, qd, qd, a, PARAMETERS[:5]), Arm.regressor(q, qd, a), atol=1e-12
+    )
+    viscous, level = np.array([5.0, 2.0]), np.array([3.0, 1.0])
+    friction = viscous * v + level * np.clip(v / 0.02, -1, 1)
+    found = mixed_regressor(q, qd, v, a, PARAMETERS[5:]) @ [*viscous, *level]
+    np.testing.assert_allclose(found, friction, atol=1e-12)
+
+
+def run_continuous(rates, seconds, first, points=1500):
+    """States and estimates of an exact loop, integrated to a tolerance of 1e-11."""
+    t = np.linspace(0.0, seconds, points)
+    found = solve_ivp(rates, (0.0, seconds), first, "DOP853", t, rtol=1e-11, atol=1e-12)
+    assert found.success
+    return t, found.y.T[:, :2], found.y.T[:, 2:4], found.y.T[:, 4:]
+
+
+def test_lyapunov_function_of_slotine_and_li_never_rises():
+    def rates(t, y):
+        q, qd, estimate = y[:2], y[2:4], y[4:]
+        torque, change = LAW.output(estimate, stirring(t), q, qd)
+        return np.concatenate([qd, ARM.forward_dynamics(q, qd, torque), change])
+
+    start = np.concatenate([[0.4, -0.3], [0.0, 0.0], LAW.estimate])
+    t, q, qd, estimates = run_continuous(rates, 6.0, start, 6001)
+    wanted = stirring(t)
+    values = LAW.lyapunov(ARM, TRUTH, estimates, wanted, q, qd)
+    assert np.diff(values).max() <= 1e-9 * values[0]
+    error, error_rate = wanted.q - q, wanted.qd - qd
+    s = error_rate + 8.0 * error
+    spent = ((s**2) * LAW.gain).sum(-1)
+    lost = cumulative_simpson(spent, x=t, initial=0.0)
+    np.testing.assert_allclose(values[0] - values, lost, atol=1e-5 * values[0])
+    assert np.abs(error[-1000:]).max() < 0.02 * np.abs(error).max()
+
+
+def test_a_wrong_sign_of_the_adaptation_makes_the_function_rise():
+    def rates(t, y):
+        q, qd, estimate = y[:2], y[2:4], y[4:]
+        torque, change = LAW.output(estimate, stirring(t), q, qd)
+        return np.concatenate([qd, ARM.forward_dynamics(q, qd, torque), -change])
+
+    start = np.concatenate([[0.4, -0.3], [0.0, 0.0], LAW.estimate])
+    t, q, qd, estimates = run_continuous(rates, 0.2, start)
+    values = LAW.lyapunov(ARM, TRUTH, estimates, stirring(t), q, qd)
+    assert np.diff(values).max() > 1e-6 * values[0]
+
+
+def test_errors_of_craigs_loop_obey_their_linear_equation_and_parameters_are_found():
+    law = CraigHsuSastry(
+        (60.0, 60.0), (16.0, 16.0), (8.0, 8.0), (4.0, 0.5, 0.2), 0.9 * TRUTH, **BOX
+    )
+
+    def accelerated(t, q, qd, estimate):
+        """Torque and acceleration determine each other only through the plant: no loop here."""
+        torque, _ = law.output(estimate, stirring(t), q, qd, np.zeros(2))
+        return torque, ARM.forward_dynamics(q, qd, torque)
+
+    def rates(t, y):
+        q, qd, estimate = y[:2], y[2:4], y[4:]
+        _, qdd = accelerated(t, q, qd, estimate)
+        _, change = law.output(estimate, stirring(t), q, qd, qdd)
+        return np.concatenate([qd, qdd, change])
+
+    t, q, qd, estimates = run_continuous(
+        rates, 12.0, np.concatenate([[0.05, 0.0], stirring(0.0).qd, law.estimate])
+    )
+    wanted = stirring(t)
+    for k in (0, 40, 700):
+        _, qdd = accelerated(t[k], q[k], qd[k], estimates[k])
+        error, rate = wanted.q[k] - q[k], wanted.qd[k] - qd[k]
+        left = wanted.qdd[k] - qdd + 16.0 * rate + 60.0 * error
+        Y = mixed_regressor(q[k], qd[k], qd[k], qdd)
+        c2 = np.cos(q[k, 1])
+        a, b, d = estimates[k]
+        mass = np.array([[a + 2 * b * c2, d + b * c2], [d + b * c2, d]])
+        np.testing.assert_allclose(
+            left, np.linalg.solve(mass, Y @ (TRUTH - estimates[k])), 1e-9, 1e-12
+        )
+    np.testing.assert_allclose(estimates[-1], TRUTH, rtol=0.02)
+
+
+IDEAL_RUN = dict(duration=3.0, rest=0.2)
+
+
+def test_sampled_laws_follow_better_than_the_feedback_they_contain():
+    effects = Effects(friction=(ViscousFriction((3.0, 1.0)), CoulombFriction((0.5, 0.2))))
+    names = (*PARAMETERS[:3], *PARAMETERS[5:])
+    nothing = np.zeros(7)
+    rate = np.array([6.0, 1.5, 0.6, 60.0, 15.0, 15.0, 6.0])
+    found = {}
+    for name, speed in (("learning", rate), ("still", nothing)):
+        adaptive = Watched(SlotineLi((40.0, 10.0), (8.0, 8.0), speed, nothing, names))
+        run = record(ARM, adaptive, (40.0, 30.0), effects=effects, **IDEAL_RUN)
+        found[name] = rms(run.tracking_error[run.motion][150:]), adaptive.law.estimates
+    assert (found["learning"][0] < 0.5 * found["still"][0]).all()
+    assert (found["still"][1] == 0).all()
+    course = found["learning"][1]
+    assert course.shape[-1] == 7 and (course[0] == 0).all() and np.abs(course[-1]).max() > 0
+
+
+def test_without_adaptation_and_with_the_truth_there_is_no_error():
+    law = SlotineLi((40.0, 10.0), (8.0, 8.0), np.zeros(3), TRUTH)
+    t = np.arange(0, 3000) * 1e-3
+    wanted = stirring(t)
+    start = wanted.q[0], wanted.qd[0]
+    run = follow(ARM, law, wanted, t, start=start, log_every=10)
+    assert np.abs(run.tracking_error).max() < 2e-3
+
+
+@settings(max_examples=20)
+@given(st.integers(1, 5))
+def test_a_batch_is_its_runs_side_by_side(runs):
+    extents = np.linspace([10.0, 40.0], [40.0, 5.0], runs)
+    together = Watched(LAW)
+    many = record(ARM, together, extents, rest=0.1, duration=0.5, control_step=0.005)
+    alone = Watched(LAW)
+    one = record(ARM, alone, extents[-1], rest=0.1, duration=0.5, control_step=0.005)
+    np.testing.assert_allclose(many.q_true[-1], one.q_true, rtol=1e-9, atol=1e-12)
+    last = np.broadcast_to(together.law.estimates, (runs, *together.law.estimates.shape[-2:]))[-1]
+    np.testing.assert_allclose(last, alone.law.estimates, rtol=1e-9, atol=1e-12)
+
+
+def test_estimates_of_craigs_law_stay_in_their_box():
+    law = CraigHsuSastry((60.0, 60.0), (16.0, 16.0), (8.0, 8.0), (900.0,) * 3, TRUTH, **BOX)
+    watched = Watched(law)
+    record(ARM, watched, (40.0, 30.0), velocity="difference", rest=0.1, duration=1.0)
+    course = watched.law.estimates
+    assert (course >= BOX["low"]).all() and (course <= BOX["high"]).all()
+    assert (np.diff(course, axis=0) != 0).any()
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (dict(gain=(0.0, 1.0)), "gain must be above 0"),
+        (dict(slope=(1.0, -1.0)), "slope must be above 0"),
+        (dict(rate=(1.0, 1.0)), "rate must have shape"),
+        (dict(rate=(-1.0, 1.0, 1.0)), "rate"),
+        (dict(estimate=(np.nan, 1.0, 1.0)), "estimate"),
+        (dict(names=("a", "b", "mass")), "names"),
+    ],
+)
+def test_slotine_and_li_refuse(change, message):
+    fine = dict(gain=(1.0, 1.0), slope=(1.0, 1.0), rate=(1.0,) * 3, estimate=TRUTH)
+    with pytest.raises(ValueError, match=message):
+        SlotineLi(**{**fine, **change})
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (dict(weight=(16.0, 1.0)), "weight must be below kd"),
+        (dict(low=0.0 * TRUTH), "positive definite"),
+        (dict(high=9.0 * TRUTH), "positive definite"),
+        (dict(estimate=2.0 * TRUTH), "between low and high"),
+        (dict(names=("b", "a", "d")), "begin with a, b, d"),
+    ],
+)
+def test_craig_refuses(change, message):
+    fine = dict(
+        kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), rate=(1.0,) * 3, estimate=TRUTH, **BOX
+    )
+    with pytest.raises(ValueError, match=message):
+        CraigHsuSastry(**{**fine, **change})
+
+
+def test_a_watched_controller_that_never_ran_has_no_law():
+    with pytest.raises(ValueError, match="started"):
+        _ = Watched(pd((1.0, 1.0), (1.0, 1.0))).law

@@ -1,0 +1,84 @@
+"""The studies of characters and of intervals: how errors, parts and shares are found."""
+
+import numpy as np
+import pytest
+import torch
+
+from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
+from workshop.beyond.rivals.protocol import Cases
+from workshop.beyond.studies import characters, intervals
+
+
+@pytest.fixture(scope="module")
+def drawn():
+    return characters.data().of(("e", "q", "v"))
+
+
+def exact(x):
+    return characters.ARM.inverse_dynamics(*np.moveaxis(x, -1, 0))
+
+
+def test_the_parts_of_the_exact_arm_are_those_of_the_file(drawn):
+    found = characters.parts(exact, characters.states(drawn).x)
+    for name in ("inertial", "coriolis", "gravity"):
+        np.testing.assert_allclose(found[name], getattr(drawn, name), atol=1e-13)
+    np.testing.assert_allclose(found["mass_matrix"], drawn.mass_matrix, atol=1e-13)
+    np.testing.assert_allclose(found["torque"], drawn.tau, atol=1e-13)
+    assert max(characters.errors(found, drawn).values()) < 1e-12
+
+
+def test_errors_sum_the_joints_and_average_the_samples(drawn):
+    found = characters.parts(exact, characters.states(drawn).x)
+    found["torque"] = drawn.tau + np.array([0.3, 0.4])
+    found["mass_matrix"] = 1.1 * drawn.mass_matrix
+    errors = characters.errors(found, drawn)
+    assert errors["torque"] == pytest.approx(0.25) and errors["mass_matrix"] == pytest.approx(0.1)
+
+
+def test_at_twice_the_speed_torques_follow_the_square_of_time(drawn):
+    x = characters.states(drawn).x
+    assert characters.hurried(exact, x) < 1e-12
+    still = characters.hurried(lambda fast: exact(fast) + np.array([0.3, 0.4]), x)
+    moved = 4 * (drawn.tau - drawn.gravity) + drawn.gravity
+    assert still == pytest.approx(0.5 / np.sqrt(moved.var(0).sum()))
+
+
+def test_a_dead_joint_is_seen(drawn):
+    cases = characters._plain(drawn)
+    rival = LagrangianNetwork(**AS_PUBLISHED, epochs=0).fit(cases)
+    with torch.no_grad():
+        rival.network.head.weight[:2] = 0.0
+        rival.network.head.bias[:2] = torch.tensor([-1.0, 1.0])
+    assert characters._dead(rival, drawn.q) == [True, False]
+    with torch.no_grad():
+        rival.network.head.weight[0] = 1.0  # positive somewhere: alive
+    assert characters._dead(rival, drawn.q) == [False, False]
+
+
+def test_a_row_has_all_seeds(monkeypatch):
+    monkeypatch.setattr(characters, "SEEDS", 2)
+    entry = characters.Entry(lambda k: characters.RandomFeatures("states", 20, seed=k), True)
+    row = characters._entry(entry, ("e", "q", "v"))
+    assert len(row["test"]) == len(row["training"]) == len(row["seconds"]) == 2
+    assert row["test"][0]["torque"] != row["test"][1]["torque"]
+    names = {"torque", "inertial", "coriolis", "gravity", "mass_matrix", "hurried"}
+    assert set(row["test"][0]) == names
+    once = characters._entry(characters.ENTRIES["equations, identified"], ("e", "q", "v"))
+    assert len(once["test"]) == 1 and once["test"][0]["torque"] < 1e-20 and once["count"] == 5
+
+
+def test_the_share_that_intervals_hold():
+    x, torque = np.zeros((40, 2, 3)), np.zeros((40, 2))
+    torque[:10] = 5.0
+
+    class Fixed:
+        def torque(self, x):
+            return np.zeros((len(x), 2))
+
+        def deviation(self, x):
+            return np.full((len(x), 2), 2.0)
+
+    found = intervals._asked(Fixed(), Cases(x, torque, "states", 0.01))
+    assert found["covered"] == 0.75  # 5 lies outside 1.96 times 2
+    np.testing.assert_allclose(found["half width"], 2 * 1.96, rtol=1e-4)
+    assert found["rmss"] == pytest.approx(2.5 / torque.std())

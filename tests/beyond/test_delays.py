@@ -1,0 +1,107 @@
+"""Poles of a late loop: against python-control's own, and against the simulated arm."""
+
+import control
+import numpy as np
+import pytest
+
+from ddlib.control import linear, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
+from ddlib.setups import KD, KP
+from ddlib.simulation import CONTROL_STEP, follow
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.delays import late_poles
+
+VISCOUS = (0.5, 0.15)
+M = CMU_DD_ARM_II.mass_matrix([0.0, 0.0])
+JOINTS = linear.plant(M, VISCOUS)
+P = np.hstack([np.diag(KP), np.zeros((2, 2))])
+PD = np.hstack([np.diag(KP), np.diag(KD)])
+
+
+def sizes(poles):
+    return np.sort(np.abs(poles))[::-1]
+
+
+@pytest.mark.parametrize("kd", [0.0, KD], ids=["P", "PD"])
+def test_without_delay_it_is_the_sampled_loop(kd):
+    gain = P if np.ndim(kd) == 0 else PD
+    known = linear.closed_loop(JOINTS, KP, kd=kd, period=CONTROL_STEP).poles()
+    ours = late_poles(JOINTS, gain, CONTROL_STEP, 0.0)
+    np.testing.assert_allclose(sizes(ours)[:4], sizes(known), atol=1e-9)
+    np.testing.assert_allclose(sizes(ours)[4:], 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("periods", [1, 2, 5])
+def test_whole_periods_are_delays_in_python_control(periods):
+    held = control.sample_system(JOINTS, CONTROL_STEP, "zoh")
+    late = control.ss(np.zeros((2, 2)), np.eye(2), np.eye(2), np.zeros((2, 2)), CONTROL_STEP)
+    chain = held
+    for _ in range(periods):
+        chain = chain * late
+    known = control.feedback(chain, control.ss([], [], [], PD, CONTROL_STEP)).poles()
+    ours = late_poles(JOINTS, PD, CONTROL_STEP, periods * CONTROL_STEP)
+    np.testing.assert_allclose(sizes(ours)[:4], sizes(known)[:4], atol=1e-9)
+
+
+def test_a_fraction_of_a_period_by_finer_sampling():
+    """Delay 0.5 period: the loop on a grid twice as fine, reading and holding every other step."""
+    half = control.sample_system(JOINTS, CONTROL_STEP / 2, "zoh")
+    A, B, n = half.A, half.B, 4
+    # x after half a period under the old torque, then half under the new
+    step = np.block([[A @ A - B @ PD, A @ B], [-PD, np.zeros((2, 2))]])
+    ours = late_poles(JOINTS, PD, CONTROL_STEP, CONTROL_STEP / 2)
+    np.testing.assert_allclose(sizes(ours)[:n], sizes(np.linalg.eigvals(step))[:n], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "late, effect", [(0.0012, ComputingTime(0.0012)), (0.002, Delay(1)), (0.004, Delay(2))]
+)
+def test_growth_of_a_late_spring_on_the_simulated_arm(late, effect):
+    """Small swing of the slower mode under P control: rate within 5 % of the pole's."""
+    z = late_poles(JOINTS, P, CONTROL_STEP, late)
+    slow = z[(np.abs(np.angle(z)) > 0) & (np.abs(z) > 0.9)]
+    slow = slow[np.abs(np.angle(slow)).argmin()]
+    rate = np.log(abs(slow)) / CONTROL_STEP
+    _, shapes = np.linalg.eig(np.linalg.solve(M, np.diag(KP)))
+    values = np.linalg.eigvals(np.linalg.solve(M, np.diag(KP)))
+    mode = shapes[:, values.argmin()]
+    t = np.arange(0, 8, CONTROL_STEP)
+    target = 1e-3 * (t > 0)[:, None] * mode
+    effects = Effects((ViscousFriction(VISCOUS),), actuator=(effect,))
+    run = follow(
+        CMU_DD_ARM_II, proportional(KP), Trajectory(target, 0 * target, 0 * target), t,
+        effects=effects, log_every=1,
+    )  # fmt: skip
+    along = np.linalg.solve(shapes, run.tracking_error.T)[values.argmin()]
+    peaks = np.flatnonzero((along[1:-1] > along[:-2]) & (along[1:-1] >= along[2:])) + 1
+    measured = np.polyfit(run.t[peaks[1:]], np.log(along[peaks[1:]]), 1)[0]
+    assert measured == pytest.approx(rate, rel=0.05)
+
+
+def test_how_late_a_pd_loop_may_be():
+    """The last stable and the first unstable whole delay, predicted and simulated."""
+    periods = next(
+        n for n in range(60)
+        if np.abs(late_poles(JOINTS, PD, CONTROL_STEP, n * CONTROL_STEP)).max() > 1
+    )  # fmt: skip
+    assert 15 < periods < 30
+    t = np.arange(0, 5, CONTROL_STEP)
+    target = np.deg2rad(0.1) * (t > 0)[:, None] * np.ones(2)
+    reference = Trajectory(target, 0 * target, 0 * target)
+    swings = []
+    for n in (periods - 1, periods):
+        effects = Effects((ViscousFriction(VISCOUS),), actuator=(Delay(n),))
+        run = follow(CMU_DD_ARM_II, pd(KP, KD), reference, t, effects=effects)
+        error = np.abs(run.tracking_error).max(-1)
+        swings.append(error[-50:].max() / error[200:250].max())
+    assert swings[0] < 1 < swings[1]
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [(dict(period=0.0), "period"), (dict(late=-1e-3), "late"), (dict(gain=[[1.0]]), "gain")],
+)
+def test_bad_values_are_refused(change, name):
+    with pytest.raises(ValueError, match=name):
+        late_poles(JOINTS, **{"gain": PD, "period": 0.002, "late": 0.0, **change})

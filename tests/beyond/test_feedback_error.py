@@ -1,0 +1,116 @@
+"""Feedback-error learning: the identity with Slotine & Li, and what it learns."""
+
+import numpy as np
+import pytest
+
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.simulation import follow, record
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.adaptive.regressor import PARAMETERS
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.feedback_error import (
+    FeedbackErrorLearning,
+    GenericTerms,
+    MotionMemory,
+    RigidBodyTerms,
+)
+
+GAIN, SLOPE = 30.0, np.array([8.0, 6.0])
+RATE = np.array([2.0, 0.5, 0.2, 10.0, 4.0])
+NAMES = (*PARAMETERS[:3], "F_v1", "F_v2")
+TEACHER = pd(tuple(GAIN * SLOPE), (GAIN, GAIN))
+
+
+def learner(rate=RATE / GAIN, weights=(0.0,) * 5, names=NAMES):
+    return FeedbackErrorLearning(RigidBodyTerms(names), rate, weights, TEACHER)
+
+
+def both(extents, **change):
+    fixed = dict(gain=(GAIN, GAIN), slope=SLOPE, rate=RATE, estimate=np.zeros(5), names=NAMES)
+    ours = Watched(learner())
+    theirs = Watched(SlotineLi(**fixed, **{"at": "desired", **change}))
+    runs = [record(ARM, law, extents, duration=1.0, rest=0.2) for law in (ours, theirs)]
+    return runs, ours.law.weights, theirs.law.estimates
+
+
+def test_it_is_slotine_and_li_at_the_desired_state_with_another_gain():
+    runs, weights, estimates = both([[40.0, 30.0], [10.0, 45.0]])
+    assert np.abs(weights[..., -1, :]).max() > 0.1
+    np.testing.assert_allclose(weights, estimates, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(runs[0].tau_true, runs[1].tau_true, rtol=1e-12, atol=1e-11)
+
+
+def test_at_the_measured_state_it_is_not():
+    _, weights, estimates = both((40.0, 30.0), at="measured")
+    assert np.abs(weights - estimates).max() > 1e-3
+
+
+def test_with_the_right_terms_it_finds_the_arm():
+    truth = np.array([ARM.a, ARM.b, ARM.d])
+    t = np.arange(0.0, 20.0, 0.002)
+    phase = np.multiply.outer(t, [[2.0, 5.0], [3.0, 4.0]])
+    speed = np.array([[2.0, 5.0], [3.0, 4.0]])
+    size = np.array([[0.5, 0.2], [0.6, 0.3]])
+    sine, cosine = size * np.sin(phase), size * np.cos(phase)
+    wanted = Trajectory(*(x.sum(-1) for x in (sine, speed * cosine, -(speed**2) * sine)))
+    taught = Watched(learner(np.array([0.3, 0.05, 0.03]), 0.5 * truth, PARAMETERS[:3]))
+    follow(ARM, taught, wanted, t, start=(wanted.q[0], wanted.qd[0]))
+    assert np.abs(taught.law.weights[-1] / truth - 1).max() < 0.15
+
+
+def test_bad_shapes_are_refused():
+    with pytest.raises(ValueError, match="weights"):
+        learner(weights=np.zeros(4))
+    with pytest.raises(ValueError, match="rate"):
+        learner(rate=-RATE)
+    bad = FeedbackErrorLearning(lambda q, qd, qdd: np.zeros(3), RATE, np.zeros(5), TEACHER)
+    with pytest.raises(ValueError, match=r"terms\(q, qd, qdd\) must have shape"):
+        record(ARM, bad, (10.0, 10.0), duration=0.5, rest=0.1)
+
+
+def test_generic_terms_do_not_hold_the_arm():
+    rng = np.random.default_rng(0)
+    q, qd, qdd = rng.uniform(-0.8, 0.8, (3, 400, 2))
+    terms = GenericTerms()
+    found = terms(q, qd, qdd)
+    assert found.shape == (400, 2, terms.count) and terms.count == 56
+    assert not np.any((found[:, 0] != 0) & (found[:, 1] != 0))
+    columns = found[:, 0, : terms.count // 2]
+    for exact in (np.cos(q[:, 1]) * qdd[:, 0], np.sin(q[:, 1]) * qd[:, 0] * qd[:, 1],
+                  np.sign(qd[:, 0])):  # fmt: skip
+        left = exact - columns @ np.linalg.lstsq(columns, exact, rcond=None)[0]
+        assert left.std() > 1e-4 * exact.std()
+
+
+def test_a_memory_learns_its_motion_and_no_other():
+    extents, errors = np.array([[40.0, 30.0]]), []
+    memory = MotionMemory(pd((300.0, 90.0), (35.0, 10.0)), 0.3, lead=25, smoothing=5)
+    bare = record(ARM, memory, [[10.0, 45.0]]).tracking_error
+    for _ in range(8):
+        watched = Watched(memory)
+        errors.append(np.abs(record(ARM, watched, extents).tracking_error).mean())
+        memory.learn(watched.law)
+    assert errors[-1] < 0.35 * errors[0]
+    other = record(ARM, memory, [[10.0, 45.0]]).tracking_error
+    assert np.abs(other).mean() > np.abs(bare).mean()
+
+
+def test_a_memory_without_trials_is_the_feedback_alone():
+    memory = MotionMemory(TEACHER, 0.0)
+    runs = [record(ARM, law, (40.0, 30.0), duration=1.0) for law in (memory, TEACHER)]
+    np.testing.assert_array_equal(runs[0].tau_true, runs[1].tau_true)
+    watched = Watched(memory)
+    record(ARM, watched, (40.0, 30.0), duration=1.0)
+    memory.learn(watched.law)
+    assert not memory.torque.any()
+
+
+def test_a_memory_is_stretched_to_another_length():
+    memory = MotionMemory(TEACHER, 1.0)
+    memory.torque = np.stack([np.linspace(0, 1, 101), np.linspace(2, 0, 101)], -1)
+    wanted = Trajectory(*(np.zeros((51, 2)) for _ in range(3)))
+    played = memory.start(wanted, 0.002).played
+    np.testing.assert_allclose(played[:, 0], np.linspace(0, 1, 51), atol=1e-12)
+    np.testing.assert_allclose(played[25], [0.5, 1.0], atol=1e-12)

@@ -1,0 +1,256 @@
+"""Gaussian processes against the closed form, their intervals, and random features."""
+
+import numpy as np
+import pytest
+from scipy.linalg import cho_factor, cho_solve
+from scipy.spatial.distance import cdist
+
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.identification import GRAVITY, RIGID
+from ddlib.trajectories import OutsideFamilyWarning
+from workshop.beyond.rivals.gaussian import GaussianProcess, Inputs, RandomFeatures, SemiParametric
+from workshop.beyond.rivals.protocol import Cases
+
+STEP = 0.01
+
+
+def states(samples, seed=0, size=1.0):
+    return np.random.default_rng(seed).uniform(-size, size, (samples, 2, 3))
+
+
+def data(samples=120, seed=0, noise=0.1, arm=CMU_DD_ARM_II):
+    x = states(samples, seed)
+    torque = arm.inverse_dynamics(*np.moveaxis(x, -1, 0))
+    torque += noise * np.random.default_rng(seed + 1000).standard_normal(torque.shape)
+    return Cases(x, torque, "states", STEP)
+
+
+def kernel(x, y, rival, joint):
+    size = rival.processes[joint].kernel_.k1.k1.constant_value
+    length = rival.lengths[joint]
+    return size * np.exp(-0.5 * cdist(x / length, y / length, "sqeuclidean"))
+
+
+def closed_form(rival, cases, x, joint):
+    """Mean and deviation by Cholesky factors, from the hyperparameters alone."""
+    flat, wanted = cases.x.reshape(len(cases), -1), x.reshape(len(x), -1)
+    mean, spread = flat.mean(0), flat.std(0)
+    a, b = (flat - mean) / spread, (wanted - mean) / spread
+    level, unit = cases.torque[:, joint].mean(), cases.torque[:, joint].std()
+    noise = (rival.noise[joint] / unit) ** 2
+    factor = cho_factor(kernel(a, a, rival, joint) + noise * np.eye(len(a)), lower=True)
+    across = kernel(b, a, rival, joint)
+    found = across @ cho_solve(factor, (cases.torque[:, joint] - level) / unit)
+    size = rival.processes[joint].kernel_.k1.k1.constant_value
+    variance = size + noise - np.einsum("ij,ji->i", across, cho_solve(factor, across.T))
+    return level + unit * found, unit * np.sqrt(variance)
+
+
+def test_a_gaussian_process_is_the_closed_form():
+    cases = data()
+    rival = GaussianProcess("states", subset=60, restarts=0).fit(cases)
+    x = states(30, 7, 0.9)
+    for joint in range(2):
+        mean, deviation = closed_form(rival, cases, x, joint)
+        np.testing.assert_allclose(rival.torque(x)[:, joint], mean, rtol=1e-6, atol=1e-6)
+        np.testing.assert_allclose(rival.deviation(x)[:, joint], deviation, rtol=1e-5)
+
+
+def test_hyperparameters_maximise_the_marginal_likelihood():
+    cases = data(80)
+    rival = GaussianProcess("states", subset=80, restarts=1).fit(cases)
+    flat = cases.x.reshape(80, -1)
+    a = (flat - flat.mean(0)) / flat.std(0)
+
+    def likelihood(lengths, size, noise, y):
+        matrix = size * np.exp(-0.5 * cdist(a / lengths, a / lengths, "sqeuclidean"))
+        matrix += noise * np.eye(len(a))
+        return -0.5 * (y @ np.linalg.solve(matrix, y) + np.linalg.slogdet(matrix)[1])
+
+    for joint, process in enumerate(rival.processes):
+        y = cases.torque[:, joint]
+        y = (y - y.mean()) / y.std()
+        lengths, size = process.kernel_.k1.k2.length_scale, process.kernel_.k1.k1.constant_value
+        noise = process.kernel_.k2.noise_level
+        best = likelihood(lengths, size, noise, y)
+        for factor in (0.7, 1.4):
+            assert likelihood(lengths * factor, size, noise, y) < best
+            assert likelihood(lengths, size * factor, noise, y) < best
+            assert likelihood(lengths, size, noise * factor, y) < best
+            for k in np.flatnonzero(lengths < 10):
+                other = lengths.copy()
+                other[k] *= factor
+                assert likelihood(other, size, noise, y) < best + 1e-3
+
+
+def test_an_input_that_does_not_matter_gets_a_long_length():
+    rival = GaussianProcess("states", subset=120, restarts=0).fit(data(noise=0.02))
+    lengths = rival.lengths.reshape(2, 2, 3)  # joint, joint of the input, row
+    assert lengths[0, 0, 0] > 20 * lengths[0, 1, 0]  # two vertical axes: the shoulder's angle
+    assert lengths[1, 1, 1] > 20 * lengths[1, 0, 1]  # the elbow's own velocity, at the elbow
+
+
+def test_intervals_hold_what_they_promise():
+    """Functions drawn from a process with noise: 95 % intervals hold 92 to 98 % of new values."""
+    rng = np.random.default_rng(3)
+    inside = []
+    for draw in range(12):
+        x = rng.uniform(-1, 1, (150, 1, 3))
+        flat = x.reshape(150, -1)
+        covariance = np.exp(-0.5 * cdist(flat, flat, "sqeuclidean") / 0.8**2)
+        value = np.linalg.cholesky(covariance + 1e-9 * np.eye(150)) @ rng.standard_normal(150)
+        value = 4.0 * value + 0.4 * rng.standard_normal(150)
+        train = Cases(x[:100], value[:100, None], "states", STEP)
+        rival = GaussianProcess("states", restarts=0, seed=draw).fit(train)
+        error = np.abs(rival._torque(x[100:]) - value[100:, None])
+        inside.append(error <= 1.96 * rival._deviation(x[100:]))
+    assert 0.92 < np.mean(inside) < 0.98
+    assert np.mean(error <= 0.98 * rival._deviation(x[100:])) < 0.85  # half as wide holds fewer
+
+
+def test_far_from_the_cases_the_deviation_is_that_of_the_prior():
+    cases = data()
+    rival = GaussianProcess("states", restarts=0).fit(cases)
+    far = np.full((1, 2, 3), 1e6)
+    with pytest.warns(OutsideFamilyWarning):
+        deviation = rival.deviation(far)[0]
+    near = rival.deviation(cases.x).mean(0)
+    size = [np.sqrt(p.kernel_.k1.k1.constant_value) for p in rival.processes]
+    assert (deviation > 5 * near).all()
+    np.testing.assert_allclose(
+        deviation, np.hypot(rival.unit * np.array(size), rival.noise), rtol=1e-6
+    )
+
+
+def test_directions_of_windows_are_uncorrelated_and_of_unit_size():
+    rng = np.random.default_rng(0)
+    x = np.cumsum(rng.standard_normal((200, 2, 11)), -1)
+    inputs = Inputs(x, 5)
+    features = inputs(x)
+    np.testing.assert_allclose(features.T @ features / 200, np.eye(5), atol=1e-9)
+    np.testing.assert_allclose(features.mean(0), 0, atol=1e-9)
+    assert inputs.count() == 22 + 22 * 5 and Inputs(x).count() == 44
+    leading = np.linalg.svd(x.reshape(200, -1) - x.reshape(200, -1).mean(0))[2][:5]
+    rebuilt = features @ np.linalg.lstsq(features, x.reshape(200, -1) @ leading.T, rcond=None)[0]
+    np.testing.assert_allclose(
+        rebuilt,
+        (x.reshape(200, -1)) @ leading.T - (x.reshape(200, -1) @ leading.T).mean(0),
+        atol=1e-8,
+    )
+    with pytest.raises(ValueError, match="directions"):
+        Inputs(x, 23)
+
+
+def test_a_process_learns_from_windows():
+    q = np.cumsum(0.02 * np.random.default_rng(2).standard_normal((400, 2)), 0)
+    for _ in range(6):  # smoothed, so that accelerations are seen
+        q[1:-1] = (q[:-2] + 2 * q[1:-1] + q[2:]) / 4
+    x = np.lib.stride_tricks.sliding_window_view(q, 5, axis=0)
+    acceleration = (x[..., 3] - 2 * x[..., 2] + x[..., 1]) / STEP**2
+    train = Cases(x[::2], acceleration[::2], "windows", STEP)
+    rival = GaussianProcess(directions=10, restarts=0).fit(train)
+    inside = ~rival.outside(x[1::2])
+    error = rival.torque(x[1::2][inside]) - acceleration[1::2][inside]
+    assert error.std() < 0.1 * acceleration.std()
+
+
+@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])
+def test_known_structure_leaves_nothing_of_clean_torques(arm):
+    cases = data(noise=0.0, arm=arm)
+    rival = SemiParametric((*RIGID, *GRAVITY)).fit(cases)
+    assert rival.exact and rival.count() == 5
+    x = states(40, 8, 0.9)
+    np.testing.assert_allclose(
+        rival.torque(x), arm.inverse_dynamics(*np.moveaxis(x, -1, 0)), rtol=1e-8, atol=1e-8
+    )
+    np.testing.assert_array_equal(rival.deviation(x), 0)
+    np.testing.assert_allclose(
+        rival.known.estimate.values,
+        [arm.a, arm.b, arm.d, *arm.gravity_moments],
+        rtol=1e-6,
+        atol=1e-8,
+    )
+
+
+def test_the_process_learns_what_the_structure_leaves():
+    def left(x):  # a spring at each joint, which no parameter stands for
+        return np.stack([3 * np.sin(3 * x[:, 0, 0]), 2 * x[:, 1, 0] ** 2], -1)
+
+    cases, x = data(100, noise=0.02), states(60, 9, 0.9)
+    cases = Cases(cases.x, cases.torque + left(cases.x), "states", STEP)
+    truth = CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0)) + left(x)
+    semi = SemiParametric(RIGID, restarts=0).fit(cases)
+    plain = GaussianProcess("states", restarts=0).fit(cases)
+    errors = [np.sqrt(np.mean((r.torque(x) - truth) ** 2)) for r in (semi, plain)]
+    parametric = np.sqrt(np.mean((semi.parametric(x) - truth) ** 2))
+    assert errors[0] < 0.5 * errors[1] and errors[0] < 0.1 * parametric
+    inside = np.abs(semi.torque(x) - truth) <= 1.96 * semi.deviation(x)
+    assert inside.mean() > 0.9
+    assert semi.count() == 3 + semi.rest.count()
+
+
+def test_products_of_random_features_approach_the_kernel():
+    cases = data(60)
+    z = (lambda flat: (flat - flat.mean(0)) / flat.std(0))(cases.x.reshape(60, -1))
+    errors = []
+    for features in (100, 10_000):
+        rival = RandomFeatures("states", features, lengths=(2.0,)).fit(cases)
+        wanted = np.exp(-0.5 * cdist(z, z, "sqeuclidean") / rival.length**2)
+        errors.append(np.sqrt(np.mean((rival.kernel(cases.x, cases.x) - wanted) ** 2)))
+    assert errors[1] < 1.0 / np.sqrt(10_000)  # a cosine's product has a variance of at most 1
+    assert 5 < errors[0] / errors[1] < 20  # ten, by the law of large numbers
+
+
+def test_many_random_features_are_kernel_ridge_regression():
+    cases, x = data(80, noise=0.3), states(30, 5, 0.9)
+    rival = RandomFeatures("states", 20_000, lengths=(3.0,), seed=1).fit(cases)
+    flat = cases.x.reshape(80, -1)
+    a, b = ((f - flat.mean(0)) / flat.std(0) for f in (flat, x.reshape(30, -1)))
+    for joint in range(2):
+        y, penalty = cases.torque[:, joint], rival.ridge.alpha_[joint]
+        gram, across = (np.exp(-0.5 * cdist(v, a, "sqeuclidean") / 9.0) for v in (a, b))
+        centred = gram - gram.mean(0)  # ridge with a constant: the features centred
+        doubly = centred - centred.mean(1, keepdims=True)
+        weights = np.linalg.solve(doubly + penalty * np.eye(80), y - y.mean())
+        row = across - gram.mean(0)
+        wanted = y.mean() + (row - row.mean(1, keepdims=True)) @ weights
+        error = rival.torque(x)[:, joint] - wanted
+        assert np.sqrt(np.mean(error**2)) < 0.05 * y.std()
+
+
+def test_random_features_choose_their_length_by_the_error_of_left_out_cases():
+    cases = data(150, noise=0.05)
+    rival = RandomFeatures("states", 200).fit(cases)
+    x = states(60, 4, 0.9)
+    truth = CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0))
+    errors = {}
+    for length in rival.lengths:
+        each = RandomFeatures("states", 200, lengths=(length,)).fit(cases)
+        errors[length] = np.mean((each.torque(x) - truth) ** 2)
+    assert errors[rival.length] < 2 * min(errors.values()) < 0.2 * max(errors.values())
+
+
+def test_counts():
+    cases = data(50)
+    process = GaussianProcess("states", restarts=0).fit(cases)
+    assert process.count() == 2 * 6 + 50 * 6 + 2 * (50 + 7 + 2)
+    assert process.operations() == (6 + 2 * (50 * 13 + 1), 6 + 2 * (50 * 12 + 1), 0, 100)
+    features = RandomFeatures("states", 40).fit(cases)
+    assert features.count() == 2 * 6 + 40 * (6 + 1 + 2) + 2 * 3
+    assert features.operations() == (6 + 40 * 8, 6 + 40 * 8 + 2, 0, 40)
+
+
+def test_what_makes_no_sense_is_refused():
+    with pytest.raises(ValueError, match="kind"):
+        GaussianProcess("images")
+    with pytest.raises(ValueError, match="subset"):
+        GaussianProcess(subset=1)
+    with pytest.raises(ValueError, match="features"):
+        RandomFeatures(features=0)
+    with pytest.raises(ValueError, match="lengths"):
+        RandomFeatures(lengths=(0.0,))
+    with pytest.raises(ValueError, match="directions"):
+        GaussianProcess("states", directions=7).fit(data(20))
+    three = Cases(np.zeros((4, 3, 3)), np.zeros((4, 3)), "states", STEP)
+    with pytest.raises(ValueError, match="2 joints"):
+        SemiParametric().fit(three)

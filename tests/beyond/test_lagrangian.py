@@ -1,0 +1,212 @@
+"""Deep Lagrangian Networks: Lagrange's equation by other means, mass, energy, a known arm."""
+
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
+from workshop.beyond.rivals.protocol import Cases, NotFitted
+
+STEP = 0.01
+UPRIGHT = Arm("upright", 1.37, 0.5, 0.52, (1.0, 1.0), (2.6, 1.5))
+
+
+def states(samples, seed=0, size=1.5, joints=2):
+    return np.random.default_rng(seed).uniform(-size, size, (samples, joints, 3))
+
+
+def untrained(seed=0, joints=2, gain=1.0, **options):
+    """A network with random weights, in the units of random data."""
+    torque = 5 * np.random.default_rng(seed + 1).standard_normal((50, joints))
+    cases = Cases(states(50, seed, 2.0, joints), torque, "states", STEP)
+    rival = LagrangianNetwork((12, 9), epochs=0, seed=seed, **options).fit(cases)
+    with torch.no_grad():
+        for p in rival.network.parameters():
+            p.copy_(gain * torch.randn(p.shape, generator=torch.Generator().manual_seed(seed)))
+    return rival
+
+
+def known(arm, samples, seed=0, friction=(0.0, 0.0)):
+    x = states(samples, seed)
+    q, qd, qdd = np.moveaxis(x, -1, 0)
+    torque = arm.inverse_dynamics(q, qd, qdd)
+    torque += np.array(friction[0]) * qd + np.array(friction[1]) * np.sign(qd)
+    return Cases(x, torque, "states", STEP)
+
+
+@pytest.mark.parametrize("joints", [1, 2, 3])
+@pytest.mark.parametrize("diagonal", ["softplus", "relu"])
+def test_torque_is_lagranges_equation_of_the_energies(joints, diagonal):
+    rival = untrained(3, joints, gain=0.5, diagonal=diagonal)
+    q, qd, qdd = np.moveaxis(states(6, 4, joints=joints), -1, 0)
+    found = rival._torque(np.stack([q, qd, qdd], -1))
+    for k in range(6):
+        np.testing.assert_allclose(found[k], lagrange(rival, q[k], qd[k], qdd[k]), 1e-5, 1e-4)
+
+
+def lagrange(rival, q, qd, qdd, h=1e-4):
+    """d/dt dT/dqd - dT/dq + dV/dq, by differences of the energies alone."""
+
+    def kinetic(position, velocity):
+        return 0.5 * velocity @ rival.mass_matrix(position) @ velocity
+
+    def momentum(t):
+        return rival.mass_matrix(q + qd * t + 0.5 * qdd * t**2) @ (qd + qdd * t)
+
+    torque = (momentum(h) - momentum(-h)) / (2 * h)
+    for j, e in enumerate(np.eye(len(q)) * h):
+        torque[j] -= (kinetic(q + e, qd) - kinetic(q - e, qd)) / (2 * h)
+        torque[j] += (rival.potential_energy(q + e) - rival.potential_energy(q - e)) / (2 * h)
+    return torque
+
+
+def test_the_parts_sum_up_to_the_torque():
+    rival = untrained(1, friction=True, gain=0.5)
+    x = states(20, 2)
+    q, qd, qdd = np.moveaxis(x, -1, 0)
+    inertial = np.einsum("...ij,...j", rival.mass_matrix(q), qdd)
+    coriolis = np.einsum("...ij,...j", rival.coriolis_matrix(q, qd), qd)
+    total = inertial + coriolis + rival.gravity(q) + rival.friction_torque(qd)
+    np.testing.assert_allclose(rival._torque(x), total, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("gain", [0.1, 1.0, 10.0])
+def test_the_mass_matrix_is_symmetric_and_positive_definite_whatever_the_weights(gain):
+    for seed in range(5):
+        rival = untrained(seed, 3, gain)
+        mass = rival.mass_matrix(states(40, seed, 10.0, 3)[..., 0])
+        np.testing.assert_array_equal(mass, np.swapaxes(mass, -1, -2))
+        least = rival.floor * rival.units.torque / rival.units.acceleration
+        size = np.abs(mass).max((-1, -2))
+        assert (np.linalg.eigvalsh(mass)[:, 0] >= least - 1e-12 * size).all()
+
+
+def test_the_change_of_mass_minus_twice_coriolis_is_skew():
+    rival = untrained(2, 3, 0.7)
+    q, qd, _ = np.moveaxis(states(10, 5, joints=3), -1, 0)
+    h = 1e-5
+    rate = (rival.mass_matrix(q + h * qd) - rival.mass_matrix(q - h * qd)) / (2 * h)
+    found = rate - 2 * rival.coriolis_matrix(q, qd)
+    size = np.abs(rate).max()
+    assert size > 0.1
+    np.testing.assert_allclose(found + np.swapaxes(found, -1, -2), 0, atol=1e-6 * size)
+    np.testing.assert_allclose(np.einsum("ni,nij,nj->n", qd, found, qd), 0, atol=1e-6 * size)
+
+
+@pytest.mark.parametrize("forced", [False, True])
+def test_energy_changes_by_the_work_done(forced):
+    rival = untrained(4, gain=0.3, friction=forced)
+    if forced:  # without Coulomb's jumps, at which an integrator stumbles
+        rival.network.friction.data = torch.tensor([[0.3, 0.2], [0.0, 0.0]]).double()
+
+    def torque(t):
+        return np.array([2.0 * np.sin(3 * t), 1.0]) if forced else np.zeros(2)
+
+    def rates(t, y):
+        q, qd = y[:2], y[2:4]
+        power = qd @ (torque(t) - rival.friction_torque(qd))
+        return np.r_[qd, rival.forward_dynamics(q, qd, torque(t)), power]
+
+    start = np.r_[0.4, -0.3, 0.8, -0.6, 0.0]
+    path = solve_ivp(rates, (0, 1.0), start, method="DOP853", rtol=1e-8, atol=1e-9).y
+    q, qd = path[:2].T, path[2:4].T
+    kinetic = 0.5 * np.einsum("ni,nij,nj->n", qd, rival.mass_matrix(q), qd)
+    energy = kinetic + rival.potential_energy(q)
+    assert np.ptp(kinetic) > 0.1 and (np.ptp(path[4]) > 0.1) == forced
+    np.testing.assert_allclose(energy - energy[0], path[4], atol=1e-5 * np.ptp(kinetic))
+
+
+def test_inverse_and_forward_dynamics_agree():
+    rival = untrained(6, 3, 0.6, gravity="vector")
+    x = states(20, 7, joints=3)
+    q, qd, qdd = np.moveaxis(x, -1, 0)
+    np.testing.assert_allclose(
+        rival.forward_dynamics(q, qd, rival._torque(x)), qdd, rtol=1e-6, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, UPRIGHT])
+def test_a_known_arm_is_recovered_from_torques_alone(arm):
+    train, test = known(arm, 600), known(arm, 200, 1)
+    rival = LagrangianNetwork((16, 16), epochs=200, finish=600).fit(train)
+    q = test.x[..., 0]
+
+    def off(found, wanted):
+        return np.sqrt(np.mean((found - wanted) ** 2) / np.mean(wanted**2))
+
+    assert off(rival._torque(test.x), test.torque) < 0.01
+    assert off(rival.mass_matrix(q), arm.mass_matrix(q)) < 0.01
+    if any(arm.gravity_moments):
+        assert off(rival.gravity(q), arm.gravity(q)) < 0.01
+        potential = rival.potential_energy(q) - arm.potential_energy(q)
+        assert potential.std() < 0.01 * arm.potential_energy(q).std()
+
+
+def test_friction_is_recovered_beside_the_arm():
+    friction = ([0.8, 0.5], [1.5, 0.7])
+    rival = LagrangianNetwork((24, 24), gravity="none", friction=True, epochs=150, finish=200)
+    rival.fit(known(CMU_DD_ARM_II, 500, friction=friction))
+    qd = np.array([[1.0, 1.0], [-0.5, 0.5]])
+    wanted = np.array(friction[0]) * qd + np.array(friction[1]) * np.sign(qd)
+    np.testing.assert_allclose(rival.friction_torque(qd), wanted, rtol=0.02)
+
+
+def test_the_finish_lowers_the_error_and_seeds_are_kept():
+    cases = known(CMU_DD_ARM_II, 200)
+
+    def error(**options):
+        rival = LagrangianNetwork((16,), epochs=20, **options).fit(cases)
+        return np.mean((rival._torque(cases.x) - cases.torque) ** 2)
+
+    assert error(finish=50) < 0.5 * error()
+    assert error() == error() != error(seed=1)
+
+
+def test_a_watch_sees_every_epoch():
+    seen = []
+    cases = known(CMU_DD_ARM_II, 100)
+
+    def watch(epoch, rival):
+        seen.append((epoch, np.mean((rival._torque(cases.x) - cases.torque) ** 2)))
+
+    LagrangianNetwork((16,), epochs=40, batch=50, watch=watch).fit(cases)
+    assert [epoch for epoch, _ in seen] == list(range(1, 41))
+    assert seen[-1][1] < 0.3 * seen[0][1]
+
+
+def test_counts():
+    rival = LagrangianNetwork(epochs=0).fit(known(CMU_DD_ARM_II, 10))
+    assert rival.count() == 3 * 64 + 65 * 64 + 65 * 4 + 6
+    public = LagrangianNetwork(**AS_PUBLISHED, epochs=1).fit(known(CMU_DD_ARM_II, 10))
+    assert public.count() == rival.count() - 6
+    assert np.linalg.eigvalsh(public.mass_matrix([0.3, 0.1]))[0] >= 0.01 - 1e-9  # kg m^2: unscaled
+    small = LagrangianNetwork((1,), epochs=0, scaled=False, gravity="none")
+    small.fit(Cases(states(5, joints=1), np.ones((5, 1)), "states", STEP))
+    assert small.count() == 2 + 2
+    less, more = (
+        LagrangianNetwork((n, n), epochs=0).fit(known(CMU_DD_ARM_II, 10)).operations()
+        for n in (64, 128)
+    )
+    # three products with each n x n matrix: the activities and two derivatives
+    assert more.multiplications - less.multiplications == 3 * (128**2 - 64**2) + 64 * (
+        4 + 2 + 3 * 4
+    )
+
+
+def test_what_makes_no_sense_is_refused():
+    with pytest.raises(ValueError, match="hidden"):
+        LagrangianNetwork(())
+    with pytest.raises(ValueError, match="gravity"):
+        LagrangianNetwork(gravity="moon")
+    with pytest.raises(ValueError, match="diagonal"):
+        LagrangianNetwork(diagonal="square")
+    with pytest.raises(ValueError, match="rate"):
+        LagrangianNetwork(rate=0.0)
+    with pytest.raises(NotFitted):
+        LagrangianNetwork().mass_matrix([0.0, 0.0])
+    with pytest.raises(ValueError, match="gravity must be 'potential'"):
+        untrained(gravity="vector").potential_energy([0.0, 0.0])
+    with pytest.raises(ValueError, match="q must have a last axis of length 2"):
+        untrained().mass_matrix([0.0])

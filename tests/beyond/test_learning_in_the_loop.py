@@ -1,0 +1,82 @@
+"""Learners in the loop: motions, what learners begin with, and what a trial reports."""
+
+import numpy as np
+import pytest
+
+from ddlib.control import Feedforward
+from ddlib.dynamics import end_point_error
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.simulation import follow
+from ddlib.trajectories import Trajectory
+from workshop.beyond.studies.loop import learners, learning
+from workshop.report import results
+
+
+@pytest.fixture(scope="module")
+def draw():
+    return learners.Draw(STATE_FEEDBACK, first=2000, seeds=2)
+
+
+def test_motions_go_from_rest_to_rest_and_are_their_own_derivatives(draw):
+    for t, motion in learners.motions(draw).values():
+        q, qd, qdd = (np.asarray(x) for x in motion)
+        assert q.shape == (2, t.size, 2)
+        np.testing.assert_allclose(qd[:, [0, -1]], 0, atol=1e-12)
+        np.testing.assert_allclose(np.gradient(q, t, axis=-2), qd, atol=0.01)
+        inside = np.abs(np.gradient(qd, t, axis=-2) - qdd)
+        assert np.median(inside) < 1e-3 and (inside > 0.05).mean() < 0.02
+
+
+def test_draws_do_not_depend_on_how_many_there_are(draw):
+    more = learners.Draw(STATE_FEEDBACK, first=1999, seeds=3)
+    np.testing.assert_array_equal(more.learnt[1:], draw.learnt)
+    np.testing.assert_array_equal(more.untrained.weights.hidden_weights[:, 1:],
+                                  draw.untrained.weights.hidden_weights)  # fmt: skip
+    assert not np.array_equal(draw.learnt[0], draw.learnt[1])
+
+
+def test_learners_from_nothing_give_no_torque(draw):
+    t, motion = learners.motions(draw)["the same"]
+    one = Trajectory(*(x[None] for x in motion))
+    plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
+    alone, _ = learning.trial(draw, [plain], [1], one, t)
+    for name, learner in learners.lineup(draw).items():
+        errors, stops = learning.trial(draw, [learner.controller(False)], [1], one, t)
+        np.testing.assert_allclose(errors, alone, rtol=1e-6, err_msg=name)
+        assert not np.any(stops.stopped)
+
+
+def test_errors_of_a_trial_are_those_of_the_hand_during_the_motion(draw):
+    t, motion = learners.motions(draw)["in half the time"]
+    one = Trajectory(*(x[None] for x in motion))
+    exact = Feedforward(draw.equations, draw.setup.controller)
+    errors, _ = learning.trial(draw, [exact], [1], one, t)
+    run = follow(draw.setup.arm, exact, one, t, effects=draw.effects, duration=1.5)
+    off = end_point_error(draw.setup.arm, run.reference.q, run.q_true)[..., run.motion, :]
+    np.testing.assert_allclose(errors, 1e3 * np.sqrt((off**2).sum(-1).mean(-1)), rtol=1e-9)
+    assert errors.max() < 2.0
+
+
+def test_the_study_holds_every_learner_and_seed():
+    study = results.read("learning-in-the-loop")
+    assert set(study["setups"]) == {JOINT_DAMPING.name, STATE_FEEDBACK.name}
+    for parts in study["setups"].values():
+        for errors in (
+            *parts["motion"]["practice"].values(),
+            *parts["motion"]["forgetting"].values(),
+        ):
+            assert np.shape(errors) == (study["trials"], learners.SEEDS)
+        for errors in (*parts["family"]["tests"].values(), *parts["family"]["practice"].values()):
+            assert np.shape(errors) == (2 * study["trials"], learners.SEEDS)
+            assert np.min(errors) > 0
+        for rates in parts["rates"].values():
+            assert np.shape(rates["error"]) == (len(study["rates"]), learners.SEEDS)
+
+
+def test_no_learner_means_the_same_error_in_every_trial_of_a_load():
+    study = results.read("learning-in-the-loop")
+    for parts in study["setups"].values():
+        plain = np.array(parts["family"]["tests"]["no feedforward"])
+        trials = study["trials"]
+        assert np.ptp(plain[:trials], axis=0).max() == np.ptp(plain[trials:], axis=0).max() == 0
+        assert (plain[-1] > plain[0]).all()

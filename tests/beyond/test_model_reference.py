@@ -1,0 +1,195 @@
+"""Model-reference control against scipy's linear model; options of the adaptive laws."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.signal import lsim
+
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects, ViscousFriction
+from ddlib.simulation import record
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.adaptive.craig import CraigHsuSastry
+from workshop.beyond.control.adaptive.model_reference import ModelReference
+from workshop.beyond.control.adaptive.regressor import PARAMETERS
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+
+ARM = CMU_DD_ARM_II
+TRUTH = np.array([ARM.a, ARM.b, ARM.d])
+A0, A1 = np.array([60.0, 90.0]), np.array([16.0, 20.0])
+INERTIA, VISCOUS = np.array([3.0, 0.5]), np.array([2.0, 0.4])
+MATCHED = np.stack([INERTIA, A0 * INERTIA, A1 * INERTIA - VISCOUS, 0 * INERTIA], -1).ravel()
+SPEEDS = np.tile([0.5, 900.0, 60.0, 30.0], 2)
+
+
+def reference(t) -> Trajectory:
+    phase = np.multiply.outer(np.asarray(t), [2.0, 3.0])
+    speed = np.array([2.0, 3.0])
+    return Trajectory(np.sin(phase), speed * np.cos(phase), -(speed**2) * np.sin(phase))
+
+
+def by_scipy(t):
+    """Motion of the linear models by `scipy.signal.lsim`, shape (time, joint, 2)."""
+    wanted, motion = reference(t), []
+    for j in range(2):
+        command = wanted.qdd[:, j] + A1[j] * wanted.qd[:, j] + A0[j] * wanted.q[:, j]
+        system = ([[0, 1], [-A0[j], -A1[j]]], [[0], [1]], np.eye(2), np.zeros((2, 1)))
+        motion.append(lsim(system, command, t)[1])
+    return np.stack(motion, 1)
+
+
+def law(estimate, rate=SPEEDS, **options):
+    return ModelReference(A0, A1, A1 / 2, rate, estimate, **options)
+
+
+def test_the_model_is_the_linear_system_that_scipy_integrates():
+    t = np.arange(1500) * 0.002
+    model, expected = law(MATCHED).model(reference(t), 0.002), by_scipy(t)
+    np.testing.assert_allclose(model.q, expected[..., 0], atol=1e-9)
+    np.testing.assert_allclose(model.qd, expected[..., 1], atol=1e-9)
+    moved = Trajectory(*(np.stack([x, x]) for x in reference(t)))
+    moved = moved._replace(q=moved.q + np.array([0.0, 1.0])[:, None, None])
+    both = law(MATCHED).model(moved, 0.002)
+    np.testing.assert_allclose(both.q[1] - both.q[0], 1.0, atol=1e-9)
+    np.testing.assert_allclose(
+        both.qdd[:, 1:-1], np.gradient(both.qd, 0.002, axis=-2)[:, 1:-1], atol=0.05
+    )
+
+
+def joints(adaptive, seconds, q0):
+    """Two joints without coupling under a law, in continuous time: inertia and friction each."""
+    grid = np.linspace(0, seconds, 3001)
+
+    def rates(t, y):
+        qm, vm, q, qd, estimate = y[:2], y[2:4], y[4:6], y[6:8], y[8:]
+        wanted = reference(t)
+        am = wanted.qdd + A1 * (wanted.qd - vm) + A0 * (wanted.q - qm)
+        torque, change = adaptive.output(estimate, Trajectory(qm, vm, am), q, qd)
+        return np.concatenate([vm, am, qd, (torque - VISCOUS * qd) / INERTIA, change])
+
+    start = np.concatenate([np.zeros(4), q0, np.zeros(2), adaptive.estimate])
+    found = solve_ivp(rates, (0, seconds), start, "DOP853", grid, rtol=1e-10, atol=1e-11)
+    return grid, found.y.T
+
+
+def test_with_matched_gains_a_joint_is_its_model():
+    t, y = joints(law(MATCHED, np.zeros(8)), 3.0, np.zeros(2))
+    np.testing.assert_allclose(y[:, 4:8], y[:, :4], atol=1e-7)
+    np.testing.assert_allclose(y[:, 4:6], by_scipy(t)[:, :, 0], atol=1e-5)
+
+
+def test_a_function_of_errors_and_gains_never_rises_and_the_error_dies():
+    adaptive = law(0.4 * MATCHED)
+    _, y = joints(adaptive, 12.0, np.array([0.2, -0.1]))
+    e, rate = y[:, :2] - y[:, 4:6], y[:, 2:4] - y[:, 6:8]
+    w = A1 / 2
+    # e'Pe of the positive real (s + w) / (s^2 + A1 s + A0), whose P solves A'P + PA = -Q
+    p = np.array([[w * A1 + A0, w], [w, 1.0 + 0 * w]])
+    energy = 0.5 * (p[0, 0] * e**2 + 2 * p[0, 1] * e * rate + p[1, 1] * rate**2)
+    off = (y[:, 8:] - MATCHED).reshape(-1, 2, 4)
+    stored = 0.5 * (off**2 / np.reshape(SPEEDS, (2, 4))).sum(-1) / INERTIA
+    value = (energy + stored).sum(-1)
+    assert np.diff(value).max() <= 1e-9 * value[0]
+    assert value[-1] < 0.9 * value[0]
+    assert np.abs(e[-300:]).max() < 0.1 * np.abs(e).max()
+
+
+def test_on_the_arm_the_sampled_law_learns():
+    nominal = np.array([ARM.a + 2 * ARM.b, ARM.d])
+    begin = np.stack([nominal, A0 * nominal, A1 * nominal, 0 * nominal], -1).ravel() * 0.5
+    found = []
+    for rate in (SPEEDS, 0 * SPEEDS):
+        watched = Watched(law(begin, rate))
+        run = record(ARM, watched, (40.0, 30.0), rest=0.1, effects=CMU_DD_ARM_II_EFFECTS)
+        model = watched.law.reference
+        found.append(np.abs(model.q[::5] - run.q_true)[100:300].max())
+        assert watched.law.estimate.shape == (8,)
+    assert found[0] < 0.7 * found[1]
+
+
+@pytest.mark.parametrize(
+    "change, message",
+    [
+        (dict(weight=(16.0, 1.0)), "weight must be below damping"),
+        (dict(stiffness=(0.0, 1.0)), "stiffness must be positive"),
+        (dict(rate=-SPEEDS), "rate must not be negative"),
+        (dict(estimate=np.zeros(4)), "estimate must have a last axis of length 8"),
+        (dict(leakage=-1.0), "leakage must lie in"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(change, message):
+    fine = dict(stiffness=A0, damping=A1, weight=A1 / 2, rate=SPEEDS, estimate=MATCHED)
+    with pytest.raises(ValueError, match=message):
+        ModelReference(**{**fine, **change})
+
+
+# --- options of the others ------------------------------------------------------------------
+
+
+def test_a_dead_zone_stops_learning_and_leakage_forgets():
+    wanted = Trajectory(np.array([0.1, 0.2]), np.array([1.0, -0.5]), np.array([0.3, 0.4]))
+    q, qd = np.zeros(2), np.array([0.9, -0.6])
+    fine = ((30.0, 9.0), (2.0, 2.0), (1.0, 1.0, 1.0), TRUTH)  # s = 0.3, 0.5
+    free = SlotineLi(*fine).output(1.5 * TRUTH, wanted, q, qd)
+    zoned = SlotineLi(*fine, dead_zone=(0.3, 0.5)).output(1.5 * TRUTH, wanted, q, qd)
+    half = SlotineLi(*fine, dead_zone=(0.15, 0.25)).output(1.5 * TRUTH, wanted, q, qd)
+    leaky = SlotineLi(*fine, leakage=0.2).output(1.5 * TRUTH, wanted, q, qd)
+    for other in (zoned, half, leaky):
+        np.testing.assert_array_equal(other[0], free[0])
+    np.testing.assert_allclose(zoned[1], 0, atol=1e-12)
+    np.testing.assert_allclose(half[1], free[1] / 2)
+    np.testing.assert_allclose(leaky[1], free[1] - 0.2 * 0.5 * TRUTH)
+
+
+def test_runs_of_a_batch_may_differ_in_rate_and_estimate():
+    rates = np.array([[2.0, 0.5, 0.2], [0.0, 0.0, 0.0], [6.0, 0.5, 0.2]])
+    starts = np.array([0.5, 0.5, 0.8])[:, None] * TRUTH
+    extents = np.tile([40.0, 30.0], (3, 1))
+    watched = Watched(SlotineLi((40.0, 10.0), (8.0, 8.0), rates, starts))
+    many = record(ARM, watched, extents, rest=0.1, duration=0.5, control_step=0.005)
+    for k in range(3):
+        alone = Watched(SlotineLi((40.0, 10.0), (8.0, 8.0), rates[k], starts[k]))
+        one = record(ARM, alone, extents[k], rest=0.1, duration=0.5, control_step=0.005)
+        np.testing.assert_allclose(many.q_true[k], one.q_true, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(watched.law.estimate[k], alone.law.estimate, rtol=1e-9)
+
+
+def craig(**options):
+    box = dict(low=(2.6, 0.0, 0.3), high=(14.0, 4.0, 2.5))
+    fine = dict(kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), estimate=0.7 * TRUTH)
+    return CraigHsuSastry(**{**fine, **box, **options})
+
+
+def test_an_estimated_mass_matrix_stays_invertible_outside_the_reach_of_the_box():
+    watched = Watched(craig(rate=(50.0, 900.0, 50.0)))
+    record(ARM, watched, (40.0, 30.0), velocity="difference", rest=0.1, duration=1.0,
+           effects=CMU_DD_ARM_II_EFFECTS)  # fmt: skip
+    a, b, d = np.moveaxis(watched.law.estimates[1:], -1, 0)
+    for cosine in (-1, 0, 1):
+        m11, m12 = a + 2 * b * cosine, d + b * cosine
+        assert (m11 * d - m12**2 > 0).all() and (m11 > 0).all()
+    assert np.ptp(b) > 0.1
+
+
+def test_an_exact_acceleration_is_that_of_the_plant():
+    friction = ViscousFriction((3.0, 1.0))
+    seen = []
+
+    def acceleration(q, qd, torque):
+        seen.append(ARM.forward_dynamics(q, qd, torque - friction.torque(qd)))
+        return seen[-1]
+
+    adaptive = craig(
+        rate=np.zeros(5),
+        estimate=np.array([*TRUTH, 3.0, 1.0]),
+        low=(2.6, 0.0, 0.3, 0.0, 0.0),
+        high=(14.0, 4.0, 2.5, 9.0, 9.0),
+        names=(*PARAMETERS[:3], *PARAMETERS[5:7]),
+        acceleration=acceleration,
+    )
+    run = record(ARM, adaptive, (40.0, 30.0), effects=Effects(friction=(friction,)),
+                 rest=0.1, log_step=0.002)  # fmt: skip
+    found = np.gradient(run.qd_true, 0.002, axis=0)
+    late = slice(200, 1400)
+    np.testing.assert_allclose(np.array(seen)[late], found[late], atol=0.02)

@@ -1,0 +1,136 @@
+"""The paper's network as a rival: its formula, its ways of training against plain ones."""
+
+import numpy as np
+import pytest
+import torch
+from scipy.special import expit
+
+from ddlib.learning import Scaler, TrainingDiverged, TrainingSet, WindowNetwork, train
+from ddlib.metrics import rmss
+from workshop.beyond.rivals.identified import Linear
+from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver, adam
+from workshop.beyond.rivals.protocol import Cases
+
+
+def windows(n=150, width=5, seed=0):
+    """Windows, and torques that no linear filter gives."""
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(-1, 1, (n, 2, width))
+    first, second = rng.normal(size=(2, 2, 2 * width)) / width
+    flat = x.reshape(n, -1)
+    return Cases(x, np.tanh(4 * flat @ first.T) + flat @ second.T, "windows", 0.01)
+
+
+def states(n=150, seed=0):
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(-1, 1, (n, 2, 3)) * [0.5, 2.0, 20.0]
+    return Cases(x, np.sin(x[..., 0]) * x[..., 2] + x[:, ::-1, 1] ** 2, "states", 0.01)
+
+
+RIVALS = [
+    ByDescent(4, epochs=30, seed=3),
+    BySolver(4, steps=5, seed=3),
+    ByAdam(4, epochs=30, seed=3),
+]
+
+
+@pytest.mark.parametrize("rival", RIVALS, ids=repr)
+def test_torques_are_those_of_the_formula(rival):
+    data = windows()
+    rival.fit(data)
+    w = rival.model.weights
+    low, high = data.x.min((0, 2)), data.x.max((0, 2))
+    x = ((data.x - low[:, None]) / (high - low)[:, None]).reshape(150, -1)
+    x = rival.scaling[0] + x * np.ptp(rival.scaling)
+    hidden = expit(x @ w.hidden_weights.reshape(4, -1).T + w.hidden_bias)
+    net = x @ w.direct_weights.reshape(2, -1).T + hidden @ w.output_weights.T + w.output_bias
+    low, high = data.torque.min(0), data.torque.max(0)
+    wanted = low + (high - low) * (expit(net) - 0.2) / 0.6
+    np.testing.assert_allclose(rival.torque(data.x), wanted, rtol=1e-6, atol=1e-6)
+    numbers = (w.hidden_weights, w.hidden_bias, w.output_weights, w.direct_weights, w.output_bias)
+    assert rival.count() == sum(x.size for x in numbers) + 4
+    products = 4 * 10 + 2 * 10 + 2 * 4
+    assert rival.operations() == (products + 2, products + 6 + 2, 6, 6)
+
+
+def test_descent_is_that_of_autograd():
+    data = windows()
+    rival = ByDescent(4, epochs=40, rate=3.0, momentum=0.8, seed=5).fit(data)
+    scaled = TrainingSet.from_arrays(data.x, data.torque)
+    network = WindowNetwork(5, 4, seed=5)
+    train(network, scaled.x, scaled.y, rate=3.0, momentum=0.8, epochs=40, progress=False)
+    wanted = scaled.outputs.unscale(network.weights().activity(scaled.x)[1])
+    np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
+
+
+def test_the_solver_learns_what_is_not_linear():
+    data, other = windows(400), windows(400, seed=0)
+    linear = Linear(ridge=0).fit(data)
+    rival = BySolver(6, steps=80, seed=1).fit(data)
+    errors = [rmss(each.torque(other.x), other.torque) for each in (rival, linear)]
+    assert errors[0] < 0.2 * errors[1]
+
+
+def test_each_quantity_of_a_state_counts_alike():
+    """Accelerations in other units give the same torques."""
+    data = states()
+    other = Cases(data.x * [1.0, 1.0, 100.0], data.torque, "states", 0.01)
+    found = [BySolver(3, steps=10, kind="states").fit(each) for each in (data, other)]
+    np.testing.assert_allclose(
+        found[0].torque(data.x), found[1].torque(other.x), rtol=1e-6, atol=1e-6
+    )
+    assert found[0].model.weights.width == 3
+
+
+def test_adam_steps_as_published():
+    """Kingma & Ba's algorithm 1 with decoupled decay, for three steps of a linear unit."""
+    x = np.array([[0.5, -1.0], [2.0, 0.3], [-0.7, 1.1]])
+    y = np.array([[1.0], [0.2], [-0.4]])
+    module = torch.nn.Linear(2, 1, bias=False)
+    w = module.weight.detach().numpy().astype(float).copy()
+    adam(module, x, y, epochs=3, rate=0.1, decay=0.2)
+    m, v = np.zeros_like(w), np.zeros_like(w)
+    for t in range(1, 4):
+        rate = 0.1 * 0.5 * (1 + np.cos(np.pi * (t - 1) / 3))
+        gradient = 2 * ((x @ w.T - y) * x).mean(0)[None]
+        m, v = 0.9 * m + 0.1 * gradient, 0.999 * v + 0.001 * gradient**2
+        step = (m / (1 - 0.9**t)) / (np.sqrt(v / (1 - 0.999**t)) + 1e-8)
+        w = w - rate * 0.2 * w - rate * step
+    np.testing.assert_allclose(module.weight.detach().numpy(), w, atol=1e-6)
+
+
+@pytest.mark.parametrize("rival", RIVALS, ids=repr)
+def test_the_seed_decides(rival):
+    data = windows(60)
+    first = rival.fit(data).torque(data.x)
+    np.testing.assert_array_equal(rival.fit(data).torque(data.x), first)
+    rival.seed += 1
+    assert np.abs(rival.fit(data).torque(data.x) - first).max() > 1e-3
+    rival.seed -= 1
+
+
+def test_the_scaling_is_the_papers():
+    rival = ByDescent(2, epochs=1).fit(windows())
+    assert isinstance(rival.model.inputs, Scaler)
+    assert rival.model.inputs.target == (0.0, 1.0) and rival.model.outputs.target == (0.2, 0.8)
+    assert ByAdam(2, 1).fit(windows()).model.inputs.target == (-1.0, 1.0)
+
+
+def test_what_makes_no_sense_is_refused():
+    for make in (ByDescent, BySolver, ByAdam):
+        with pytest.raises(ValueError, match="hidden must be an integer from 1"):
+            make(0)
+        with pytest.raises(ValueError, match="kind must be one of"):
+            make(2, kind="images")
+    with pytest.raises(ValueError, match="steps"):
+        BySolver(2, 0)
+    with pytest.raises(ValueError, match="epochs"):
+        ByAdam(2, 0)
+    with pytest.raises(ValueError, match="momentum"):
+        ByDescent(2, 5, momentum=1.0).fit(windows())
+    still = states()
+    still.x[:, 1, 1] = 0.0
+    with pytest.raises(ValueError, match="x must vary in every position, velocity"):
+        BySolver(2, kind="states").fit(still)
+    with pytest.raises(TrainingDiverged, match="lower the rate"):
+        adam(torch.nn.Linear(2, 1), np.full((3, 2), 1e30), np.ones((3, 1)), 3, 0.1, 0.0)

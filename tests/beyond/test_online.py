@@ -1,0 +1,232 @@
+"""Learners in the loop: their steps against other truths, and what they do to a run."""
+
+import numpy as np
+import pytest
+
+from ddlib.control import Feedforward, pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.identification import RecursiveLeastSquares
+from ddlib.learning import Scaler, TorqueModel, Weights
+from ddlib.simulation import follow, record
+from ddlib.trajectories import Trajectory, pick_and_place, time_grid
+from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.online import (
+    Abreast,
+    LastLayer,
+    LinearFilter,
+    OnlineDescent,
+    OnlineFeedforward,
+    OnlineNetwork,
+)
+from workshop.beyond.control.windowed import WindowFeedforward
+
+WIDTH = 5
+INPUTS = Scaler(np.array([-0.8, -0.9]), np.array([0.1, 0.2]))
+OUTPUTS = Scaler(np.array([-60.0, -15.0]), np.array([50.0, 14.0]), (0.2, 0.8))
+FEEDBACK = pd((300.0, 90.0), (35.0, 10.0))
+EXTENTS = (40.0, 30.0)
+SHORT = {"duration": 1.0, "rest": 0.1}
+
+
+def model(members=3, seed=0):
+    return TorqueModel(Weights.random(members, WIDTH, seed=seed), INPUTS, OUTPUTS)
+
+
+def windows(seed=1, cases=6):
+    return np.random.default_rng(seed).uniform(-0.8, 0.2, (cases, 2, WIDTH))
+
+
+def least_squares(weights):
+    return RecursiveLeastSquares(weights, penalty=0.1, forgetting=0.98)
+
+
+def test_it_is_the_network_of_the_learning_package():
+    networks = model()
+    np.testing.assert_allclose(
+        OnlineNetwork(networks).torque(windows()), networks.torque(windows()), rtol=1e-12
+    )
+
+
+def test_every_run_may_have_windows_of_its_own():
+    networks, each = model(), np.stack([windows(k) for k in range(3)])
+    found = OnlineNetwork(networks).torque(each)
+    for k in range(3):
+        np.testing.assert_allclose(found[k], networks[k].torque(each[k]), rtol=1e-12)
+
+
+@pytest.mark.parametrize("part", ["hidden", "output"])
+def test_a_step_of_descent_is_the_gradient_by_differences(part):
+    wanted = np.random.default_rng(2).uniform(-20, 20, (6, 2))
+    before = OnlineDescent(model(1), rate=1.0)
+    before.hidden, before.output = before.hidden[0], before.output[0]
+
+    def cost(learner):
+        off = learner.scaled(wanted) - learner.scaled(learner.torque(windows()))
+        return 0.5 * (off**2).sum(-1).mean()
+
+    step = before.gradient(windows(), torque=wanted)[part == "output"]
+    weights, rng = getattr(before, part), np.random.default_rng(3)
+    for _ in range(8):
+        place, tiny = tuple(rng.integers(0, weights.shape)), np.zeros_like(weights)
+        tiny[place] = 1e-5
+        ends = []
+        for sign in (1, -1):
+            setattr(before, part, weights + sign * tiny)
+            ends.append(cost(before))
+        setattr(before, part, weights)
+        assert -(ends[0] - ends[1]) / 2e-5 == pytest.approx(step[place], rel=1e-5, abs=1e-9)
+
+
+def test_feedback_is_an_error_like_any_other():
+    one, other = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5)
+    each = np.stack([windows(k)[0] for k in range(3)])
+    missing = np.random.default_rng(5).normal(size=(3, 2))
+    other.learn(each, other.torque(each[:, None])[:, 0] + missing)
+    one.correct(each, missing)
+    np.testing.assert_allclose(one.hidden, other.hidden, rtol=1e-12)
+    np.testing.assert_allclose(one.output, other.output, rtol=1e-12)
+
+
+def test_a_rate_for_each_run_and_momentum():
+    rates = np.array([0.0, 0.1, 0.3])
+    together = OnlineDescent(model(), rates, momentum=0.5)
+    alone = OnlineDescent(model()[2:], 0.3, momentum=0.5)
+    each = np.stack([windows(k) for k in range(3)])
+    for k in range(4):
+        torque = np.full((3, 2), 3.0 * k)
+        together.learn(each[:, k], torque)
+        alone.learn(each[2:, k], torque[2:])
+    np.testing.assert_allclose(together.output[2], alone.output[0], rtol=1e-12)
+    np.testing.assert_array_equal(together.hidden[0], OnlineNetwork(model()).hidden[0])
+
+
+def test_replay_learns_earlier_samples_again():
+    plain, again = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5, replay=8)
+    each = np.stack([windows(k, 40) for k in range(3)])
+    wanted = 20 * each.mean(-1)
+    for k in range(40):
+        for learner in (plain, again):
+            learner.learn(each[:, k], wanted[:, k])
+    off = [np.abs(x.torque(each) - wanted).mean() for x in (plain, again)]
+    assert off[1] < off[0]
+
+
+@pytest.mark.parametrize("forgetting", [1.0, 0.97])
+def test_recursive_least_squares_on_line_is_batch_least_squares(forgetting):
+    networks, rng = model(2), np.random.default_rng(0)
+    learner = LastLayer(networks, lambda w: RecursiveLeastSquares(w, 0.2, forgetting))
+    first = learner.output
+    each, torque = rng.uniform(-0.8, 0.2, (2, 30, 2, WIDTH)), rng.uniform(-40, 40, (2, 30, 2))
+    torque[..., 1] /= 4
+    for k in range(30):
+        learner.learn(each[:, k], torque[:, k])
+    y = OUTPUTS.scale(torque)
+    y = np.log(y / (1 - y))
+    for k in range(2):
+        x = networks[k].weights.activity(networks.scaled(each[k]))[0]
+        x = np.hstack([x, networks.scaled(each[k]).reshape(30, -1), np.ones((30, 1))])
+        age = forgetting ** np.arange(30)[::-1]
+        ridge = 0.2 * forgetting**30 * np.eye(x.shape[1])
+        wanted = np.linalg.solve((x.T * age) @ x + ridge, (x.T * age) @ y[k] + ridge @ first[k].T)
+        np.testing.assert_allclose(learner.output[k], wanted.T, rtol=1e-6, atol=1e-8)
+
+
+def test_a_linear_filter_learns_what_is_linear():
+    rng = np.random.default_rng(0)
+    truth, each = rng.normal(size=(2, 2 * WIDTH)), rng.uniform(-0.8, 0.2, (200, 2, WIDTH))
+    torque = each.reshape(200, -1) @ truth.T + [1.0, -2.0]
+    learner = LinearFilter(
+        INPUTS, np.zeros((2, 2 * WIDTH + 1)), lambda w: RecursiveLeastSquares(w, 1e-6)
+    )
+    for x, y in zip(each, torque):
+        learner.learn(x, y)
+    np.testing.assert_allclose(learner.torque(each), torque, atol=1e-4)
+
+
+@pytest.mark.parametrize("teacher", ["torque", "feedback", "nobody"])
+def test_with_rate_0_it_is_the_plain_feedforward(teacher):
+    network = model(1)
+    plain = Feedforward(WindowFeedforward(lambda w: network.torque(w)[0], WIDTH), FEEDBACK)
+    learner = OnlineDescent(network[0], 0.0)
+    online = OnlineFeedforward(learner, FEEDBACK, WIDTH, teacher)
+    runs = [record(ARM, law, EXTENTS, **SHORT) for law in (plain, online)]
+    np.testing.assert_allclose(runs[1].tau_true, runs[0].tau_true, rtol=1e-9, atol=1e-9)
+
+
+def test_measured_windows_are_learnt_with_the_torque_at_their_centre():
+    seen = []
+
+    class Noting:
+        def torque(self, windows):
+            return 2.0 + 0 * windows[..., 0]
+
+        def learn(self, windows, torque):
+            seen.append((windows, torque))
+
+    run = record(ARM, OnlineFeedforward(Noting(), FEEDBACK, WIDTH), EXTENTS, **SHORT)
+    moving = np.flatnonzero((run.t > -1e-9) & (run.t < 1.0 - 1e-9))
+    assert len(seen) == len(moving)
+    for (window, torque), k in list(zip(seen, moving))[::17]:
+        np.testing.assert_allclose(window, run.q[k - 2 : k + 3].T, atol=1e-12)
+        np.testing.assert_allclose(torque, run.tau_true[k], rtol=1e-9)
+
+
+def test_desired_windows_are_learnt_with_the_feedback():
+    seen = []
+
+    class Noting:
+        def torque(self, windows):
+            return 0 * windows[..., 0]
+
+        def correct(self, windows, feedback):
+            seen.append((windows, feedback))
+
+    law = OnlineFeedforward(Noting(), proportional((300.0, 90.0)), WIDTH, "feedback")
+    run = record(ARM, law, EXTENTS, **SHORT)
+    wanted, k = run.reference.q, 40
+    centre = np.flatnonzero(run.t > -1e-9)[k]
+    np.testing.assert_allclose(seen[k][0], wanted[centre - 2 : centre + 3].T, atol=1e-12)
+    np.testing.assert_allclose(seen[k][1], run.tau_true[centre], rtol=1e-9)
+
+
+def test_it_learns_in_the_loop_and_goes_on_in_the_next_run():
+    extents, networks = np.array([[40.0, 30.0]]), model(1)
+    networks = TorqueModel(
+        Weights(networks.weights.hidden_weights, *(0 * x for x in (
+            networks.weights.hidden_bias, networks.weights.output_weights,
+            networks.weights.direct_weights, networks.weights.output_bias))), INPUTS, OUTPUTS,
+    )  # fmt: skip
+    learner = LastLayer(networks, lambda w: RecursiveLeastSquares(w, 0.01))
+    online = OnlineFeedforward(learner, FEEDBACK, WIDTH)
+    errors = []
+    for _ in range(4):
+        run = record(ARM, online, extents)
+        errors.append(np.sqrt((run.tracking_error**2).mean()))
+    assert errors[-1] < 0.7 * errors[0]
+
+
+def test_several_controllers_run_abreast():
+    extents = np.array([[40.0, 30.0], [20.0, 10.0]])
+    alone = [record(ARM, c, extents, **SHORT) for c in (FEEDBACK, proportional((300.0, 90.0)))]
+
+    t = time_grid(0.002, 0.1, 1.0)
+    one = pick_and_place(extents, t, 1.0)
+    both = Trajectory(*(np.stack([x, x]) for x in one))
+    watched = Watched(Abreast([FEEDBACK, proportional((300.0, 90.0))], [1, 1]))
+    run = follow(ARM, watched, both, t, duration=1.0)
+    for k in range(2):
+        np.testing.assert_allclose(run.q_true[k], alone[k].q_true, atol=1e-12)
+    assert len(watched.law.laws) == 2
+    with pytest.raises(ValueError, match="rows"):
+        Abreast([FEEDBACK], [1, 2])
+    with pytest.raises(ValueError, match="reference must have 3 rows"):
+        follow(ARM, Abreast([FEEDBACK], [3]), both, t)
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [({"width": 4}, "width"), ({"teacher": "me"}, "teacher"), ({"every": 0}, "every")],
+)
+def test_values_out_of_range_are_refused(change, name):
+    with pytest.raises(ValueError, match=name):
+        OnlineFeedforward(OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, **change})

@@ -1,0 +1,99 @@
+"""Data of others: unchanged files, whose loaders tell what their page says."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from workshop.beyond import others
+
+PAGE = (others.FOLDER / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "name, digest",
+    [
+        ("characters", "482a697e1bf620e12763255cd067cfdcb84257dfc58b8d048cfa46872f7628c9"),
+        ("staubli-tx40", "665c1c7ba945f08339efa795e4fd5a47fd855b3e3d676aaeea21699f777558f7"),
+    ],
+)
+def test_files_are_as_they_came(name, digest):
+    content = (others.FOLDER / f"{name}.npz").read_bytes()
+    assert hashlib.sha256(content).hexdigest() == digest
+    assert digest in PAGE and f"LICENSE-{name}" in PAGE
+
+
+def test_the_licence_of_the_recording_is_apaches():
+    text = (others.FOLDER / "LICENSE-staubli-tx40").read_text(encoding="utf-8")
+    assert "Apache License" in text and "Version 2.0, January 2004" in text
+    assert "thanhndv212/figaroh-examples" in PAGE and "2022-2023 CNRS" in PAGE
+
+
+# --- the characters ---------------------------------------------------------------------
+
+
+def test_characters_add_up():
+    found = others.characters()
+    assert len(found) == 20 and found.length.sum() == len(found.t) == 2913
+    parts = found.inertial + found.coriolis + found.gravity
+    np.testing.assert_allclose(parts, found.tau, atol=1e-12)
+    inertia = np.einsum("nij,nj->ni", found.mass_matrix, found.qdd)
+    np.testing.assert_allclose(inertia, found.inertial, atol=1e-12)
+    begins = np.cumsum(found.length)[:-1]
+    steps = np.delete(np.diff(found.t), begins - 1)
+    np.testing.assert_allclose(steps, found.STEP, atol=1e-9)
+
+
+def test_characters_are_split_by_character():
+    found = others.characters()
+    training, test = found.split()
+    assert sorted(test.labels) == sorted(others.PUBLISHED_TEST)
+    assert len(training) == 17 and len(training.t) + len(test.t) == len(found.t)
+    assert not set(training.labels) & set(test.labels)
+    ends = np.cumsum(found.length)
+    place = list(found.labels).index("q")
+    own = slice(ends[place] - found.length[place], ends[place])
+    for name in ("t", "q", "tau", "mass_matrix"):
+        np.testing.assert_array_equal(getattr(found.of("q"), name), getattr(found, name)[own])
+
+
+@pytest.mark.parametrize("labels", [("e", "B"), ()])
+def test_characters_that_are_not_there(labels):
+    with pytest.raises(ValueError, match=r"labels must be some of b, .*, got \["):
+        others.characters().of(labels)
+
+
+# --- the real arm -----------------------------------------------------------------------
+
+
+def test_the_recording_is_in_radians():
+    found = others.staubli()
+    assert found.q.shape == found.current.shape == (9000, 6) and found.step == 1e-3
+    assert found.t[0] == 0 and found.t[-1] == pytest.approx(8.999)
+    with np.load(others.FOLDER / "staubli-tx40.npz") as file:
+        assert int(file["rate_hz"]) == others.RATE
+        np.testing.assert_allclose(found.q * 180 / np.pi, file["position_deg"], rtol=1e-12)
+        np.testing.assert_array_equal(found.current, file["current_a"])
+
+
+def test_fewer_samples_are_means():
+    found = others.staubli()
+    slow = found.at(200)
+    assert slow.q.shape == (1800, 6) and slow.step == pytest.approx(5e-3)
+    np.testing.assert_allclose(slow.q[7], found.q[35:40].mean(0), rtol=1e-12)
+    np.testing.assert_allclose(slow.current[-1], found.current[-5:].mean(0), rtol=1e-12)
+    assert slow.t[7] == pytest.approx(0.037)  # the middle of the five
+    again = slow.at(100)
+    np.testing.assert_allclose(again.q, found.at(100).q, rtol=1e-12)
+    assert found.at(1000).q.shape == found.q.shape
+
+
+@pytest.mark.parametrize("rate", [0, 3000, 300, 2.5])
+def test_rates_that_do_not_divide(rate):
+    with pytest.raises((ValueError, TypeError), match="rate must"):
+        others.staubli().at(rate)
+
+
+def test_reductions_and_frictions_are_one_for_each_joint():
+    assert len(others.REDUCTION) == len(others.VISCOUS) == len(others.COULOMB) == 6
+    assert f"{', '.join(f'{r:g}' for r in others.REDUCTION)}" in PAGE

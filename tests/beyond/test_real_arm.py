@@ -1,0 +1,197 @@
+"""The real arm's cases, its blocks, and the models that are tried on them."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy.optimize import approx_fprime
+
+from ddlib.identification import joint_terms
+from ddlib.learning import Weights
+from workshop.beyond.others import staubli
+from workshop.beyond.studies import real_arm, tx40, tx40_networks
+from workshop.beyond.studies.tx40 import (
+    BLOCKS,
+    RATES,
+    Ridge,
+    Windowed,
+    best_penalty,
+    binned,
+    fold,
+    identified,
+    known_structure,
+    least_squares,
+)
+
+RNG = np.random.default_rng(0)
+
+
+# --- cases and blocks -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rate, width", [(100, 81), (200, 21), (500, 81)])
+def test_windows_surround_the_same_moments(rate, width):
+    data, arm = Windowed.of(rate, width), staubli()
+    assert data.x.shape == (820, 6, width) and data.current.shape == (820, 6)
+    middle = data.x[:, :, width // 2]
+    times = (np.arange(40, 860) + 0.5) / 100
+    there = np.stack([np.interp(times, arm.t, arm.q[:, j]) for j in range(6)], -1)
+    fastest = np.abs(np.diff(arm.q, axis=0)).max() / arm.step
+    assert np.abs(middle - there).max() < fastest * 0.004
+    many = 1000 // rate
+    own = arm.current[: 9000 // many * many].reshape(-1, many, 6).mean(1)
+    centre = 40 * (rate // 100) + (rate // 100) // 2
+    np.testing.assert_allclose(data.current[0], own[centre], rtol=1e-12)
+
+
+def test_states_are_the_derivatives_of_the_windows():
+    data = Windowed.of(100, 11)
+    t = (np.arange(11) - 5) * data.step
+    cubic = 0.3 + 0.5 * t - 0.7 * t**2 + 2 * t**3
+    made = Windowed(100, 11, np.tile(cubic, (2, 6, 1)), data.current[:2])
+    np.testing.assert_allclose(made.states[0, 0], [0.3, 0.5, -1.4], atol=1e-9)
+    assert Windowed.of(100, 3).states.shape == (820, 6, 3)
+
+
+@pytest.mark.parametrize("rate, width", [(100, 5), (100, 81), (500, 21)])
+def test_no_window_reaches_from_one_side_to_the_other(rate, width):
+    data, seen = Windowed.of(rate, width), np.zeros(820, int)
+    half = (width // 2) / rate
+    for block in range(BLOCKS):
+        training, test = data.fold(block)
+        seen += test
+        assert not (training & test).any() and training.sum() > 400
+        apart = np.abs(np.flatnonzero(training)[:, None] - np.flatnonzero(test)).min() / 100
+        assert apart > 2 * half - 1e-9
+    assert (seen == 1).all()
+
+
+def test_folds_by_hand():
+    training, test = fold(10, 1, 2)
+    assert np.flatnonzero(test).tolist() == [2, 3]
+    assert np.flatnonzero(training).tolist() == [0, 5, 6, 7, 8, 9]
+    with pytest.raises(ValueError, match="block"):
+        fold(10, 5, 1)
+
+
+def test_every_window_that_is_tried_fits():
+    for rate, widths in RATES.items():
+        assert max(widths) <= 81 * rate // 100
+    with pytest.raises(ValueError, match="width"):
+        Windowed.of(100, 83)
+
+
+# --- models -----------------------------------------------------------------------------
+
+
+def test_ridge_is_the_closed_form():
+    x, y = RNG.normal(size=(40, 5)) @ RNG.normal(size=(5, 5)), RNG.normal(size=(40, 2))
+    a, b = x - x.mean(0), y - y.mean(0)
+    made = Ridge(x, y)
+    penalty = 0.3 * np.trace(a.T @ a) / 5 * np.eye(5)
+    factors = np.linalg.solve(a.T @ a + penalty, a.T @ b)
+    np.testing.assert_allclose(made.filters(0.3), factors, rtol=1e-9)
+    np.testing.assert_allclose(made.predict(x, 0.3), y.mean(0) + a @ factors, rtol=1e-9)
+    np.testing.assert_allclose(made.predict(x, 1e-12), least_squares(x, y, x), atol=1e-7)
+
+
+def test_the_penalty_is_chosen_without_the_block_left_out():
+    data = Windowed.of(100, 5)
+    for block in (0, 2):
+        training, test = data.fold(block)
+        chosen, current = best_penalty(data, training), data.current.copy()
+        assert chosen in tx40.RIDGES
+        current[test] = 100 * RNG.normal(size=(test.sum(), 6))
+        assert best_penalty(Windowed(100, 5, data.x, current), training) == chosen
+    noise = RNG.normal(size=data.current.shape)
+    assert best_penalty(Windowed(100, 5, data.x, noise), training) == max(tx40.RIDGES)
+
+
+def planted(states, viscous=0.7, coulomb=0.4, inertia=0.05):
+    """Currents of six joints that are acceleration, friction and a weight."""
+    q, v, a = np.moveaxis(states, -1, 0)
+    sign = np.stack([row["sign"] for row in joint_terms(states)], -1)
+    return inertia * a + viscous * v + coulomb * sign + 0.2 * np.cos(q[:, [1]]) * [0, 1, 0, 0, 0, 0]
+
+
+def test_identified_finds_what_was_planted():
+    states = Windowed.of(100, 11).states
+    current = planted(states)
+    found = identified(states, current)
+    np.testing.assert_allclose(found.inertia, 0.05, rtol=1e-5)
+    np.testing.assert_allclose(found.viscous, 0.7, rtol=1e-5)
+    np.testing.assert_allclose(found.coulomb, 0.4, rtol=1e-5)
+    np.testing.assert_allclose(found.friction + found.rest, current, atol=1e-6)
+    rubbing = planted(states, inertia=0) - 0.2 * np.cos(states[:, [1], 0]) * [0, 1, 0, 0, 0, 0]
+    np.testing.assert_allclose(found.friction, rubbing, atol=1e-6)
+    assert (found.slope > 0.7).all()  # Coulomb friction adds to it
+    bare = identified(states, planted(states, coulomb=0))
+    np.testing.assert_allclose(bare.slope, 0.7, rtol=1e-5)
+    training, test = Windowed.of(100, 11).fold(1)
+    told = known_structure(states[training], current[training], states[test])
+    np.testing.assert_allclose(told, current[test], atol=1e-5)
+    without = known_structure(states[training], current[training], states[test], friction=False)
+    assert np.abs(without - current[test]).max() > 0.1
+
+
+def test_medians_of_groups():
+    speed, current = binned(np.arange(9)[::-1], 10 * np.arange(9)[::-1], 3)
+    np.testing.assert_array_equal(speed, [1, 4, 7])
+    np.testing.assert_array_equal(current, [10, 40, 70])
+
+
+# --- networks ---------------------------------------------------------------------------
+
+
+def test_decayed_networks_are_at_an_optimum_of_what_is_said():
+    data = Windowed.of(100, 5)
+    x, y, decay = data.x[:200:4], data.current[:200:4], 1e-2
+    start = Weights.random(1, 5, 2, 6, 6)[0]
+    model = tx40_networks.decayed(x, y, start, decay, steps=2000)
+    names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
+    scaled, wanted = model.scaled(x), model.outputs.scale(y)
+    parts = [getattr(model.weights, n) for n in names]
+    ends = np.cumsum([p.size for p in parts])[:-1]
+
+    def objective(vector):
+        w = Weights(*(v.reshape(p.shape) for v, p in zip(np.split(vector, ends), parts)))
+        error = w.activity(scaled)[1] - wanted
+        size = sum((getattr(w, n) ** 2).sum() for n in names if n.endswith("weights"))
+        return 0.5 * (error**2).sum() / len(scaled) + 0.5 * decay * size
+
+    at = np.concatenate([p.ravel() for p in parts])
+    begin = np.concatenate([getattr(start, n).ravel() for n in names])
+    slope = approx_fprime(at, objective, 1e-6)
+    assert objective(at) < objective(begin)
+    assert np.abs(slope).max() < 0.02 * np.abs(approx_fprime(begin, objective, 1e-6)).max()
+
+
+def test_networks_of_six_joints_learn_and_are_told_apart():
+    data = Windowed.of(100, 5)
+    model, kept, made = tx40_networks.trained(
+        data.x, data.current, 2, 0, 5, snapshots=(1,), epochs=60
+    )
+    assert model.weights.direct_weights.shape == (2, 6, 6, 5) and made.x.min() == -1
+    early, late = (
+        tx40_networks.wrong(m.torque(data.x), data, slice(None)) for m in (kept[1], model)
+    )
+    assert late.shape == (2, 6) and (late.mean(-1) < early.mean(-1)).all()
+    nothing = np.zeros_like(data.current) + data.current.mean(0)
+    np.testing.assert_allclose(tx40_networks.wrong(nothing, data, slice(None)), 1, rtol=1e-9)
+
+
+def test_the_study_in_small(monkeypatch):
+    monkeypatch.setattr(real_arm, "RATES", {100: (5,)})
+    monkeypatch.setattr(real_arm, "trained", partial(tx40_networks.trained, epochs=20))
+    monkeypatch.setattr(real_arm, "DECAYS", (0.0, 1e-2))
+    row = real_arm._grid(1)[0]
+    assert row["network"].shape == (5, 1) and row["ridge"].shape == (5,)
+    assert row["identified"].mean() < row["ridge"].mean() < row["no friction"].mean()
+    found = real_arm._filters(5, 2, 2)
+    assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm.KINDS)
+    for each in (found, *found["nulls"].values()):
+        assert each["curved"].shape == (2, 6) and (each["curved"] <= 1).all()
+    memory = real_arm._memory(1)
+    assert all(0 < x < 1.5 for rows in memory.values() for row in rows.values() for x in row)
+    units = real_arm._hidden_units(1)
+    assert (units["training"]["with hidden units"][:, 0] < units["training"]["alone"]).all()

@@ -1,0 +1,208 @@
+"""Tables against scipy's interpolation, brute force and arms whose torques a table can hold."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import RegularGridInterpolator
+
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.trajectories import OutsideFamilyWarning
+from workshop.beyond.rivals.protocol import Cases
+from workshop.beyond.rivals.tables import (
+    CellTable,
+    GridTable,
+    Nearest,
+    cells_within,
+    corners,
+    full_table,
+    table_size,
+)
+
+RNG = np.random.default_rng(1)
+BOX = np.stack([np.full((2, 3), -2.0), np.full((2, 3), 3.0)])
+
+
+def states(n=400, seed=0):
+    return np.random.default_rng(seed).uniform(-2.0, 3.0, (n, 2, 3))
+
+
+def torques(x):
+    return CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0))
+
+
+def cases(x, torque=None):
+    return Cases(x, torques(x) if torque is None else torque, "states", 0.01)
+
+
+def nodes(cells, axes=6):
+    """All nodes of a grid over `BOX`, the last axis fastest: as states ``(nodes, 2, 3)``."""
+    edge = np.linspace(-2.0, 3.0, cells + 1)
+    return np.stack(np.meshgrid(*[edge] * axes, indexing="ij"), -1).reshape(-1, 2, 3), edge
+
+
+def test_several_hundred_megabytes_are_twenty_cells_an_axis():
+    assert table_size(20) == (20**6, 2 * 20**6, 512_000_000)
+    assert cells_within(512e6) == 20 and cells_within(511e6) == 19 and cells_within(7) == 0
+    assert cells_within(100e6) == 15 and cells_within(999e6) == 22  # what "several hundred" spans
+    assert table_size(100, axes=2, numbers=11, width=8).bytes == 100**2 * 11 * 8
+    with pytest.raises(ValueError, match="cells"):
+        table_size(0)
+
+
+def test_corner_weights_are_scipys_multilinear_interpolation():
+    u = RNG.uniform(0, 1, (50, 3))
+    values = RNG.normal(size=(5, 5, 5))
+    index, weights = corners(u, 4)
+    edge = np.linspace(0, 1, 5)
+    ours = (values[tuple(np.moveaxis(index, -1, 0))] * weights).sum(1)
+    np.testing.assert_allclose(ours, RegularGridInterpolator([edge] * 3, values)(u), rtol=1e-12)
+    np.testing.assert_allclose(weights.sum(1), 1.0)
+    index, weights = corners(np.ones((1, 2)), 3)  # the far edge belongs to the last cell
+    assert index.max() == 3 and weights[0, -1] == 1
+
+
+def test_a_full_table_is_scipys_interpolation_of_the_same_nodes():
+    grid, edge = nodes(3)
+    x = states(60, seed=3)
+    values = torques(grid).reshape(4, 4, 4, 4, 4, 4, 2)
+    scipys = RegularGridInterpolator([edge] * 6, values)(x.reshape(60, 6))
+    np.testing.assert_allclose(full_table(torques, x, BOX, 3), scipys, rtol=1e-10, atol=1e-10)
+    middles = (edge[1:] + edge[:-1]) / 2
+    grid = np.stack(np.meshgrid(*[middles] * 6, indexing="ij"), -1).reshape(-1, 2, 3)
+    nearest = RegularGridInterpolator(
+        [middles] * 6, torques(grid).reshape(3, 3, 3, 3, 3, 3, 2), method="nearest",
+        bounds_error=False, fill_value=None,
+    )(x.reshape(60, 6))  # fmt: skip
+    np.testing.assert_allclose(full_table(torques, x, BOX, 3, interpolated=False), nearest)
+
+
+def test_a_grid_with_a_case_at_every_node_is_scipys_interpolation():
+    grid, edge = nodes(2)
+    rival = GridTable(2, ridge=1e-12, limits=BOX).fit(cases(grid))
+    x = states(50, seed=4)
+    values = torques(grid).reshape(3, 3, 3, 3, 3, 3, 2)
+    scipys = RegularGridInterpolator([edge] * 6, values)(x.reshape(50, 6))
+    np.testing.assert_allclose(rival.torque(x), scipys, rtol=1e-6, atol=1e-6)
+    assert not rival.empty(x).any()
+    assert rival.full() == table_size(3) and rival.count() == 3**6 * 3 + 2 + 12
+
+
+def test_a_grid_fitted_to_scattered_cases_is_the_ridge_of_its_hat_functions():
+    x = states(80)
+    data = cases(x)
+    rival = GridTable(1, ridge=0.3, limits=BOX).fit(data)  # 64 nodes: an independent dense solve
+    _, weights = corners((x - BOX[0]).reshape(80, 6) / 5, 1)
+    centred = data.torque - data.torque.mean(0)
+    dense = np.linalg.solve(weights.T @ weights + 0.3 * np.eye(64), weights.T @ centred)
+    np.testing.assert_allclose(rival.values, data.torque.mean(0) + dense, rtol=1e-8, atol=1e-9)
+
+
+def test_nodes_far_from_all_cases_have_the_mean():
+    x = states(40)
+    x[..., 0] = x[..., 0] * 0.1 - 1.8
+    rival = GridTable(6, limits=BOX).fit(cases(x))
+    far = states(3)
+    far[..., 0] = 2.9
+    assert rival.empty(far).all() and not rival.empty(x).any()
+    with pytest.warns(OutsideFamilyWarning):
+        np.testing.assert_allclose(rival.torque(far), np.tile(torques(x).mean(0), (3, 1)))
+
+
+def test_nearest_is_brute_force():
+    x, asked = states(300), states(40, seed=7) * 0.9
+    rival = Nearest().fit(cases(x))
+    away = (((asked[:, None] - x) / x.std(0)) ** 2).sum((2, 3))
+    np.testing.assert_array_equal(rival.torque(asked), torques(x)[away.argmin(1)])
+    assert rival.count() == 300 * 8 + 6
+
+
+def test_cells_of_states_hold_means():
+    x = states(500)
+    rival = CellTable(2, limits=BOX).fit(cases(x))
+    place = ((x.reshape(500, 6) + 2) / 5 * 2).astype(int)
+    chosen = (place == place[0]).all(1)
+    np.testing.assert_allclose(rival.torque(x[:1])[0], torques(x)[chosen].mean(0), rtol=1e-9)
+    assert rival.full().numbers == 2 * 2**6
+
+
+def test_cells_of_configurations_hold_the_arm():
+    """At one configuration torque is linear in accelerations and products of velocities."""
+    x = states(200)
+    x[..., 0] = [0.3, -0.7]
+    friction = 2.0 * x[..., 1]
+    rival = CellTable(4, "configurations", ridge=1e-9, limits=BOX)
+    rival.fit(cases(x, torques(x) + friction))
+    asked = states(30, seed=5)
+    asked[..., 0] = [0.3, -0.7]
+    np.testing.assert_allclose(
+        rival.torque(asked), torques(asked) + 2.0 * asked[..., 1], rtol=1e-5, atol=1e-5
+    )
+    mass = CMU_DD_ARM_II.mass_matrix(np.array([0.3, -0.7]))
+    np.testing.assert_allclose(rival.coefficients[0, 1:3].T, mass, rtol=1e-5)
+    without = CellTable(4, "configurations", friction=False, ridge=1e-9, limits=BOX)
+    assert without.fit(cases(x)).coefficients.shape == (1, 6, 2)
+    np.testing.assert_allclose(without.torque(asked), torques(asked), rtol=1e-5, atol=1e-5)
+
+
+def test_cells_of_motions_hold_inertia_and_a_constant():
+    x = states(200)
+    x[..., :2] = [[0.3, 1.0], [-0.7, -1.5]]
+    rival = CellTable(4, "motions", ridge=1e-9, limits=BOX).fit(cases(x))
+    asked = states(30, seed=5)
+    asked[..., :2] = x[0, :, :2]
+    np.testing.assert_allclose(rival.torque(asked), torques(asked), rtol=1e-5, atol=1e-5)
+
+
+def test_an_empty_cell_answers_as_the_nearest_that_is_not():
+    x = np.zeros((2, 2, 3))
+    x[0, 0, 0], x[1, 0, 0] = -1.9, 2.9
+    rival = CellTable(10, limits=BOX).fit(cases(x, np.array([[1.0, 2.0], [3.0, 4.0]])))
+    asked = np.zeros((3, 2, 3))
+    asked[:, 0, 0] = -1.9, -0.9, 1.9
+    np.testing.assert_array_equal(rival.torque(asked), [[1, 2], [1, 2], [3, 4]])
+    assert rival.empty(asked).tolist() == [False, True, True]
+    assert rival.count() == 2 * 6 + 4 + 12
+
+
+@pytest.mark.parametrize("make", [Nearest, CellTable, GridTable])
+def test_states_outside_the_table_are_refused_by_name_or_taken_to_the_edge(make):
+    x = states(300)
+    rival = make(limits=BOX).fit(cases(x))
+    far = states(5)
+    far[2, 1, 1] = 3.5
+    words = r"velocity of joint 1 from -2 to 3 rad/s, got 3.5 \(1 of 5 states lie outside\)"
+    with pytest.raises(ValueError, match=words):
+        rival.torque(far)
+    kind = make(limits=BOX, beyond="edge").fit(cases(x))
+    edge = far.copy()
+    edge[2, 1, 1] = 3.0
+    with pytest.warns(OutsideFamilyWarning, match="1 of 5 inputs"):
+        found = kind.torque(far)
+    np.testing.assert_allclose(found, kind.torque(edge))
+    own = make().fit(cases(x))  # reaches a tenth beyond the training box
+    np.testing.assert_allclose(own.low, x.min(0) - 0.1 * np.ptp(x, axis=0))
+
+
+def test_what_makes_no_sense_is_refused():
+    x = states(20)
+    with pytest.raises(ValueError, match="over must be one of"):
+        CellTable(4, "tasks")
+    with pytest.raises(ValueError, match="limits must have least values below"):
+        Nearest(BOX[::-1])
+    with pytest.raises(ValueError, match=r"limits must be of shape \(2, 1, 3\)"):
+        Nearest(BOX).fit(Cases(x[:, :1], torques(x)[:, :1], "states", 0.01))
+    with pytest.raises(ValueError, match="at most 2 joints for a multilinear table, got 3"):
+        GridTable().fit(Cases(np.zeros((5, 3, 3)), np.zeros((5, 3)), "states", 0.01))
+    with pytest.raises(ValueError, match="ridge"):
+        CellTable(ridge=0)
+
+
+def test_operations_are_counted_by_hand():
+    x = states(300)
+    assert CellTable(3).fit(cases(x)).operations()[:2] == (6, 6)  # finding the cell alone
+    # three products of velocities, two signs, ten columns for two joints
+    assert CellTable(3, "configurations").fit(cases(x)).operations()[:2] == (
+        2 + 3 + 2 + 18, 2 + 18
+    )  # fmt: skip
+    # 4 + 8 + 16 + 32 + 64 products for 64 weights, twice 64 for two torques
+    assert GridTable(2).fit(cases(x)).operations()[:2] == (6 + 124 + 128, 12 + 126)
+    assert Nearest().fit(cases(x)).operations()[:2] == (6 + 1800, 300 * 11)

@@ -1,0 +1,84 @@
+"""The study of rivals: who takes part, what is asked, what is kept."""
+
+import numpy as np
+import pytest
+
+from ddlib.learning import Weights
+from ddlib.setups import JOINT_DAMPING
+from ddlib.trajectories import APPENDIX_I
+from workshop.beyond.rivals.identified import Linear
+from workshop.beyond.rivals.protocol import Rival
+from workshop.beyond.rivals.tables import Nearest
+from workshop.beyond.studies import lineup, rivals
+from workshop.report import results
+
+
+def test_everybody_can_be_made_at_all_sizes():
+    for name, line in lineup.LINES.items():
+        made = [line.make(size, 1) for size in line.sizes]
+        assert all(isinstance(rival, Rival) for rival in made) and line.varied, name
+        assert len({rival.kind for rival in made}) == 1
+    assert lineup.REFERENCE in lineup.LINES
+
+
+def test_the_budget_is_the_papers_network():
+    weights = Weights.random(1, rivals.WIDTH)[0]
+    assert weights.count(biases=True) + 4 == rivals.BUDGET
+    rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup.REFERENCE]
+    assert max(r["count"] for r in rows) == rivals.BUDGET
+
+
+@pytest.fixture(scope="module")
+def recorded():
+    return rivals.recorded(2)
+
+
+def test_what_is_learnt_and_asked(recorded):
+    sets, asked = recorded
+    for inputs, kind in zip(rivals.INPUTS, ("windows", "states")):
+        assert {cases.kind for cases in sets[inputs].values()} == {kind}
+        assert len(sets[inputs]["training"]) == 1500 and len(sets[inputs]["trajectory 6"]) == 300
+        square = len(sets[inputs]["inside"]) + len(sets[inputs]["outside"])
+        assert square == 300 * rivals.GRID**2 / rivals.EVERY
+    assert asked.x.shape == (30 * rivals.GRID**2, 2, rivals.WIDTH)
+    alone = JOINT_DAMPING.repeated(2).record(APPENDIX_I[5])
+    np.testing.assert_allclose(
+        sets["positions"]["trajectory 6"].x[..., 10], alone.q[alone.motion], atol=2e-3
+    )
+
+
+def test_floors_are_below_what_is_measured(recorded):
+    floors = rivals.floors(recorded[0]["positions"])
+    for part in ("training", "trajectory 6", "inside", "outside"):
+        assert 0 < floors["exact states"][part] < floors["positions"][part] < 0.05
+
+
+def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
+    lines = {
+        "nearest": lineup.Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1),
+        "filter": lineup.Line(
+            lambda width, _: Linear(width=width, ridge=0.0), (5, 21), "samples", "filters"
+        ),
+    }
+    monkeypatch.setattr(rivals, "LINES", lines)
+    monkeypatch.setattr(rivals, "DAYS", 2)
+    monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
+    found = rivals.rivals()
+    rows = {(r["rival"], r["inputs"], r["size"]): r for r in found["rows"]}
+    assert set(rows) == {
+        ("nearest", "positions", 1),
+        ("nearest", "exact states", 1),
+        ("filter", "positions", 5),
+        ("filter", "positions", 21),
+    }
+    assert len(rows["nearest", "positions", 1]["seconds"]) == 1
+    wide = rows["filter", "positions", 21]
+    assert len(wide["errors"]["outside"]) == 2 and wide["count"] == 86
+    assert wide["errors"]["trajectory 6"][0] != wide["errors"]["trajectory 6"][1]  # other noise
+    with np.load(tmp_path / "torques.npz") as kept:
+        assert kept["names"].tolist() == ["measured", "nearest", "filter"]
+        assert kept["torque"].shape == (3, rivals.GRID**2, 30, 2)
+        _, asked = rivals.recorded(1)
+        wanted = asked.torque.reshape(rivals.GRID**2, 30, 2)
+        np.testing.assert_allclose(kept["torque"][0], wanted, rtol=1e-3, atol=1e-3)
+    results.write_json(tmp_path / "rivals.json", found)

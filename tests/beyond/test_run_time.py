@@ -1,0 +1,200 @@
+"""Torques at run time: motions, scores and the linear loop against independent truths."""
+
+import warnings
+from dataclasses import replace
+
+import control
+import numpy as np
+import pytest
+
+from ddlib.control import pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.dynamics import Arm
+from ddlib.effects import Effects, ViscousFriction
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup
+from ddlib.simulation import CONTROL_STEP
+from ddlib.trajectories import Trajectory, pick_and_place
+from workshop.beyond.studies.loop import run_time_parts as parts
+from workshop.report import results
+
+WHEELS = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3))
+"""An arm whose mass matrix is constant and that has no centrifugal torques: a linear one."""
+
+FRICTION = Effects(friction=(ViscousFriction((3.0, 1.0)),))
+LINEAR = Setup("linear", pd((60.0, 30.0), (4.0, 2.0)), arm=WHEELS, effects=FRICTION)
+T = parts.T
+
+
+def python_control(torque):
+    """Joint angles of `LINEAR` that start at rest and are driven by torques, by python-control."""
+    M, F = WHEELS.mass_matrix(np.zeros(2)), np.diag([3.0, 1.0])
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [np.zeros((2, 2)), -np.linalg.solve(M, F)]])
+    arm = control.ss(A, np.vstack([np.zeros((2, 2)), np.linalg.inv(M)]), np.eye(4), 0)
+    held = control.sample_system(arm, CONTROL_STEP, "zoh")
+    gain = np.hstack([np.diag([60.0, 30.0]), np.diag([4.0, 2.0])])
+    loop = control.ss(held.A - held.B @ gain, held.B, np.eye(2, 4), 0, CONTROL_STEP)
+    return control.forced_response(loop, T, torque.T).outputs.T
+
+
+def test_end_point_error_along_a_linear_loop_is_that_of_python_control():
+    rng = np.random.default_rng(0)
+    wrong = 3 * np.sin(np.outer(T, [5.0, 8.0]) + rng.uniform(0, 6, 2))
+    still = np.zeros((T.size, 2))
+    plan = Trajectory(still, still, still)
+    log = parts.follow(
+        WHEELS, parts.given(wrong, LINEAR.controller), plan, T, effects=FRICTION, duration=3.0
+    )
+    q = python_control(wrong)
+    moving = (T >= 0) & (T < 3 - 1e-9)
+    np.testing.assert_allclose(log.q_true, q[::5], atol=1e-9)
+    q1, q12 = q[:, 0], q.sum(1)
+    hand = np.stack([0.4 * np.cos(q1) + 0.3 * np.cos(q12), 0.4 * np.sin(q1) + 0.3 * np.sin(q12)])
+    gap2 = 1e6 * ((hand - [[0.7], [0.0]]) ** 2).sum(0)[moving][::5]
+    found = parts.score(WHEELS, log)
+    assert found.whole == pytest.approx(np.sqrt(gap2.mean()), rel=1e-6)
+    assert found.largest == pytest.approx(np.sqrt(gap2.max()), rel=1e-6)
+    first = round(parts.START / 0.01)
+    assert found.start == pytest.approx(np.sqrt(gap2[:first].mean()), rel=1e-6)
+    assert found.rest == pytest.approx(np.sqrt(gap2[first:].mean()), rel=1e-6)
+    degrees = np.rad2deg(np.sqrt((q[moving][::5] ** 2).mean(0)))
+    assert (found.shoulder, found.elbow) == pytest.approx(tuple(degrees), rel=1e-6)
+
+
+def test_the_linear_loop_is_python_controls():
+    torque = np.random.default_rng(1).standard_normal((T.size, 2))
+    found = parts.through_loop(parts.linear_loop(LINEAR, 0.3), np.stack([torque, 2 * torque]))
+    np.testing.assert_allclose(found[0], python_control(torque), atol=1e-9)
+    np.testing.assert_allclose(found[1], 2 * found[0], atol=1e-12)
+
+
+@pytest.mark.parametrize("scale, tight", [(1.0, 0.05)])
+def test_the_prediction_needs_no_simulation(scale, tight):
+    """Of the linear arm it is what the simulation finds, but for the hand's small angles."""
+    plan = pick_and_place([2.0, 1.5], T)
+    ideal = parts.with_impulse(LINEAR)(*plan)
+    wrong = ideal + scale * np.sin(np.outer(T, [4.0, 9.0])) * 0.1
+    guess = parts.predicted(LINEAR, wrong, plan)
+    log = parts.follow(
+        WHEELS, parts.given(wrong, LINEAR.controller), plan, T, effects=FRICTION, duration=3.0
+    )
+    assert parts.score(WHEELS, log).whole == pytest.approx(guess, rel=tight)
+
+
+def test_the_error_along_the_path_and_across_it():
+    """A hand that is late on its path errs along it; one link alone shows both by hand."""
+    plan = pick_and_place([30.0, 0.0], T)
+    late = np.roll(plan.q, 5, axis=0)
+    log = parts.follow(ARM, lambda wanted, q, qd: 0 * q, plan, T, duration=3.0, log_every=1)
+    found = parts.score(ARM, replace(log, q_true=late))
+    assert found.across < 0.02 * found.along
+    assert found.whole == pytest.approx(np.hypot(found.along, found.across), rel=1e-6)
+    reach = replace(log, q_true=plan.q + np.array([0.0, 0.02]))
+    turned = parts.score(ARM, reach)
+    gap = 1e3 * 2 * 0.4 * np.sin(0.01)
+    assert turned.whole == pytest.approx(gap, rel=1e-9)
+
+
+def test_rounded_corners_keep_the_motion_and_its_derivatives():
+    extents = parts.EXTENTS[[10, 40]]
+    plain, round_ = parts.rounded(extents, 0.0), parts.rounded(extents, 0.1)
+    np.testing.assert_array_equal(plain.q, pick_and_place(extents, T).q)
+    middle = (T > 0.1) & (T < 2.9)
+    assert np.abs(round_.q - plain.q)[:, middle].max() < 1e-3
+    np.testing.assert_allclose(
+        np.gradient(round_.q, CONTROL_STEP, axis=-2)[:, 1:-1], round_.qd[:, 1:-1], atol=0.02
+    )
+    gained = np.cumsum(round_.qdd, axis=-2) * CONTROL_STEP
+    np.testing.assert_allclose(gained[:, 1:-1], round_.qd[:, 1:-1], atol=0.02)
+    jump = np.abs(np.diff(plain.qd, axis=-2)).max()
+    assert np.abs(np.diff(round_.qd, axis=-2)).max() < 0.1 * jump
+    with pytest.raises(ValueError, match="seconds"):
+        parts.rounded(extents, -0.1)
+
+
+def test_the_impulse_changes_the_momentum_by_the_jump():
+    plan = pick_and_place([30.0, 20.0], T)
+    extra = parts.with_impulse(JOINT_DAMPING)(*plan) - parts.exact(JOINT_DAMPING)(*plan)
+    at = np.flatnonzero(np.abs(extra).max(-1) > 1e-9)
+    assert len(at) == 2 and np.abs(T[at] - [0.0, 3.0]).max() < 0.0021
+    for k in at:  # it starts backwards, and is stopped on its way forwards
+        M = JOINT_DAMPING.arm.mass_matrix(plan.q[k])
+        wanted = M @ -np.deg2rad([30.0, 20.0]) * np.pi / 3
+        np.testing.assert_allclose(extra[k] * CONTROL_STEP, wanted, rtol=1e-4)
+
+
+def test_equations_behind_a_window_see_what_happens_within_it():
+    """Far from the corners they are the equations; at a corner they push before it."""
+    plan = pick_and_place([30.0, 20.0], T)
+    seen = parts.through_window(parts.exact(STATE_FEEDBACK))(*plan)
+    known = parts.exact(STATE_FEEDBACK)(*plan)
+    far = (T > 0.3) & (T < 1.2)
+    np.testing.assert_allclose(seen[far], known[far], atol=0.05)
+    before = (T > -0.1) & (T < 0)
+    assert np.abs(seen[before]).max() > 5 > np.abs(known[before]).max()
+
+
+def test_networks_run_as_they_were_trained():
+    made = parts.networks(JOINT_DAMPING, 2)
+    model = results.networks(21, JOINT_DAMPING.name)
+    plan = pick_and_place([30.0, 20.0], T)
+    windows = np.stack([plan.q[k - 50 : k + 51 : 5].T for k in (400, 900)])
+    found = parts.planned(made, plan)
+    assert found.shape == (2, T.size, 2)
+    np.testing.assert_allclose(found[1][[400, 900]], model[1].torque(windows), atol=1e-12)
+    with pytest.raises(ValueError, match="count"):
+        parts.networks(JOINT_DAMPING, 26)
+
+
+def test_days_differ_in_the_encoders_zero_only():
+    plan = pick_and_place(parts.EXTENTS[:2], T)
+    log = parts.drive(STATE_FEEDBACK, STATE_FEEDBACK.controller, plan, (1, 2))
+    assert log.q_true.shape[:2] == (2, 2)
+    alone = parts.follow(
+        ARM, STATE_FEEDBACK.controller, plan, T, effects=STATE_FEEDBACK.repeated(2).effects,
+        duration=3.0,
+    )  # fmt: skip
+    np.testing.assert_allclose(log.q_true[1], alone.q_true, atol=1e-12)
+    assert np.abs(log.q_true[1] - log.q_true[0]).max() > 1e-7
+
+
+def test_computed_torque_of_the_right_arm_follows_and_of_a_wrong_one_does_not():
+    calm = replace(JOINT_DAMPING, effects=Effects(friction=JOINT_DAMPING.effects.friction))
+    plan = parts.rounded(parts.EXTENTS[[24]], 0.2)
+    heavy = replace(ARM, a=1.3 * ARM.a)
+    errors = [
+        parts.score(ARM, parts.follow(
+            ARM, parts.computed_torque(calm, arm), plan, T, effects=calm.effects, duration=3.0
+        )).whole[0]
+        for arm in (None, heavy)
+    ]  # fmt: skip
+    assert errors[0] < 0.15 < 5 * errors[0] < errors[1]
+
+
+def test_the_error_of_a_log_goes_through_the_loop():
+    """A model that is wrong by a constant displaces the hand like a load."""
+    six = STATE_FEEDBACK.record()[5]
+
+    class Off:
+        weights = results.networks(21).weights
+
+        def torque(self, windows):
+            return six.tau[six.motion] + np.array([3.0, 0.0])
+
+    found = parts.logged_error(STATE_FEEDBACK, Off(), six)
+    q = six.q[six.motion]
+    radius = np.linalg.norm(ARM.forward_kinematics(q)[..., 1, :], axis=-1)
+    kp = STATE_FEEDBACK.controller.kp[0]
+    assert found == pytest.approx(1e3 * np.sqrt((radius**2).mean()) * 3 / kp, rel=0.1)
+
+
+def test_medians_over_the_square():
+    values = np.arange(2 * 49.0).reshape(2, 49) ** 2
+    row = parts.told(parts.Score(*[values] * 8))
+    np.testing.assert_array_equal(row["whole"], np.median(values, 1))
+    np.testing.assert_array_equal(row["map"], values.mean(0))
+    inside = [np.median(v[parts.INSIDE]) for v in values]
+    np.testing.assert_array_equal(row["inside"], inside)
+    assert 5 < parts.INSIDE.sum() < 44
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert parts.FEWER.shape == (16, 2) and parts.FEWER.max() == 45

@@ -1,0 +1,125 @@
+"""The window network is a convolution; convolutions and recurrent units against plain sums."""
+
+import numpy as np
+import pytest
+import torch
+from scipy.special import expit
+from torch.utils.flop_counter import FlopCounterMode
+
+from ddlib.learning import Weights, sliding_windows
+from ddlib.metrics import rmss
+from workshop.beyond.rivals.protocol import Cases
+from workshop.beyond.rivals.sequences import Convolution, Recurrent, as_convolution
+
+
+def test_the_window_network_is_a_convolution():
+    """Slid along two recordings it gives what the network gives for each window."""
+    weights = Weights.random(1, 21, hidden=10, initial=2.0, seed=4)[0]
+    q = np.random.default_rng(0).uniform(0, 1, (2, 200, 2))
+    wanted = np.stack([weights.activity(run)[1] for run in sliding_windows(q, 21)])
+    with torch.no_grad():
+        found = as_convolution(weights)(torch.tensor(q).transpose(1, 2)).transpose(1, 2).numpy()
+    assert found.shape == (2, 180, 2)
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
+    with pytest.raises(ValueError, match="weights must be of one network"):
+        as_convolution(Weights.random(2, 5))
+
+
+def windows(n=300, width=11, seed=0):
+    """Windows of smooth motions, and torques with a second difference and a product in them."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(width) - width // 2
+    c = rng.normal(size=(n, 2, 3, 1))
+    x = c[..., 0, :] + 0.05 * c[..., 1, :] * t + 0.01 * c[..., 2, :] * t**2
+    y = c[:, :, 2, 0] * (1 + 0.5 * np.tanh(c[:, ::-1, 0, 0])) + c[:, :, 1, 0]
+    return Cases(x, y, "windows", 0.01)
+
+
+def scaled(rival, x):
+    """The channels as the class describes them: middles and deviations, each scaled."""
+    middle = np.repeat(x[..., 5:6], 11, -1)
+    parts = []
+    for part, (mean, spread) in zip((middle, x - middle), rival.scale):
+        np.testing.assert_allclose(spread, part.std((0, 2)))
+        parts.append((part - mean[:, None]) / spread[:, None])
+    return np.concatenate(parts, 1)
+
+
+def arrays(module) -> dict:
+    return {name: p.detach().numpy().astype(float) for name, p in module.named_parameters()}
+
+
+def test_convolutions_are_sums_along_the_window():
+    data = windows(40)
+    rival = Convolution(3, epochs=3).fit(data)
+    w = arrays(rival.network)
+
+    def layer(x, weight, bias):
+        seen = np.lib.stride_tricks.sliding_window_view(x, 5, axis=-1)
+        net = np.einsum("nctk,ock->not", seen, weight) + bias[:, None]
+        return net * expit(net)
+
+    x = layer(scaled(rival, data.x), w["0.weight"], w["0.bias"])
+    x = layer(x, w["2.weight"], w["2.bias"])
+    y = x.reshape(40, -1) @ w["5.weight"].T + w["5.bias"]
+    wanted = data.torque.mean(0) + data.torque.std(0) * y
+    np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
+    assert rival.count() == sum(x.size for x in w.values()) + 8 + 4
+
+
+def test_the_recurrent_unit_is_gated():
+    data = windows(40)
+    rival = Recurrent(4, epochs=3).fit(data)
+    w = {name.removeprefix("recurrent."): x for name, x in arrays(rival.network).items()}
+    h = np.zeros((40, 4))
+    for x in np.moveaxis(scaled(rival, data.x), -1, 0):
+        inner = x @ w["weight_ih_l0"].T + w["bias_ih_l0"]
+        outer = h @ w["weight_hh_l0"].T + w["bias_hh_l0"]
+        reset, update = (expit(inner[:, k : k + 4] + outer[:, k : k + 4]) for k in (0, 4))
+        h = (1 - update) * np.tanh(inner[:, 8:] + reset * outer[:, 8:]) + update * h
+    y = h @ w["output.weight"].T + w["output.bias"]
+    wanted = data.torque.mean(0) + data.torque.std(0) * y
+    np.testing.assert_allclose(rival.torque(data.x), wanted, atol=1e-4)
+    assert rival.count() == sum(x.size for x in w.values()) + 8 + 4
+    products = 11 * (4 * 12 + 4 * 12) + 8
+    assert rival.operations().multiplications == products + 11 * 3 * 4
+    assert rival.operations().functions == 11 * 3 * 4
+
+
+def test_products_are_those_that_torch_counts():
+    data = windows(40)
+    rival = Convolution(6, epochs=1).fit(data)
+    with FlopCounterMode(display=False) as counter, torch.no_grad():
+        rival.network(torch.zeros(1, 4, 11))
+    units = 6 * (7 + 3)
+    assert rival.operations().multiplications == counter.get_total_flops() / 2 + units
+
+
+@pytest.mark.parametrize("rival", [Convolution(6, 150), Recurrent(8, 120)], ids=repr)
+def test_they_learn(rival):
+    data, other = windows(), windows(seed=1)
+    rival.fit(data)
+    assert rmss(rival.torque(data.x), data.torque) < 0.2
+    with np.errstate(all="ignore"), pytest.warns(UserWarning):
+        assert rmss(rival.torque(other.x), other.torque) < 0.5
+
+
+def test_nobody_elses_random_numbers_are_touched():
+    torch.manual_seed(1)
+    wanted = torch.rand(3)
+    torch.manual_seed(1)
+    Convolution(2, epochs=1).fit(windows(20))
+    assert torch.equal(torch.rand(3), wanted)
+
+
+def test_what_makes_no_sense_is_refused():
+    with pytest.raises(ValueError, match="channels must be an integer from 1"):
+        Convolution(0)
+    with pytest.raises(ValueError, match="windows must have 9 samples or more, got 7"):
+        Convolution(2).fit(windows(20, 7))
+    still = windows(20)
+    still.x[:, 1] = 0.3
+    with pytest.raises(ValueError, match="x and torque must vary in each joint"):
+        Recurrent(2).fit(still)
+    with pytest.raises(ValueError, match="rate must lie in"):
+        Recurrent(2, rate=0.0)

@@ -1,0 +1,220 @@
+"""A model of windows as feedforward: what it sees, and what happens between its samples."""
+
+import numpy as np
+import pytest
+
+from ddlib.control import PID, Feedforward, pd, plant
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.dynamics import Arm
+from ddlib.effects import Effects, ViscousFriction
+from ddlib.simulation import follow, record
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.delays import late_poles
+from workshop.beyond.control.windowed import (
+    MeasuredWindows,
+    PlannedTorque,
+    WindowFeedforward,
+    past_slopes,
+    poles_inside,
+)
+
+T = np.arange(0, 400) * 0.002
+Q = np.stack([np.sin(3 * T), np.cos(2 * T)], -1)
+
+
+def middle(windows):
+    """The centre of each window, as a torque."""
+    return windows[..., windows.shape[-1] // 2]
+
+
+def curvature(windows):
+    """Second difference of neighbouring samples 10 ms apart."""
+    c = windows.shape[-1] // 2
+    return (windows[..., c - 1] - 2 * windows[..., c] + windows[..., c + 1]) / 0.01**2
+
+
+def test_every_control_sample_has_its_own_window():
+    np.testing.assert_array_equal(WindowFeedforward(middle, 5)(Q, Q, Q), Q)
+    found = WindowFeedforward(curvature, 5)(Q, Q, Q)
+    exact = np.stack([-9 * np.sin(3 * T), -4 * np.cos(2 * T)], -1)
+    np.testing.assert_allclose(found[5:-5], exact[5:-5], atol=2e-3)
+
+
+def test_between_samples_it_holds_or_draws_a_line():
+    hold = WindowFeedforward(middle, 5, between="hold")(Q, Q, Q)
+    np.testing.assert_array_equal(hold, np.repeat(Q[::5], 5, axis=0))
+    line = WindowFeedforward(middle, 5, between="line")(Q, Q, Q)
+    for joint in range(2):
+        drawn = np.interp(T, T[::5], Q[::5, joint])
+        np.testing.assert_allclose(line[:396, joint], drawn[:396], atol=1e-12)
+
+
+def test_the_reference_rests_beyond_its_ends():
+    def first(windows):
+        return windows[..., 0]
+
+    found = WindowFeedforward(first, 21)(Q, Q, Q)
+    np.testing.assert_array_equal(found[:51], np.tile(Q[0], (51, 1)))
+    np.testing.assert_array_equal(found[51:], Q[1:-50])
+
+
+def test_runs_are_independent_and_a_perfect_model_helps_the_loop():
+    both = np.stack([Q, 2 * Q])
+    model = WindowFeedforward(curvature, 5)
+    np.testing.assert_allclose(model(both, both, both)[1], model(2 * Q, Q, Q), atol=1e-9)
+
+    def torque(windows):
+        q, qdd = middle(windows), curvature(windows)
+        qd = (windows[..., 3] - windows[..., 1]) / 0.02
+        return ARM.inverse_dynamics(q, qd, qdd)
+
+    feedback = pd((300.0, 90.0), (35.0, 10.0))
+    plain = record(ARM, feedback, (40.0, 30.0))
+    helped = record(ARM, Feedforward(WindowFeedforward(torque, 5), feedback), (40.0, 30.0))
+    inside = slice(120, 220)
+    errors = [np.abs(run.tracking_error[inside]).max() for run in (plain, helped)]
+    assert errors[1] < 0.2 * errors[0]
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [({"width": 4}, "width"), ({"every": 0}, "every"), ({"between": "x"}, "between")],
+)
+def test_bad_arguments_are_refused(change, name):
+    with pytest.raises(ValueError, match=name):
+        WindowFeedforward(**{"model": middle, "width": 5, **change})
+
+
+def test_a_model_of_another_shape_is_refused():
+    with pytest.raises(ValueError, match="model"):
+        WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q)
+
+
+# --- in a loop ----------------------------------------------------------------------------
+
+FEEDBACK = pd((300.0, 90.0), (35.0, 10.0))
+
+
+def weight(windows):
+    """Some torque that depends on all of a window."""
+    return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
+
+
+def test_a_planned_torque_is_a_feedforward():
+    made = WindowFeedforward(weight, 5, step=0.01)
+    planned = record(ARM, PlannedTorque(made, FEEDBACK), [[40, 30], [20, 10]])
+    plain = record(ARM, Feedforward(made, FEEDBACK), [[40, 30], [20, 10]])
+    np.testing.assert_array_equal(planned.q_true, plain.q_true)
+
+
+@pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
+def test_a_loop_that_cannot_make_the_windows_is_refused(law):
+    right, wrong = (WindowFeedforward(weight, 5, every, step=0.01) for every in (5, 4))
+    with pytest.raises(ValueError, match=r"0.002 s are 0.008 s.* 0.01 s apart"):
+        record(ARM, law(wrong, FEEDBACK), (40, 30))
+    with pytest.raises(ValueError, match=r"0.001 s are 0.005 s"):
+        record(ARM, law(right, FEEDBACK), (40, 30), control_step=0.001)
+    record(ARM, law(right, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
+    unknown = WindowFeedforward(weight, 5, 4)
+    record(ARM, law(unknown, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
+
+
+@pytest.mark.parametrize("step", [0.0, -0.01, np.nan])
+def test_a_sampling_period_is_positive(step):
+    with pytest.raises(ValueError, match="step"):
+        WindowFeedforward(middle, 5, step=step)
+
+
+def test_without_measurements_windows_in_the_loop_are_planned():
+    made = WindowFeedforward(weight, 5, step=0.01)
+    extents = [[40, 30], [20, 10], [10, 30]]
+    log = record(ARM, MeasuredWindows(made, FEEDBACK, [[0.0], [1.0]]), extents)
+    planned = record(ARM, PlannedTorque(made, FEEDBACK), extents)
+    assert log.q_true.shape == (2, *planned.q_true.shape)
+    np.testing.assert_allclose(log.q_true[0], planned.q_true, atol=1e-12)
+    assert np.abs(log.q_true[1] - planned.q_true).max() > 1e-3
+
+
+@pytest.mark.parametrize("tap, late", [(0, 10), (1, 5), (2, 0)])
+def test_what_has_been_is_measured(tap, late):
+    """A model that passes on one sample of the past: the measured one of so long ago."""
+    made = WindowFeedforward(lambda windows: windows[..., tap], 5)
+    reference = Trajectory(Q, 0 * Q, 0 * Q)
+    law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(reference, 0.002)
+    measured = Q + 0.1 * np.random.default_rng(0).standard_normal(Q.shape)
+    found = np.array([law(k, measured[k], 0 * measured[k]) for k in range(60)])
+    np.testing.assert_allclose(found[late:], measured[: 60 - late], atol=1e-12)
+    np.testing.assert_array_equal(found[:late], np.tile(Q[0], (late, 1)))
+
+
+@pytest.mark.parametrize("tap, ahead", [(3, 5), (4, 10)])
+def test_what_is_to_come_is_desired(tap, ahead):
+    made = WindowFeedforward(lambda windows: windows[..., tap], 5)
+    law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
+    found = np.array([law(k, Q[k] + 1.0, 0 * Q[k]) for k in range(60)])
+    np.testing.assert_array_equal(found, Q[ahead : 60 + ahead])
+
+
+@pytest.mark.parametrize("gain, stable", [(120.0, True), (500.0, False)])
+def test_late_positions_in_the_loop_have_the_poles_of_a_late_loop(gain, stable):
+    """A torque ``-gain`` times the position of 10 ms ago, on an arm with a constant mass matrix."""
+    arm, still = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3)), np.zeros((1600, 2))
+    joints = plant(arm.mass_matrix(np.zeros(2)), (4.0, 4.0))
+    poles = late_poles(joints, gain * np.eye(2, 4), 0.002, 0.01)
+    growth = np.abs(poles).max()
+    assert (growth < 1) == stable
+    made = WindowFeedforward(lambda windows: -gain * windows[..., 1], 5)
+    log = follow(
+        arm, MeasuredWindows(made, lambda *_: np.zeros(2)), Trajectory(still, still, still),
+        np.arange(1600) * 0.002, effects=Effects(friction=(ViscousFriction((4.0, 4.0)),)),
+        start=([0.0, 0.01], [0.0, 0.0]), log_every=1,
+    )  # fmt: skip
+    size = np.abs(log.q_true).max(-1)
+    early, late = size[400:800].max(), size[1200:].max()
+    assert np.log(late / early) / 800 == pytest.approx(np.log(growth), rel=0.25)
+
+
+def test_only_windows_of_their_own_go_into_the_loop():
+    with pytest.raises(ValueError, match="between"):
+        MeasuredWindows(WindowFeedforward(middle, 5, between="hold"), FEEDBACK)
+    with pytest.raises(ValueError, match="share"):
+        MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1)
+
+
+def test_slopes_of_a_linear_model_are_its_weights():
+    filters = np.random.default_rng(0).standard_normal((2, 2, 5))
+    windows = np.random.default_rng(1).standard_normal((7, 2, 5))
+    found = past_slopes(lambda w: np.einsum("tjw,cjw->ct", filters, w), windows)
+    np.testing.assert_allclose(found, filters[..., :3], atol=1e-8)
+    bent = past_slopes(lambda w: w[..., 2] ** 2, windows)
+    wanted = np.diag(2 * windows[..., 2].mean(0))
+    np.testing.assert_allclose(bent[..., 2], wanted, atol=1e-8)
+
+
+@pytest.mark.parametrize("late", [0, 1, 5])
+def test_poles_with_a_model_of_the_present_are_those_of_other_gains(late):
+    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
+    past = np.zeros((2, 2, 3))
+    past[..., 2] = [[-100, -7], [5, -30]]
+    found = np.abs(poles_inside(joints, FEEDBACK, past, 0.002, late=late)).max()
+    gain = np.hstack([np.diag([300.0, 90.0]) - past[..., 2], np.diag([35.0, 10.0])])
+    wanted = np.abs(late_poles(joints, gain, 0.002, late * 0.002)).max()
+    assert found == pytest.approx(wanted, abs=1e-12)
+
+
+def test_poles_with_a_model_of_the_past_are_those_of_a_late_loop():
+    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
+    past = np.zeros((2, 2, 3))
+    past[..., 0] = -np.diag([400.0, 120.0])
+    found = np.abs(poles_inside(joints, pd((0.0, 0.0), (0.0, 0.0)), past, 0.002)).max()
+    gain = np.hstack([np.diag([400.0, 120.0]), np.zeros((2, 2))])
+    wanted = np.abs(late_poles(joints, gain, 0.002, 0.02)).max()
+    assert found == pytest.approx(wanted, abs=1e-12)
+
+
+def test_poles_refuse_an_integral():
+    joints = plant(np.eye(2), (1.0, 1.0))
+    with pytest.raises(ValueError, match="integral"):
+        poles_inside(joints, PID((1, 1), (1, 1)), np.zeros((2, 2, 3)), 0.002)
+    with pytest.raises(ValueError, match="past"):
+        poles_inside(joints, FEEDBACK, np.zeros((2, 3)), 0.002)

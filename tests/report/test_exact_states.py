@@ -1,0 +1,55 @@
+"""States of the simulated arm: the cube, a trajectory, the torque, refusals."""
+
+import numpy as np
+import pytest
+
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.trajectories import pick_and_place
+from workshop.report.exact_states import RADIUS, random_states, states_along, torque
+
+
+def test_random_states_fill_the_cube():
+    states = random_states(20_000, seed=3)
+    assert states.shape == (20_000, 2, 3) and np.abs(states).max() < RADIUS
+    flat = states.reshape(-1, 6)
+    np.testing.assert_allclose(flat.std(0), RADIUS / np.sqrt(3), rtol=0.02)
+    np.testing.assert_allclose(np.corrcoef(flat.T), np.eye(6), atol=0.03)
+    assert (np.abs(flat).max(0) > 0.999 * RADIUS).all()
+
+
+def test_draws_depend_on_the_seed_alone():
+    np.testing.assert_array_equal(random_states(5, 1), random_states(5, 1))
+    assert not np.array_equal(random_states(5, 1), random_states(5, 2))
+    np.testing.assert_allclose(random_states(5, 1, 1.0) * RADIUS, random_states(5, 1))
+
+
+def test_states_along_a_trajectory_are_its_samples():
+    states = states_along((39.5, 14.4), 300)
+    motion = pick_and_place((39.5, 14.4), np.arange(300) * 0.01)
+    for k, series in enumerate(motion):
+        np.testing.assert_allclose(states[..., k], series, atol=1e-12)
+
+
+@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])
+def test_torque_is_the_inverse_dynamics(arm):
+    states = random_states(50)
+    for state, found in zip(states, torque(states, arm)):
+        np.testing.assert_allclose(found, arm.inverse_dynamics(*state.T), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "call, error, words",
+    [
+        (lambda: random_states(0), ValueError, "samples must be an integer from 1"),
+        (lambda: random_states(2.5), TypeError, "samples must be an integer"),
+        (lambda: random_states(5, radius=0.0), ValueError, "radius must lie in"),
+        (lambda: random_states(5, seed=-1), ValueError, "seed must be an integer from 0"),
+        (lambda: states_along((10.0, 10.0), 1), ValueError, "samples must be an integer from 2"),
+        (lambda: torque(np.zeros((5, 3))), ValueError, r"\(samples, 2, 3\), got \(5, 3\)"),
+        (lambda: torque(np.zeros((5, 2, 2))), ValueError, r"\(samples, 2, 3\), got \(5, 2, 2\)"),
+        (lambda: torque(np.full((5, 2, 3), np.nan)), ValueError, "states must be finite"),
+    ],
+)
+def test_refusals(call, error, words):
+    with pytest.raises(error, match=words):
+        call()

@@ -1,0 +1,308 @@
+"""The design, the regression and the posterior of the knobs, against closed forms."""
+
+from dataclasses import fields, replace
+from itertools import combinations
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ddlib.learning import cases
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from workshop.report import knobs
+from workshop.report.knobs import (
+    METHODS,
+    Emulator,
+    Knob,
+    knobs_of,
+    left_out,
+    moments,
+    screening,
+    shares,
+    spread_evenly,
+    terms,
+    weigh,
+    without_start,
+    would_tell,
+)
+from workshop.report.studies import knobs as study
+from workshop.report.studies.table import _ablations
+
+CENTRE = {m: {n: float(k.value(0)) for n, k in knobs_of(m).items()} for m in METHODS}
+
+
+# --- knobs and the design -----------------------------------------------------------------------
+
+
+def test_places_of_a_knob():
+    factor, step = Knob(0.5, 8.0), Knob(-1.0, 0.0, logarithmic=False)
+    np.testing.assert_allclose(factor.value([-1, 0, 1]), [0.5, 2.0, 8.0])
+    np.testing.assert_allclose(step.value([-1, 0, 0.5]), [-1.0, -0.5, -0.25])
+    for knob in (factor, step):
+        np.testing.assert_allclose(knob.place(knob.value([-0.7, 0.2])), [-0.7, 0.2])
+
+
+def test_the_design_separates_main_effects_from_all_of_second_order():
+    x = screening()
+    assert x.shape == (25, 12) and set(np.unique(x)) == {-1.0, 0.0, 1.0}
+    np.testing.assert_array_equal(x.T @ x, 22 * np.eye(12))  # main effects from each other
+    np.testing.assert_array_equal(x.sum(0), 0)
+    second = [x[:, i] * x[:, j] for i, j in combinations(range(12), 2)]
+    second = np.column_stack([x**2, *second])
+    np.testing.assert_array_equal(x.T @ second, 0)  # and from squares and products
+    assert ((x == 0).sum(0) == 3).all()  # each knob is in the middle of its range three times
+    assert np.linalg.matrix_rank(np.column_stack([np.ones(25), x, x**2])) == 25
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_setups_are_what_the_knobs_say(method):
+    values = CENTRE[method] | {"encoder bits": 13.0, "lowest input": -0.25}
+    made = knobs.setup(values, method)
+    viscous, coulomb = made.effects.friction
+    np.testing.assert_allclose(viscous.coefficient, values["joint damping"] * np.array((5.3, 1.1)))
+    np.testing.assert_allclose(coulomb.level, values["Coulomb friction"] * np.array((0.5, 0.15)))
+    np.testing.assert_allclose(made.controller.kp, values["position gain"] * np.array((300, 90)))
+    assert not any(made.controller.kd) and made.scaling == (-0.25, 1.0)
+    assert made.effects.encoder[0].step == pytest.approx(2 * np.pi / 2**13)
+    noise = STATE_FEEDBACK.effects.torque_sensor[0].std
+    np.testing.assert_allclose(
+        made.effects.torque_sensor[0].std, values["torque noise"] * np.array(noise)
+    )
+    if method == "solver":
+        assert (made.steps, made.decay) == (round(values["steps"]), values["decay"])
+    else:
+        assert (made.steps, made.epochs) == (0, round(values["epochs"]))
+        assert made.momentum == pytest.approx(1 - 1 / values["momentum"])
+        assert made.rate == values["step"]
+    with pytest.raises(ValueError, match="values must have one for 'torque noise'"):
+        knobs.setup({n: v for n, v in values.items() if n != "torque noise"}, method)
+    for name, knob in knobs_of(method).items():
+        with pytest.raises(ValueError, match=name):
+            knobs.setup(values | {name: 1.01 * knob.high + 0.01}, method)
+
+
+def test_joint_damping_lies_inside_the_ranges():
+    tuned = {"joint damping": 1, "Coulomb friction": 3, "position gain": 2.5, "encoder bits": 12.5,
+             "torque noise": 1, "start left out": 0, "lowest input": 0, "decay": 1e-6,
+             "steps": 60}  # fmt: skip
+    made = knobs.setup(tuned, "solver")
+    level = made.effects.friction[1].level
+    np.testing.assert_allclose(level, JOINT_DAMPING.effects.friction[1].level)  # to rounding
+    same = replace(made.effects, friction=JOINT_DAMPING.effects.friction)
+    assert replace(made, name=JOINT_DAMPING.name, effects=same) == JOINT_DAMPING
+
+
+def test_without_its_start_a_recording_has_fewer_cases():
+    whole = JOINT_DAMPING.record()
+    late = without_start(whole, 0.25)
+    (x, y), (x2, y2) = (cases(r, 11) for r in (whole, late))
+    assert len(y) == 6 * 300 and len(y2) == 6 * 275
+    np.testing.assert_array_equal(y.reshape(6, 300, 2)[:, 25:], y2.reshape(6, 275, 2))
+    np.testing.assert_array_equal(x.reshape(6, 300, 2, 11)[:, 25:], x2.reshape(6, 275, 2, 11))
+    np.testing.assert_array_equal(cases(without_start(whole, 0.0), 11)[1], y)
+    with pytest.raises(ValueError, match="seconds"):
+        without_start(whole, -0.1)
+
+
+# --- the regression -----------------------------------------------------------------------------
+
+
+def polynomial(x):
+    return 0.3 + x[:, 0] - 0.5 * x[:, 2] + 0.7 * x[:, 1] ** 2 - 0.4 * x[:, 0] * x[:, 1]
+
+
+def test_the_emulator_finds_an_exact_polynomial():
+    """Three knobs in 25 runs: all ten coefficients are determined."""
+    x = screening()[:, :3]
+    found = Emulator.fit(x, polynomial(x), 1e-8)
+    points = np.random.default_rng(0).uniform(-1, 1, (50, 3))
+    mean, variance = found.predict(points)
+    np.testing.assert_allclose(mean, polynomial(points), atol=1e-4)
+    assert (variance < 1e-7).all()
+    wanted = [0.3 + 0.7 / 3, 1, 0, -0.5, 0, 0.7, 0, -0.4, 0, 0]
+    np.testing.assert_allclose(found.mean, wanted, atol=1e-4)
+
+
+def test_the_emulator_is_least_squares_when_nothing_is_known_before():
+    rng = np.random.default_rng(1)
+    x = screening()[:, :3]
+    y = polynomial(x) + rng.normal(0, 0.1, 25)
+    found = Emulator.fit(x, y, 0.01, widths=(1e3, 1e3, 0.0))
+    design = terms(x)
+    wanted = np.linalg.lstsq(design, y, rcond=None)[0]
+    np.testing.assert_allclose(found.mean, wanted, atol=1e-3)
+    np.testing.assert_allclose(
+        found.covariance[1:, 1:],
+        0.01 * np.linalg.inv(design.T @ design)[1:, 1:],
+        rtol=1e-4,
+        atol=1e-8,
+    )
+
+
+def test_what_the_design_cannot_tell_is_not_claimed():
+    """Twelve knobs have 66 products and 25 runs: away from the runs the regression is unsure."""
+    x = screening()
+    y = 0.5 * x[:, 0] * x[:, 1]
+    found = Emulator.fit(x, y, 1e-6, widths=(0.1, 0.4, 0.0))
+    at_runs, away = found.predict(x)[1], found.predict(np.ones((1, 12)))[1]
+    assert at_runs.max() < 1e-4 and away[0] > 0.01
+    np.testing.assert_allclose(found.mean[1:13], 0, atol=1e-3)  # the main effects are clear of it
+
+
+def test_what_a_polynomial_misses_makes_it_less_sure():
+    """A kink is no polynomial: without noise the misfit has to stand for it."""
+    x = screening()[:, :3]
+    y = polynomial(x) + 0.8 * np.abs(x.sum(1))
+    found = Emulator.fit(x, y, 1e-6)
+    assert found.misfit > 0 and (found.predict(x)[1] >= found.misfit).all()
+    assert left_out(x, y, 1e-6).std() < 2
+    smooth = polynomial(screening()[:, :3])
+    assert Emulator.fit(screening()[:, :3], smooth, 1e-6).misfit == 0
+
+
+def test_runs_left_out_are_foretold_with_the_right_spread():
+    rng = np.random.default_rng(2)
+    x = screening()[:, :4]
+    scores = np.concatenate(
+        [left_out(x, polynomial(x) + rng.normal(0, 0.1, 25), 0.01) for _ in range(4)]
+    )
+    assert 0.8 < scores.std() < 1.4 and abs(scores.mean()) < 0.3
+    wrong = polynomial(x)
+    wrong[3] += 5.0
+    assert np.abs(left_out(x, wrong, 0.01)).argmax() == 3
+
+
+def test_shares_of_the_variance():
+    """Of 2 x1 + x2^2 + 3 x1 x3 over the cube: variances 4/3, 4/45 and 1."""
+    coefficients = np.zeros(1 + 3 + 3 + 3)
+    coefficients[[1, 5, 8]] = 2.0, 1.0, 3.0
+    main, total = shares(coefficients, 3)
+    whole = 4 / 3 + 4 / 45 + 1
+    np.testing.assert_allclose(main, np.array([4 / 3, 4 / 45, 0]) / whole)
+    np.testing.assert_allclose(total, np.array([4 / 3 + 1, 4 / 45, 1]) / whole)
+    x = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
+    assert (terms(x) @ coefficients).var() == pytest.approx(whole, rel=0.02)
+
+
+def test_draws_of_coefficients_scatter_as_they_should():
+    found = Emulator(np.array([1.0, 2.0]), np.array([[0.04, 0.01], [0.01, 0.09]]))
+    drawn = found.draws(20_000)
+    np.testing.assert_allclose(drawn.mean(0), found.mean, atol=0.01)
+    np.testing.assert_allclose(np.cov(drawn.T), found.covariance, atol=0.003)
+
+
+# --- the posterior ------------------------------------------------------------------------------
+
+
+def test_the_posterior_against_the_conjugate_one():
+    """Knobs drawn from a normal distribution, two responses that are linear in them."""
+    rng = np.random.default_rng(3)
+    places = rng.normal(size=(400_000, 2))
+    slopes = np.array([[1.0, 0.5], [-0.3, 0.8]])
+    noise, unsure = np.array([[0.5, 0.1], [0.1, 0.4]]), np.array([0.1, 0.2])
+    observed = np.array([0.7, -0.4])
+    means = places @ slopes.T
+    weights, evidence = weigh(means, np.broadcast_to(unsure, means.shape), noise, observed)
+    total = noise + np.diag(unsure)
+    covariance = np.linalg.inv(np.eye(2) + slopes.T @ np.linalg.inv(total) @ slopes)
+    mean, deviation = moments(places, weights)
+    wanted = covariance @ slopes.T @ np.linalg.inv(total) @ observed
+    np.testing.assert_allclose(mean, wanted, atol=0.01)
+    np.testing.assert_allclose(deviation, np.sqrt(np.diag(covariance)), rtol=0.01)
+    marginal = slopes @ slopes.T + total
+    log = -0.5 * (
+        observed @ np.linalg.solve(marginal, observed) + np.linalg.slogdet(2 * np.pi * marginal)[1]
+    )
+    assert evidence == pytest.approx(log, abs=0.01)
+    assert weights.sum() == pytest.approx(1)
+
+
+def test_what_another_number_would_tell_against_the_conjugate_one():
+    """A number that is a knob plus noise: the variance falls by 1 / (1 + its precision)."""
+    places = np.random.default_rng(4).normal(size=(20_000, 2))
+    weights = np.full(len(places), 1 / len(places))
+    told = would_tell(places, weights, places[:, 0], np.full(len(places), 0.25))
+    np.testing.assert_allclose(told, [np.sqrt(0.25 / 1.25), 1.0], atol=0.02)
+
+
+def test_places_fill_the_cube():
+    x = spread_evenly(1024, 3)
+    assert x.shape == (1024, 3) and x.min() >= -1 and x.max() <= 1
+    np.testing.assert_allclose(x.mean(0), 0, atol=0.01)
+    np.testing.assert_allclose(x.std(0), 1 / np.sqrt(3), rtol=0.01)
+    assert not np.array_equal(x, spread_evenly(1024, 3, seed=1))
+
+
+# --- the studies --------------------------------------------------------------------------------
+
+
+def test_each_ablation_takes_back_one_thing():
+    rows = _ablations()
+    whole = rows.pop("joint damping")
+    assert whole is JOINT_DAMPING
+    changed = {
+        name: {f.name for f in fields(s) if getattr(s, f.name) != getattr(whole, f.name)} - {"name"}
+        for name, s in rows.items()
+    }
+    assert changed["damping in the controller"] == {"controller", "effects"}
+    assert changed["no Coulomb friction"] == changed["16 bits"] == {"effects"}
+    assert changed["default gain"] == {"controller"}
+    assert changed["default descent"] == {"steps", "decay"}
+    assert changed["nothing tuned, solver"] == {"controller", "effects"}
+    controller = rows["damping in the controller"]
+    total = np.add(controller.controller.kd, controller.effects.friction[0].coefficient)
+    np.testing.assert_allclose(total, np.add((5.3, 1.1), (0.5, 0.15)))
+    parts = ("friction", "actuator", "encoder", "torque_sensor")
+    for name, part in (("no Coulomb friction", "friction"), ("16 bits", "encoder")):
+        differ = [p for p in parts if getattr(rows[name].effects, p) != getattr(whole.effects, p)]
+        assert differ == [part]
+
+
+class Trained:
+    """Stands for `train_windows`: says what it was asked for, derails as often as it is told."""
+
+    def __init__(self, derails):
+        self.asked, self.derails = [], derails
+
+    def __call__(self, here, recording, width, members, *, seed, progress):
+        self.asked.append((here.name, width, members, seed))
+        again = sum(asked[1] == width for asked in self.asked) <= self.derails
+        history = SimpleNamespace(derailed=np.array([again]), best_test=np.array([0.5]))
+        model = SimpleNamespace(weights=SimpleNamespace(largest=np.array([2.0 * width])))
+        return model, history, {}
+
+
+@pytest.mark.parametrize("derails, tried", [(0, 1), (1, 2), (9, 3)])
+def test_a_run_begins_derailed_networks_anew(monkeypatch, derails, tried):
+    trained = Trained(derails)
+    monkeypatch.setattr(study, "train_windows", trained)
+    found_errors = SimpleNamespace(training=np.array([0.1]), test=np.array([0.2]))
+    monkeypatch.setattr(study, "errors", lambda model, recording: found_errors)
+    places = [0.0] * len(knobs_of("solver"))
+    row = study._run("solver", places, [7])
+    assert [seed for _, width, _, seed in trained.asked if width == 11] == [7, 1007, 2007][:tried]
+    assert row["derailed"] == 3 * min(derails, 3) and row["places"] == places
+    assert row["windows"]["21"] == {
+        "training": [0.1], "test": [0.2], "best test": [0.5], "largest weight": [42.0]
+    }  # fmt: skip
+    np.testing.assert_allclose(list(row["values"].values()), list(CENTRE["solver"].values()))
+
+
+def test_the_screen_has_a_day_for_every_network(monkeypatch):
+    asked = []
+
+    def swept(experiment, settings, **options):
+        asked.extend(settings)
+        return [{"number": k} for k in range(len(settings))]
+
+    monkeypatch.setattr(study, "sweep", swept)
+    found = study.screened(networks=3)
+    assert [len(rows) for rows in found["methods"].values()] == [25, 25]
+    assert found["methods"]["solver"][0] == {"number": 25}
+    for method in METHODS:
+        mine = [one for one in asked if one["method"] == method]
+        np.testing.assert_array_equal(
+            [one["places"] for one in mine], screening()[:, : len(knobs_of(method))]
+        )
+        days = [day for one in mine for day in one["seeds"]]
+        assert sorted(days) == list(range(1, 76))

@@ -1,0 +1,223 @@
+"""The ledger's tables: their numbers against the results and the paper's own counts."""
+
+import json
+import re
+
+import nbformat
+import numpy as np
+import pytest
+from book_pages import BACK_MATTER, CHAPTERS, ROOT
+
+from ddlib import paper
+from ddlib.tables import significant
+from workshop.report import results
+from workshop.report.evidence import claims, ledger, ledger_tables
+from workshop.report.evidence.statements import SURE, resampled
+
+BOOK = ROOT / "book"
+
+
+@pytest.fixture(scope="module")
+def errata() -> list[tuple]:
+    return ledger.errata().rows
+
+
+@pytest.fixture(scope="module")
+def questions() -> dict[str, tuple]:
+    return {row[0]: row[1:] for row in ledger.open_questions().rows}
+
+
+def found(rows, where, words) -> str:
+    (text,) = [row[2] for row in rows if row[0] == where and words in row[1]]
+    return text
+
+
+@pytest.mark.parametrize("unit", [52, 85, 93])
+def test_units_of_the_figures_belong_to_one_window(unit):
+    fitting = [w for w in (11, 21, 41, 81) if ledger.unit_fits(unit, w)]
+    assert fitting == [21 if unit == 52 else 41]
+
+
+@pytest.mark.parametrize("unit, fits", [(42, False), (43, True), (54, True), (55, False)])
+def test_inputs_and_what_comes_after_them(unit, fits):
+    assert ledger.unit_fits(unit, 21) is fits  # 42 inputs, 10 hidden units, 2 outputs
+
+
+def test_figures_are_two_windows_of_the_paper_apart():
+    """The caption of 5-6 to 5-8 counts the samples of a window twice as wide as the text."""
+    for _, text, caption in ledger.FIGURE_UNITS.values():
+        assert text in paper.TABLE_4_1 and caption == 2 * text - 1
+
+
+def test_errata_are_computed(errata):
+    assert "833 Hz" in found(errata, "section 1.1", "830")
+    assert "period of 6 s" in found(errata, "section 2", "period")
+    assert f"{np.pi / 3 * np.pi / 4:.2f} rad/s" in found(errata, "section 2", "pick-and-place")
+    assert found(errata, "Appendix I", "random").startswith("5 of 12 ")
+    assert "−45°" in found(errata, "Appendix I", "minus")
+    weights = 2 * 21 * 10 + 2 * 42 + 2 * 10
+    assert f"{1500 * weights:,} at 21" in found(errata, "Appendix I", "700,000")
+    text = found(errata, "Figures 5-4 to 5-8", "captions")
+    assert text.count("is no input at") == text.count("and an input at") == 3
+
+
+def test_every_computed_value_is_used():
+    text = ledger.FILE.read_text(encoding="utf-8")
+    assert not [name for name in ledger.computed() if not re.search(rf"\${name}\b", text)]
+
+
+@pytest.mark.parametrize(
+    ("damage", "complaint"),
+    [
+        ("- {where: section 1, printed: a, wrong: b}", "erratum 2 must have the fields"),
+        ("- {where: section 1, printed: a, wrong: b, here: c, why: d}", "must have the fields"),
+        ("- only a text", "erratum 2 must have the fields"),
+        ("- {where: section 1, printed: 830, wrong: b, here: c}", "must be of texts"),
+        ("- {where: section 1, printed: a, wrong: ' ', here: c}", "must be of texts"),
+        ("- {where: section 1, printed: a, wrong: $nothing, here: c}", r"section 1.*'nothing'"),
+        ("- {where: section 1, printed: a, wrong: 3 $ b, here: c}", r"\$rate, .*placeholder"),
+    ],
+)
+def test_a_damaged_erratum_is_named(tmp_path, damage, complaint):
+    path = tmp_path / "errata.yml"
+    path.write_text("- {where: Table 4-1, printed: a, wrong: $rate Hz, here: b}\n" + damage)
+    with pytest.raises(ValueError, match=complaint):
+        ledger.errata(path)
+    path.write_text(path.read_text().removesuffix(damage))
+    assert ledger.errata(path).rows == [("Table 4-1", "a", "833 Hz", "b")]
+
+
+def test_errata_name_places_of_the_paper(errata):
+    sections = re.compile(r"(sections? \d(\.\d)?|Figures? \d-\d|Table \d-\d|Appendix I\b)")
+    assert not [row[0] for row in errata if not sections.match(row[0])]
+
+
+def test_open_questions_quote_the_results(questions):
+    table = results.read("table-4-1")["setups"]
+    for name, column in (("state feedback", 1), ("position feedback", 2)):
+        text = questions["What is “a proportional controller”?"][column]
+        for what in ("training", "test"):
+            for w in ("11", "21", "41"):
+                assert significant(np.median(table[name][w]["errors"][what]), 2) in text
+    six = results.read("table-6-1")["errors"]["trajectory 6"]
+    row = questions["Table 6-1: whose standard deviation?"]
+    assert row[1].endswith(significant(np.median(six["own deviation"]), 2))
+    assert row[2].endswith(significant(np.median(six["deviation of set A"]), 2))
+
+
+def test_both_sides_have_the_same_number_of_networks(questions):
+    eight = results.read("clean")["members"]
+    state = results.read("table-4-1")["setups"]["state feedback"]
+    median = significant(np.median(state["21"]["errors"]["test"][:eight]), 2)
+    assert f" · {median} · " in questions["How much friction and sensor noise?"][1]
+
+
+def changed(monkeypatch, name, change):
+    """Let `results.read` return a changed result."""
+    read = results.read
+    monkeypatch.setattr(results, "read", lambda asked: change() if asked == name else read(asked))
+
+
+def test_a_changed_result_changes_the_table(monkeypatch, questions):
+    question = "How many hidden units (window 21)?"
+    content = results.read("hidden-units")
+    content["rows"][0]["test"] = [12.5]
+    changed(monkeypatch, "hidden-units", lambda: content)
+    now = {row[0]: row[1:] for row in ledger.open_questions().rows}
+    assert "test 12" in now[question][2]
+    assert "test 12" not in questions[question][2]
+
+
+def test_one_network_of_many_is_the_median(monkeypatch):
+    content = results.read("table-4-1")
+    errors = content["setups"]["state feedback"]["21"]["errors"]
+    count = len(errors["test"])
+    errors["test"] = [0.2] * (count - 2) + [7.0, 0.1]
+    changed(monkeypatch, "table-4-1", lambda: content)
+    (row,) = [row for row in ledger.open_questions().rows if "one network worth" in row[0]]
+    assert row[1:] == (
+        f"the median of {count} counts", "test 0.20", f"one of the {count}: test 0.10 to 7.0"
+    )  # fmt: skip
+
+
+def test_all_knobs_turned(monkeypatch):
+    def run(best):
+        return {"windows": {str(w): {"test": [abs(w - best)] * 2} for w in (11, 21, 41)}}
+
+    methods = {"descent": [run(21), run(21)], "solver": [run(41)]}
+    damping = {str(w): {"training": [[0.1, 0.3]], "test": [[w, w]]} for w in (11, 21, 41)}
+    changed(monkeypatch, "screened", lambda: {"methods": methods})
+    changed(monkeypatch, "recordings", lambda: {"setups": {"joint damping": damping}})
+    rows = {row[0]: row[3] for row in ledger.open_questions().rows}
+    (knobs,) = [text for question, text in rows.items() if "gains" in question]
+    assert (
+        knobs == "of 3 runs with all knobs turned, test least at window 11 in 0, 21 in 2, 41 in 1"
+    )
+    (readings,) = [text for question, text in rows.items() if "controller" in question]
+    tuned = "tuned to Table 4-1: training 0.20 · 0.20 · 0.20; test 11 · 21 · 41, least at 11"
+    assert readings.startswith("position alone: ") and readings.endswith(tuned)
+
+
+def test_direct_filters_follow_position_after_two_sines_too():
+    """The reason of the claim acceleration-by-output says so; chapter 9 has the control."""
+    (claim,) = [one for one in claims.load() if one.id == "acceleration-by-output"]
+    assert "two sines most direct filters of window 21 follow the position" in claim.why
+    direct = results.read("harmonics")["windows"]["21"]["direct"]["follow"]
+    assert (resampled(direct["position"], np.mean) > 0.5).mean() >= SURE
+
+
+def test_main_findings_good_and_bad():
+    """One table for those who read no other: each row a claim as it is judged, with its chapter."""
+    known = {claim.id: claim for claim in claims.load()}
+    chosen = [known[name] for name in ledger_tables.FINDINGS]
+    assert len(set(ledger_tables.FINDINGS)) == len(chosen) <= 15  # few enough to read
+    verdicts = [claim.verdict for claim in chosen]
+    assert not {"by construction", "not testable"} & set(verdicts)
+    assert verdicts.count("not reproduced") >= 4  # no selection of what came out well
+    pages = [page.removeprefix("book/") for page in CHAPTERS]
+    places = [pages.index(claim.chapter) for claim in chosen]
+    assert places == sorted(places) and len(set(places)) >= 5
+    for row, claim in zip(ledger_tables.findings().rows, chosen, strict=True):
+        assert row[0] == f"{claim.claim} ({{doc}}`{claim.chapter}`)"
+        assert row[1] == claims.printed(claim) and claims.sure(claim) == row[3]
+        assert row[4] == claim.why
+
+
+def test_the_page_shows_every_section_and_comes_first():
+    notebook = nbformat.read(BOOK / "ledger.ipynb", as_version=4)
+    source = "\n".join(cell.source for cell in notebook.cells)
+    for key, title in claims.SECTIONS.items():
+        assert f'wall.Tiles(claims.of_section("{key}"))' in source
+        assert f"### {title}" in source
+    assert BACK_MATTER[0] == "book/ledger"
+
+
+def test_readme_and_first_page_lead_to_it():
+    assert "book/ledger.ipynb" in (ROOT / "README.md").read_text(encoding="utf-8")
+    cells = json.loads((BOOK / "index.ipynb").read_text(encoding="utf-8"))["cells"]
+    assert any("{doc}`ledger`" in "".join(cell["source"]) for cell in cells)
+
+
+def test_claims_under_both_readings_are_counted():
+    def claim(where, verdict, width, **setup):
+        return claims.Claim(
+            id="a", where=where, chapter="x", claim="c", printed=1.0, verdict=verdict, why="w",
+            refuted="r", measure="m.f", arguments={"width": width, **setup}, band={"from": 1},
+        )  # fmt: skip
+
+    position = {"setup": "position feedback"}
+    found = ledger_tables.readings(
+        [
+            claim("Table 4-1", "reproduced", 11),
+            claim("Table 4-1", "undecided", 11, **position),
+            claim("Table 4-1", "reproduced", 21),  # under one reading only
+            claim("Figure 5-1", "qualitative", 11),
+            claim("Figure 5-1", "reproduced", 11, **position),
+            claim("section 5.1", "reproduced", 21),
+            claim("section 5.1", "reproduced", 21, **position),
+        ]
+    )
+    assert found == {
+        "table": (1, {"position feedback": 0, "state feedback": 1}),
+        "figures": (1, {"position feedback": 1, "state feedback": 0}),
+    }

@@ -1,0 +1,94 @@
+"""The knobs of Table 4-1 on planted designs whose answers are known."""
+
+import numpy as np
+import pytest
+
+from ddlib.setups import WINDOWS
+from workshop.report import results
+from workshop.report.knobs import screening, spread_evenly, weigh
+from workshop.report.measures import knobs
+
+SLOPES = np.zeros((3, 6))
+SLOPES[0, :3], SLOPES[1, 3:], SLOPES[2] = 0.5, 0.8, 0.0
+
+
+def planted(noise, seed=0, curved=0.0):
+    """Six logarithms that are linear in two of three knobs, two networks for each run."""
+    rng = np.random.default_rng(seed)
+    places = screening()[:, :3]
+    means = -2.0 + places @ SLOPES + curved * places[:, :1] * places[:, 1:2]
+    values = means[:, None] + rng.normal(0, noise, (25, 2, 6))
+    return knobs.screen_of(places, values, ("a", "b", "c"))
+
+
+def test_a_screen_knows_its_spread_and_its_slopes():
+    here = planted(0.1)
+    np.testing.assert_allclose(np.sqrt(np.diag(here.covariance)), 0.1, rtol=0.4)
+    for k, emulator in enumerate(here.emulators):
+        np.testing.assert_allclose(emulator.mean[1:4], SLOPES[:, k], atol=0.06)
+    means, variances = here.predict(np.zeros((1, 3)))
+    np.testing.assert_allclose(means, -2.0, atol=0.1)
+    assert (variances < 0.01).all() and here.scores.shape == (6, 25)
+
+
+def test_a_screen_that_foretells_badly_is_less_sure():
+    here = planted(0.1)
+    worse = here._replace(scores=here.scores * 3)
+    place = np.full((1, 3), 0.5)
+    factor = (worse.scores**2).mean(1) / np.maximum(1, (here.scores**2).mean(1))
+    np.testing.assert_allclose(
+        worse.predict(place)[1] / here.predict(place)[1], [factor], rtol=1e-9
+    )
+
+
+def test_quantiles_of_a_posterior():
+    places = spread_evenly(2**12, 2)
+    posterior = knobs.Posterior(places, np.full(len(places), 1 / len(places)), 0.0)
+    np.testing.assert_allclose(posterior.quantiles(), [[-0.8] * 2, [0] * 2, [0.8] * 2], atol=0.01)
+    assert posterior.effective == pytest.approx(2**12)
+    half = (places[:, 0] > 0) / (places[:, 0] > 0).sum()
+    narrow = knobs.Posterior(places, half, 0.0)
+    np.testing.assert_allclose(narrow.quantiles()[:, 0], [0.1, 0.5, 0.9], atol=0.01)
+    assert narrow.effective == pytest.approx(2**11)
+
+
+def test_the_posterior_finds_the_knobs_behind_the_numbers():
+    here = planted(0.06)
+    truth = np.array([0.4, -0.6, 0.2])
+    places = spread_evenly(2**13, 3)
+    weights, _ = weigh(*here.predict(places), here.covariance, -2.0 + truth @ SLOPES)
+    low, middle, high = knobs.Posterior(places, weights, 0.0).quantiles()
+    np.testing.assert_allclose(middle[:2], truth[:2], atol=0.1)
+    assert (high - low)[:2].max() < 0.3 and (high - low)[2] > 1.3  # the third knob does nothing
+
+
+def test_committed_runs_are_read_as_they_lie(monkeypatch):
+    cells = {
+        str(w): {c: [1.0 * w, 2.0 * w] for c in ("training", "test", "best test", "largest weight")}
+        for w in WINDOWS
+    }
+    content = {"methods": {"solver": [{"places": [0.0] * 9, "windows": cells}] * 3}}
+    monkeypatch.setattr(results, "read", {"screened": content}.__getitem__)
+    found = knobs.logarithms("solver")
+    assert found.shape == (3, 2, 6)
+    np.testing.assert_allclose(np.exp(found[1, 1]), [22, 42, 82, 22, 42, 82])
+    np.testing.assert_allclose(
+        np.exp(knobs.logarithms("solver", [("test", 41)])[0, :, 0]), [41, 82]
+    )
+
+
+def test_printed_numbers_are_the_papers():
+    found = np.exp(knobs.printed(knobs.CELLS + knobs.WEIGHTS))
+    wanted = [0.078, 0.027, 0.024, 0.22, 0.10, 0.13, 18.9, 11.7, 4.2]
+    np.testing.assert_allclose(found, wanted)
+
+
+def test_a_coarse_encoder(monkeypatch):
+    rng = np.random.default_rng(0)
+    cells = {"joint damping": rng.uniform(0.06, 0.08, (5, 5)), "16 bits": np.full((5, 1), 0.035)}
+    setups = {name: {"11": {"training": value.tolist()}} for name, value in cells.items()}
+    monkeypatch.setattr(results, "read", {"recordings": {"setups": setups}}.__getitem__)
+    found = knobs.coarse_encoder()
+    assert found.value == pytest.approx(0.035 / np.median(cells["joint damping"]))
+    assert found.text.startswith("0.035 for 0.07") and found.text.endswith("at 11")
+    assert found.replicates.std() > 0

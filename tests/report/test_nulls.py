@@ -1,0 +1,106 @@
+"""The trial of the filters, made small: what it trains, counts and replaces."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddlib.analysis import CLASSES, classify
+from ddlib.learning import NotConverged, surrogates
+from ddlib.metrics import rmss
+from ddlib.setups import split
+from workshop.report.studies import nulls as study
+
+SMALL = replace(study.TRIAL, epochs=40, warm_up=10, hidden=3)
+
+
+@pytest.fixture(scope="module")
+def trial():
+    return study._Trial(SMALL, SMALL.record(), 7)
+
+
+@pytest.fixture(scope="module")
+def trained(trial):
+    targets = np.stack([trial.torques, *surrogates("phases", trial.torques, 2)])
+    return targets, *trial.train(targets, 5)
+
+
+def test_each_network_learns_its_own_target(trial, trained):
+    """The error on its own target falls; trained alone on it, a network comes out the same."""
+    targets, weights, start = trained
+    for k, target in enumerate(targets):
+        wanted = target.reshape(-1, 2)
+        before, after = (
+            rmss(trial.model(w)[k].torque(trial.windows), wanted) for w in (start, weights)
+        )
+        assert after < before
+        alone, _ = trial.train(targets[k : k + 1], 5 + k)
+        assert np.allclose(alone.direct_weights[0], weights.direct_weights[k], atol=1e-5)
+    found = trial.described(weights, start, targets)
+    assert found["error"][2] == pytest.approx(
+        rmss(trial.model(weights)[2].torque(trial.windows), targets[2].reshape(-1, 2))
+    )
+
+
+def test_torques_and_windows_are_of_the_training_runs(trial):
+    training, test = split(SMALL.record())
+    assert np.array_equal(trial.torques.reshape(-1, 2), trial.torque)
+    assert np.array_equal(trial.torque[300], training.tau[1, training.motion][0])
+    assert np.array_equal(trial.answer, test.tau[test.motion])
+    assert trial.states.shape == (1500, 2, 4) and trial.test_states.shape == (300, 2, 4)
+    q = training.q_true[:, training.motion].reshape(-1, 2)
+    assert np.allclose(trial.states[..., 0], q)
+
+
+def test_shares_of_weights_and_of_what_training_added(trial, trained):
+    targets, weights, start = trained
+    found = trial.described(weights, start, targets)
+    for layer in ("hidden", "direct"):
+        f, first = (getattr(w, f"{layer}_weights") for w in (weights, start))
+        for kind, filters in (("classes", f), ("changes", f - first)):
+            for name in CLASSES:
+                wanted = [np.mean(classify(one) == name) for one in filters]
+                assert found[layer][kind][name] == pytest.approx(wanted)
+    still = trial.described(start, start, targets)  # nothing was added: the weights count
+    assert all(
+        np.array_equal(still["hidden"]["changes"][n], still["hidden"]["classes"][n])
+        for n in CLASSES
+    )
+
+
+def test_replaced_by_themselves_filters_change_nothing(trial, trained):
+    _, weights, start = trained
+    own = trial.replaced(weights, weights.hidden_weights)
+    assert own["at once"] == pytest.approx(trial.errors(trial.model(weights)))
+    other = trial.replaced(weights, start.hidden_weights)
+    hidden = replace(weights, hidden_weights=start.hidden_weights).activity(trial.data.x)[0]
+    x = np.column_stack([hidden[1], trial.windows.reshape(1500, -1), np.ones(1500)])
+    fit = x @ np.linalg.pinv(x) @ trial.torque
+    assert other["refitted"][1, 0] == pytest.approx(rmss(fit, trial.torque), rel=1e-6)
+
+
+def test_means_are_taken_by_draw():
+    found = {"a": {"b": np.arange(12.0).reshape(6, 2)}, "c": np.arange(6.0)}
+    means = study._mean(found, 3)
+    assert np.array_equal(means["c"], [0.5, 2.5, 4.5])
+    assert np.array_equal(means["a"]["b"], [[1, 2], [5, 6], [9, 10]])
+
+
+def test_a_row_holds_the_real_torques_and_every_null():
+    row = study._row(SMALL, SMALL.record(), 7, 5, 2, 1, ("shifted", "phases"))
+    assert set(row) == {"real", "real, errors", "untrained", "nulls"}
+    assert set(row["nulls"]) == {"shifted", "phases"}
+    assert row["real"]["gains"].shape == (5, 2, 2, 3)
+    assert row["nulls"]["phases"]["gains"].shape == (2, 2, 2, 3)
+    assert row["nulls"]["phases"]["related"].shape == (2, 2)
+
+
+def test_the_solver_takes_the_place_of_descent():
+    setup = replace(study.JOINT_DAMPING, steps=2, hidden=2)
+    trial = study._Trial(setup, setup.record(), 5)
+    targets = np.stack([trial.torques, *surrogates("phases", trial.torques, 1)])
+    with pytest.warns(NotConverged):
+        weights, start = trial.train(targets, 0)
+    assert len(weights) == 2 and not np.allclose(weights.hidden_weights, start.hidden_weights)
+    own = rmss(trial.model(weights)[1].torque(trial.windows), targets[1].reshape(-1, 2))
+    assert own < rmss(trial.model(weights)[0].torque(trial.windows), targets[1].reshape(-1, 2))

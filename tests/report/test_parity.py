@@ -1,0 +1,195 @@
+"""Parity: exact polynomials, networks that are right on every input, and learning."""
+
+import itertools
+
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from ddlib.learning import Weights
+from workshop.report import parity_networks
+from workshop.report.parity_networks import NETWORKS, UnitNetwork, monomials, patterns
+
+
+def in_words(row) -> int:
+    """Parity by counting ones in a text: "1 or 0 depending on whether ... even or odd"."""
+    return 1 if "".join(str(int(b)) for b in row).count("1") % 2 == 0 else 0
+
+
+@pytest.mark.parametrize("bits", [1, 2, 3, 6])
+def test_patterns_are_all_inputs_in_binary_order(bits):
+    x = patterns(bits)
+    assert len({tuple(row) for row in x}) == 2**bits == len(x)
+    assert [int("".join(map(str, row[::-1])), 2) for row in x] == list(range(2**bits))
+
+
+def test_parity_is_the_papers_function():
+    x = patterns(5)
+    assert parity_networks.parity(x).tolist() == [in_words(row) for row in x]
+    assert parity_networks.parity(x.reshape(4, 8, 5)).shape == (4, 8)
+
+
+def evaluate(coefficients, x):
+    """A polynomial with one product of variables for each set, term by term."""
+    bits = x.shape[1]
+    return np.array(
+        [
+            sum(
+                c * np.prod([row[k] for k in range(bits) if i >> k & 1])
+                for i, c in enumerate(coefficients)
+            )
+            for row in x
+        ]
+    )
+
+
+@given(st.lists(st.integers(-9, 9), min_size=16, max_size=16))
+@settings(max_examples=25, deadline=None)
+def test_polynomials_take_the_given_values(values):
+    x = patterns(4)
+    np.testing.assert_array_equal(evaluate(monomials(values), x), values)
+    np.testing.assert_allclose(evaluate(monomials(values, "signs"), 1 - 2 * x), values)
+
+
+def test_polynomial_of_three_bits_by_algebra():
+    """Sympy multiplies out 1/2 + (1 - 2a)(1 - 2b)(1 - 2c)/2."""
+    names = sympy.symbols("a b c")
+    product = sympy.Rational(1, 2) * (1 + sympy.prod([1 - 2 * s for s in names]))
+    terms = sympy.Poly(sympy.expand(product), *names).as_dict()
+    found = monomials(parity_networks.parity(patterns(3)))
+    wanted = [terms.get(tuple(i >> k & 1 for k in range(3)), 0) for i in range(8)]
+    assert found.tolist() == [int(w) for w in wanted]
+
+
+@pytest.mark.parametrize("bits", range(1, 11))
+def test_how_many_coefficients_parity_needs(bits):
+    values = parity_networks.parity(patterns(bits))
+    by_bits, by_signs = monomials(values), monomials(values, "signs")
+    assert np.count_nonzero(by_bits) == 2**bits
+    assert np.count_nonzero(1 - values) and np.count_nonzero(monomials(1 - values)) == 2**bits - 1
+    sizes = patterns(bits).sum(1)  # how many variables a product has
+    np.testing.assert_array_equal(by_bits[1:], (-1) ** sizes[1:] * 2 ** (sizes[1:] - 1))
+    assert np.flatnonzero(by_signs).tolist() == [0, 2**bits - 1]
+    assert by_signs[[0, -1]].tolist() == [0.5, 0.5]
+
+
+@pytest.mark.parametrize("name, bits", list(itertools.product(NETWORKS, range(1, 11))))
+def test_networks_compute_parity_on_every_input(name, bits):
+    network, x = NETWORKS[name](bits), patterns(bits)
+    assert network.inputs == bits
+    np.testing.assert_array_equal(network.output(x), [in_words(row) for row in x])
+    assert np.abs(network.output(x, 20.0) - parity_networks.parity(x)).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_sigmoid_units_get_there_as_the_gain_grows(name):
+    network, x = NETWORKS[name](7), patterns(7)
+    worst = [
+        np.abs(network.output(x, g) - parity_networks.parity(x)).max() for g in (5, 10, 20, 40)
+    ]
+    assert (np.diff(worst) < 0).all() and worst[-1] < 1e-8
+
+
+@pytest.mark.parametrize("bits", [2, 3, 4, 7, 8, 16, 33, 100])
+def test_counts_by_formula(bits):
+    one, half, count, pairs = (make(bits) for make in NETWORKS.values())
+    assert one.connections == bits**2 + bits and one.bias.size == bits + 1
+    assert half.connections == (bits // 2 + 1) * bits + bits // 2
+    digits = len(bin(bits)) - 2
+    assert count.bias.size == count.depth == digits
+    assert count.connections == digits * bits + digits * (digits - 1) // 2
+    assert pairs.bias.size == 2 * (bits - 1) and pairs.connections == 5 * (bits - 1)
+    assert one.depth == half.depth == 2 and pairs.depth == 2 * int(np.ceil(np.log2(bits)))
+
+
+def test_the_counters_units_are_binary_digits():
+    x = patterns(6)
+    digits = parity_networks.counter(6).activity(x)
+    for row, total in zip(digits, x.sum(1)):
+        assert "".join(str(int(d)) for d in row[:-1]) == f"{total:03b}"[:-1]
+        assert row[-1] == 1 - total % 2
+
+
+def test_words_hold_the_largest_number():
+    assert parity_networks.tree(9).word == 4  # up to 2: four halves, three digits and a sign
+    for bits in (4, 9, 64):
+        network = parity_networks.one_layer(bits)
+        largest = max(np.abs(network.weights).max(), np.abs(network.bias).max())
+        assert largest <= 2.0 ** (network.word - 2) < 2 * largest + 1
+
+
+def test_activity_takes_leading_axes():
+    network, x = parity_networks.direct(4), patterns(4)
+    np.testing.assert_array_equal(
+        network.activity(x.reshape(2, 8, 4), 3.0).reshape(16, -1), network.activity(x, 3.0)
+    )
+
+
+def test_learning_finds_exclusive_or_and_says_when():
+    weights, epochs = parity_networks.learn(2, 2, members=4, epochs=600, every=10)
+    assert isinstance(weights, Weights) and len(weights) == 4
+    assert np.isfinite(epochs).all() and (epochs % 10 == 0).all()
+    x, y = parity_networks.parity_cases(2)
+    assert (parity_networks.right(weights, x, y) == 1).all()
+    early, none = parity_networks.learn(2, 2, members=4, epochs=10, every=10)
+    assert np.isinf(none).all() and (parity_networks.right(early, x, y) < 1).all()
+
+
+def test_members_are_the_same_in_any_company():
+    both, alone = (
+        parity_networks.learn(2, 1, members=m, seed=s, epochs=50) for m, s in ((2, 3), (1, 4))
+    )
+    np.testing.assert_allclose(both[0].direct_weights[1], alone[0].direct_weights[0], atol=1e-6)
+
+
+def test_learning_starts_from_the_first_seeds():
+    """Steps that are next to nothing leave what is drawn."""
+    drawn = Weights.random(3, 2, 2, 1, 1, 1.0, seed=0)
+    left, _ = parity_networks.learn(2, 2, members=3, rate=1e-9, epochs=1, every=1)
+    np.testing.assert_allclose(left.hidden_weights, drawn.hidden_weights, atol=1e-6)
+    np.testing.assert_allclose(left.output_bias, drawn.output_bias, atol=1e-6)
+
+
+def test_cases_in_both_codings():
+    (bits, y), (signs, same) = (
+        parity_networks.parity_cases(3, coding) for coding in parity_networks.CODINGS
+    )
+    assert bits.shape == signs.shape == (8, 1, 3) and set(np.unique(signs)) == {-1, 1}
+    np.testing.assert_array_equal(signs, 1 - 2 * bits)
+    np.testing.assert_array_equal(y, same)
+    assert sorted(set(y.ravel())) == pytest.approx([0.2, 0.8])
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda: patterns(0), "bits must be an integer from 1 to 16, got 0"),
+        (lambda: patterns(17), "bits must be an integer from 1 to 16, got 17"),
+        (lambda: parity_networks.parity([0, 2]), "x must hold zeros and ones"),
+        (lambda: parity_networks.parity(1), "x must hold zeros and ones"),
+        (lambda: monomials([1, 0, 1]), "values must have shape"),
+        (lambda: monomials([1]), "bits of values must be"),
+        (lambda: monomials([[1, 0], [0, 1]]), "values must have shape"),
+        (lambda: monomials([0.5, 0]), "values must be whole numbers"),
+        (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
+        (lambda: parity_networks.counter(0), "bits must be an integer from 1"),
+        (lambda: parity_networks.tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
+        (lambda: parity_networks.tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
+        (lambda: UnitNetwork(np.ones((2, 4)), np.ones(2)), "from earlier units to later ones"),
+        (
+            lambda: UnitNetwork(np.ones((2, 2)), np.ones(2)),
+            "inputs of weights must be an integer from 1",
+        ),
+        (lambda: UnitNetwork(np.ones(3), np.ones(3)), "weights must have shape"),
+        (lambda: parity_networks.learn(2, 2, rate=0.0), "rate must lie in"),
+        (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
+        (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
+        (lambda: parity_networks.learn(2, 0), "hidden must be an integer from 1"),
+        (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),
+    ],
+)
+def test_refusals(call, words):
+    with pytest.raises(ValueError, match=words):
+        call()

@@ -1,0 +1,311 @@
+"""Committed results: hashes that see code and nothing else, files, freshness, a re-measurement."""
+
+import json
+import os
+import random
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from ddlib import paper
+from ddlib.analysis import LAYERS, summary
+from ddlib.learning import TorqueModel, Weights, cases
+from ddlib.setups import SETUPS, STATE_FEEDBACK, WINDOWS, errors, split, true_states
+from workshop.report import reproduce, results
+from workshop.report.code_hash import places
+from workshop.report.studies.harmonics import NAME
+from workshop.report.two_harmonics import record_two_harmonics
+
+STALE = "book/results is not what this code gives: run `make reproduce`"
+
+
+# --- files --------------------------------------------------------------------------------
+
+
+def test_stamp():
+    made = results.stamp(12.345)
+    assert made["seconds"] in (12.3, 12.4)
+    assert set(made["versions"]) == {"numpy", "torch", "scipy"}
+    assert made["versions"]["numpy"] == np.__version__
+    assert made["machine"].endswith(torch.backends.cpu.get_cpu_capability())
+    json.dumps(made)
+
+
+def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
+    path = tmp_path / "new" / "folder" / "a.json"
+    content = {
+        "matrix": np.array([[1.23456789, -2e-9], [np.float32(0.1), 123456.7]]),
+        "mask": np.array([True, False]),
+        "count": np.int64(1234567),
+        "scalar": np.float32(0.000123456),
+        "plain": [1, 0.1 + 0.2, "text", None],
+        "gone": (np.nan, float("inf")),
+    }
+    results.write_json(path, content)
+    assert json.loads(path.read_text()) == {
+        "matrix": [[1.2346, -2e-9], [0.1, 123460.0]],
+        "mask": [True, False],
+        "count": 1234567,
+        "scalar": 0.00012346,
+        "plain": [1, 0.3, "text", None],
+        "gone": [None, None],
+    }
+    assert '"count": 1234567,' in path.read_text() and "true" in path.read_text()
+    assert [p.name for p in path.parent.iterdir()] == ["a.json"]
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path, monkeypatch):
+    path = tmp_path / "a.json"
+    results.write_json(path, {"a": 1})
+    with pytest.raises(TypeError, match="set does not go into a results file"):
+        results.write_json(path, {"a": {2}})
+    assert json.loads(path.read_text()) == {"a": 1}
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(results.os, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        results.write_json(path, {"a": 3})
+    assert json.loads(path.read_text()) == {"a": 1}
+
+
+def test_read(tmp_path, monkeypatch):
+    monkeypatch.setattr(results, "FOLDER", tmp_path)
+    results.write_json(tmp_path / "a.json", {"a": [1, 2]})
+    assert results.read("a") == {"a": [1, 2]}
+    with pytest.raises(FileNotFoundError, match=r"no result 'b' .*run `make reproduce` first"):
+        results.read("b")
+
+
+@pytest.fixture
+def parts(tmp_path, monkeypatch):
+    """Two quick studies in place of the real ones; the list says which have run.
+
+    ``parts.studies`` has them, ``parts.codes`` their hashes.
+    """
+
+    class Ran(list):
+        pass
+
+    ran = Ran()
+    ran.codes = {"longer": "1" * 16, "clean": "2" * 16}
+    ran.studies = {n: lambda n=n: ran.append(n) or {"value": len(ran)} for n in ran.codes}
+    monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
+    monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
+    monkeypatch.setattr(reproduce, "run", lambda name: ran.studies[name]())
+    monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
+    monkeypatch.setattr(reproduce, "picture", lambda: None)
+    return ran
+
+
+def test_what_is_up_to_date_is_not_made_again(parts, capsys):
+    reproduce.main(["clean"])
+    reproduce.main(["--jobs", "1"])
+    assert parts == ["clean", "longer"]
+    assert "==> clean: up to date" in capsys.readouterr().out
+    reproduce.main(["--jobs", "1"])
+    assert parts == ["clean", "longer"]
+    parts.codes["longer"] = "3" * 16
+    reproduce.main(["--jobs", "1"])
+    assert parts == ["clean", "longer", "longer"] and results.read("longer")["value"] == 3
+    reproduce.main(["--force", "clean"])
+    assert parts[3:] == ["clean"]
+    with pytest.raises(SystemExit):
+        reproduce.main(["table-9-9"])
+    assert "parts must be among longer, clean, got 'table-9-9'" in capsys.readouterr().err
+    for jobs in ("0", "-1"):
+        with pytest.raises(SystemExit):
+            reproduce.main(["--jobs", jobs])
+        assert f"jobs must be 1 or more, got {jobs}" in capsys.readouterr().err
+    assert len(parts) == 4
+
+
+def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(parts.studies, "clean", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        reproduce.main(["--jobs", "1"])
+    assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
+    assert results.read("longer")["made by"]["code"] == parts.codes["longer"]
+
+
+def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
+    order = []
+
+    def apart(name, code):
+        order.append(name)
+        reproduce.make(name, code)
+        return ""
+
+    monkeypatch.setattr(reproduce, "make_apart", apart)
+    monkeypatch.setattr(reproduce, "_seconds", {"longer": 1.0, "clean": 9.0}.get)
+    reproduce.main(["--jobs", "2"])
+    assert order == ["clean", "longer"]
+    made_by = results.read("reproduce")["made by"]
+    assert made_by["jobs"] == made_by["parts"] == 2 and 0 <= made_by["seconds"] < 600
+    assert "==> clean: 9 s" in capfd.readouterr().out
+
+
+def test_a_part_that_fails_apart_is_told(parts, monkeypatch):
+    def apart(name, code):
+        if name == "clean":
+            return "ZeroDivisionError: in clean"
+        reproduce.make(name, code)
+        return ""
+
+    monkeypatch.setattr(reproduce, "make_apart", apart)
+    with pytest.raises(RuntimeError, match="failed: clean; the others are written") as told:
+        reproduce.main(["--jobs", "2"])
+    assert "ZeroDivisionError" in str(told.value)
+    assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
+
+
+def _written(path, threads):
+    Path(path).write_text(f"{os.getpid()} {torch.get_num_threads()} {threads}")
+    print("not seen")
+
+
+def _wrong(name, code):
+    raise ZeroDivisionError(f"in {name}")
+
+
+def _gone(name, code):
+    os._exit(3)
+
+
+def test_apart_is_a_process_of_its_own_with_one_thread(tmp_path, monkeypatch, capfd):
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")  # as `side_by_side` has it
+    path = tmp_path / "said"
+    assert reproduce.make_apart(str(path), "asked", do=_written) == ""
+    process, threads, asked = path.read_text().split()
+    assert int(process) != os.getpid() and (threads, asked) == ("1", "asked")
+    assert "not seen" not in capfd.readouterr().out
+
+
+def test_what_goes_wrong_apart_is_told():
+    assert "ZeroDivisionError: in clean" in reproduce.make_apart("clean", "", do=_wrong)
+    assert "ended" in reproduce.make_apart("clean", "", do=_gone)
+
+
+def test_the_stamp_is_of_the_code_that_ran(parts, monkeypatch):
+    """Code that changes while a long part runs does not get the credit for it."""
+    before = parts.codes["longer"]
+
+    def slow():
+        parts.codes["longer"] = "4" * 16
+        return {}
+
+    monkeypatch.setitem(parts.studies, "longer", slow)
+    reproduce.main(["longer"])
+    assert results.read("longer")["made by"]["code"] == before
+
+
+def test_every_file_has_its_own_name():
+    cells = [(s, w) for s in SETUPS for w in WINDOWS]
+    paths = {results.networks_path(s, w) for s, w in cells}
+    paths |= {results.course_path(w) for w in WINDOWS}
+    assert len(paths) == len(cells) + len(WINDOWS)
+    assert all(p.suffix == ".npz" and " " not in p.name for p in paths)
+    assert all(results.FOLDER in p.parents for p in paths)
+
+
+# --- what is committed ------------------------------------------------------------------------
+
+
+def test_nothing_is_left_over():
+    assert not [p.name for p in results.FOLDER.rglob("*.part")], STALE
+    unknown = {p.stem for p in results.FOLDER.glob("*.json")} - set(places())
+    for name in unknown:  # made elsewhere: then it must not claim to be made here
+        assert "code" not in results.read(name).get("made by", {}), name
+
+
+@pytest.fixture(scope="module")
+def table():
+    if not (results.FOLDER / "table-4-1.json").is_file():
+        pytest.fail(STALE)
+    return results.read("table-4-1")
+
+
+CELLS = [(s, w) for s in SETUPS for w in WINDOWS]
+
+
+def test_table_4_1_has_every_cell(table):
+    assert list(table["setups"]) == list(SETUPS)
+    for setup, width in CELLS:
+        cell, members = table["setups"][setup][str(width)], table["members"]
+        assert members >= 20
+        for name in ("best test", "largest weight", "slope", "derailed"):
+            assert len(cell[name]) == members, (setup, width, name)
+        history = cell["history"]
+        steps = SETUPS[setup].steps
+        wanted = (0, steps) if steps else (1, paper.EPOCHS)
+        assert (history["epochs"][0], history["epochs"][-1]) == wanted
+        for name in ("training", "test"):
+            assert np.shape(history[name]) == (members, len(history["epochs"]))
+            np.testing.assert_allclose(
+                np.array(history[name])[:, -1], cell["errors"][name], rtol=0.02, err_msg=STALE
+            )
+        np.testing.assert_allclose(np.min(history["test"], 1), cell["best test"], rtol=1e-4)
+        worse = np.array(cell["errors"]["training"]) >= 1
+        np.testing.assert_array_equal(cell["derailed"], worse)
+
+
+DRAW = random.Random(1988)
+SAMPLE = [(s, DRAW.choice(WINDOWS)) for s in SETUPS]
+
+
+@pytest.mark.parametrize("setup, width", SAMPLE)
+def test_committed_networks_measure_what_the_table_says(table, setup, width):
+    """Recorded anew, loaded, measured: a sample of Table 4-1."""
+    cell = table["setups"][setup][str(width)]
+    path = results.networks_path(setup, width)
+    assert path.is_file(), STALE
+    model = TorqueModel.load(path)
+    measured = errors(model, SETUPS[setup].record()).named()
+    assert set(measured) == set(cell["errors"])
+    for name, values in measured.items():
+        np.testing.assert_allclose(
+            values, cell["errors"][name], rtol=0.02, err_msg=f"{name}: {STALE}"
+        )
+    np.testing.assert_allclose(model.weights.largest, cell["largest weight"], rtol=1e-3)
+
+
+@pytest.mark.parametrize("width", [DRAW.choice(WINDOWS)])
+def test_committed_networks_of_two_harmonics_measure_what_is_written(width):
+    cell = results.read("harmonics")["windows"][str(width)]
+    model, recording = results.networks(width, NAME), record_two_harmonics()
+    for own, name in (("training", "training"), ("test", "test")):
+        measured = getattr(errors(model, recording), name)
+        np.testing.assert_allclose(measured, cell[own], rtol=0.02, err_msg=STALE)
+    other = errors(model, STATE_FEEDBACK.record()).test
+    np.testing.assert_allclose(other, cell["one sine"]["trajectory 6"], rtol=0.02, err_msg=STALE)
+    training = split(recording)[0]
+    states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
+    found = summary(model, cases(training, width)[0], states)
+    scale = np.abs(found["gains"]).max()
+    np.testing.assert_allclose(found["gains"], cell["gains"], atol=0.01 * scale, err_msg=STALE)
+    for layer in LAYERS:
+        for kind in ("classes", "follow"):
+            for name, shares in cell[layer][kind].items():
+                mean = found[layer][kind][name].mean()
+                assert abs(mean - np.mean(shares)) < 0.03, (layer, kind, name, STALE)
+
+
+@pytest.mark.parametrize("width", WINDOWS)
+def test_courses_begin_at_the_seed_and_end_at_the_networks(width):
+    epochs, model = results.course(width)
+    assert epochs[0] == 0 and epochs[-1] == paper.EPOCHS and (np.diff(epochs) > 0).all()
+    assert model.weights.hidden_bias.shape[:2] == (len(epochs), 2)
+    seeded = Weights.random(2, width, initial=STATE_FEEDBACK.initial)
+    networks = results.networks(width).weights
+    for name in (field.name for field in fields(Weights)):
+        own, wanted = getattr(model.weights, name), getattr(seeded, name)
+        np.testing.assert_allclose(own[0], wanted, rtol=1e-6, atol=1e-9, err_msg=STALE)
+        np.testing.assert_array_equal(own[-1], getattr(networks[:2], name))

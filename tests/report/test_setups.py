@@ -1,0 +1,282 @@
+"""The experiment of section 4: its split, its counts, its ways to measure an error."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddlib import paper
+from ddlib.learning import NotConverged, Scaler, TorqueModel, Weights, check_points
+from ddlib.metrics import rmss
+from ddlib.setups import (
+    JOINT_DAMPING,
+    KP,
+    LITERATURE,
+    POSITION_FEEDBACK,
+    SETUPS,
+    STATE_FEEDBACK,
+    errors,
+    predict,
+    solve_windows,
+    split,
+    train_windows,
+)
+from ddlib.trajectories import pick_and_place
+
+QUICK = replace(STATE_FEEDBACK, epochs=60, momentum=0.5)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return STATE_FEEDBACK.record()
+
+
+@pytest.fixture(scope="module")
+def trained(recording):
+    """Three small networks after 60 epochs."""
+    return train_windows(QUICK, recording, 11, 3, seed=4, snapshots=(0, 60), progress=False)
+
+
+def by_loop(recording, numbers, width):
+    """Windows and torques of some runs, sample by sample."""
+    half, x, y = width // 2, [], []
+    for i in numbers:
+        for k in range(50, 350):
+            x.append(recording.q[i, k - half : k + half + 1].T)
+            y.append(recording.tau[i, k])
+    return np.array(x), np.array(y)
+
+
+# --- setups and the split -------------------------------------------------------------------
+
+
+def test_setups_say_what_the_paper_says():
+    assert set(SETUPS) == {"position feedback", "state feedback", "joint damping"}
+    for setup in SETUPS.values():
+        assert setup.epochs == 20_000 and setup.hidden == 10 and setup.scaling == (0, 1)
+    assert POSITION_FEEDBACK.arm == STATE_FEEDBACK.arm
+    assert POSITION_FEEDBACK.effects == STATE_FEEDBACK.effects  # only the controller differs
+    assert POSITION_FEEDBACK.controller != STATE_FEEDBACK.controller
+
+
+def test_joint_damping_is_what_provenance_says():
+    """Tuned: gains, Coulomb friction, encoder, steps, decay. The rest is default or IMI."""
+    viscous, coulomb = JOINT_DAMPING.effects.friction
+    default = STATE_FEEDBACK.effects
+    assert viscous.coefficient == (5.3, 1.1)
+    np.testing.assert_allclose(coulomb.level, 3 * np.array(default.friction[1].level))
+    np.testing.assert_allclose(JOINT_DAMPING.controller.kp, 2.5 * np.array(KP))
+    assert not any((*JOINT_DAMPING.controller.kd, *JOINT_DAMPING.controller.ki))  # proportional
+    turn = 2 * np.pi / JOINT_DAMPING.effects.encoder[0].step
+    assert np.log2(turn) == pytest.approx(12.5)
+    for part in ("actuator", "torque_sensor", "motor", "transmission"):
+        assert getattr(JOINT_DAMPING.effects, part) == getattr(default, part)
+    assert (JOINT_DAMPING.steps, JOINT_DAMPING.decay) == (60, 1e-6)
+    untuned = replace(default, friction=(viscous, default.friction[1]))
+    assert LITERATURE == replace(POSITION_FEEDBACK, name=LITERATURE.name, effects=untuned)
+    assert replace(STATE_FEEDBACK, steps=1, decay=0.1).decay == 0.1
+    with pytest.raises(ValueError, match="decay must be 0 for descent"):
+        replace(STATE_FEEDBACK, decay=0.1)
+
+
+def test_another_day_rounds_otherwise():
+    """Another zero of the encoders: the same motion on another grid of readings."""
+    step = JOINT_DAMPING.effects.encoder[0].step
+    first, other, again = (JOINT_DAMPING.repeated(k).record() for k in (1, 2, 1))
+    np.testing.assert_array_equal(first.q, again.q)
+    np.testing.assert_array_equal(first.tau, again.tau)
+    zeros = [(r.q / step) % 1 for r in (first, other)]
+    for zero in zeros:  # all readings of a joint lie on one grid
+        np.testing.assert_allclose(np.ptp((zero - zero[0, 0] + 0.5) % 1, axis=(0, 1)), 0, atol=1e-6)
+    assert (np.abs(zeros[0][0, 0] - zeros[1][0, 0]) > 0.01).all()
+    for made in (first, other):
+        miss = made.q - made.q_true
+        assert np.abs(miss).max() <= 0.5001 * step and np.abs(miss).max() > 0.45 * step
+    assert not np.array_equal(first.tau - first.tau_true, other.tau - other.tau_true)
+    perfect = replace(STATE_FEEDBACK, effects=STATE_FEEDBACK.effects.without("encoder"))
+    assert perfect.repeated(3) == replace(perfect, seed=3)  # nothing to shift
+
+
+def test_solved_windows_stop_after_their_steps():
+    """On five coarse runs; what it minimises is the solver's own business."""
+    quick = replace(JOINT_DAMPING, steps=3)
+    recording = quick.record()
+    with pytest.warns(NotConverged):
+        solution = solve_windows(quick, recording, 5, 2, seed=3, progress=False)
+    assert (solution.steps == 3).all() and (solution.ended == "steps").all()
+    with pytest.warns(NotConverged):
+        model, history, kept = train_windows(quick, recording, 5, 2, seed=3, progress=False)
+    assert kept == {} and list(history.epochs) == [0, 1, 2, 3]
+    np.testing.assert_allclose(errors(model, recording).training, history.training[-1], rtol=1e-6)
+    np.testing.assert_allclose(errors(model, recording).test, history.test[-1], rtol=1e-6)
+    np.testing.assert_array_equal(
+        model.weights.hidden_weights, solution.model.weights.hidden_weights
+    )
+    with pytest.raises(ValueError, match=r"setup\.steps must"):
+        solve_windows(STATE_FEEDBACK, recording, 5, 2)
+
+
+def test_the_recording_is_of_appendix_i_with_noise(recording):
+    assert recording.q.shape == (6, 400, 2)
+    wanted = pick_and_place(paper.APPENDIX_I_EXTENTS_DEG, recording.t).q
+    np.testing.assert_allclose(recording.reference.q, wanted, atol=1e-12)
+    assert not np.array_equal(recording.tau, recording.tau_true)
+    assert not np.array_equal(recording.q, recording.q_true)
+    other = replace(STATE_FEEDBACK, seed=1).record()
+    np.testing.assert_array_equal(other.q, recording.q)  # the seed is of the torque sensor
+    assert not np.array_equal(other.tau, recording.tau)
+
+
+def test_the_arm_follows_the_family_within_a_few_degrees(recording):
+    for made in (recording, POSITION_FEEDBACK.record()):
+        error = np.rad2deg(np.abs(made.tracking_error[:, made.motion]))
+        assert 0.1 < error.max() < 10
+
+
+def test_split_is_by_trajectory(recording):
+    training, test = split(recording)
+    assert training.q.shape == (5, 400, 2) and test.q.shape == (400, 2)
+    numbers = (*paper.TRAINING_TRAJECTORIES, paper.TEST_TRAJECTORY)
+    for part, i in zip((*(training[k] for k in range(5)), test), numbers):
+        for name in ("q", "tau", "q_true", "qd_true", "tau_true"):
+            np.testing.assert_array_equal(getattr(part, name), getattr(recording, name)[i - 1])
+        for field, whole in zip(part.reference, recording.reference):
+            np.testing.assert_array_equal(field, whole[i - 1])
+        np.testing.assert_array_equal(part.t, recording.t)
+        assert part.motion == recording.motion
+    extent = np.rad2deg(np.abs(test.reference.q).max(0))
+    np.testing.assert_allclose(extent, paper.APPENDIX_I_EXTENTS_DEG[5], rtol=1e-3)
+
+
+def test_split_refuses_other_recordings(recording):
+    for other in (recording[0], recording[:5]):
+        with pytest.raises(ValueError, match="recording must hold the six runs of Appendix I"):
+            split(other)
+
+
+# --- training and errors ----------------------------------------------------------------
+
+
+def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypatch):
+    """Seen where they arrive: at the trainer."""
+    seen = {}
+
+    def trainer(weights, data, **options):
+        seen.update(options, weights=weights, data=data)
+
+    monkeypatch.setattr("ddlib.setups.train_ensemble", trainer)
+    train_windows(QUICK, recording, 21, 2, seed=9, progress=False)
+    data, (x6, y6) = seen["data"], seen["test"]
+    assert data.x.shape == (1500, 2, 21) and data.y.shape == (1500, 2)
+    assert x6.shape == (300, 2, 21) and y6.shape == (300, 2)
+    x, y = by_loop(recording, range(5), 21)
+    np.testing.assert_allclose(data.inputs.unscale(data.x, -2), x, atol=1e-12)
+    np.testing.assert_allclose(data.outputs.unscale(data.y), y, atol=1e-10)
+    x, y = by_loop(recording, [5], 21)
+    np.testing.assert_allclose(data.inputs.unscale(x6, -2), x, atol=1e-12)
+    np.testing.assert_allclose(data.outputs.unscale(y6), y, atol=1e-10)
+    assert (data.y.min(), data.y.max()) == pytest.approx((0.2, 0.8))
+    wanted = Weights.random(2, 21, 10, initial=0.3, seed=9)
+    np.testing.assert_array_equal(seen["weights"].hidden_weights, wanted.hidden_weights)
+    assert seen["epochs"] == 60 and seen["momentum"] == QUICK.momentum
+
+
+def test_a_quick_training(recording, trained):
+    model, history, kept = trained
+    assert model.weights.hidden_weights.shape == (3, 10, 2, 11)
+    np.testing.assert_array_equal(history.epochs, check_points(60))
+    assert history.training.shape == history.test.shape == (len(history.epochs), 3)
+    assert set(kept) == {0, 60}
+    wanted = Weights.random(3, 11, seed=4)
+    np.testing.assert_array_equal(kept[0].output_weights, wanted.output_weights)
+    assert (history.training.min(0) < 0.9 * history.training[0]).all()  # it does learn
+    measured = errors(model, recording)
+    np.testing.assert_allclose(measured.training, history.training[-1], rtol=1e-4)
+    np.testing.assert_allclose(measured.test, history.test[-1], rtol=1e-4)
+
+
+def test_errors_are_what_their_names_say(recording, trained):
+    """Each recomputed from windows made by a loop."""
+    model = trained[0]
+    found = errors(model, recording).named()
+    (x, y), (x6, y6) = by_loop(recording, range(5), 11), by_loop(recording, [5], 11)
+    reference = pick_and_place(paper.APPENDIX_I_EXTENTS_DEG[5], recording.t).q
+    desired = np.array([reference[k - 5 : k + 6].T for k in range(50, 350)])
+    predicted = model.torque(x6)
+    wrong = predicted - y6
+    wanted = {
+        "training": rmss(model.torque(x), y),
+        "test": np.sqrt(((wrong**2).mean(1) / y6.var(0)).mean(-1)),
+        "test by training deviation": np.sqrt(((wrong**2).mean(1) / y.var(0)).mean(-1)),
+        "test shoulder": np.sqrt((wrong[..., 0] ** 2).mean(1) / y6[:, 0].var()),
+        "test elbow": np.sqrt((wrong[..., 1] ** 2).mean(1) / y6[:, 1].var()),
+        "test, desired positions": rmss(model.torque(desired), y6),
+    }
+    assert list(found) == list(wanted)
+    for name, value in wanted.items():
+        assert found[name].shape == (3,)
+        np.testing.assert_allclose(found[name], value, rtol=1e-9, err_msg=name)
+    for a, b in (("test", "test shoulder"), ("test", "test by training deviation")):
+        assert not np.allclose(found[a], found[b], rtol=1e-3)
+
+
+def test_errors_of_a_constant_guess_are_one(recording):
+    """A network whose outputs are stuck at the mean torque of trajectory 6."""
+    _, y6 = by_loop(recording, [5], 3)
+    inputs = Scaler([-1.0, -1.0], [1.0, 1.0])
+    outputs = Scaler(y6.mean(0) - 1.0, y6.mean(0) + 1.0)
+    still = Weights(
+        np.zeros((1, 1, 2, 3)), np.zeros((1, 1)), np.zeros((1, 2, 1)), np.zeros((1, 2, 2, 3)),
+        np.zeros((1, 2)),
+    )  # fmt: skip
+    found = errors(TorqueModel(still, inputs, outputs), recording).named()
+    for name in ("test", "test shoulder", "test elbow", "test, desired positions"):
+        assert found[name] == pytest.approx(1.0), name
+    assert found["training"] > 1.0
+
+
+def test_predict_follows_the_motion(recording, trained):
+    model = trained[0]
+    _, test = split(recording)
+    torque = predict(model, test)
+    assert torque.shape == (3, 300, 2)
+    x6, y6 = by_loop(recording, [5], 11)
+    np.testing.assert_allclose(torque, model.torque(x6), rtol=1e-12)
+    np.testing.assert_allclose(rmss(torque, y6), errors(model, recording).test)
+    assert predict(model[0], test).shape == (300, 2)
+
+
+@pytest.mark.parametrize(
+    "width, members, error, words",
+    [
+        (10, 2, ValueError, "width must be odd"),
+        (103, 2, ValueError, "record a longer rest"),
+        (401, 2, ValueError, "width must not exceed"),
+        (11, 0, ValueError, "members must"),
+        (11, 2.0, TypeError, "members must"),
+        (11.0, 2, TypeError, "width must"),
+    ],
+)
+def test_train_windows_refuses_bad_values(recording, width, members, error, words):
+    with pytest.raises(error, match=words):
+        train_windows(QUICK, recording, width, members, progress=False)
+
+
+@pytest.mark.parametrize(
+    "option, words",
+    [
+        (dict(epochs=0), "epochs must"),
+        (dict(momentum=1.0), "momentum must"),
+        (dict(initial=0.0), "initial must"),
+        (dict(hidden=0), "hidden must"),
+    ],
+)
+def test_bad_setups_are_refused_before_training(recording, option, words):
+    with pytest.raises(ValueError, match=words):
+        train_windows(replace(QUICK, **option), recording, 11, 1, progress=False)
+
+
+def test_record_takes_other_extents():
+    assert STATE_FEEDBACK.record((10.0, 20.0)).q.shape == (400, 2)
+    with pytest.raises(ValueError, match="extents_deg"):
+        STATE_FEEDBACK.record((10.0,))

@@ -1,0 +1,56 @@
+"""The committed sweep over samples, units and epochs: whole, and a sample of it solved anew."""
+
+import numpy as np
+import pytest
+
+from ddlib import paper
+from ddlib.learning import NotConverged
+from workshop.report import results
+from workshop.report.exact_states import EPOCHS, SAMPLES
+from workshop.report.studies import states_sizes as study
+
+
+@pytest.fixture(scope="module")
+def found():
+    return results.read("state-space-sizes")
+
+
+def test_every_size_is_there(found):
+    assert [row["samples"] for row in found["samples"]] == list(study.DRAWS)
+    assert [row["units"] for row in found["units"]] == list(study.UNITS)
+    for row in found["samples"]:
+        assert len(row["solver"]["test"]) == study.DRAWS[row["samples"]]
+        draws = study.DESCENT_DRAWS.get(row["samples"])
+        assert (row["descent"] is None) == (draws is None)
+        if draws:
+            assert len(row["descent"]["test"]) == draws * study.DESCENT_MEMBERS
+    for row in found["units"]:
+        assert (row["solver"] is not None) == (row["units"] in study.SOLVED_UNITS)
+    longer = found["longer"]
+    assert longer["epochs"][-1] == 5 * EPOCHS
+    assert np.shape(longer["test"]) == (study.DESCENT_MEMBERS, len(longer["epochs"]))
+
+
+def test_the_best_on_the_way_is_no_worse_than_the_last(found):
+    for row in found["samples"] + found["units"]:
+        for way in ("solver", "descent"):
+            if row[way]:
+                assert np.all(np.array(row[way]["best test"]) <= row[way]["test"])
+
+
+def test_the_same_cases_give_the_same_errors(found):
+    """One small training set, solved anew."""
+    row = next(row for row in found["samples"] if row["samples"] == SAMPLES)
+    with pytest.warns(NotConverged):  # as the page says: stopped before its end
+        again = study._solve(SAMPLES, 1)
+    for what in ("training", "test"):
+        assert row["solver"][what][0] == pytest.approx(again[what][0], rel=0.1)
+    assert all(np.min(row["solver"]["gradient"]) > 0 for row in found["samples"])
+
+
+def test_the_solver_beats_descent_on_the_same_cases(found):
+    """Both train on the draws of one size; the first two are shared."""
+    for row in found["samples"]:
+        if row["descent"]:
+            assert np.median(row["solver"]["training"]) < np.median(row["descent"]["training"])
+    assert paper.HIDDEN_UNITS in study.UNITS

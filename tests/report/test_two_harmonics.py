@@ -1,0 +1,163 @@
+"""Two harmonics: the paper's family as a limit, true derivatives, position and acceleration."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from ddlib.analysis import explained
+from ddlib.setups import POSITION_FEEDBACK, STATE_FEEDBACK, true_states
+from ddlib.simulation import LOG_STEP, record
+from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
+from workshop.report.two_harmonics import (
+    NEUTRAL,
+    ORDER,
+    SHARE,
+    record_circle,
+    record_quintic,
+    record_two_harmonics,
+    second_amplitudes,
+    two_harmonics,
+)
+
+T = time_grid(0.01, 0.2)
+
+
+def test_without_a_second_sine_it_is_the_papers_family():
+    own = two_harmonics(APPENDIX_I, 0 * APPENDIX_I, T)
+    for found, wanted in zip(own, pick_and_place(APPENDIX_I, T)):
+        np.testing.assert_allclose(found, wanted, atol=1e-15)
+
+
+@pytest.mark.parametrize("order", [2, 3, 5])
+def test_velocity_and_acceleration_are_the_derivatives(order):
+    t = np.linspace(0.5, 2.5, 20_001)
+    reference = two_harmonics([40.0, 10.0], [-3.0, 2.0], t, order)
+    for lower, upper in pairwise(reference):
+        slope = np.gradient(lower, t, axis=0)[1:-1]
+        np.testing.assert_allclose(slope, upper[1:-1], atol=2e-6)
+    middle = two_harmonics([40.0, 10.0], [-3.0, 2.0], [1.5], order).q[0]
+    sign = np.sin(order * np.pi / 2)  # the second sine half-way: its top, bottom or a zero
+    np.testing.assert_allclose(np.rad2deg(middle), [-40 + 3 * sign, -10 - 2 * sign], atol=1e-12)
+
+
+def test_it_rests_before_and_after():
+    reference = two_harmonics([45.0, 45.0], [3.0, -3.0], T)
+    still = (T < 0) | (T >= 3)
+    assert still.sum() == 40
+    for x in reference:
+        assert (x[still] == 0).all()
+    # it does not start from rest: both sines are steepest there
+    speed = -np.pi / 3 * np.deg2rad([45 + 3 * ORDER, 45 - 3 * ORDER])
+    np.testing.assert_allclose(reference.qd[T == 0], [speed], atol=1e-12)
+
+
+def test_amplitudes_of_either_sign_within_their_share():
+    drawn = second_amplitudes()
+    assert drawn.shape == APPENDIX_I.shape
+    assert (drawn > 0).any() and (drawn < 0).any()
+    assert np.abs(drawn).max() <= SHARE * 45 / ORDER**2
+    assert np.abs(second_amplitudes(3)).max() > SHARE * 45 / ORDER**2
+    np.testing.assert_array_equal(drawn, second_amplitudes())
+    assert (drawn != second_amplitudes(seed=1)).all()
+
+
+@pytest.mark.parametrize(
+    "bad, name",
+    [
+        ({"second_deg": [1.0, np.nan]}, "second_deg"),
+        ({"second_deg": [[1.0, 2.0]]}, "second_deg"),
+        ({"order": 1}, "order"),
+        ({"extents_deg": [1.0, 2.0, 3.0]}, "extents_deg"),
+        ({"t": [[0.0]]}, "t"),
+    ],
+)
+def test_bad_arguments_are_refused_by_name(bad, name):
+    good = {"extents_deg": [10.0, 20.0], "second_deg": [1.0, 1.0], "t": T}
+    with pytest.raises(ValueError, match=rf"^{name} must"):
+        two_harmonics(**{**good, **bad})
+
+
+@pytest.fixture(scope="module")
+def recordings():
+    return {
+        "one sine": (STATE_FEEDBACK, STATE_FEEDBACK.record()),
+        "ringing": (POSITION_FEEDBACK, POSITION_FEEDBACK.record()),
+        "two sines": (STATE_FEEDBACK, record_two_harmonics()),
+    }
+
+
+def test_the_recording_has_the_form_of_the_papers(recordings):
+    own, paper = recordings["two sines"][1], recordings["one sine"][1]
+    assert own.q.shape == paper.q.shape and own.motion == paper.motion
+    np.testing.assert_array_equal(own.t, paper.t)
+    wanted = two_harmonics(APPENDIX_I, second_amplitudes(), own.t)
+    np.testing.assert_allclose(own.reference.q, wanted.q, atol=1e-12)
+    assert np.abs(own.tracking_error).max() < 0.2
+
+
+def test_true_states_are_position_and_its_derivatives(recordings):
+    setup, recording = recordings["two sines"]
+    states = true_states(recording, setup)
+    assert states.shape == (6, 300, 2, 3)
+    np.testing.assert_array_equal(states[..., 0], recording.q_true[:, recording.motion])
+    slope = np.gradient(states[..., 1], LOG_STEP, axis=1)[:, 60:-1]
+    wrong = np.abs(slope - states[:, 60:-1, :, 2])  # beyond the jump at the start
+    assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
+    late = true_states(recording[2], setup, skip=0.5)
+    np.testing.assert_array_equal(late, states[2, 50:])
+    with pytest.raises(ValueError, match=r"^skip must"):
+        true_states(recording, setup, skip=3.1)
+
+
+def test_true_states_of_another_rate_and_duration():
+    own = record(
+        STATE_FEEDBACK.arm,
+        STATE_FEEDBACK.controller,
+        [20.0, 10.0],
+        effects=STATE_FEEDBACK.effects,
+        log_step=0.02,
+        duration=2.0,
+    )
+    states = true_states(own, STATE_FEEDBACK, skip=0.5)
+    assert states.shape == (75, 2, 3)
+    np.testing.assert_array_equal(states[0, :, 0], own.q_true[np.searchsorted(own.t, 0.499)])
+
+
+def test_what_position_explains_of_acceleration(recordings):
+    share = {}
+    for name, (setup, recording) in recordings.items():
+        late = true_states(recording, setup, skip=1.0)[:5].reshape(-1, 2, 3)
+        share[name] = [explained(late[:, j, 2], late[:, j, 0]) for j in (0, 1)]
+    assert min(share["one sine"]) > 0.85
+    assert max(share["ringing"]) < 0.1
+    assert max(share["two sines"]) < 0.25
+
+
+@pytest.mark.parametrize("record", [record_quintic, record_circle])
+def test_single_motions_tell_position_from_acceleration(record):
+    recording = record(STATE_FEEDBACK)
+    states = true_states(recording, STATE_FEEDBACK)
+    assert recording.q.shape[-1] == 2 and states.shape == (300, 2, 3)
+    assert recording.q.min() > np.deg2rad(-50) and recording.q.max() < np.deg2rad(5)
+    for joint in (0, 1):
+        assert abs(np.corrcoef(states[:, joint, 0], states[:, joint, 2])[0, 1]) < 0.9
+
+
+def test_quintic_rests_at_both_ends_and_in_the_middle():
+    reference = record_quintic(STATE_FEEDBACK, -30.0).reference
+    middle = reference.q[..., 0].argmin()
+    assert np.rad2deg(reference.q[middle]) == pytest.approx([-30, -18])
+    for k in (0, middle, -1):
+        assert np.allclose(reference.qd[k], 0, atol=1e-3)
+        assert np.allclose(reference.qdd[k], 0, atol=0.1)
+    assert np.abs(reference.qd).max() == pytest.approx(np.deg2rad(30) * 1.875 / 1.5, rel=1e-3)
+
+
+def test_the_hand_goes_round_a_circle():
+    recording = record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
+    hand = STATE_FEEDBACK.arm.forward_kinematics(recording.reference.q)[:, -1]
+    centre = STATE_FEEDBACK.arm.forward_kinematics(np.array(NEUTRAL))[-1]
+    assert np.linalg.norm(hand - centre, axis=-1) == pytest.approx(0.02)
+    x = hand[recording.motion, 0] - centre[0]
+    assert (np.diff(np.sign(x[np.abs(x) > 1e-9])) != 0).sum() == 6

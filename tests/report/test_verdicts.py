@@ -1,0 +1,164 @@
+"""How sure a measured value is, and what that makes of a verdict: against closed forms."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from workshop.report.evidence.verdicts import (
+    CONTRADICTS,
+    DECIDED,
+    DRAWS,
+    FEWEST,
+    STANDS,
+    Measured,
+    bootstrap,
+    fresh,
+    mean,
+    median,
+    over_members,
+    shares,
+    stands,
+    turns_at,
+)
+
+
+def test_the_spread_of_a_mean_is_its_standard_error():
+    x = np.random.default_rng(1).normal(size=40)
+    found = bootstrap(mean, x)
+    assert found.shape == (DRAWS,)
+    assert found.std() == pytest.approx(x.std() / np.sqrt(40), rel=0.06)
+    assert found.mean() == pytest.approx(x.mean(), abs=0.01)
+
+
+def test_the_interval_of_a_median_is_that_of_scipy():
+    x = np.random.default_rng(2).gamma(2.0, size=25)
+    other = stats.bootstrap((x,), np.median, axis=-1, n_resamples=9999, method="percentile")
+    found = np.percentile(bootstrap(lambda x: np.median(x, -1), x), [2.5, 97.5])
+    np.testing.assert_allclose(found, other.confidence_interval, rtol=0.1)
+
+
+def test_columns_of_the_same_members_are_drawn_together():
+    x = np.random.default_rng(3).normal(size=30)
+    together = bootstrap(lambda pair: mean(pair[0] - pair[1]), (x, x + 2))
+    assert together == pytest.approx(-2)
+    apart = bootstrap(lambda a, b: mean(a) - mean(b), x, x + 2)
+    assert apart.std() == pytest.approx(np.sqrt(2 / 30) * x.std(), rel=0.06)
+
+
+def test_members_bring_all_that_is_theirs():
+    units = np.repeat(np.arange(5.0)[:, None], 3, axis=1)  # three units a network, all alike
+    found = bootstrap(lambda x: np.ptp(x, axis=-1).max(-1), units)
+    assert (found == 0).all()
+
+
+def test_the_same_seed_draws_the_same():
+    x = np.arange(9.0)
+    assert (bootstrap(mean, x) == bootstrap(mean, x)).all()
+    assert (bootstrap(mean, x, seed=1) != bootstrap(mean, x)).any()
+
+
+def test_value_and_replicates_come_from_one_function():
+    x, y = np.array([1.0, 2.0, 6.0] * 2), np.full(6, 2.0)
+    value, replicates = over_members(lambda a, b: mean(a) / mean(b), x, y)
+    assert value == 1.5
+    assert replicates.shape == (DRAWS,) and 0.5 <= replicates.min() < replicates.max() <= 3
+    value, _ = over_members(lambda pair: mean(pair[0] * pair[1]), (x, y))
+    assert value == 6
+
+
+def test_networks_on_recordings_are_drawn_on_both_levels():
+    """Variance of a mean of means: that of the recordings and that of the networks, each shared."""
+    rng = np.random.default_rng(5)
+    days, networks = 8, 6
+    x = rng.normal(0, 3.0, (days, 1)) + rng.normal(0, 1.0, (days, networks))
+    found = bootstrap(mean, x, nested=True, draws=20_000)
+    within = x.var(axis=1).mean() / (days * networks)
+    between = x.mean(axis=1).var() / days
+    assert found.var() == pytest.approx(between + within, rel=0.05)
+    assert bootstrap(mean, x, draws=20_000).var() == pytest.approx(between, rel=0.05)
+    flat = np.repeat(rng.normal(size=(days, 1)), networks, axis=1)
+    assert (bootstrap(lambda cell: np.ptp(cell, axis=-1).max(-1), flat, nested=True) == 0).all()
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ((mean, (np.ones(3), np.ones(4))), r"same members in a tuple, got \[3, 4\]"),
+        ((mean, np.ones(0)), r"same members in a tuple, got \[0\]"),
+        ((mean, np.ones(FEWEST - 1)), "members must be an integer from 5 and up, got 4"),
+        ((np.mean, np.ones(FEWEST)), r"one number for each of 2000 draws, got shape \(\)"),
+    ],
+)
+def test_bad_arguments(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        bootstrap(*arguments)
+    with pytest.raises(ValueError, match="draws must be an integer from 2000"):
+        bootstrap(mean, np.ones(3), draws=1999)
+
+
+def test_shares_of_draws():
+    found = shares(["qualitative"] * 3 + ["reproduced"] * 7)
+    assert found == {"reproduced": 0.7, "qualitative": 0.3}
+    assert list(found) == ["reproduced", "qualitative"]
+
+
+@pytest.mark.parametrize(
+    "share, wanted",
+    [(1.0, "reproduced"), (DECIDED, "reproduced"), (0.949, "undecided"), (0.5, "undecided")],
+)
+def test_a_verdict_needs_nearly_all_draws(share, wanted):
+    assert fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
+
+
+@pytest.mark.parametrize(
+    "written, share, holds",
+    [
+        ("reproduced", 1.0, True),
+        ("reproduced", STANDS, True),
+        ("reproduced", 0.049, False),
+        ("qualitative", 0.96, False),  # has 4 %
+        ("qualitative", 0.94, True),
+        ("undecided", 0.5, True),
+        ("undecided", 0.999, True),
+        ("undecided", CONTRADICTS, False),
+        ("not reproduced", 0.3, False),  # a planted one
+    ],
+)
+def test_what_a_written_verdict_bears(written, share, holds):
+    assert stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+
+
+def test_how_often_a_new_ensemble_ends_a_verdict():
+    """Two draws of a normal statistic, the first one just decided; numbers in the source."""
+    for limit, wanted in ((STANDS, 1), (0.8, 29)):
+        apart = stats.norm.ppf(limit) - stats.norm.ppf(DECIDED)
+        assert round(float(100 * stats.norm.cdf(apart / np.sqrt(2)))) == wanted
+
+
+def test_every_fresh_verdict_stands():
+    for share in np.linspace(0, 1, 201):
+        found = {"reproduced": share, "not reproduced": 1 - share}
+        assert stands(fresh(found), found)
+
+
+def test_unknown_verdicts_are_refused():
+    with pytest.raises(ValueError, match="written must be one of"):
+        stands("fine", {"reproduced": 1.0})
+
+
+def test_replicates_are_optional():
+    assert Measured(1.0, "text").replicates is None
+
+
+def test_where_a_share_reaches_a_level():
+    values = np.array([1.0, 2.0, 4.0])
+    assert turns_at(values, 0.05 * values, 0.15) == pytest.approx(3.0)
+    assert turns_at(values, 0.4 / values**2, 0.2) == pytest.approx(np.sqrt(2))  # falling
+    with pytest.raises(ValueError, match=r"shares must reach across 0\.5"):
+        turns_at(values, 0.05 * values, 0.5)
+
+
+def test_median_and_mean_take_all_that_is_a_members():
+    x = np.arange(12.0).reshape(1, 3, 4) ** 2
+    assert median(x) == [np.median(x)] and mean(x) == [np.mean(x)]
+    assert median(np.stack([x[0], x[0] + 1])).tolist() == [np.median(x), np.median(x) + 1]

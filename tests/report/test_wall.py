@@ -1,0 +1,176 @@
+"""Claims as tiles and as a wall: what they show against the claims, and where they lead."""
+
+import html
+import re
+
+import numpy as np
+import pytest
+from book_pages import CHAPTERS
+
+from ddlib.tables import typeset
+from workshop.report.evidence import claims, ledger_tables, wall
+from workshop.report.evidence.claims import LEDGER, OWN, SECTIONS, Claim, Printed
+from workshop.report.evidence.verdicts import VERDICTS, Measured
+
+ALL = claims.load()
+ANY = next(claim.measure for claim in ALL if claim.measure)
+
+
+def make(band, printed="no number", draws=None, value=0.5, monkeypatch=None, **changes):
+    fields = {
+        "id": "a", "where": "section 4", "chapter": "verdict", "claim": "c < d", "why": "w",
+        "refuted": "r", "verdict": "reproduced", "measure": ANY, "printed": printed,
+        "band": band, **changes,
+    }  # fmt: skip
+    found = Measured(value, "told", None if draws is None else np.array(draws, float))
+    monkeypatch.setattr(Claim, "measured", lambda self: found)
+    monkeypatch.setattr(wall, "window", lambda claim: None)
+    return Claim(**fields)
+
+
+def tiles(text) -> list[str]:
+    return re.findall(r"<details class=\"claim\".*?</details>", text, re.DOTALL)
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
+    expected = claims.of_section(section)
+    found = tiles(wall.Tiles(expected)._repr_markdown_())
+    assert len(found) == len(expected)
+    for text, claim in zip(found, expected):
+        head, inside = text.split("</summary>")
+        assert f'id="claim-{claim.id}"' in head and f'data-verdict="{claim.judge()}"' in head
+        assert html.escape(typeset(claim.claim), quote=False) in head
+        assert f"<b>{claim.judge()}</b>" in head
+        assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
+        assert typeset(claims.printed(claim)) in inside
+        page = [] if claim.chapter == LEDGER else [claim.chapter]
+        assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
+        file, _, name = claim.measure.rpartition(".")
+        code = f'measures/{file.replace(".", "/")}.html#{name}">code</a>'
+        assert (f'<a href="../_modules/book/workshop/report/evidence/{code}' in inside) == bool(
+            claim.measure
+        )
+
+
+@pytest.mark.parametrize(
+    "where, expected",
+    [
+        ("section 7.1", "7.1. Future Work"),
+        ("section 7", ""),
+        ("Abstract", ""),
+        ("Appendix I", ""),
+        ("Table 4-1", "Table 4-1"),
+        ("Figure 5-6", "Figure 5-6"),
+        ("section 4, footnote", ""),
+    ],
+)
+def test_parts_of_a_section(where, expected, monkeypatch):
+    claim = make({"to": 1}, monkeypatch=monkeypatch, where=where)
+    assert wall.part(claim) == expected
+
+
+def test_every_subsection_that_is_named_is_one_of_a_claim():
+    assert {wall.part(claim)[:3] for claim in ALL} >= set(wall.PARTS)
+
+
+def test_measured_at_one_window_and_said_so():
+    for text, claim in zip(tiles(wall.Tiles(ALL)._repr_markdown_()), ALL, strict=True):
+        if width := ledger_tables.window(claim):
+            assert re.search(rf"\b{width}\b", text), claim.id
+
+
+def test_signs_differ_and_lead_to_tiles():
+    assert len(set(wall.MARKS.values())) == len(VERDICTS) == len(wall.MARKS)
+    of_the_paper = claims.of_the_paper()
+    text = wall.Wall(of_the_paper)._repr_markdown_()
+    known = {claim.id: claim for claim in of_the_paper}
+    squares = re.findall(r'<a href="#claim-(.*?)" title="(.*?)">(.*?)</a>', text)
+    assert sorted(name for name, *_ in squares) == sorted(known)
+    for name, title, sign in squares:
+        verdict = known[name].judge()
+        assert title.startswith(f"{verdict}: ") and wall.MARKS[verdict] in sign
+    for name in VERDICTS:
+        assert f"{wall.mark(name)} {name}" in text.split("wall-legend")[1]
+
+
+def test_tiles_of_a_chapter_lead_to_the_ledger():
+    chapter = CHAPTERS[0].removeprefix("book/")
+    mine = claims.of_chapter(chapter)
+    found = tiles(wall.chapter_tiles(chapter)._repr_markdown_())
+    for text, claim in zip(found, mine, strict=True):
+        assert f"]({chapter}.ipynb)" not in text
+        counted = claim.printed != OWN and not claim.arm
+        assert (f"ledger.html#claim-{claim.id}" in text) == counted
+
+
+def parts(text) -> dict[str, tuple]:
+    found = re.findall(r'<i class="(\w+)" style="left:([\d.]+)%(?:;width:([\d.]+)%)?">', text)
+    return {name: (float(left), float(wide or 0)) for name, left, wide in found}
+
+
+def test_the_picture_of_the_draws(monkeypatch):
+    draws = np.linspace(0.2, 0.4, 2001)
+    claim = make({"from": 0.1, "to": 0.5}, Printed("0.30"), draws, monkeypatch=monkeypatch)
+    text = wall.draws(claim)
+    found = parts(text)
+    assert found["median"][0] == pytest.approx(50, abs=0.1)
+    assert found["printed"][0] == pytest.approx(50, abs=0.1)
+    scale = (found["band"][1]) / (0.5 - 0.1)  # per cent for a unit of the value
+    assert found["draws"][1] == pytest.approx(scale * 0.95 * 0.2, abs=0.2)
+    assert found["band"][0] == pytest.approx(100 - sum(found["band"]), abs=0.2)
+    assert "from 0.205 to 0.395, median 0.300; reproduced from 0.100 to 0.500; printed 0.30" in text
+
+
+def test_a_band_that_is_open_fills_its_side(monkeypatch):
+    draws = np.linspace(1.0, 2.0, 50)
+    text = wall.draws(make({"to": 1.5}, draws=draws, monkeypatch=monkeypatch))
+    left, width = parts(text)["band"]
+    assert left == 0 and 40 < width < 60 and "reproduced up to 1.50" in text
+    text = wall.draws(make({"from": 1.5}, draws=draws, monkeypatch=monkeypatch))
+    left, width = parts(text)["band"]
+    assert left + width == pytest.approx(100, abs=0.2) and "reproduced from 1.50" in text
+
+
+def test_values_that_span_decades_have_a_logarithmic_scale(monkeypatch):
+    draws = np.geomspace(0.01, 100, 2001)
+    found = parts(wall.draws(make({"to": 1.0}, draws=draws, monkeypatch=monkeypatch)))
+    assert found["median"][0] == pytest.approx(50, abs=0.5)
+    assert sum(found["band"]) == pytest.approx(50, abs=0.5)
+
+
+def test_a_band_by_factor(monkeypatch):
+    draws = np.linspace(9.0, 11.0, 50)
+    claim = make({"factor": 2}, Printed("10"), draws, monkeypatch=monkeypatch)
+    assert "reproduced from 5.00 to 20.0" in wall.draws(claim)
+
+
+@pytest.mark.parametrize("draws, band", [(None, {"to": 1}), ([True] * 50, {"is": True})])
+def test_no_picture_without_draws_or_range(monkeypatch, draws, band):
+    assert wall.draws(make(band, draws=draws, monkeypatch=monkeypatch)) == ""
+
+
+def test_draws_that_are_all_alike_have_a_picture(monkeypatch):
+    for value in (0.0, 3.0):
+        text = wall.draws(make({"to": value}, draws=[value] * 50, monkeypatch=monkeypatch))
+        assert parts(text)["median"][0] == pytest.approx(50)
+
+
+def test_text_is_escaped(monkeypatch):
+    claim = make({"to": 1}, monkeypatch=monkeypatch)
+    assert "c &lt; d" in wall.Tiles([claim])._repr_markdown_()
+
+
+@pytest.mark.parametrize(
+    "verdict, head",
+    [
+        ("reproduced", "What would have refuted it"),
+        ("undecided", "What would have refuted it"),
+        ("not reproduced", "What would have supported it"),
+        ("by construction", "Why nothing could have refuted it"),
+    ],
+)
+def test_what_would_have_changed_the_verdict(monkeypatch, verdict, head):
+    claim = make({"to": 1}, monkeypatch=monkeypatch, verdict=verdict)
+    monkeypatch.setattr(Claim, "judge", lambda self: verdict)
+    assert f"*{head}:* r" in wall.Tiles([claim])._repr_markdown_()
