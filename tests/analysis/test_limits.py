@@ -98,7 +98,7 @@ ROWS = [
     ("period", lambda x: delays.late_poles(JOINTS, GAIN, x, 0.0), [1e-3], [0.0]),
     ("late", lambda x: delays.late_poles(JOINTS, GAIN, 2e-3, x), [0.0, 9e-3], [JUST_BELOW]),
     ("gain", lambda x: delays.late_poles(JOINTS, x, 2e-3, 0.0), [GAIN], [GAIN[:, :3]]),
-    ("links", derivation.derive, [1], [0, derivation.MAX_LINKS + 1, 1.0]),
+    ("links", derivation.derive, [1], [0, 7, 1.0]),
     ("step", real_arm.Quantisation, [1e-9, 0.5], [0.0]),
     ("periods", real_arm.Delay, [0, 1], [-1, 1.0]),
     ("members", lambda x: setups.train_windows(
