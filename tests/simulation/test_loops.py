@@ -5,7 +5,7 @@ import pytest
 
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.effects import CoulombFriction, Effects, StickSlipFriction, ViscousFriction
+from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import KD, KP
 from ddlib.simulation import (
     Load,
@@ -37,7 +37,7 @@ def still(t, posture=(0.0, 0.0)):
 
 
 @pytest.mark.parametrize("joint", [0, 1])
-@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.3, -1.0), (0.0, 1.6)])
+@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.3, -1.0)])
 @pytest.mark.parametrize("law", [PD, PID(KP, KI, KD)], ids=["PD", "PID"])
 def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
     options = {"viscous": VISCOUS, "posture": posture, "joint": joint}
@@ -77,49 +77,6 @@ def test_prediction_and_simulation_agree_for_a_ringing_loop():
     assert simulated.overshoot == pytest.approx(predicted.overshoot, rel=0.05)
     assert simulated.compliance == pytest.approx(predicted.compliance, rel=0.05)
     assert predicted.overshoot > 0.8 and np.isnan(simulated.bandwidth)
-
-
-def test_agreement_has_its_limits():
-    """Bent arms swing away from where they were linearised; dry friction is not linear at all."""
-    options = {"viscous": VISCOUS, "posture": (0.0, 1.6), "joint": 1}
-    predicted = predicted_response(ARM, PD, **options)
-    far = simulated_response(ARM, PD, step_deg=120, seconds=3.0, **options)
-    assert abs(far.overshoot / predicted.overshoot - 1) > 0.1
-    dry = Effects(friction=(CoulombFriction((0.5, 0.15)),))
-    tiny = simulated_response(ARM, PD, step_deg=0.1, seconds=3.0, effects=dry, **options)
-    assert tiny.overshoot < 0.1 * predicted.overshoot
-
-
-def test_the_load_is_what_would_displace_the_spring_by_the_step():
-    """A joint that sticks is held back by up to its breakaway torque, and no weaker load moves it.
-
-    So the size of the load shows, though the compliance is per torque.
-    """
-    sticky = Effects(friction=(StickSlipFriction((0.5, 0.15), (0.65, 0.2)),))
-    push = KP[0] * np.deg2rad(1.0)
-    found = simulated_response(ARM, PD, viscous=VISCOUS, seconds=4.0, effects=sticky)
-    assert 0.01 < abs(found.compliance * KP[0] - 1) < 0.65 / push < 0.15
-    less = np.rad2deg(0.9 * 0.65 / KP[0])
-    with np.errstate(divide="ignore"):  # of what does not move at all
-        held = simulated_response(
-            ARM, PD, viscous=VISCOUS, seconds=4.0, effects=sticky, step_deg=less
-        )
-    assert held.compliance == 0
-
-
-def test_gain_raises_bandwidth_and_lowers_compliance():
-    soft, hard = (
-        predicted_response(ARM, pd(n * np.array(KP), KD), viscous=VISCOUS) for n in (1, 2)
-    )
-    assert hard.bandwidth > soft.bandwidth
-    assert hard.compliance == pytest.approx(soft.compliance / 2)
-
-
-def test_load_displaces_a_spring():
-    t = np.arange(5000) * 0.002
-    effects = Effects(friction=(ViscousFriction(VISCOUS),), actuator=(Load((3.0, -0.9)),))
-    q = follow(ARM, PD, still(t), t, effects=effects).q_true[-1]
-    np.testing.assert_allclose(q, np.array([3.0, -0.9]) / KP, rtol=1e-6)
 
 
 # --- the second-order model -----------------------------------------------------------
@@ -187,19 +144,6 @@ def test_interconnected_system_has_the_figures_blocks():
     np.testing.assert_allclose(rate, [-0.3, 0.2, *ARM.forward_dynamics(x[:2], x[2:], left)])
 
 
-def test_gravity_belongs_to_the_system_too():
-    """A vertical arm, held by a perfect model, stays."""
-    t = np.arange(100) * 0.01
-    posture = (0.5, 0.3)
-    arm = REYES_KELLY_ARM
-    held = run_system(feedforward_system(arm, arm, KP, KD), still(t, posture), t)
-    np.testing.assert_allclose(held.q, still(t, posture).q, atol=1e-6)
-    free = run_system(
-        feedforward_system(arm, lambda q, qd, qdd: 0 * q, KP, KD), still(t, posture), t
-    )
-    assert np.abs(free.q - posture).max() > 0.01
-
-
 # --- references and scores ------------------------------------------------------------
 
 
@@ -222,19 +166,6 @@ def test_scores_of_a_made_up_recording():
     assert result.turn.shape == (2,)
 
 
-def test_a_score_goes_by_the_motion_of_the_recording():
-    t = np.arange(-50, 800) * 0.002
-    quick = pick_and_place(APPENDIX_I[:2], t, 3 / 2.5)
-    made = follow(ARM, PD, quick, t)
-    by_itself, told = score(ARM, made), score(ARM, made, 1.2)
-    for value, other in zip(told, by_itself, strict=True):
-        np.testing.assert_array_equal(value, other)
-    usual = score(ARM, record(ARM, PD, APPENDIX_I[:2]))
-    whole = score(ARM, record(ARM, PD, APPENDIX_I[:2]), 3.0)
-    for value, other in zip(usual, whole, strict=True):
-        np.testing.assert_array_equal(value, other)
-
-
 def test_a_system_may_start_anywhere_and_moving():
     t = np.arange(100) * 0.01
     start = np.array([[0.3, -0.2], [0.5, 1.0]])
@@ -244,9 +175,6 @@ def test_a_system_may_start_anywhere_and_moving():
     np.testing.assert_allclose(made.q_true, q, atol=1e-4)
     np.testing.assert_allclose(made.qd_true, qd, atol=1e-4)
     assert made.control_step == 0.0
-
-
-# --- refusals -------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("speed", [1.0, 2.5])
@@ -265,25 +193,19 @@ def test_the_smooth_motion_goes_out_and_back_without_a_jump(speed):
     assert steps < 2 * np.abs(motion.qdd).max() * (t[1] - t[0])  # continuous at both ends
 
 
-@pytest.mark.parametrize(
-    "call, name",
-    [
-        (lambda: Load((1.0, np.nan)), "torque"),
-        (lambda: SecondOrderModel(ARM, (0.0,)), "posture"),
-        (lambda: SecondOrderModel(ARM, viscous=(-1.0, 0.0)), "viscous"),
-        (lambda: predicted_response(ARM, PD, viscous=VISCOUS, joint=2), "joint"),
-        (lambda: predicted_response(ARM, PD, viscous=(-1, 0)), "viscous"),
-        (lambda: simulated_response(ARM, PD, viscous=VISCOUS, joint=2), "joint"),
-        (lambda: simulated_response(ARM, PD, viscous=VISCOUS, step_deg=0), "step_deg"),
-        (lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD), "kp"),
-        (lambda: feedforward_system(ARM, ARM, KP, (-1, 0)), "kd"),
-        (lambda: smooth_pick_and_place(APPENDIX_I[0], [0.0, 0.1], 0), "speed"),
-        (lambda: smooth_pick_and_place([1, 2, 3], [0.0, 0.1]), "extents_deg"),
-        (lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0), "seconds"),
-        (lambda: run_system(SYSTEM, still(np.zeros(3)), [0.0, 0.1]), "reference"),
-        (lambda: run_system(SYSTEM, still(np.zeros(2)), [0.0, 0.1], [1.0, 2.0]), "start"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(call, name):
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        call()
+def test_refusals():
+    short = [0.0, 0.1]
+    for name, call in (
+        ("torque", lambda: Load((1.0, np.nan))),
+        ("posture", lambda: SecondOrderModel(ARM, (0.0,))),
+        ("viscous", lambda: predicted_response(ARM, PD, viscous=(-1, 0))),
+        ("joint", lambda: simulated_response(ARM, PD, viscous=VISCOUS, joint=2)),
+        ("step_deg", lambda: simulated_response(ARM, PD, viscous=VISCOUS, step_deg=0)),
+        ("kp", lambda: feedforward_system(ARM, ARM, (1, 2, 3), KD)),
+        ("speed", lambda: smooth_pick_and_place(APPENDIX_I[0], short, 0)),
+        ("seconds", lambda: score(ARM, record(ARM, PD, APPENDIX_I[0]), 0)),
+        ("reference", lambda: run_system(SYSTEM, still(np.zeros(3)), short)),
+        ("start", lambda: run_system(SYSTEM, still(np.zeros(2)), short, [1.0, 2.0])),
+    ):
+        with pytest.raises(ValueError, match=rf"^{name} must"):
+            call()

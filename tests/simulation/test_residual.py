@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddlib.control import pd
-from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
+from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import (
     ComputingTime,
     CoulombFriction,
@@ -17,7 +17,7 @@ from ddlib.effects import (
     ViscousFriction,
 )
 from ddlib.setups import KD, KP
-from ddlib.simulation import CONTROL_STEP, record, residual_torque, rms
+from ddlib.simulation import CONTROL_STEP, record, residual_torque
 from ddlib.trajectories import APPENDIX_I
 
 ARM = CMU_DD_ARM_II
@@ -25,13 +25,6 @@ ARM = CMU_DD_ARM_II
 
 def drive(arm=ARM, log_step=CONTROL_STEP, **parts):
     return record(arm, pd(KP, KD), APPENDIX_I[5], effects=Effects(**parts), log_step=log_step)
-
-
-@pytest.mark.parametrize("arm", [ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
-def test_a_rigid_arm_leaves_nothing(arm):
-    residual = residual_torque(arm, drive(arm))
-    assert residual.shape == (1999, 2)
-    assert np.abs(residual).max() < (2e-6 if arm is ARM else 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -79,11 +72,6 @@ def test_a_springy_shaft_leaves_the_snap_of_the_motion():
     assert np.abs(left[smooth]).max() > 2e-3
 
 
-def test_samples_must_not_be_left_out():
-    with pytest.raises(ValueError, match=r"recording must be logged every 0\.002 s"):
-        residual_torque(ARM, drive(log_step=0.01))
-
-
 @pytest.mark.parametrize("period", [0.001, 0.004])
 def test_any_control_period_will_do_and_no_other_log(period):
     options = dict(control_step=period, duration=2.0, rest=0.4)
@@ -91,23 +79,12 @@ def test_any_control_period_will_do_and_no_other_log(period):
     assert np.abs(residual_torque(ARM, made)).max() < 2e-6 * (period / CONTROL_STEP) ** 2 * 10
     with pytest.raises(ValueError, match=rf"must be logged every {period:g} s.*got 0\.008 s"):
         residual_torque(ARM, record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=0.008, **options))
+    with pytest.raises(ValueError, match="recording must have a control_step above 0"):
+        residual_torque(ARM, replace(made, control_step=None))
 
 
-@pytest.mark.parametrize("late", [0.0005, 0.0012, 0.0019])
-def test_a_rigid_arm_with_a_late_torque_leaves_nothing(late):
-    made = drive(actuator=(ComputingTime(late),))
+def test_a_rigid_arm_with_a_late_torque_leaves_nothing():
+    made = drive(actuator=(ComputingTime(0.0012),))
     assert np.abs(np.diff(made.tau_true, axis=0)).max() > 1
     assert np.abs(residual_torque(ARM, made)).max() < 5e-3
     assert np.abs(residual_torque(ARM, replace(made, computing_time=0.0))).max() > 1
-
-
-@pytest.mark.parametrize("held", [None, 0.0])
-def test_a_torque_that_is_not_known_to_be_held_is_refused(held):
-    made = replace(drive(), control_step=held)
-    with pytest.raises(ValueError, match="recording must have a control_step above 0"):
-        residual_torque(ARM, made)
-
-
-def test_rms():
-    np.testing.assert_allclose(rms([[3.0, 0.0], [-4.0, 2.0]]), np.sqrt([12.5, 2.0]))
-    assert rms([3.0, -4.0], axis=0) == pytest.approx(np.sqrt(12.5))

@@ -14,6 +14,7 @@ from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, PUMA_560, REYES_KELLY_ARM, Ar
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
+    ComputingTime,
     CoulombFriction,
     Effects,
     Noise,
@@ -327,11 +328,16 @@ def test_follow_refuses_bad_values():
         ),
         *((f"^{words}", dict(start=start)) for words, start in starts.items()),
         ("log_every", dict(log_every=0)),
+        ("computing time below the control", dict(effects=Effects(actuator=(ComputingTime(0.1),)))),
+        *(("seed must", dict(effects=SENSORS, seed=bad)) for bad in ([0, 1], [0, -1, 2])),
     ]
     refused(follow, good, cases)
     cases = [
         ("log_every", dict(log_every=5.0)),
-        ("seed", dict(seed=None)),
+        *(
+            ("seed must", dict(effects=SENSORS, seed=bad))
+            for bad in (None, "many", [0.0, 1.0, 2.0])
+        ),
         ("controller must have a start method or be a function", dict(controller="PD")),
         ("arm must be an Arm, which has two joints, .* got SerialArm", dict(arm=PUMA_560)),
         (r"effects must be Effects with .* got ViscousFriction", dict(effects=FRICTION[0])),
