@@ -1,13 +1,7 @@
 from .base import (
     SCRIPT as SCRIPT,
-)
-from .base import (
     STYLE as STYLE,
-)
-from .base import (
     CurveWidget as CurveWidget,
-)
-from .base import (
     module as module,
 )
 from .engine.builder import (
@@ -15,8 +9,6 @@ from .engine.builder import (
 )
 from .engine.sentence import (
     LoopSentence as LoopSentence,
-)
-from .engine.sentence import (
     TorqueSentence as TorqueSentence,
 )
 from .engine.throw import (
@@ -30,20 +22,12 @@ from .explorer import (
 )
 from .parts.panels import (
     Mark as Mark,
-)
-from .parts.panels import (
     Pad as Pad,
-)
-from .parts.panels import (
     Panel as Panel,
-)
-from .parts.panels import (
     Scalar as Scalar,
 )
 from .parts.parameters import (
     Choice as Choice,
-)
-from .parts.parameters import (
     Parameter as Parameter,
 )
 from .picker import (

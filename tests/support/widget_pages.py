@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import base64
 import copy
 import json
 import re
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 from ipywidgets.embed import embed_data
+
+from ddlib.widgets import module
+from ddlib.widgets.engine import plain
 
 ROOT = Path(__file__).resolve().parents[2]
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
@@ -32,6 +37,91 @@ READ = r"""(panel) => {
 logarithmic axes of powers."""
 
 NEXT_FRAME = "() => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))"
+
+
+CALM = {"reduced_motion": "reduce"}
+
+
+@contextmanager
+def functions(browser, *scripts):
+    """`call(function, argument)`: a JavaScript function beside the engine's and the scripts'."""
+    page = browser.new_page()
+    script = module(*plain.ENGINE, plain.TRAINING, *scripts)
+    page.add_script_tag(content=script.replace("export default", "void"))
+    yield page.evaluate
+    page.close()
+
+
+class Finger:
+    """A touch, sent to the browser as a screen would."""
+
+    def __init__(self, page):
+        self.page, self.client = page, page.context.new_cdp_session(page)
+
+    def send(self, kind, *points):
+        where = [{"x": x, "y": y} for x, y in points]
+        self.client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": where})
+
+    def swipe(self, x, y, dx, dy):
+        self.hold(x, y, dx, dy)
+        self.send("touchEnd")
+        self.page.evaluate(NEXT_FRAME)
+
+    def hold(self, x, y, dx, dy):
+        self.send("touchStart", (x, y))
+        for part in range(1, 11):
+            self.send("touchMove", (x + dx * part / 10, y + dy * part / 10))
+            self.page.wait_for_timeout(20)
+
+
+@contextmanager
+def phone(browser, url, **options):
+    """The address on a phone, with its widgets drawn."""
+    size = {"width": 390, "height": 700}
+    context = browser.new_context(viewport=size, has_touch=True, is_mobile=True, **options)
+    page = context.new_page()
+    page.goto(url)
+    page.wait_for_selector(".ddlib-widget")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    yield page
+    context.close()
+
+
+def drag(page, box, *places):
+    """With the mouse, through places in parts of a box's width and height."""
+    points = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
+    page.mouse.move(*points[0])
+    page.mouse.down()
+    for point in points[1:]:
+        page.mouse.move(*point, steps=4)
+    page.mouse.up()
+    page.evaluate(NEXT_FRAME)
+
+
+def copied(page, name="Code") -> str:
+    """What a widget's button copies."""
+    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
+    page.get_by_role("button", name=name).first.click()
+    page.wait_for_function("window.copied")
+    return page.evaluate("window.copied")
+
+
+def cut(name, count):
+    """Damage: a buffer that ends too early."""
+
+    def damage(entry):
+        where = next(b for b in entry["buffers"] if b["path"] == [name])
+        where["data"] = base64.b64encode(base64.b64decode(where["data"])[:-count]).decode()
+
+    return damage
+
+
+def alerts(tmp_path, visit, widget, *damages) -> list[str]:
+    """What a page says of damaged copies of a widget that it shows, too."""
+    opened = visit(page_of(tmp_path / "page.html", widget, damages=damages))
+    assert opened.page.locator(".ddlib-curves").count() == 1 and not opened.problems
+    return opened.page.locator("[role=alert]:visible").all_inner_texts()
 
 
 def settings(widget, n, seed=1):

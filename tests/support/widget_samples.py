@@ -48,11 +48,6 @@ def wave(gain, shape, twice, bits):
     return {"y": y, "taps": coarse, "share": np.abs(y[:3]), "from": 0.1 * gain, "to": 0.5}
 
 
-def many_waves(gain, shape, twice, bits):
-    rows = [wave(*values) for values in zip(gain, shape, twice, bits)]
-    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
-
-
 def options():
     return [
         Parameter("gain", "Gain", 1, 5, 2, "N m", 3),
@@ -73,7 +68,7 @@ def kinds():
 
 def make_kinds(**changes):
     scalars = [Scalar("from", "Begin", "s", digits=1)]
-    given = {"alt": "Waves", "many": many_waves, "note": "A note.", "scalars": scalars, **changes}
+    given = {"alt": "Waves", "note": "A note.", "scalars": scalars, **changes}
     # rounding makes steps in the gain, which no smooth curve follows
     return CurveWidget(wave, options(), kinds(), tolerance=0.05, **given)
 

@@ -1,4 +1,4 @@
-"""Tables of curves: interpolation, choices, many settings at once, dependencies."""
+"""Tables of curves: interpolation, choices, dependencies."""
 
 from __future__ import annotations
 
@@ -6,32 +6,14 @@ import re
 
 import numpy as np
 import pytest
-from ddlib.widgets.baking.sampled import Sampled, evaluate
+from scipy.interpolate import CubicSpline
 from traitlets import TraitError
 from widget_pages import settings
-from widget_samples import (
-    DEPENDS,
-    T,
-    axes,
-    make,
-    make_kinds,
-    many_waves,
-    options,
-    oscillation,
-    parameters,
-    parts,
-    wave,
-)
+from widget_samples import DEPENDS, T, axes, make, make_kinds, oscillation, parameters, parts, wave
 
 from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter
 from ddlib.widgets.baking.baked import MAX_BYTES, MAX_VALUES, Baked
 from ddlib.widgets.baking.compress import SHARE
-
-
-@pytest.fixture(scope="module")
-def widget():
-    """For tests that leave it as it is."""
-    return make()
 
 
 @pytest.fixture(scope="module")
@@ -43,19 +25,12 @@ def waves():
 # Interpolation
 
 
-@pytest.mark.parametrize("name", ["widget", "waves"])
-def test_interpolation_is_within_what_the_widget_states(name, request):
-    widget = request.getfixturevalue(name)
-    assert widget.interpolation_error(200, seed=0) == widget.spec["error"]
-    assert widget.interpolation_error(300, seed=5) < 2 * widget.spec["error"]
-    assert widget.baked_bytes == len(widget.baked) <= MAX_BYTES
-
-
-def test_smooth_curves_come_out_within_one_percent(widget):
+def test_interpolation_is_within_what_the_widget_states(waves):
+    widget = make()
+    for each in (widget, waves):
+        assert each.interpolation_error(200, seed=0) == each.spec["error"]
+        assert each.interpolation_error(300, seed=5) < 2 * each.spec["error"]
     assert widget.interpolation_error(400, seed=2) <= 0.01
-
-
-def test_error_is_the_largest_deviation_of_any_curve(widget):
     width = {c["name"]: c["high"] - c["low"] or 2.5 for c in widget.spec["curves"]}
     worst = 0.0
     for values in settings(widget, 50, seed=3):
@@ -65,9 +40,8 @@ def test_error_is_the_largest_deviation_of_any_curve(widget):
     assert worst == pytest.approx(widget.interpolation_error(50, seed=3))
 
 
-@pytest.mark.parametrize("cubic", [True, False])
-def test_grid_points_come_back_within_the_share_of_the_tolerance(cubic):
-    baked = Baked(oscillation, parameters(4), cubic, tolerance=0.002)
+def test_grid_points_come_back_within_the_share_of_the_tolerance():
+    baked = Baked(oscillation, parameters(4), tolerance=0.002)
     assert baked.tables[0].rank > 0
     for gain in parameters()[0].points()[::4]:
         for decay in parameters(4)[1].points():
@@ -81,52 +55,30 @@ def test_grid_points_come_back_within_the_share_of_the_tolerance(cubic):
 
 
 def test_without_components_grid_points_come_back_within_half_a_step():
-    axis = [Parameter("a", "a", 0, 1, 0, grid=9)]
     noise = np.random.default_rng(0).normal(size=(9, 4))
-    baked = Baked(lambda a: {"y": noise[round(8 * a)]}, axis, cubic=False)
+    baked = Baked(lambda a: {"y": noise[a]}, [Choice("a", "a", range(9), 0)])
     assert baked.tables[0].rank == 0 and baked.tables[0].table.shape == (9, 4)
-    step = np.ptp(noise) / 65534
     for k in range(9):
-        got = baked.interpolate(a=k / 8)["y"]
-        np.testing.assert_allclose(got, noise[k], atol=0.51 * step)
-
-
-def test_splines_are_exact_for_cubics_and_linear_for_lines():
-    axes = [Parameter("a", "a", -1, 3, 0, grid=5), Parameter("b", "b", 0, 1, 0, grid=4)]
-    cubic = Baked(lambda a, b: {"y": [a**3 - 3 * a * b + b**3, 1.0]}, axes, tolerance=1e-4)
-    assert cubic.error(100) < 3e-5
-    line = Baked(lambda a, b: {"y": 2 * a - b + a * b}, axes, cubic=False)
-    assert line.error(100) < 3e-5
+        got = baked.interpolate(a=k)["y"]
+        np.testing.assert_allclose(got, noise[k], atol=0.51 * np.ptp(noise) / 65534)
 
 
 @pytest.mark.parametrize("grid, degree", [(2, 1), (3, 2), (4, 3), (9, 3)])
 def test_few_points_make_a_polynomial_of_their_degree(grid, degree):
     axis = [Parameter("a", "a", 1, 3, 2, grid=grid)]
-    exact = Baked(lambda a: {"y": a**degree}, axis, tolerance=1e-4)
-    assert exact.error(50) < 3e-5
-    more = Baked(lambda a: {"y": a ** (degree + 1)}, axis, tolerance=1e-4)
-    assert more.error(50) > 3e-5
+    assert Baked(lambda a: {"y": a**degree}, axis, tolerance=1e-4).error(50) < 3e-5
+    assert Baked(lambda a: {"y": a ** (degree + 1)}, axis, tolerance=1e-4).error(50) > 3e-5
 
 
 def test_spline_is_scipys_not_a_knot():
-    from scipy.interpolate import CubicSpline
-
     axis = Parameter("a", "a", 0, 3, 0, grid=7)
     spline = CubicSpline(axis.points(), np.exp(axis.points()), bc_type="not-a-knot")
     ours = Baked(lambda a: {"y": np.exp(a)}, [axis], tolerance=1e-5)
     for a in np.linspace(0, 3, 40):
         assert ours.interpolate(a=a)["y"][0] == pytest.approx(spline(a), abs=2e-3)
-
-
-def test_crowded_points_lie_denser_at_the_low_end():
-    axis = Parameter("a", "a", 1, 5, 2, grid=5, crowd=2)
-    np.testing.assert_allclose(axis.points(), [1, 1.25, 2, 3.25, 5])
-    assert axis.place(0.5) == 3  # the slider does not crowd
-    even, crowded = (
-        Baked(lambda a: {"y": np.sqrt(a)}, [Parameter("a", "a", 0, 1, 0, grid=9, crowd=c)])
-        for c in (1, 2)
-    )
-    assert crowded.error(200) < 0.01 < even.error(200)
+    both = [Parameter("a", "a", -1, 3, 0, grid=5), Parameter("b", "b", 0, 1, 0, grid=4)]
+    cubic = Baked(lambda a, b: {"y": [a**3 - 3 * a * b + b**3, 1.0]}, both, tolerance=1e-4)
+    assert cubic.error(100) < 3e-5
 
 
 def test_components_make_the_table_smaller():
@@ -141,11 +93,7 @@ def test_faint_components_take_one_byte():
     axis = [Parameter("a", "a", 0, 3, 0, grid=200)]
     x = np.linspace(0, 1, 300)
     sines = np.sin(np.outer(np.arange(40), x + 0.1)) / (1 + np.arange(40)[:, None]) ** 1.5
-
-    def function(a):
-        return {"y": np.sin(np.arange(40) * a) @ sines}
-
-    baked = Baked(function, axis, tolerance=0.01)
+    baked = Baked(lambda a: {"y": np.sin(np.arange(40) * a) @ sines}, axis, tolerance=0.01)
     (table,) = baked.tables
     assert 0 < table.wide < table.rank
     for narrow in (table.table[:, table.wide :], table.shapes[table.wide :]):
@@ -178,23 +126,17 @@ def test_choice_is_a_trait_that_holds_the_key():
     assert widget.answer == {"request": 4, "values": [2.0, "cosine", True, 3]}
 
 
-WRONG = {
-    "bits": [4, True, np.nan, "3", [3], None],
-    "shape": ["Sine", 0],
-    "twice": [1, "on", None],
-}
-
-
-@pytest.mark.parametrize("name, bad", [(name, bad) for name in WRONG for bad in WRONG[name]])
-def test_wrong_keys_name_choice_value_and_options(name, bad, waves):
-    widget = waves
-    known = {"bits": "3, 5, 8", "shape": "'sine', 'cosine'", "twice": "False, True"}[name]
-    message = re.escape(f"{name} must be one of {known}, got {bad!r}")
-    with pytest.raises(TraitError, match=message):
-        setattr(widget, name, bad)
-    assert widget.values == {"gain": 2.0, "shape": "sine", "twice": False, "bits": 5}
-    with pytest.raises(ValueError, match=message):
-        widget.interpolate(**{name: bad})
+def test_wrong_keys_name_choice_value_and_options(waves):
+    known = {"bits": "3, 5, 8", "shape": "'sine', 'cosine'", "twice": "False, True"}
+    wrong = {"bits": [4, True, np.nan, "3", [3], None], "shape": ["Sine", 0], "twice": [1, "on"]}
+    for name, values in wrong.items():
+        for bad in values:
+            message = re.escape(f"{name} must be one of {known[name]}, got {bad!r}")
+            with pytest.raises(TraitError, match=message):
+                setattr(waves, name, bad)
+            with pytest.raises(ValueError, match=message):
+                waves.interpolate(**{name: bad})
+    assert waves.values == {"gain": 2.0, "shape": "sine", "twice": False, "bits": 5}
 
 
 def test_options_given_as_a_sequence_have_their_texts_as_labels():
@@ -224,60 +166,6 @@ def test_bad_choices(changes, error, message):
         Choice(**given)
 
 
-def test_a_pad_takes_quantities_only():
-    with pytest.raises(ValueError, match="parameter of the pad must be one of 'gain', got 'bits'"):
-        make_kinds(pad=Pad("gain", "bits"))
-
-
-# Many settings at once
-
-
-def test_many_gives_the_same_table():
-    slow = Baked(wave, options(), tolerance=0.05)
-    fast = Baked(wave, options(), many=many_waves, tolerance=0.05)
-    assert slow.tobytes() == fast.tobytes() and slow.error(40) == fast.error(40)
-
-
-def test_many_is_called_in_blocks(monkeypatch):
-    sizes = []
-
-    def many(gain, **others):
-        sizes.append(len(gain))
-        return many_waves(gain, **others)
-
-    monkeypatch.setattr("ddlib.widgets.baking.sampled.BLOCK", 20)
-    Baked(wave, options(), many=many, tolerance=0.05)
-    assert sizes == [20, 16]
-
-
-@pytest.mark.parametrize(
-    "wrong, message",
-    [
-        (lambda r: {**r, "y": r["y"] * 1.01}, "many must return what function returns, got y off"),
-        (lambda r: {**r, "y": r["y"].T}, "y of many must have shape"),
-        (lambda r: {**r, "to": r["to"][:-1]}, "to of many must have shape"),
-        (lambda r: {"y": r["y"]}, "many must return curves named"),
-        (lambda r: {**r, "y": r["y"] * np.nan}, "y must be finite"),
-        (lambda r: list(r), "many must return curves named"),
-    ],
-)
-def test_a_wrong_many_is_refused(wrong, message):
-    with pytest.raises(ValueError, match=message):
-        Baked(wave, options(), many=lambda **v: wrong(many_waves(**v)), tolerance=0.05)
-
-
-def test_arrays_keep_the_kind_of_their_keys():
-    seen = {}
-    kinds = [Choice("t", "t", ["a", "b"], "a"), Choice("m", "m", ["a", 2], 2)]
-
-    def many(t, m):
-        seen.update(t=t, m=m)
-        return {"y": np.zeros(len(t))}
-
-    Baked(lambda t, m: {"y": 0.0}, kinds, many=many)
-    assert seen["t"].dtype.kind == "U" and list(seen["m"]) == ["a", 2, "a", 2]
-
-
 # Curves that depend on some parameters only
 
 
@@ -291,29 +179,16 @@ def test_curves_of_fewer_parameters_have_their_own_tables():
     assert len(baked.tobytes()) < len(Baked(parts, axes()).tobytes())
     got = baked.interpolate(a=0.3, b=1.7, k=5)
     assert list(got) == ["a", "all", "k", "c"] and got["k"] == pytest.approx([5, 5], abs=1e-3)
-
-
-def test_a_wrong_dependency_shows_in_the_error():
     assert Baked(parts, axes(), depends={**DEPENDS, "all": ["a"]}).error(100) > 0.1
-
-
-@pytest.mark.parametrize("bad", [{"z": ["a"]}, {"a": ["z"]}])
-def test_unknown_names_in_depends(bad):
-    with pytest.raises(ValueError, match=r"(in|of) depends"):
-        Baked(parts, axes(), depends=bad)
-
-
-def test_a_widget_passes_its_dependencies_on():
-    panel = Panel("a", ("a",), "x", T)
-    widget = CurveWidget(parts, axes(), [panel], alt="a", depends=DEPENDS)
-    assert [g["parameters"] for g in widget.spec["groups"]] == [[0], [0, 1, 2], [2], []]
-    np.testing.assert_allclose(widget.interpolate(a=1.3)["a"], np.sin(1.3 * T), atol=0.004)
+    for bad in ({"z": ["a"]}, {"a": ["z"]}):
+        with pytest.raises(ValueError, match=r"(in|of) depends"):
+            Baked(parts, axes(), depends=bad)
 
 
 # Unfit functions
 
 
-def test_too_large_a_grid_is_refused_before_the_work():
+def test_too_large_grids_and_tables_are_refused():
     calls = []
 
     def wide(a, b):
@@ -323,17 +198,14 @@ def test_too_large_a_grid_is_refused_before_the_work():
     axes = [Parameter(n, n, 0, 1, 0, grid=50) for n in "ab"]
     with pytest.raises(ValueError, match=f"at most {MAX_VALUES} values, got 7500000"):
         Baked(wide, axes)
-    assert len(calls) == 1
-
-
-def test_too_large_a_table_is_refused():
+    assert len(calls) == 1  # before the work
     noise = np.random.default_rng(0).normal(size=(50, 50, 100))
-    axes = [Parameter(n, n, 0, 49, 0, grid=50) for n in "ab"]
+    axes = [Choice(n, n, range(50), 0) for n in "ab"]
     with pytest.raises(ValueError, match=f"at most {MAX_BYTES} baked bytes, got 500000"):
-        Baked(lambda a, b: {"y": noise[round(a), round(b)]}, axes, cubic=False)
+        Baked(lambda a, b: {"y": noise[a, b]}, axes)
 
 
-def test_curves_must_be_finite_and_of_one_shape():
+def test_unfit_functions_are_refused():
     axis = [Parameter("a", "a", 0, 1, 0, grid=3)]
     with pytest.raises(ValueError, match="y must be finite"):
         Baked(lambda a: {"y": [1.0, np.nan]}, axis)
@@ -346,6 +218,8 @@ def test_curves_must_be_finite_and_of_one_shape():
     with pytest.raises(ValueError, match="attribute of widgets"):
         layout = Parameter("layout", "Layout", 0, 1, 0)
         CurveWidget(lambda layout: {"y": T}, [layout], [Panel("y", "y", "x", T)], alt="a")
+    with pytest.raises(ValueError, match="parameter of the pad must be one of 'gain', got 'bits'"):
+        make_kinds(pad=Pad("gain", "bits"))
 
 
 def test_a_curve_of_zeros_stays_zero():
@@ -353,13 +227,3 @@ def test_a_curve_of_zeros_stays_zero():
     baked = Baked(lambda a: {"y": np.zeros(30), "five": 5.0}, axis)
     got = baked.interpolate(a=0.3)
     assert not got["y"].any() and got["five"] == 5 and baked.error(10) < 1e-9
-
-
-def test_a_row_is_the_curves_in_their_order():
-    sampled = Sampled(oscillation, None, {"gain": 10, "decay": 0, "phase": 0})
-    row = sampled.row({"gain": 10, "decay": 0, "phase": 0})
-    assert sampled.samples == row.size == 86
-    expected = evaluate(oscillation, {"gain": 10, "decay": 0, "phase": 0})
-    for name, curve in sampled.split(row).items():
-        np.testing.assert_array_equal(curve, expected[name])
-    assert list(sampled.spread([0, 1, 2, 3])) == [0] * 41 + [1] * 41 + [2] * 3 + [3]
