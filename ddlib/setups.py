@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -20,20 +20,13 @@ from ddlib.effects import (
     Quantisation,
     ViscousFriction,
 )
-from ddlib.learning import (
-    History,
-    Solution,
-    TorqueModel,
-    TrainingSet,
-    Weights,
-    cases,
-    sliding_windows,
-    solve,
-    train_ensemble,
-)
+from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
+
+if TYPE_CHECKING:  # these need torch, which a page without training does without
+    from ddlib.learning import History, Solution
 
 KP = (300.0, 90.0)
 """Gains on the position error of shoulder and elbow, N m/rad. Assumed: stiff enough to follow
@@ -110,27 +103,14 @@ class Setup:
             raise ValueError(f"decay must be 0 for descent (steps = 0), got {self.decay:g}")
 
     def record(self, extents_deg=APPENDIX_I, **options) -> Recording:
-        """The recording of all runs, noise included; default: the six of Appendix I.
-
-        Parameters
-        ----------
-        extents_deg : array_like, shape (2,) or (runs, 2)
-            Extents in degrees.
-        **options
-            Duration, rests and periods, as in `ddlib.simulation.simulate.record`.
-        """
+        """The recording of all runs, noise included; `options` as in `ddlib.simulation.record`."""
         options = {"effects": self.effects, "seed": self.seed, **options}
         return record(self.arm, self.controller, extents_deg, **options)
 
     def repeated(self, seed: int) -> Setup:
-        """The same experiment on another day: other torque noise, another zero of the encoders.
+        """The same experiment on another day: torque noise and the encoders' zero by `seed`.
 
         Rounding is no noise: without another zero every recording would round alike.
-
-        Parameters
-        ----------
-        seed : int
-            Of both; 0 or more.
         """
         integer("seed", seed, 0)
         steps = [effect.step for effect in self.effects.encoder if hasattr(effect, "step")]
@@ -215,7 +195,7 @@ def train_windows(
     snapshots=(),
     progress=True,
 ) -> tuple[TorqueModel, History, dict[int, Weights]]:
-    """Train `members` networks of one window size on runs 1 to 5, following run 6.
+    """Train networks of one window size on runs 1 to 5, following run 6.
 
     Parameters
     ----------
@@ -225,14 +205,11 @@ def train_windows(
     width, members, seed : int
         Window size, number of networks, seed of the first one's weights.
     snapshots, progress
-        As in `ddlib.learning.train_ensemble`.
-
-    Returns
-    -------
-    model, history, snapshots
-        As from `ddlib.learning.train_ensemble`; of `Setup.steps` steps of
-        Levenberg-Marquardt there are no snapshots.
+        As in `ddlib.learning.train_ensemble`, which says what is returned. A set-up with
+        `Setup.steps` of Levenberg-Marquardt has no snapshots.
     """
+    from ddlib.learning import train_ensemble
+
     if setup.steps:
         solution = solve_windows(setup, recording, width, members, seed=seed, progress=progress)
         return solution.model, solution.history, {}
@@ -256,18 +233,10 @@ def solve_windows(
 ) -> Solution:
     """`train_windows` of a set-up with Levenberg-Marquardt, with all that the solver tells.
 
-    It stops after ``setup.steps`` steps and warns of members that have not converged by then;
-    `Solution.gradient` says how far they are.
-
-    Parameters
-    ----------
-    setup, recording, width, members, seed, progress
-        As in `train_windows`.
-
-    Returns
-    -------
-    Solution
+    It stops after ``setup.steps`` steps and warns of members that have not converged by then.
     """
+    from ddlib.learning import solve
+
     integer("setup.steps", setup.steps, 1)
     weights, data, test = _start(setup, recording, width, members, seed)
     return solve(
@@ -361,42 +330,21 @@ def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
     return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))
 
 
-HULL = ConvexHull(APPENDIX_I[:5])
-"""Of the extents of the training trajectories."""
+HULL = ConvexHull(APPENDIX_I[:5])  # of the extents of the training trajectories
 
 
 def inside_hull(extents_deg) -> np.ndarray:
-    """Whether extents lie in the hull of the training trajectories.
-
-    Parameters
-    ----------
-    extents_deg : array_like, shape (..., 2)
-        Extents of shoulder and elbow, degrees.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
-    """
+    """Whether extents (degrees, shape (..., 2)) lie in the hull of the training trajectories."""
     extents_deg = finite_array("extents_deg", extents_deg, 2)
     distances = extents_deg @ HULL.equations[:, :2].T + HULL.equations[:, 2]
     return (distances <= 1e-9).all(-1)
 
 
 class Square(NamedTuple):
-    """Recordings of a grid of trajectories.
+    """Recordings of a grid of trajectories; in `extents_deg` the elbow's changes fastest."""
 
-    Attributes
-    ----------
-    extents_deg : ndarray, shape (runs, 2)
-        Shoulder and elbow, degrees; the elbow's changes fastest.
-    inside : ndarray of bool, shape (runs,)
-        Whether they lie in the hull of the training trajectories.
-    recording : Recording
-        All runs.
-    """
-
-    extents_deg: np.ndarray
-    inside: np.ndarray
+    extents_deg: np.ndarray  # shape (runs, 2), shoulder and elbow
+    inside: np.ndarray  # whether they lie in the hull of the training trajectories
     recording: Recording
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ddlib.tables import Table, significant
-from workshop.report import results, studies
+from workshop.report import results
 from workshop.report.code_hash import places
 
 REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
@@ -100,5 +100,7 @@ def _held(seconds: float, most: float, beside: str = "") -> str:
 def _part(name: str) -> str:
     """The part of `REPRODUCE_SECONDS` to which a result belongs, by the folder of its study."""
     report, rivals, loop = REPRODUCE_SECONDS
-    folder = places()[name][0].removeprefix(studies.__name__) if name in places() else ""
-    return {"beyond": rivals, "loop": loop}.get(folder.strip(".").partition(".")[0], report)
+    module, _ = places().get(name, ("", ""))
+    if "beyond.studies" not in module or ".page." in module:
+        return report
+    return loop if ".loop." in module else rivals

@@ -7,8 +7,7 @@ What is kept from one run to the next is used again under two conditions, and no
 - What the build keeps in ``_build``, while the files are the same, byte for byte: ``digest`` in
   ``book/_ext/dd_book.py``. Of ddlib, results, ``book/*.yml`` and requirements it names the folder
   of executed notebooks, in which a notebook is known by its cells and in which claims that one of
-  them has measured (`workshop.report.evidence.claims`) lie for the others; of everything, it says whether
-  the pages are up to date.
+  them has measured lie for the others; of everything, it says whether the pages are up to date.
 """
 
 from __future__ import annotations
