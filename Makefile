@@ -57,7 +57,7 @@ check: lint stripped  ## for every day: style, core tests, house rules, facts, f
 	@echo "==> Core tests, house rules, facts"
 	$(PYTEST) -n $(JOBS) --dist worksteal -m "$(QUICK)" $(CORE) tests/house $(FACTS)
 	@echo "==> Results are of this code"
-	$(PYTEST) -m "$(QUICK)" tests/experiments/test_results.py -k committed
+	$(PYTEST) -m "$(QUICK)" tests/report/test_results.py -k committed
 
 unmeasured:
 	@rm -rf _build/measured

@@ -59,10 +59,10 @@ def test_the_claim_is_judged(tmp_path, monkeypatch):
 
 def test_the_study_is_run_and_read(tmp_path, monkeypatch):
     (source,) = examples("A study")
-    package = tmp_path / "ddlib"
-    shutil.copytree(ROOT / "ddlib", package, ignore=shutil.ignore_patterns("__pycache__", "static"))
-    (package / "experiments" / "studies" / "following.py").write_text(source, encoding="utf-8")
-    monkeypatch.setattr(code_hash, "ROOTS", {"ddlib": package})
+    copy = tmp_path / "workshop"
+    shutil.copytree(code_hash.ROOTS["workshop"], copy)
+    (copy / "report" / "studies" / "following.py").write_text(source, encoding="utf-8")
+    monkeypatch.setitem(code_hash.ROOTS, "workshop", copy)
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
     monkeypatch.setattr(reproduce, "run", lambda name: run(source)[name]())
     reproduce.main(["following", "--jobs", "1"])

@@ -15,66 +15,50 @@ from ddlib.learning.descent import ONEDNN
 
 DRAWS = """
 import numpy as np
-rng = np.random.default_rng(3)
+rng = np.random.default_rng(np.random.SeedSequence(3))
+assert isinstance(rng, np.random.Generator) and rng.spawn(1)[0].random() < 1
 draws = [rng.uniform(-1, 1, 3), rng.normal(2.0, 1.0, 3), rng.standard_normal(3), rng.random(3)]
 print(*np.concatenate(draws).tolist(), rng.integers(0, 100), rng.permutation(9).tolist())
 """
+PACKAGE = (
+    "from ddlib.setups import STATE_FEEDBACK as s; from ddlib.learning import Weights;"
+    "print(Weights.random(1, 11).largest[0], s.record([10, 20]).tau.std())"
+)
 
 
-def ask(code: str, env: dict) -> subprocess.CompletedProcess:
+def ask(code: str, env: dict) -> str:
     answer = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
     assert answer.returncode == 0, answer.stderr
-    return answer
+    return answer.stdout + answer.stderr
 
 
-def draws(env) -> tuple[list[float], str]:
-    words = ask(DRAWS, env).stdout.split()
-    return [float(w) for w in words[:12]], " ".join(words[12:])
+def both(code: str, env: dict) -> tuple[list[str], list[str]]:
+    """The words that a program prints without and with jogged draws."""
+    plain = {key: value for key, value in env.items() if key != "DDLIB_JOG"}
+    return ask(code, plain).split(), ask(code, env).split()
 
 
 @pytest.mark.parametrize("name, factor", [("jog-1", 1 + 1e-9), ("jog-7", 1 + 7e-9)])
 def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path):
-    env = foreign.environment(name, tmp_path)
-    plain, others = draws({k: v for k, v in env.items() if k != "DDLIB_JOG"})
-    jogged, same = draws(env)
-    assert jogged == [x * factor for x in plain] and same == others
+    plain, jogged = both(DRAWS, foreign.environment(name, tmp_path))
+    assert [float(x) for x in jogged[:12]] == [float(x) * factor for x in plain[:12]]
+    assert jogged[12:] == plain[12:]
 
 
 def test_jogs_reach_the_package(tmp_path):
-    code = (
-        "from workshop.report import STATE_FEEDBACK as s; from ddlib.learning import Weights;"
-        "print(Weights.random(1, 11).largest[0], s.record([10, 20]).tau.std())"
-    )
-    env = foreign.environment("jog-7", tmp_path)
-    plain = ask(code, {k: v for k, v in env.items() if k != "DDLIB_JOG"}).stdout.split()
-    jogged = ask(code, env).stdout.split()
-    for a, b in zip(plain, jogged):
+    for a, b in zip(*both(PACKAGE, foreign.environment("jog-7", tmp_path)), strict=True):
         assert a != b and float(b) == pytest.approx(float(a), rel=1e-7)
-
-
-def test_a_jogged_generator_is_numpys(tmp_path):
-    code = (
-        "import pickle, numpy as np; g = np.random.default_rng(1);"
-        "assert isinstance(g, np.random.Generator);"
-        "assert isinstance(np.random.default_rng(np.random.SeedSequence(1)), np.random.Generator);"
-        "assert g.spawn(1)[0].random() < 1"
-    )
-    ask(code, foreign.environment("jog-1", tmp_path))
 
 
 def test_plain_kernels_are_plain(tmp_path):
     code = "import torch; print(torch.backends.cpu.get_cpu_capability())"
-    assert ask(code, foreign.environment("plain-kernels", tmp_path)).stdout.strip() == "DEFAULT"
+    assert ask(code, foreign.environment("plain-kernels", tmp_path)).strip() == "DEFAULT"
 
 
-X86 = platform.machine() in ("x86_64", "AMD64")
-
-
-@pytest.mark.skipif(not X86, reason="a core type of x86 processors")
+@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="a core type of x86")
 def test_other_libraries_take_another_core(tmp_path):
     env = {**foreign.environment("other-libraries", tmp_path), "OPENBLAS_VERBOSE": "2"}
-    answer = ask("import numpy", env)
-    assert "Core: Nehalem" in answer.stdout + answer.stderr
+    assert "Core: Nehalem" in ask("import numpy", env)
 
 
 @pytest.mark.skipif(not ONEDNN, reason="products do not go through oneDNN here")
@@ -85,26 +69,32 @@ def test_products_of_descent_take_older_instructions(name, tmp_path):
         "torch.manual_seed(0); x = torch.rand(43, 1500); a = torch.rand(96, 43);"
         "times(x, 96)(a)"
     )
-    env = {**foreign.environment(name, tmp_path), "ONEDNN_VERBOSE": "1"}
-    told = ask(code, env).stdout
+    told = ask(code, {**foreign.environment(name, tmp_path), "ONEDNN_VERBOSE": "1"})
     (product,) = re.findall(r"exec,cpu,(?:inner_product|matmul),([^,]*)", told)
     assert "isa:Intel" in told and "avx512" not in product and "avx10" not in product
 
 
 @pytest.mark.parametrize("name, count", [("one-thread", 1), ("two-threads", 2)])
 def test_threads_are_as_many(name, count, tmp_path):
-    env = foreign.environment(name, tmp_path)
-    answer = ask("import torch; print(torch.get_num_threads())", env)
-    assert int(answer.stdout) == min(count, os.cpu_count() or 1)
+    told = ask("import torch; print(torch.get_num_threads())", foreign.environment(name, tmp_path))
+    assert int(told) == min(count, os.cpu_count() or 1)
 
 
-def only(*arguments):
-    """A single check, by pytest."""
-    return lambda jobs, root: {"claims": ["-m", "pytest", "-q", *arguments]}
+def test_a_machine_may_differ_in_several_ways(tmp_path):
+    env = foreign.environment(foreign.CI, tmp_path)
+    wanted = {**foreign.SETTINGS["jog-1"], **foreign.SETTINGS["other-libraries"]}
+    assert wanted and {key: env[key] for key in wanted} == wanted
 
 
-def test_a_check_that_fails_is_told(monkeypatch, capfd):
-    monkeypatch.setattr(foreign, "commands", only("tests/test_paper.py", "-k", "no_such_test"))
+def test_what_holds_and_what_fails_is_told(monkeypatch, capfd):
+    def only(code):
+        monkeypatch.setattr(foreign, "commands", lambda jobs, root: {"claims": ["-c", code]})
+
+    only("pass")
+    assert foreign.main(["--ci", "--jobs", "1"]) == 0
+    out = capfd.readouterr().out
+    assert "1 foreign machine: all hold" in out and "jog-1+other-libraries: claims took" in out
+    only("raise SystemExit(1)")
     assert foreign.main(["jog-1", "--jobs", "1"]) == 1
     assert "1 foreign machine: jog-1: claims" in capfd.readouterr().out
     with pytest.raises(SystemExit):
@@ -112,20 +102,11 @@ def test_a_check_that_fails_is_told(monkeypatch, capfd):
     assert "settings must be among jog-1" in capfd.readouterr().err
 
 
-def test_all_that_hold_are_told(monkeypatch, capfd):
-    monkeypatch.setattr(foreign, "commands", only("tests/test_paper.py"))
-    assert foreign.main(["--ci", "--jobs", "1"]) == 0
-    out = capfd.readouterr().out
-    assert "1 foreign machine: all hold" in out
-    assert "jog-1+other-libraries: claims took" in out
-
-
 def test_claims_and_every_notebook_are_checked():
     asked = {what: " ".join(map(str, c)) for what, c in foreign.commands(2, foreign.ROOT).items()}
-    assert set(asked) == {"claims", "notebooks"}
     assert "test_claims.py -k verdicts_are" in asked["claims"]
-    assert not [path for page in PAGES if (path := source(page)).suffix == ".ipynb"
-                and str(path) not in asked["notebooks"]]  # fmt: skip
+    paths = [str(path) for page in PAGES if (path := source(page)).suffix == ".ipynb"]
+    assert not [path for path in paths if path not in asked["notebooks"]]
 
 
 CELLS = {
@@ -162,9 +143,3 @@ def test_notebooks_that_fail_are_told(tmp_path):
     assert set(failed) == set(CELLS) - {"fine"}, answer.stdout + answer.stderr
     assert "not so" in failed["raises"] and "look here" in failed["warns"]
     assert "4 failed, 1 passed" in answer.stdout
-
-
-def test_a_machine_may_differ_in_several_ways(tmp_path):
-    env = foreign.environment(foreign.CI, tmp_path)
-    wanted = {**foreign.SETTINGS["jog-1"], **foreign.SETTINGS["other-libraries"]}
-    assert wanted and {key: env[key] for key in wanted} == wanted

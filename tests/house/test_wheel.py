@@ -53,7 +53,8 @@ def site(tmp_path_factory):
             copy.parent.mkdir(parents=True, exist_ok=True)
             copy.write_bytes(path.read_bytes())
     build = "from setuptools.build_meta import build_wheel; build_wheel('.')"
-    subprocess.run([sys.executable, "-c", build], cwd=tree, check=True, capture_output=True)
+    built = subprocess.run([sys.executable, "-c", build], cwd=tree, capture_output=True, text=True)
+    assert built.returncode == 0, built.stderr
     (wheel,) = tree.glob("*.whl")
     with zipfile.ZipFile(wheel) as content:
         content.extractall(site)

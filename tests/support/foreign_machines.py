@@ -104,7 +104,7 @@ def reproduce(name: str, jobs: int) -> list[str]:
         ]
         if subprocess.run(command, env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
-        names = ("report/test_results", "report/test_ledger", "book/test_prose_numbers")
+        names = ("report/test_results", "report/test_ledger", "book/test_prose")
         files = [f"tests/{name}.py" for name in names]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
         told = subprocess.run(command, env=env, cwd=copy).returncode
