@@ -28,26 +28,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number
+from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.learning.network import Weights
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
 
 def with_ones(x) -> np.ndarray:
     """Windows ``(cases, joint, width)`` as rows, with a one for the bias."""
-    x = finite_array("x", x)
-    if x.ndim != 3:
-        raise ValueError(f"x must have shape (cases, joint, width), got {x.shape}")
+    x = shaped("x", x, "(cases, joint, width)")
     return np.column_stack([x.reshape(len(x), -1), np.ones(len(x))])
 
 
 def rows(weights: Weights) -> np.ndarray:
-    """Weights from the window to each unit, and its bias.
+    """Weights from the window to each unit and its bias, ``(..., unit, joint * width + 1)``.
 
-    Returns
-    -------
-    ndarray, shape (..., unit, joint * width + 1)
-        Hidden units first, then the outputs with their direct weights.
+    Hidden units come first, then the outputs with their direct weights.
     """
     parts = [
         np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
@@ -102,14 +97,7 @@ class Directions:
         return rows(weights) @ self.axes.T
 
     def energy(self, weights: Weights, start: Weights | None = None) -> np.ndarray:
-        """Squared components summed over units, ``(..., directions)``: of weights, or a change.
-
-        Parameters
-        ----------
-        weights : Weights
-        start : Weights, optional
-            Weights to take off first.
-        """
+        """Squared components summed over units: of weights, or of what they changed by."""
         components = self.along(weights)
         if start is not None:
             components = components - self.along(start)
@@ -139,15 +127,8 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
     Returns
     -------
     ndarray, shape (epochs, modes)
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, or `epochs` decreases.
     """
-    rates = non_negative("rates", rates)
-    if rates.ndim != 1:
-        raise ValueError(f"rates must be in a row, got shape {rates.shape}")
+    rates = shaped("rates", non_negative("rates", rates), "(modes,)")
     number("momentum", momentum, 0.0, 0.999)
     integer("warm_up", warm_up, 0)
     epochs = [integer("epochs", epoch, 0) for epoch in epochs]
@@ -162,29 +143,19 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
         return matrix
 
     phases = (epoch_matrix(min(momentum, WARM_UP_MOMENTUM)), epoch_matrix(momentum))
-    state, now, found = np.tile([[0.0], [0.0], [1.0]], (rates.size, 1, 1)), 0, []
+    state, now, steps = np.tile([[0.0], [0.0], [1.0]], (rates.size, 1, 1)), 0, []
     for epoch in epochs:
         for matrix, stop in zip(phases, (min(epoch, warm_up), epoch)):
             if stop > now:
                 state, now = np.linalg.matrix_power(matrix, stop - now) @ state, stop
-        found.append(state[:, 0, 0])
-    return np.array(found)
+        steps.append(state[:, 0, 0])
+    return np.array(steps)
 
 
 def jacobian(weights: Weights, x) -> np.ndarray:
-    """Derivatives of the outputs of one network by all its weights and biases.
+    """Derivatives of one network's outputs in scaled windows, ``(cases, output, parameter)``.
 
-    Parameters
-    ----------
-    weights : Weights
-        One network.
-    x : array_like, shape (cases, joint, width)
-        Scaled windows.
-
-    Returns
-    -------
-    ndarray, shape (cases, output, parameter)
-        Parameters: `rows` one after the other, then the hidden-to-output weights.
+    Parameters are its `rows` one after the other, then the hidden-to-output weights.
     """
     hidden, output = weights.activity(x)
     own = np.eye(output.shape[-1])
@@ -198,21 +169,9 @@ def jacobian(weights: Weights, x) -> np.ndarray:
 
 
 def moved(weights: Weights, change) -> Weights:
-    """One network plus a change of all its parameters.
-
-    Parameters
-    ----------
-    weights : Weights
-        One network.
-    change : array_like, shape (..., parameter)
-        In the order of `jacobian`; leading axes are those of the result.
-    """
+    """One network plus changes of its parameters, ``(..., parameter)``, ordered as `jacobian`."""
     start, change = rows(weights), finite_array("change", change)
-    if change.shape[-1:] != (start.size + weights.output_weights.size,):
-        raise ValueError(
-            f"change must have {start.size + weights.output_weights.size} parameters, "
-            f"got shape {change.shape}"
-        )
+    shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
     lead, hidden = change.shape[:-1], len(weights.hidden_bias)
     first = start + change[..., : start.size].reshape(*lead, *start.shape)
     second = change[..., start.size :].reshape(*lead, *weights.output_weights.shape)
@@ -227,18 +186,10 @@ def moved(weights: Weights, change) -> Weights:
 
 
 class Course(NamedTuple):
-    """What a network does along its training.
-
-    Attributes
-    ----------
-    weights : Weights
-        With a leading axis of epochs.
-    error : ndarray, shape (epochs, cases, output)
-        Output minus target, in scaled units.
-    """
+    """What a network does along its training; a leading axis are the epochs."""
 
     weights: Weights
-    error: np.ndarray
+    error: np.ndarray  # output minus target, scaled, of shape (epochs, cases, output)
 
 
 class Lazy:
@@ -254,7 +205,7 @@ class Lazy:
     Attributes
     ----------
     curvatures : ndarray, shape (parameters,)
-        Eigenvalues of J'J, falling: those of the neural tangent kernel JJ' and zeros.
+        Eigenvalues of J'J, falling: those of the neural tangent kernel JJ', and zeros.
     """
 
     def __init__(self, weights: Weights, data: TrainingSet):
@@ -272,14 +223,8 @@ class Lazy:
     ) -> Course:
         """Weights and errors after some epochs of batch descent with momentum.
 
-        Parameters
-        ----------
-        rate : float
-            Step size per case, as in `ddlib.learning.training.train`.
-        epochs, momentum, warm_up
-            As in `effective_steps`.
-        targets : ndarray, shape (cases, output), optional
-            Scaled targets in place of the training set's.
+        `rate` is the step size per case, as in `ddlib.learning.train`; `epochs`, `momentum` and
+        `warm_up` are those of `effective_steps`; scaled `targets` replace the training set's.
         """
         eps = number("rate", rate, 0.0, open_low=True) / len(self._output)
         error = self._output - (self._targets if targets is None else targets)

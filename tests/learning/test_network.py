@@ -6,8 +6,7 @@ import zipfile
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from ddlib import paper
 from ddlib.learning import Scaler, TorqueModel, Weights, WindowNetwork

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from test_training import parts, smooth_cases
 
 from ddlib.learning import (
@@ -15,6 +14,7 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     WindowNetwork,
+    WorseThanMean,
     effective_steps,
     jacobian,
     moved,
@@ -103,10 +103,8 @@ def test_a_change_is_singular_value_times_accumulated_error(data):
         back = np.column_stack([delta @ second * hidden * (1 - hidden), delta])
         memory = alpha * memory + back
         total = total + memory
-        step, step_second = (
-            alpha * step - eps * back.T @ x,
-            alpha * step_second - eps * (delta.T @ hidden),
-        )
+        step = alpha * step - eps * back.T @ x
+        step_second = alpha * step_second - eps * (delta.T @ hidden)
         w, second = w + step, second + step_second
     trained = descend(begun, data, eps, alpha, 40)
     np.testing.assert_allclose(rows(trained), w, atol=1e-12)
@@ -127,8 +125,8 @@ def test_directions_are_those_of_the_second_moments(data):
 
 def test_energy_along_all_directions_is_the_energy_of_the_weights(data):
     along, a, b = Directions.of(data), start(1), start(2)
-    per_unit = [sum((w**2).sum() for w in parts(a)) - (a.output_weights**2).sum()]
-    assert along.energy(a).sum() == pytest.approx(per_unit[0])
+    whole = sum((w**2).sum() for w in parts(a)) - (a.output_weights**2).sum()
+    assert along.energy(a).sum() == pytest.approx(whole)
     np.testing.assert_allclose(along.energy(b, a), ((along.along(b) - along.along(a)) ** 2).sum(0))
     many = Weights.stack([a, b])
     np.testing.assert_allclose(along.energy(many, a)[1], along.energy(b, a))
@@ -157,22 +155,6 @@ def test_a_flat_mode_gathers_one_over_one_minus_momentum():
     assert q[0] == pytest.approx(50 * (5000 - 49), rel=1e-9)  # less what gathering has cost
     (q,) = effective_steps([0.0, 1e-30, 0.1], [20_000], 0.98)
     np.testing.assert_allclose(q[1:], [q[0], 10.0])
-    assert effective_steps([0.3], [0]) == 0
-
-
-@pytest.mark.parametrize(
-    "bad, message",
-    [
-        (([-1.0], [1]), "rates must not be negative"),
-        (([[1.0]], [1]), "rates must be in a row"),
-        (([1.0], [2, 1]), "epochs must not decrease"),
-        (([1.0], [1], 1.5), r"momentum must lie in \[0, 0.999\], got 1.5"),
-        (([1.0], [1], 0.5, -1), "warm_up must be an integer from 0"),
-    ],
-)
-def test_bad_recursions_are_refused(bad, message):
-    with pytest.raises(ValueError, match=message):
-        effective_steps(*bad)
 
 
 # --- the linearised network ---------------------------------------------------------------
@@ -186,19 +168,14 @@ def test_jacobian_is_that_of_autograd(data):
     def run(*arrays):
         return torch.func.functional_call(net, dict(zip(names, arrays)), (x,))
 
-    found = torch.autograd.functional.jacobian(run, tuple(net.parameters()))
-    exact = dict(zip(names, (d.detach().numpy() for d in found)))
+    slopes = torch.autograd.functional.jacobian(run, tuple(net.parameters()))
+    exact = dict(zip(names, (d.detach().numpy() for d in slopes)))
     cases = len(data.x), 2
-    into = {
-        unit: np.concatenate(
-            [exact[w].reshape(*cases, n, -1), exact[b].reshape(*cases, n, 1)], -1
-        ).reshape(*cases, -1)
-        for unit, w, b, n in (
-            ("hidden", "hidden_weights", "hidden_bias", 4),
-            ("output", "direct_weights", "output_bias", 2),
-        )
-    }
-    whole = np.concatenate([*into.values(), exact["output_weights"].reshape(*cases, -1)], -1)
+    into = [
+        np.concatenate([exact[w].reshape(*cases, n, -1), exact[b].reshape(*cases, n, 1)], -1)
+        for w, b, n in (("hidden_weights", "hidden_bias", 4), ("direct_weights", "output_bias", 2))
+    ]
+    whole = np.concatenate([x.reshape(*cases, -1) for x in (*into, exact["output_weights"])], -1)
     np.testing.assert_allclose(jacobian(weights, data.x), whole, atol=1e-14)
     kernel = whole.reshape(-1, whole.shape[-1])
     lazy = Lazy(weights, data).curvatures
@@ -220,20 +197,18 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     course = Lazy(weights, data).predict(rate, [0, 5, 200], momentum, warm_up)
     for k, epoch in enumerate((0, 5, 200)):
         np.testing.assert_allclose(course.error[k].ravel(), errors[epoch], atol=1e-10)
-    size = rows(weights).size
-    np.testing.assert_allclose(
-        (rows(course.weights[2]) - rows(weights)).ravel(), last[:size], atol=1e-10
-    )
-    moved = (course.weights[2].output_weights - weights.output_weights).ravel()
-    np.testing.assert_allclose(moved, last[size:], atol=1e-10)
+    after, size = course.weights[2], rows(weights).size
+    np.testing.assert_allclose((rows(after) - rows(weights)).ravel(), last[:size], atol=1e-10)
+    second = (after.output_weights - weights.output_weights).ravel()
+    np.testing.assert_allclose(second, last[size:], atol=1e-10)
     assert abs(last[size:]).max() > 1e-3
     other = replace(data, y=data.y[::-1])
     turned = Lazy(weights, data).predict(rate, [200], momentum, warm_up, targets=other.y)
-    np.testing.assert_allclose(
-        turned.error, Lazy(weights, other).predict(rate, [200], momentum, warm_up).error
-    )
+    own = Lazy(weights, other).predict(rate, [200], momentum, warm_up)
+    np.testing.assert_allclose(turned.error, own.error)
 
 
+@pytest.mark.filterwarnings(f"ignore::{WorseThanMean.__module__}.WorseThanMean")
 def test_short_training_follows_the_prediction(data):
     """`train_ensemble`: the shorter the steps, the better its tangent tells where it goes."""
     begun, along, missed = Weights.random(2, WIDTH, 4, seed=5), Directions.of(data), []
@@ -261,14 +236,22 @@ def test_moved_adds_a_change_in_the_order_of_the_jacobian(data):
     assert after.hidden_weights.shape == (3, 4, 2, WIDTH)
     difference = after.activity(data.x)[1] - weights.activity(data.x)[1]
     np.testing.assert_allclose(difference.reshape(3, -1), change @ j.T, atol=1e-10)
-    with pytest.raises(ValueError, match="change must have 98 parameters, got shape"):
-        moved(weights, change[:, 1:])
 
 
-def test_an_ensemble_is_refused(data):
-    with pytest.raises(ValueError, match="weights must be of one network"):
-        Lazy(Weights.random(2, WIDTH), data)
-    with pytest.raises(ValueError, match="rate must lie in"):
-        Lazy(start(), data).predict(0.0, [1])
-    with pytest.raises(ValueError, match=r"x must have shape \(cases, joint, width\)"):
-        with_ones(data.y)
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda _: effective_steps([-1.0], [1]), "rates must not be negative"),
+        (lambda _: effective_steps([[1.0]], [1]), "rates must have shape"),
+        (lambda _: effective_steps([1.0], [2, 1]), "epochs must not decrease"),
+        (lambda _: effective_steps([1.0], [1], 1.5), r"momentum must lie in \[0, 0.999\], got 1.5"),
+        (lambda _: effective_steps([1.0], [1], 0.5, -1), "warm_up must be an integer from 0"),
+        (lambda _: moved(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
+        (lambda data: Lazy(Weights.random(2, WIDTH), data), "weights must be of one network"),
+        (lambda data: Lazy(start(), data).predict(0.0, [1]), "rate must lie in"),
+        (lambda data: with_ones(data.y), r"x must have shape \(cases, joint, width\)"),
+    ],
+)
+def test_refusals(data, call, words):
+    with pytest.raises(ValueError, match=words):
+        call(data)
