@@ -7,7 +7,6 @@ import pytest
 
 from ddlib.analysis import explained
 from ddlib.setups import POSITION_FEEDBACK, STATE_FEEDBACK, true_states
-from ddlib.simulation import LOG_STEP, record
 from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 from workshop.report.two_harmonics import (
     NEUTRAL,
@@ -94,34 +93,6 @@ def test_the_recording_has_the_form_of_the_papers(recordings):
     wanted = two_harmonics(APPENDIX_I, second_amplitudes(), own.t)
     np.testing.assert_allclose(own.reference.q, wanted.q, atol=1e-12)
     assert np.abs(own.tracking_error).max() < 0.2
-
-
-def test_true_states_are_position_and_its_derivatives(recordings):
-    setup, recording = recordings["two sines"]
-    states = true_states(recording, setup)
-    assert states.shape == (6, 300, 2, 3)
-    np.testing.assert_array_equal(states[..., 0], recording.q_true[:, recording.motion])
-    slope = np.gradient(states[..., 1], LOG_STEP, axis=1)[:, 60:-1]
-    wrong = np.abs(slope - states[:, 60:-1, :, 2])  # beyond the jump at the start
-    assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
-    late = true_states(recording[2], setup, skip=0.5)
-    np.testing.assert_array_equal(late, states[2, 50:])
-    with pytest.raises(ValueError, match=r"^skip must"):
-        true_states(recording, setup, skip=3.1)
-
-
-def test_true_states_of_another_rate_and_duration():
-    own = record(
-        STATE_FEEDBACK.arm,
-        STATE_FEEDBACK.controller,
-        [20.0, 10.0],
-        effects=STATE_FEEDBACK.effects,
-        log_step=0.02,
-        duration=2.0,
-    )
-    states = true_states(own, STATE_FEEDBACK, skip=0.5)
-    assert states.shape == (75, 2, 3)
-    np.testing.assert_array_equal(states[0, :, 0], own.q_true[np.searchsorted(own.t, 0.499)])
 
 
 def test_what_position_explains_of_acceleration(recordings):

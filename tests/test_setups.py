@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddlib import paper
-from ddlib.learning import NotConverged, Scaler, TorqueModel, Weights, check_points
+from ddlib.learning import NotConverged, Scaler, TorqueModel, Weights
 from ddlib.metrics import rmss
 from ddlib.setups import (
     JOINT_DAMPING,
@@ -16,12 +16,16 @@ from ddlib.setups import (
     SETUPS,
     STATE_FEEDBACK,
     errors,
+    inside_hull,
     predict,
     solve_windows,
     split,
+    square,
     train_windows,
+    true_states,
 )
-from ddlib.trajectories import pick_and_place
+from ddlib.simulation import LOG_STEP
+from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 QUICK = replace(STATE_FEEDBACK, epochs=60, momentum=0.5)
 
@@ -164,7 +168,7 @@ def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypa
     def trainer(weights, data, **options):
         seen.update(options, weights=weights, data=data)
 
-    monkeypatch.setattr("ddlib.setups.train_ensemble", trainer)
+    monkeypatch.setattr("ddlib.learning.train_ensemble", trainer, raising=False)
     train_windows(QUICK, recording, 21, 2, seed=9, progress=False)
     data, (x6, y6) = seen["data"], seen["test"]
     assert data.x.shape == (1500, 2, 21) and data.y.shape == (1500, 2)
@@ -184,7 +188,7 @@ def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypa
 def test_a_quick_training(recording, trained):
     model, history, kept = trained
     assert model.weights.hidden_weights.shape == (3, 10, 2, 11)
-    np.testing.assert_array_equal(history.epochs, check_points(60))
+    assert (history.epochs[0], history.epochs[-1]) == (1, 60)
     assert history.training.shape == history.test.shape == (len(history.epochs), 3)
     assert set(kept) == {0, 60}
     wanted = Weights.random(3, 11, seed=4)
@@ -246,37 +250,63 @@ def test_predict_follows_the_motion(recording, trained):
     assert predict(model[0], test).shape == (300, 2)
 
 
-@pytest.mark.parametrize(
-    "width, members, error, words",
-    [
+def test_bad_values_are_refused_before_training(recording):
+    for width, members, error, words in (
         (10, 2, ValueError, "width must be odd"),
         (103, 2, ValueError, "record a longer rest"),
         (401, 2, ValueError, "width must not exceed"),
         (11, 0, ValueError, "members must"),
         (11, 2.0, TypeError, "members must"),
         (11.0, 2, TypeError, "width must"),
-    ],
-)
-def test_train_windows_refuses_bad_values(recording, width, members, error, words):
-    with pytest.raises(error, match=words):
-        train_windows(QUICK, recording, width, members, progress=False)
-
-
-@pytest.mark.parametrize(
-    "option, words",
-    [
-        (dict(epochs=0), "epochs must"),
-        (dict(momentum=1.0), "momentum must"),
-        (dict(initial=0.0), "initial must"),
-        (dict(hidden=0), "hidden must"),
-    ],
-)
-def test_bad_setups_are_refused_before_training(recording, option, words):
-    with pytest.raises(ValueError, match=words):
-        train_windows(replace(QUICK, **option), recording, 11, 1, progress=False)
+    ):
+        with pytest.raises(error, match=words):
+            train_windows(QUICK, recording, width, members, progress=False)
+    for name, value in {"epochs": 0, "momentum": 1.0, "initial": 0.0, "hidden": 0}.items():
+        with pytest.raises(ValueError, match=f"{name} must"):
+            train_windows(replace(QUICK, **{name: value}), recording, 11, 1, progress=False)
 
 
 def test_record_takes_other_extents():
     assert STATE_FEEDBACK.record((10.0, 20.0)).q.shape == (400, 2)
     with pytest.raises(ValueError, match="extents_deg"):
         STATE_FEEDBACK.record((10.0,))
+
+
+# --- other extents, true states ----------------------------------------------------------
+
+
+def test_the_hull_of_the_training_trajectories():
+    assert inside_hull(APPENDIX_I[:5]).all()
+    assert not inside_hull(APPENDIX_I[5])
+    assert inside_hull(APPENDIX_I[:5].mean(0))
+    assert not inside_hull([0.0, 0.0])
+
+
+def test_the_square_is_recorded_on_a_grid_up_to_45_degrees():
+    found = square(STATE_FEEDBACK, 3)
+    np.testing.assert_allclose(found.extents_deg[:4], [[15, 15], [15, 30], [15, 45], [30, 15]])
+    assert found.extents_deg[-1].tolist() == [45.0, 45.0] and found.inside[-1]
+    assert found.inside.tolist() == [bool(inside_hull(each)) for each in found.extents_deg]
+    alone = STATE_FEEDBACK.record(found.extents_deg[1])
+    assert found.recording.q.shape == (9, *alone.q.shape)
+    reach = np.abs(found.recording.reference.q).max(-2)
+    np.testing.assert_allclose(reach, np.deg2rad(found.extents_deg), rtol=1e-3)
+    with pytest.raises(ValueError, match="points"):
+        square(STATE_FEEDBACK, 1)
+
+
+def test_true_states_are_position_and_its_derivatives(recording):
+    states = true_states(recording, STATE_FEEDBACK)
+    assert states.shape == (6, 300, 2, 3)
+    np.testing.assert_array_equal(states[..., 0], recording.q_true[:, recording.motion])
+    slope = np.gradient(states[..., 1], LOG_STEP, axis=1)[:, 60:-1]
+    wrong = np.abs(slope - states[:, 60:-1, :, 2])  # beyond the jump at the start
+    assert np.median(wrong) < 0.02 and np.percentile(wrong, 95) < 0.2
+    late = true_states(recording[2], STATE_FEEDBACK, skip=0.5)
+    np.testing.assert_array_equal(late, states[2, 50:])
+    with pytest.raises(ValueError, match=r"^skip must"):
+        true_states(recording, STATE_FEEDBACK, skip=3.1)
+    other = STATE_FEEDBACK.record([20.0, 10.0], log_step=0.02, duration=2.0)
+    states = true_states(other, STATE_FEEDBACK, skip=0.5)
+    assert states.shape == (75, 2, 3)
+    np.testing.assert_array_equal(states[0, :, 0], other.q_true[np.searchsorted(other.t, 0.499)])
