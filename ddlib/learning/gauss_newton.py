@@ -24,12 +24,6 @@ _float64 = partial(torch.as_tensor, dtype=torch.float64)
 _zeros = partial(torch.zeros, dtype=torch.float64)
 
 
-def penalty(joints: int, width: int, decay: float = 0.0, smoothness: float = 0.0) -> np.ndarray:
-    """Matrix P of the penalty ``w'P w / 2`` on one unit's weights w, joint by joint."""
-    second = np.diff(np.eye(width), 2, axis=0)
-    return np.kron(np.eye(joints), decay * np.eye(width) + smoothness * second.T @ second)
-
-
 class Objective:
     """What `ddlib.learning.solve` minimises, as a function of one vector of parameters.
 
@@ -39,7 +33,7 @@ class Objective:
     inputs ``C^-1 [x, 1]`` are white.
     """
 
-    def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, smoothness=0.0, test=None):
+    def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, test=None):
         self._hidden, *self._window = weights.hidden_weights.shape
         self._outputs = len(weights.output_bias)
         self._rows = self._hidden + self._outputs
@@ -48,8 +42,8 @@ class Objective:
         self._split = self._rows * self._inputs
 
         self._decay = decay
-        matrix = _zeros(self._inputs, self._inputs)  # no penalty on the bias
-        matrix[:-1, :-1] = _float64(penalty(*self._window, decay, smoothness))
+        matrix = _zeros(self._inputs, self._inputs)
+        matrix.diagonal()[:-1] = decay  # no penalty on the bias
         power, axes = torch.linalg.eigh((x @ x.T + matrix) / cases)
         idle = power < 1e-14 * power[-1]  # nothing but rounding: weights stay as they are
         power[idle] = power[-1]

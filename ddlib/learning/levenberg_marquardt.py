@@ -27,6 +27,7 @@ from ddlib.learning.gauss_newton import Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import History, TrainingSet
 
+_DAMPING = 0.1  # first mu, in units of the largest diagonal element of J'J
 _NEAR = 1e-2  # the measure of `tolerance` from which all second derivatives are used
 
 
@@ -60,21 +61,18 @@ def solve(
     *,
     test: tuple | None = None,
     decay: float = 0.0,
-    smoothness: float = 0.0,
     steps: int = 300,
     tolerance: float = 1e-6,
     target_rmss: float | None = None,
-    damping: float = 0.1,
     progress: bool = True,
     label: str = "solving",
 ) -> Solution:
     """Minimise the error of networks by Levenberg-Marquardt.
 
     The objective is half the summed squared error of all cases and outputs, as in
-    `ddlib.learning.train`, plus ``decay / 2`` times the sum of the squared weights, plus
-    ``smoothness / 2`` times the sum of the squared second differences of each unit's
-    weights along the window. Biases are free of both penalties. Without penalties some
-    directions of the weights hardly matter, and hundreds of steps may not reach the end.
+    `ddlib.learning.train`, plus ``decay / 2`` times the sum of the squared weights; biases are
+    free. Without decay some directions of the weights hardly matter, and hundreds of steps may
+    not reach the end.
 
     Parameters
     ----------
@@ -84,8 +82,8 @@ def solve(
         Cases and scaling.
     test : tuple of ndarray, optional
         Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
-    decay, smoothness : float
-        Strengths of the penalties, 0 or more.
+    decay : float
+        Strength of the penalty, 0 or more.
     steps : int
         Largest number of steps of each member.
     tolerance : float
@@ -93,8 +91,6 @@ def solve(
         J is at most this. The penalty counts as residuals.
     target_rmss : float, optional
         Training RMSS at which a member may stop.
-    damping : float
-        First mu, in units of the largest diagonal element of ``J'J``.
     progress : bool
         Show a progress bar with the RMSS after the last step.
     label : str
@@ -110,9 +106,8 @@ def solve(
         integer("steps", steps, 1),
         number("tolerance", tolerance, 0.0, 1.0),
         None if target_rmss is None else number("target_rmss", target_rmss, 0.0),
-        number("damping", damping, 0.0),
     )
-    penalties = number("decay", decay, 0.0), number("smoothness", smoothness, 0.0)
+    number("decay", decay, 0.0)
     single = weights.hidden_bias.ndim == 1
     members = [weights] if single else [weights[k] for k in range(len(weights))]
     lock = threading.Lock()
@@ -125,7 +120,7 @@ def solve(
 
     def work(member: Weights):
         torch.set_num_threads(1)  # of this thread: one core for each member
-        objective = Objective(member, data, *penalties, test)
+        objective = Objective(member, data, decay, test)
         end = _descend(objective, objective.pack(member), *options, tell)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end
@@ -170,7 +165,7 @@ class _End(NamedTuple):
     reason: str
 
 
-def _descend(objective, vector, steps, tolerance, target, damping, tell) -> _End:
+def _descend(objective, vector, steps, tolerance, target, tell) -> _End:
     """Minimise one member's objective from `vector`; `tell` hears of each step."""
     value, error = objective.value(vector)
     if not (np.isfinite(value) and torch.isfinite(vector).all()):
@@ -187,7 +182,7 @@ def _descend(objective, vector, steps, tolerance, target, damping, tell) -> _End
         elif len(path) > steps:
             reason = "steps"
         else:
-            mu = damping * float(matrix.diagonal().max()) if mu is None else mu
+            mu = _DAMPING * float(matrix.diagonal().max()) if mu is None else mu
             step = _step(objective, vector, value, matrix, gradient, mu, exact)
             if exact and step is None:
                 matrix = objective.normal(vector)[0]
