@@ -15,8 +15,7 @@ import numpy as np
 
 from ddlib.dynamics import Arm
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.others import Characters
-from workshop.beyond.others import characters as data
+from workshop.beyond.others import Characters, characters as data
 from workshop.beyond.rivals.bases import Fourier, Polynomial
 from workshop.beyond.rivals.cmac import CMAC
 from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures
@@ -27,24 +26,16 @@ from workshop.beyond.rivals.protocol import Cases, Rival
 from workshop.beyond.rivals.tables import CellTable, Nearest
 from workshop.report.code_hash import study
 
-SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}
-"""Characters of the test: by default of the public loader, and in the figure beside the table."""
+SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}  # characters of the test
 
+# Errors in the README of the public code; two of them are the same number.
 PUBLISHED = {"torque": 4.327e-4, "inertial": 7.338e-4, "coriolis": 2.227e-4, "gravity": 7.338e-4}
-"""Errors in the README of the public code; two of them are the same number."""
 
+# The arm that drew; its first angle counts from hanging down.
 ARM = Arm("characters", 1.3727291666666667, 0.5, 0.5176145833333333, (1.0, 1.0), (2.625, 1.5))
-"""The arm that drew the characters; its first angle counts from hanging down."""
-
-SEEDS = 5
-"""Of what starts at random."""
-
-MARKS = (50, 100, 200, 500, 1000, 1500)
-"""Epochs at which networks trained as published are tested; they stop at the last, which is early:
-the public code takes 10,000."""
-
-STARTS = 200
-"""Initial weights that are asked whether all of the mass matrix can be learnt from them."""
+SEEDS = 5  # of what starts at random
+MARKS = (50, 100, 200, 500, 1000, 1500)  # epochs of tests; the public code takes 10,000
+STARTS = 200  # initial weights asked whether all of the mass matrix can be learnt
 
 
 class Entry(NamedTuple):
@@ -54,6 +45,7 @@ class Entry(NamedTuple):
     random: bool = False
 
 
+# Rivals with settings near those that their modules give; none was fitted to the test.
 ENTRIES = {
     "equations, identified": Entry(lambda _: Identified(RIGID + GRAVITY)),
     "Lagrangian network": Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
@@ -69,7 +61,6 @@ ENTRIES = {
     "nearest case": Entry(lambda _: Nearest(beyond="edge")),
     "linear": Entry(lambda _: Linear("states")),
 }
-"""Rivals with settings near those that their modules give; none was fitted to the test."""
 
 
 def states(drawn: Characters) -> Cases:
@@ -79,19 +70,9 @@ def states(drawn: Characters) -> Cases:
 
 
 def parts(torque: Callable, x) -> dict[str, np.ndarray]:
-    """What a predictor of torques says of their parts, and of the mass matrix.
+    """Parts of the torques (N m) that a predictor gives for states ``(cases, joint, 3)``.
 
-    Parameters
-    ----------
-    torque : callable
-        From states ``(cases, joint, 3)`` to torques ``(cases, joint)``.
-    x : ndarray, shape (cases, joint, 3)
-
-    Returns
-    -------
-    dict of ndarray
-        ``torque``, ``inertial``, ``coriolis`` and ``gravity``, of shape ``(cases, joint)``, N m;
-        ``mass_matrix``, of shape ``(cases, joint, joint)``, kg m^2.
+    Also its mass matrix, ``(cases, joint, joint)``, kg m^2; the rest is ``(cases, joint)``.
     """
     rest, moved, pushed = x.copy(), x.copy(), x.copy()
     rest[..., 1:], moved[..., 2], pushed[..., 1] = 0.0, 0.0, 0.0
@@ -128,15 +109,7 @@ def _exact(x) -> np.ndarray:
 
 
 def hurried(torque: Callable, x) -> float:
-    """Error of torques at twice the speed: velocities doubled, accelerations times four.
-
-    Root mean square error of both joints over the deviation of these torques.
-
-    Parameters
-    ----------
-    torque, x
-        As in `parts`.
-    """
+    """RMS error of both joints at twice the speed, over the deviation of these torques."""
     fast = x * [1.0, 2.0, 4.0]
     truth = _exact(fast)
     return float(np.sqrt(((torque(fast) - truth) ** 2).sum(-1).mean() / truth.var(0).sum()))

@@ -15,14 +15,9 @@ from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Estimating
 from workshop.report.code_hash import study
 
-DAYS, WIDTH, DIRECTIONS = 6, 21, 10
-"""Recordings; samples of a window; principal directions that a process of windows sees."""
-
-LEVEL, SIGMAS = 0.95, 1.959964
-"""What the intervals promise, and their half width in standard deviations."""
-
-KEPT = 0.2
-"""Share of the training cases that is kept out, to be asked between its neighbours."""
+DAYS, WIDTH, DIRECTIONS = 6, 21, 10  # recordings; samples of a window; principal directions
+LEVEL, SIGMAS = 0.95, 1.959964  # of the intervals, and their half width in deviations
+KEPT = 0.2  # share of the training cases that is kept out
 
 PROCESSES = {
     "directions of the window": lambda: GaussianProcess(directions=DIRECTIONS, restarts=0),
@@ -30,7 +25,6 @@ PROCESSES = {
     "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
     "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
 }
-"""What the processes see; known structure alone has no intervals of torques."""
 
 
 def _some(cases: Cases, rows) -> Cases:
@@ -55,8 +49,7 @@ def _asked(rival, cases: Cases) -> dict:
 def gaussian_intervals() -> dict:
     """Share of measured torques in the intervals of several processes, on several days.
 
-    Trained on `KEPT` less than all windows of trajectories 1 to 5; asked for those that were kept
-    out, which lie between others, and for trajectory 6.
+    They are asked for the windows of trajectories 1 to 5 that were kept out, and for trajectory 6.
     """
     rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in PROCESSES}
     for day in range(1, DAYS + 1):

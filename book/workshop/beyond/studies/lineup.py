@@ -17,41 +17,21 @@ from workshop.beyond.rivals.protocol import Rival
 from workshop.beyond.rivals.sequences import Convolution, Recurrent
 from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
 
-DAYS, FEWER = 8, 5
-"""Recordings of a rival, and of one that takes seconds to train. A rival that starts at random
-starts otherwise on each."""
+DAYS, FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
 
 
 class Line(NamedTuple):
-    """A rival at several sizes.
+    """A rival at several sizes."""
 
-    Attributes
-    ----------
-    make : callable
-        ``make(size, seed)`` gives a `Rival` that has learnt nothing.
-    sizes : tuple
-        What is varied, from few to many stored numbers.
-    varied : str
-        What that is, in words.
-    family : str
-        Panel of the figures that it stands in.
-    days : int
-        On how many recordings it is tried.
-    """
-
-    make: Callable[[object, int], Rival]
-    sizes: tuple
+    make: Callable[[object, int], Rival]  # of a size and a seed
+    sizes: tuple  # from few to many stored numbers
     varied: str
-    family: str
+    family: str  # panel of the figures
     days: int = DAYS
 
 
-REFERENCE = "network of 1988"
-"""The rival that all others are compared with: ten hidden units, by descent."""
-
-PENALTY = 1e-4
-"""On squared coefficients of polynomials and Fourier series: of those tried in ``rivals_1988``, the
-one that leaving out trajectories chooses."""
+REFERENCE = "network of 1988"  # ten hidden units, by descent
+PENALTY = 1e-4  # the one that leaving out trajectories chooses in `rivals_1988`
 
 
 def _descent(hidden, seed, **options):
@@ -78,8 +58,7 @@ def _lagrangian(units, seed):
     return LagrangianNetwork((units, units), gravity="none", friction=True, epochs=150, seed=seed)
 
 
-SEARCH = {"subset": 150, "restarts": 0}
-"""For the hyperparameters of Gaussian processes: cases that decide them, and further searches."""
+SEARCH = {"subset": 150, "restarts": 0}  # cases for hyperparameters, further searches
 
 
 def _table(over):
@@ -151,4 +130,3 @@ LINES: dict[str, Line] = {
         FEWER,
     ),
 }  # fmt: skip
-"""All rivals by the name that tables and figures use."""

@@ -34,21 +34,11 @@ from workshop.beyond.studies.tx40 import (
 from workshop.beyond.studies.tx40_networks import EPOCHS, HIDDEN, both, decayed, trained, wrong
 from workshop.report.code_hash import study
 
-COURSE = (10, 30, 100, 300, 1000, 2000, 5000)
-"""Epochs at which the main window's networks are tested on the way to those of 1988."""
-
-MAIN = (100, 21)
-"""Samples a second and window where variants are tried."""
-
-FILTERS = (11, 21)
-"""Windows, at 100 samples a second, whose filters are taken apart."""
-
-KINDS = ("shifted", "phases")
-"""Unrelated currents that are as smooth as the recorded ones."""
-
-DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)
-"""Weight decays, per case."""
-
+COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988
+MAIN = (100, 21)  # samples a second and window where variants are tried
+FILTERS = (11, 21)  # windows, at 100 samples a second, whose filters are taken apart
+KINDS = ("shifted", "phases")  # unrelated currents, as smooth as the recorded ones
+DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)  # per case
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
@@ -140,8 +130,7 @@ def _structured(data: Windowed, block: int, members: int, decay: float) -> list[
 def _described(model: TorqueModel, data: Windowed, targets) -> dict:
     """Of each network: errors, gains on the joint's own motion, names and shares of filters.
 
-    Of the direct weights from each joint to its own motor also what they follow; of all pairs,
-    ``(quantile, output, joint, 2)``, the gains on velocity and acceleration.
+    Of all pairs, ``(quantile, output, joint, 2)``, the gains on velocity and acceleration.
     """
     w = model.weights
     whole = gains(mean_gradient(model, data.x), data.step)
@@ -166,11 +155,7 @@ def _described(model: TorqueModel, data: Windowed, targets) -> dict:
 
 
 def _curved(model: TorqueModel, data: Windowed, known) -> np.ndarray:
-    """Share of the hidden units' non-linear part that friction and rigid body explain, by output.
-
-    Least squares takes what is linear in the window out of the hidden units' sums and of what is
-    known; shape (members, 6).
-    """
+    """Share of the hidden units' non-linear part that the known structure explains, by output."""
     flat = data.x.reshape(len(data.x), -1)
     flat = flat - flat.mean(0)
     left, values, _ = np.linalg.svd(flat, full_matrices=False)
@@ -278,11 +263,7 @@ def _differences() -> dict:
 
 
 def _processes(subset: int = 120) -> dict:
-    """Gaussian processes at the main window: errors on each block.
-
-    Of the windows (their leading directions, three for each joint), of the states, and of the
-    states for what the known structure leaves over.
-    """
+    """Errors of Gaussian processes by block: of windows, of states, beside known structure."""
     data, rows = Windowed.of(*MAIN), {"windows": [], "states": [], "on the rest": []}
     states = data.states
     for block in range(BLOCKS):
@@ -324,15 +305,6 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
 
     Errors are mean squares over the whole recording's variance, one for each block, network and
     output; gains are in A s/rad and A s^2/rad.
-
-    Parameters
-    ----------
-    members : int
-        Networks of a block and window.
-    filters : int
-        Networks whose filters are taken apart, for each of `FILTERS`.
-    draws : int
-        Draws of each surrogate, a network each.
     """
     return {
         "members": members,

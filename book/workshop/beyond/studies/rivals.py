@@ -16,33 +16,19 @@ from workshop.beyond.studies.lineup import DAYS, LINES, REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
-WIDTH = 21
-"""Samples of the windows: the paper's best."""
+WIDTH = 21  # samples of the windows: the paper's best
+GRID = 9  # trajectories in a row of the square of extents
 
-GRID = 9
-"""Trajectories in a row of the square of extents."""
+EVERY, SHOWN = 4, 10  # samples of the square from test to test, and of those shown
+BUDGET = 540  # stored numbers of the paper's network with ten hidden units
 
-EVERY, SHOWN = 4, 10
-"""Of the square's samples every so many are tested, and every so many are kept to be shown."""
-
-BUDGET = 540
-"""Stored numbers of the paper's network: ten hidden units, window 21, two scalings of torque."""
-
+# Torques on the square: each rival at its largest size within the budget, or at its smallest.
 TORQUES = results.FOLDER / "rivals-torques.npz"
-"""Measured and predicted torques on the square of extents: each rival at its largest size within
-the budget, or at its smallest."""
-
-INPUTS = ("positions", "exact states")
-"""What rivals see: windows of measured positions, or states without noise."""
+INPUTS = ("positions", "exact states")  # windows of measured positions, or states without noise
 
 
 def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     """What rivals learn from and are tested on, on one day.
-
-    Parameters
-    ----------
-    day : int
-        As in `Setup.repeated`.
 
     Returns
     -------
@@ -82,13 +68,7 @@ def _seen(line, inputs: str, size, seed: int):
 
 
 def floors(sets: dict) -> dict:
-    """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `INPUTS`.
-
-    Parameters
-    ----------
-    sets : dict
-        Cases by name.
-    """
+    """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `INPUTS`."""
     (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
     bits = float(np.log2(2 * np.pi / encoder.step))
     found = {inputs: {} for inputs in INPUTS}
@@ -105,7 +85,7 @@ def rivals() -> dict:
     """Every line of `LINES` at all its sizes, on several days.
 
     A row for each rival, size and kind of inputs; errors and times have a value for each day. The
-    torques of the first day all over the square go into a file of their own (`TORQUES`).
+    torques of the first day go into `TORQUES`.
     """
     rows, torques, floor = {}, {}, None
     for day in range(1, DAYS + 1):

@@ -20,18 +20,10 @@ from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest, full_ta
 from workshop.report.code_hash import study
 
 DAYS = (1, 2, 3, 4, 5)
-"""Days of recording: each has noise and encoder zeros of its own."""
-
-LATER = 100
-"""The same trajectories are recorded again so many days later; to choose settings, twice that."""
-
-WIDTH = 21
-"""Window from which states are estimated: the best of Table 4-1."""
-
+LATER = 100  # days until the same is recorded again; twice that: to choose settings
+WIDTH = 21  # from which states are estimated: the best of Table 4-1
 KINDS = ("exact", "positions only")
-
-POINTS, STRIDE = 9, 5
-"""Extents of each joint in the square; of its samples every fifth is a test."""
+POINTS, STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 
 def _cases(setup: Setup, recording: Recording, kind: str, stride: int = 1) -> Cases:
@@ -89,25 +81,18 @@ def _over_days(rows: list[dict]) -> dict:
 
 # Tables
 
+# Of each axis.
 CELLS = {
     "states": (5, 10, 20, 40, 80),
     "motions": (2, 3, 5, 10, 20),
     "configurations": (1, 2, 3, 5, 10, 20),
     "multilinear": (1, 2, 4, 8),
 }
-"""Cells of each axis that are tried."""
 
-PRACTISED = (25.0, 25.0)
-"""Extents of the one trajectory of the map, degrees: a point of the square."""
-
-PRACTICE, REPEATED = 3, (1, 3, 10)
-"""On how many days it is recorded for training, how often on each; the map is of the last."""
-
-VARIED, PENALTY = ("states", "configurations"), 1e-4
-"""Tables that also learn as many different trajectories; the penalty of a plane beside them."""
-
-FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)
-"""Cells of each axis of tables that are right in every cell."""
+PRACTISED = (25.0, 25.0)  # extents of the one trajectory of the map, degrees: a point of the square
+PRACTICE, REPEATED = 3, (1, 3, 10)  # days of its training; how often on each
+VARIED, PENALTY = ("states", "configurations"), 1e-4  # of a plane beside these tables
+FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
 
 
 def _table(over: str, cells: int) -> Rival:
@@ -237,14 +222,9 @@ def _full() -> dict:
 
 # CMAC
 
-LAYERS, EPOCHS, HASHED_WIDTH = 32, 50, 0.5
-"""Layers, passes and, where slots are varied, edge of the cubes of CMAC. Assumed."""
-
-WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)
-"""Edges of its cubes, as shares of the box's."""
-
-SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)
-"""Weights for each joint, where cubes share them by hashing."""
+LAYERS, EPOCHS, HASHED_WIDTH = 32, 50, 0.5  # of CMAC; assumed
+WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)  # edges of its cubes over the box's
+SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)  # weights of a joint, by hashing
 
 
 @study
@@ -321,15 +301,14 @@ def _folds(training: Cases) -> list[tuple[Cases, Cases]]:
 
 # Polynomials and Fourier series
 
-RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)
-"""Penalties on squared coefficients."""
+RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 
+# Families of functions and their highest degree or order.
 BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
     "chebyshev": (lambda order: Polynomial(order), 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
     "fourier": (lambda order: Fourier(order), 3),
 }
-"""Families of functions and their highest degree or order."""
 
 
 @study

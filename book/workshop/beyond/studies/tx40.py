@@ -16,23 +16,12 @@ from ddlib.analysis import savitzky_golay
 from ddlib.identification import joint_columns
 from workshop.beyond.others import RealArm, staubli
 
-BLOCKS = 5
-"""Contiguous parts of the recording; each is predicted by what was learnt on the others."""
-
-RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}
-"""Windows that were tried, by samples a second; 100 are the paper's."""
-
-SLOTS = slice(40, 860)
-"""The recording's hundredths of a second that all windows fit around."""
-
-RIDGES = tuple(10.0 ** np.arange(-10, 1))
-"""Penalties of which ridge regression takes the best, as shares of the inputs' variance."""
-
-PIECES = 15
-"""Into how many pieces the recording is cut to choose a penalty by."""
-
-DEGREE = 3
-"""Of the polynomial whose derivatives stand for a window's states."""
+BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
+RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}  # windows, by samples a second
+SLOTS = slice(40, 860)  # hundredths of a second that all windows fit around
+RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
+PIECES = 15  # of the recording, to choose a penalty by
+DEGREE = 3  # of the polynomial whose derivatives are a window's states
 
 
 @cache
@@ -43,34 +32,16 @@ def recorded(rate: int) -> RealArm:
 
 @dataclass(frozen=True)
 class Windowed:
-    """Windows of the real arm at the moments of `SLOTS`, and the currents there.
+    """Windows of the real arm at the moments of `SLOTS`, and the currents there."""
 
-    Attributes
-    ----------
-    rate, width : int
-        Samples a second; samples of a window.
-    x : ndarray, shape (cases, 6, width)
-        Positions, rad.
-    current : ndarray, shape (cases, 6)
-        A.
-    """
-
-    rate: int
+    rate: int  # samples a second
     width: int
-    x: np.ndarray
-    current: np.ndarray
+    x: np.ndarray  # (cases, 6, width): positions, rad
+    current: np.ndarray  # (cases, 6), A
 
     @classmethod
     def of(cls, rate: int, width: int) -> Windowed:
-        """The cases of a sampling rate and window size.
-
-        Parameters
-        ----------
-        rate : int
-            100, 200 or 500 samples a second.
-        width : int
-            Odd; at most 0.81 s.
-        """
+        """The cases of 100, 200 or 500 samples a second and of a window size."""
         found, many = recorded(rate), rate // 100
         integer("width", width, 3, 81 * many)
         centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
@@ -91,15 +62,7 @@ class Windowed:
         return self.x @ np.stack(filters, -1)
 
     def fold(self, block: int) -> tuple[np.ndarray, np.ndarray]:
-        """Cases to learn from and cases to be tested on, as masks.
-
-        No window of one reaches into a window of the other.
-
-        Parameters
-        ----------
-        block : int
-            Which one is tested, 0 to 4.
-        """
+        """Masks of the cases to learn from and of those to be tested on, without common samples."""
         return fold(len(self.x), block, self.gap)
 
     @property
@@ -109,18 +72,7 @@ class Windowed:
 
 
 def fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of training and test cases: a block is tested, and none within `gap` of it is learnt.
-
-    Parameters
-    ----------
-    cases : int
-    block : int
-        From 0 on.
-    gap : int
-        Least distance from a training case to a test case.
-    blocks : int
-        Into how many blocks the cases are cut.
-    """
+    """Masks of training and test cases: a block is tested, none within `gap` of it is learnt."""
     size, place = cases / blocks, np.arange(cases)
     first, last = (round((integer("block", block, 0, blocks - 1) + k) * size) for k in (0, 1))
     test = (place >= first) & (place < last)
@@ -136,13 +88,7 @@ def least_squares(x, y, new) -> np.ndarray:
 
 
 class Ridge:
-    """Linear filters of the window with a penalty on their squares, one for each output.
-
-    Parameters
-    ----------
-    x : array_like, shape (cases, inputs)
-    y : array_like, shape (cases, outputs)
-    """
+    """Linear filters of the window with a penalty on their squares, one for each output."""
 
     def __init__(self, x, y):
         self.centre, self.mean = x.mean(0), y.mean(0)
@@ -153,13 +99,7 @@ class Ridge:
         self.along = self.axes.T @ (x.T @ (y - self.mean))
 
     def filters(self, penalty) -> np.ndarray:
-        """Factors ``(inputs, outputs)`` for a penalty, or one for each output.
-
-        Parameters
-        ----------
-        penalty : float or array_like, shape (outputs,)
-            As a share of the mean variance of the inputs.
-        """
+        """Factors ``(inputs, outputs)`` for a penalty, as a share of the inputs' mean variance."""
         return self.axes @ (self.along / (self.power[:, None] + np.asarray(penalty) * self.unit))
 
     def predict(self, new, penalty) -> np.ndarray:
@@ -168,14 +108,7 @@ class Ridge:
 
 
 def best_penalty(data: Windowed, training) -> float:
-    """The penalty of `RIDGES` with the least error on pieces left out of the training cases.
-
-    Parameters
-    ----------
-    data : Windowed
-    training : ndarray of bool, shape (cases,)
-        What may be looked at.
-    """
+    """The penalty of `RIDGES` with the least error on pieces left out of the training cases."""
     x, total = data.x.reshape(len(data.x), -1), 0.0
     for piece in range(PIECES):
         kept, tried = fold(len(x), piece, data.gap, PIECES)
@@ -188,7 +121,7 @@ def best_penalty(data: Windowed, training) -> float:
 
 
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
-    """Currents by least squares on the terms that the axes give, joint by joint.
+    """Currents ``(others, 6)`` at `new` states by least squares on known terms, joint by joint.
 
     Parameters
     ----------
@@ -198,10 +131,6 @@ def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
         States whose currents are wanted.
     friction : bool
         Whether friction is among the terms.
-
-    Returns
-    -------
-    ndarray, shape (others, 6)
     """
     return np.stack(
         [
@@ -220,37 +149,18 @@ def _fitted(a, y) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Identified:
-    """Gains of the identified model, joint by joint.
+    """Gains of the identified model, joint by joint."""
 
-    Attributes
-    ----------
-    inertia : ndarray, shape (6,)
-        Current on the joint's own acceleration, averaged over the cases, A s^2/rad.
-    slope : ndarray, shape (6,)
-        Current on the joint's own velocity that friction gives, by least squares along the
-        motion, A s/rad.
-    viscous, coulomb : ndarray, shape (6,)
-        A s/rad and A.
-    friction, rest : ndarray, shape (cases, 6)
-        The friction's current, and that of all other terms, A.
-    """
-
-    inertia: np.ndarray
-    slope: np.ndarray
-    viscous: np.ndarray
-    coulomb: np.ndarray
-    friction: np.ndarray
-    rest: np.ndarray
+    inertia: np.ndarray  # on the joint's own acceleration, averaged over the cases, A s^2/rad
+    slope: np.ndarray  # of friction on the joint's own velocity, along the motion, A s/rad
+    viscous: np.ndarray  # A s/rad
+    coulomb: np.ndarray  # A
+    friction: np.ndarray  # current, (cases, 6), A
+    rest: np.ndarray  # of all other terms
 
 
 def identified(states, current) -> Identified:
-    """The known structure fitted to all cases.
-
-    Parameters
-    ----------
-    states : array_like, shape (cases, 6, 3)
-    current : array_like, shape (cases, 6)
-    """
+    """The known structure fitted to states ``(cases, 6, 3)`` and currents ``(cases, 6)``."""
     speed, found = states[..., 1], []
     for j in range(current.shape[1]):
         a, free = joint_columns(states, j), joint_columns(states, j, friction=False)
@@ -270,17 +180,6 @@ def identified(states, current) -> Identified:
 
 
 def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
-    """Medians of current in groups of equally many cases of like speed.
-
-    Parameters
-    ----------
-    speed, current : array_like, shape (cases,)
-    bins : int
-        Number of groups.
-
-    Returns
-    -------
-    speed, current : ndarray, shape (bins,)
-    """
+    """Medians of speed and current in groups of equally many cases of like speed."""
     groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
     return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))

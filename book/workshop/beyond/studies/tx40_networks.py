@@ -8,43 +8,20 @@ from scipy.optimize import minimize
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
 from workshop.beyond.studies.tx40 import Windowed
 
-HIDDEN = 10
-"""Hidden units, as in 1988."""
+HIDDEN = 10  # as in 1988
 
+# Per sample of a window: one of six joints has three times the inputs of one of two.
 DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
-"""Descent on inputs of -1 to 1: the rate is divided by the window size, since a window of six
-joints has three times the inputs of two."""
-
-SCALING = (-1.0, 1.0)
-"""Range of the inputs."""
-
-EPOCHS = 2000
-"""Epochs of all networks but the longest."""
+SCALING = (-1.0, 1.0)  # of the inputs
+EPOCHS = 2000  # of all networks but the longest
 
 
 def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=HIDDEN,
             epochs: int = EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
     """Networks by descent on windows ``(cases, 6, width)`` and currents ``(cases, outputs)``.
 
-    Parameters
-    ----------
-    x, y : array_like
-    members, seed : int
-        Number of networks; seed of the first.
-    width : int
-        Window size.
-    snapshots : sequence of int
-        Epochs whose weights are kept.
-    targets : array_like, shape (members, cases, outputs), optional
-        Currents of each network in place of `y`.
-    hidden, epochs : int
-
-    Returns
-    -------
-    model : TorqueModel
-    kept : dict of TorqueModel
-        By epoch.
-    data : TrainingSet
+    ``targets`` ``(members, cases, outputs)`` are currents of each network in place of `y`. With
+    the model come models of the epochs in ``snapshots``, and the data.
     """
     data = TrainingSet.from_arrays(x, y, scaling=SCALING)
     start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
@@ -58,45 +35,20 @@ def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=Non
 
 
 def wrong(predicted, data: Windowed, cases) -> np.ndarray:
-    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``.
-
-    Parameters
-    ----------
-    predicted : array_like, shape (..., n, 6)
-    data : Windowed
-        All cases.
-    cases : slice or ndarray
-        Which of them were predicted.
-    """
+    """Mean squared error of each output over the whole recording's variance, ``(..., 6)``."""
     error = predicted - data.current[cases]
     return (error**2).mean(-2) / data.current.var(0)
 
 
 def both(model: TorqueModel, data: Windowed, block: int) -> list[np.ndarray]:
-    """Errors of a fold: on what was learnt, and on the block left out.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    data : Windowed
-    block : int
-    """
+    """Errors of a fold: on what was learnt, and on the block left out."""
     return [wrong(model.torque(data.x[part]), data, part) for part in data.fold(block)]
 
 
 def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
-    """One network by quasi-Newton steps on the mean squared error with weight decay.
+    """One network by quasi-Newton steps on half the mean squared error with weight decay.
 
-    Parameters
-    ----------
-    x, y : array_like, shapes (cases, 6, width) and (cases, outputs)
-    start : Weights
-        Of one network.
-    decay : float
-        Half of it times the sum of squared weights, biases left out, is added to half the mean
-        over the cases of the squared error, summed over the scaled outputs.
-    steps : int
-        Most iterations.
+    Half of the decay times the sum of squared weights, biases left out, is added.
     """
     data = TrainingSet.from_arrays(x, y, scaling=SCALING)
     flat = data.x.reshape(len(data.x), -1)

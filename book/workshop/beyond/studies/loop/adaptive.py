@@ -47,31 +47,16 @@ from workshop.beyond.studies.loop.runs.adaptive import (
 )
 from workshop.report.code_hash import study
 
-SEEDS, TRIALS = 10, 4
-"""Runs of each setting, with other motions and other zeros of the encoders; motions of a course,
-with as many more after a load is taken up."""
+SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
+LOADS = (2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
+PICKED = 5.0  # kg, taken up half-way
+DELAYS = (1, 2, 4)  # control periods, with `PICKED`
+BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
+BEGIN = 0.5  # share of the base parameters that is known at the start
+MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
+PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
 
-LOADS = (2.0, 5.0, 10.0)
-"""Loads of Han, Hemami & Yurkovich 1987, kg."""
-
-PICKED = 5.0
-"""Load that is taken up half-way, kg."""
-
-DELAYS = (1, 2, 4)
-"""Control periods by which torques come late, with `PICKED`."""
-
-BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)
-"""Encoders, bits a turn."""
-
-BEGIN = 0.5
-"""Share of the base parameters that is known at the start, where a load is not the question."""
-
-MOST = tuple(JOINT_DAMPING_COULOMB)
-"""Sizes of the unmodelled effects, N m: those of Coulomb friction."""
-
-PLAY = (3.5e-3, 3.5e-3)
-"""Backlash, rad: 0.2 degrees."""
-
+# What is added to the set-up's effects.
 BED = {
     "nothing else": lambda e: e,
     "Stribeck": lambda e: replace(
@@ -81,20 +66,11 @@ BED = {
     "dead zone": lambda e: replace(e, actuator=(DeadZone(MOST), *e.actuator)),
     "ripple": lambda e: replace(e, motor=(Ripple(cogging=MOST),)),
 }
-"""What is added to the set-up's effects."""
 
 FRICTION_TRUTH = np.concatenate([TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
-"""Of `JOINT_DAMPING`, in the order of the adapted parameters."""
-
-ZONE = (0.17, 0.14)
-"""Dead zone of the drift study, rad/s: friction of `JOINT_DAMPING` at the family's largest speed
-over the damping term."""
-
-FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))
-"""Rates of the map of stops, as multiples of those used elsewhere."""
-
-LATE = (0, 1, 2, 3, 5)
-"""Delays of that map, control periods."""
+ZONE = (0.17, 0.14)  # rad/s: friction at the largest speed over the damping term
+FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))  # rates of the map of stops, over those elsewhere
+LATE = (0, 1, 2, 3, 5)  # delays of that map, control periods
 
 
 def _course(setup: Setup, seed: int = 1) -> dict:

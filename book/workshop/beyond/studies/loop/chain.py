@@ -30,59 +30,28 @@ from ddlib.setups import (
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
 
-MOST = DD_ARM_II_IN_SPACE.joints
-"""Joints of the longest arm: six as the real one, and one of the book's."""
-
-RATIOS = (0.8, 1.15, 0.9, 1.25, 0.7)
-"""Frequencies of the loops of joints 3 to 7 over the elbow's. Assumed: no two ring alike."""
-
-NOISE = 0.024
-"""Torque noise of joints 3 to 7 as a share of their torque's deviation, as of the first two."""
-
-REACH = 10
-"""Samples of a window on either side of its centre: the report's window of 21."""
-
-SPACING = 5
-"""Of the 21 samples every so many are used, unless another number is asked for: 5 of them."""
-
-EVERY = 2
-"""Of the samples of a motion every so many are the centre of a window."""
-
-MOTIONS = ("answered", "sine")
-"""Ways to move: the answers of the joints' own loops, or the reference's sine itself, without
-beginning or end."""
+MOST = DD_ARM_II_IN_SPACE.joints  # six as the real arm, and one of the book's
+RATIOS = (0.8, 1.15, 0.9, 1.25, 0.7)  # frequencies of joints 3 to 7 over the elbow's; assumed
+NOISE = 0.024  # torque noise of joints 3 to 7 over their torque's deviation, as of the first two
+REACH = 10  # samples of a window on either side of its centre
+SPACING = 5  # samples from tap to tap: 5 of the report's 21
+EVERY = 2  # samples from the centre of a window to the next
+MOTIONS = ("answered", "sine")  # by the joints' own loops; the reference's sine, without an end
 
 
 @dataclass(frozen=True)
 class Chain:
-    """An arm with all that a recording of it needs; arrays are joint by joint.
-
-    Attributes
-    ----------
-    arm : SerialArm
-    frequency, damping : ndarray
-        Of the joints' loops, rad/s and as a share of the critical one.
-    lead : ndarray
-        Share of the damping that acts on the error in velocity, not on the velocity.
-    viscous, coulomb : ndarray
-        Friction, N m s/rad and N m.
-    smoothing : float
-        Speed over which Coulomb friction turns, rad/s.
-    encoder : float
-        Step of the encoder, rad.
-    noise : ndarray
-        Deviation of the torque noise, N m.
-    """
+    """An arm with all that a recording of it needs; arrays are joint by joint."""
 
     arm: SerialArm
-    frequency: np.ndarray
-    damping: np.ndarray
-    lead: np.ndarray
-    viscous: np.ndarray
-    coulomb: np.ndarray
-    smoothing: float
-    encoder: float
-    noise: np.ndarray
+    frequency: np.ndarray  # of the joints' loops, rad/s
+    damping: np.ndarray  # as a share of the critical one
+    lead: np.ndarray  # share of the damping that acts on the error in velocity
+    viscous: np.ndarray  # N m s/rad
+    coulomb: np.ndarray  # N m
+    smoothing: float  # speed over which Coulomb friction turns, rad/s
+    encoder: float  # step, rad
+    noise: np.ndarray  # deviation, N m
 
     @property
     def joints(self) -> int:
@@ -96,19 +65,9 @@ class Chain:
         return self.arm.inverse_dynamics(q, qd, qdd) + friction
 
     def answer(self, t_steps: int, before: int, motion: str = "answered") -> np.ndarray:
-        """How each joint answers a reference of extent 1 rad.
+        """States ``(t_steps, joint, 3)``, `LOG_STEP` apart, that answer a reference of 1 rad.
 
-        Parameters
-        ----------
-        t_steps, before : int
-            Samples in all, and before the motion begins.
-        motion : str
-            One of `MOTIONS`.
-
-        Returns
-        -------
-        ndarray, shape (t_steps, joint, 3)
-            Position, velocity and acceleration, `LOG_STEP` apart.
+        The motion begins after so many samples ``before`` it, and is one of `MOTIONS`.
         """
         one_of("motion", motion, MOTIONS)
         omega = np.pi / MOTION_SECONDS
@@ -138,10 +97,9 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     ----------
     joints : int
         1 to `MOST`.
-    reading : str
-        "joint damping" or "state feedback": gains, friction and encoder of that set-up for
-        shoulder and elbow. Further joints have the elbow's damping ratio, frequencies by `RATIOS`
-        and friction in proportion to their inertia.
+    reading : {"joint damping", "state feedback"}
+        Whose gains, friction and encoder shoulder and elbow have. Further joints have the elbow's
+        damping ratio, frequencies by `RATIOS`, and friction in proportion to their inertia.
     """
     integer("joints", joints, 1, MOST)
     one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))
@@ -180,36 +138,17 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
 
 
 def extents(joints: int, motions: int, seed: int) -> np.ndarray:
-    """Extents drawn in the way of Appendix I, degrees: uniform from 0 to 45 for each joint.
+    """Extents drawn in the way of Appendix I, degrees, ``(motions, joints)``.
 
-    Parameters
-    ----------
-    joints, motions : int
-    seed : int
-        The first motions of a longer draw are those of a shorter one.
-
-    Returns
-    -------
-    ndarray, shape (motions, joints)
+    The first motions of a longer draw are those of a shorter one.
     """
     return np.random.default_rng((seed, joints)).uniform(0.0, MAX_EXTENT_DEG, (motions, joints))
 
 
 def moved(chain: Chain, extents_deg, motion: str = "answered") -> np.ndarray:
-    """True states of motions, `REACH` samples before and after them included.
+    """True states ``(runs, time, joint, 3)`` of motions with `REACH` samples of rest around them.
 
-    Parameters
-    ----------
-    chain : Chain
-    extents_deg : array_like, shape (runs, joint)
-        Degrees.
-    motion : str
-        One of `MOTIONS`.
-
-    Returns
-    -------
-    ndarray, shape (runs, time, joint, 3)
-        rad, rad/s, rad/s^2.
+    Extents are in degrees, ``(runs, joint)``; states in rad, rad/s and rad/s^2.
     """
     extents_deg = shaped("extents_deg", extents_deg, f"(runs, {chain.joints})")
     samples = round(MOTION_SECONDS / LOG_STEP) + 2 * REACH
@@ -219,24 +158,12 @@ def moved(chain: Chain, extents_deg, motion: str = "answered") -> np.ndarray:
 
 @dataclass(frozen=True)
 class Sample:
-    """Cases of motions: what networks see, the torque that is measured, and the truth.
+    """Cases of motions: what networks see, the torque that is measured, and the truth."""
 
-    Attributes
-    ----------
-    windows : ndarray, shape (cases, joint, taps)
-        Measured positions, rad.
-    torque : ndarray, shape (cases, joint)
-        Measured, N m.
-    states : ndarray, shape (cases, joint, 3)
-        True position, velocity, acceleration at the centres.
-    runs : int
-        Motions; each has as many cases, one after the other.
-    """
-
-    windows: np.ndarray
-    torque: np.ndarray
-    states: np.ndarray
-    runs: int
+    windows: np.ndarray  # (cases, joint, taps): measured positions, rad
+    torque: np.ndarray  # (cases, joint): measured, N m
+    states: np.ndarray  # (cases, joint, 3): true ones at the centres
+    runs: int  # motions; each has as many cases, one after the other
 
     def thinned(self, most: int) -> Sample:
         """At most so many cases: of every motion each k-th."""
@@ -247,18 +174,10 @@ class Sample:
 def recorded(
     chain: Chain, extents_deg, seed: int, motion: str = "answered", spacing: int = SPACING
 ) -> Sample:
-    """Follow motions exactly and cut what is measured into windows.
+    """Follow motions ``(runs, joint)`` exactly, and cut what is measured into windows.
 
-    Parameters
-    ----------
-    chain : Chain
-    extents_deg : array_like, shape (runs, joint)
-    seed : int
-        Of the torque noise and of where the encoder has its zero.
-    motion : str
-        One of `MOTIONS`.
-    spacing : int
-        Samples from one tap of a window to the next.
+    ``seed`` draws the torque noise and the encoder's zero; ``spacing`` are samples from one tap of
+    a window to the next.
     """
     states = moved(chain, extents_deg, motion)
     rng = np.random.default_rng((seed, 7))

@@ -43,12 +43,10 @@ from workshop.beyond.studies.loop.chain import (
 from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 
-CASES = 750
-"""Windows of a training set: what five motions have, every 20 ms."""
+CASES = 750  # windows of a training set: what five motions have, every 20 ms
+STEPS, DECAY = 30, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 60 and this decay
 
-STEPS, DECAY = 30, 1e-6
-"""Steps of Levenberg-Marquardt and weight decay; `JOINT_DAMPING` has 60 and the same decay."""
-
+# Training motions by number of joints.
 MOTIONS_OF = {
     1: (2, 3, 5, 10, 20, 40, 80),
     2: (2, 3, 5, 7, 10, 20, 40, 80),
@@ -57,32 +55,19 @@ MOTIONS_OF = {
     5: (5, 10, 14, 20, 40, 80),
     7: (5, 10, 14, 20, 40, 80),
 }
-"""Training motions by number of joints."""
 
-SEEDS = 10
-"""Draws of motions, noise and weights."""
-
+SEEDS = 10  # draws of motions, noise and weights
 TEST_MOTIONS, TEST_SEED = 20, 1000
-"""Motions on which all is tested, never in a training set, and the seed of their draw."""
-
-UNITS = (5, 20, 40)
-"""Hidden units besides the report's ten, at four joints."""
-
-STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000
-"""Random states: sizes of the training sets, steps of the solver, states of the test set."""
-
-MAIN = 20
-"""Training motions of the networks whose filters are read."""
-
-REST = SPACING * LOG_STEP
-"""From one tap of a window to the next, s."""
+UNITS = (5, 20, 40)  # besides the report's ten, at four joints
+STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000  # of random states
+MAIN = 20  # training motions of the networks whose filters are read
+REST = SPACING * LOG_STEP  # s, from one tap of a window to the next
 
 
 def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
-    """One network of so many hidden units, trained on windows and their torque, or on states.
+    """One network trained on windows (or states) and torques; ``test`` holds both, too.
 
-    ``test`` holds windows and torques, too; ``seed`` is that of the initial weights, and
-    ``**options`` are their range, ``initial``, and those of the solver.
+    ``seed`` is that of the initial weights; ``**options`` are the solver's, and ``initial``.
     """
     joints, width = windows.shape[1:]
     data = TrainingSet.from_arrays(windows, torque)
@@ -95,10 +80,7 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
 
 
 def sets(made: Chain, motions: int, seed: int, **options) -> Sample:
-    """A training set of `CASES` windows, of so many motions of the arm ``made``.
-
-    ``seed`` and ``**options`` are those of `workshop.beyond.studies.loop.chain.recorded`.
-    """
+    """A training set of `CASES` windows from so many motions of an arm."""
     return recorded(made, extents(made.joints, motions, seed), seed, **options).thinned(CASES)
 
 
@@ -115,10 +97,9 @@ def linear(training: Sample, test: Sample) -> float:
 
 
 def identified(made: Chain, training: Sample, test: Sample) -> tuple[float, float]:
-    """Errors of the equations of ``made`` with friction, by least squares: training, test.
+    """Errors (training, test) of the equations with friction, by least squares.
 
-    States come from a polynomial through each window, whose degree is the one, of 3 and 4, that
-    fits the training torques better.
+    States come from a polynomial through each window, of the degree, 3 or 4, that fits better.
     """
     scale, found = training.torque.std(0), []
     for degree in (3, 4):
@@ -137,7 +118,7 @@ def identified(made: Chain, training: Sample, test: Sample) -> tuple[float, floa
 def equations(made: Chain, windows, degree: int) -> np.ndarray:
     """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
 
-    Of the arm ``made`` at states that polynomials of this degree through the windows give.
+    Its states are those of polynomials of this degree through the windows.
     """
     states = windows @ derivative_filters(windows.shape[-1], REST, degree).T
     speed, own = states[..., 1], np.eye(made.joints)
@@ -150,10 +131,7 @@ def equations(made: Chain, windows, degree: int) -> np.ndarray:
 
 
 def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
-    """Errors of networks and of a linear filter in a reading of the controller.
-
-    ``ladder`` has the motions for each number of joints; ``seeds`` are draws of each.
-    """
+    """Errors of networks and of a linear filter, by joints and their numbers of motions."""
     rows = []
     for joints, motions in ladder.items():
         made = chain(joints, reading)
@@ -257,11 +235,7 @@ def units() -> list[dict]:
 
 
 def random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Random states of section 6 for more joints, and the rigid body's torque, N m.
-
-    So many samples of this seed, ``(samples, joint, 3)``, uniform in plus or minus pi: rad,
-    rad/s, rad/s^2.
-    """
+    """Random states of section 6 for more joints, and the rigid body's torque, N m."""
     rng = np.random.default_rng((seed, joints))
     states = rng.uniform(-np.pi, np.pi, (samples, joints, 3))
     return states, chain(joints).arm.inverse_dynamics(*np.moveaxis(states, -1, 0))
@@ -287,10 +261,7 @@ def random_states() -> list[dict]:
 
 
 def pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
-    """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia.
-
-    Networks of unrelated torques are the null: each run's torques with random phases.
-    """
+    """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia."""
     made = chain(joints)
     test = tested(made)
     inertia = mass_matrix(made.arm, test.states[..., 0]).mean(0)
@@ -333,10 +304,7 @@ def _shuffled(predict, x, scale, seed: int) -> np.ndarray:
 
 
 def interactions() -> dict:
-    """How much of each torque is owed to the other joints: RMS without them, over the deviation.
-
-    The others rest at zero; exact torques along the test motions.
-    """
+    """How much of each torque is owed to the other joints: RMS without them, over the deviation."""
     found = {}
     for joints in (2, 3, 4, 5, 7):
         made = chain(joints)

@@ -32,50 +32,25 @@ from workshop.beyond.control.online import (
 )
 from workshop.report import results
 
-SEEDS, TUNED = 10, 1000
-"""Draws of motions, encoder zeros and networks; the first of those on which rates were chosen."""
-
-TRIALS = 10
-"""Trials of one motion, or with one load."""
-
+SEEDS, TUNED = 10, 1000  # draws; the first of those on which rates were chosen
+TRIALS = 10  # of one motion, or with one load
 WIDTH = 21
-"""Samples of a window."""
+NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
+RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
+PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
+TRUST = 1.0  # penalty where the network was trained off-line
+REPLAY = 15  # earlier samples that are learnt again with each new one
+ONE_PASS, REPLAYED, TRAINED = 0.03, 1.0, 0.1  # rates of descent from measured windows
 
-NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")
-"""What the exact terms can represent: the arm and its friction."""
-
-RATE = 1.0
-"""Of terms: per second and N m, over each term's mean square and their number."""
-
-PENALTY, FORGETTING = 1e-3, 0.999
-"""Of recursive least squares; a sample counts half after seven seconds."""
-
-TRUST = 1.0
-"""Penalty where the network was trained off-line."""
-
-REPLAY = 15
-"""Earlier samples that are learnt again with each new one."""
-
-ONE_PASS, REPLAYED, TRAINED = 0.03, 1.0, 0.1
-"""Rates of descent from measured windows: one pass, with replay, and after off-line training."""
-
+# Rate of descent by the feedback's torque: the largest tried whose error did not rise again.
 BY_FEEDBACK = {JOINT_DAMPING.name: 0.003, STATE_FEEDBACK.name: 0.03}
-"""Rate of descent by the feedback's torque: of those tried the largest whose error did not rise
-again within the trials of one motion."""
 
+# Rate, lead and smoothing of the memory, the last two in control samples.
 MEMORY = {JOINT_DAMPING.name: (0.1, 75, 10.0), STATE_FEEDBACK.name: (0.3, 25, 5.0)}
-"""Rate, lead and smoothing of the memory, the last two in control samples."""
 
 
 class Draw:
-    """Draws of one set-up: motions, encoder zeros and networks; their axis is that of the seeds.
-
-    Parameters
-    ----------
-    setup : Setup
-    first, seeds : int
-        The first seed, and how many.
-    """
+    """Draws of a set-up: motions, encoder zeros and networks; their axis is that of the seeds."""
 
     def __init__(self, setup: Setup, first: int = 0, seeds: int = SEEDS):
         self.setup, self.seeds = setup, seeds
@@ -118,12 +93,7 @@ def grid(duration: float = MOTION_SECONDS) -> np.ndarray:
 
 
 def motions(draw: Draw) -> dict[str, tuple[np.ndarray, Trajectory]]:
-    """Times and references, shape (seeds, time, 2), from rest to rest without a jump.
-
-    Parameters
-    ----------
-    draw : Draw
-    """
+    """Times and references ``(seeds, time, 2)`` from rest to rest without a jump, by name."""
     found = {}
     for name, speed in (("the same", 1.0), ("in 2/3 of the time", 1.5), ("in half the time", 2.0)):
         t = grid(MOTION_SECONDS / speed)
@@ -210,16 +180,7 @@ def _recursion(penalty):
 
 
 def last_layer(model: TorqueModel, draw: Draw, penalty: float = PENALTY) -> Windows:
-    """The network whose last layer learns from measured windows, by recursive least squares.
-
-    Parameters
-    ----------
-    model : TorqueModel
-        What it begins with.
-    draw : Draw
-    penalty : float
-        On the distance from it.
-    """
+    """The network whose last layer learns by recursive least squares from measured windows."""
     return Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
 
 
@@ -230,16 +191,7 @@ def linear_filter(draw: Draw) -> Windows:
 
 
 def by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> Windows:
-    """The network that learns from desired windows and the feedback's torque.
-
-    Parameters
-    ----------
-    model : TorqueModel
-        What it begins with.
-    draw : Draw
-    times : float or array_like
-        Multiple of the rate chosen.
-    """
+    """The network that learns from desired windows and the feedback's torque."""
     rate = BY_FEEDBACK[draw.setup.name] * np.asarray(times)
     return Windows(OnlineDescent(model, rate), "feedback", draw)
 

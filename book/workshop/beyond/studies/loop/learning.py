@@ -1,9 +1,4 @@
-"""Sections 1.2 and 7.1: learners in the loop, trial by trial.
-
-`learning_in_the_loop` has three parts. ``motion``: learners practise one motion, are asked for
-others, and go on to another one. ``family``: they practise members of the paper's family, with a
-load in the hand from half-way on. ``rates``: what too high a rate does.
-"""
+"""Sections 1.2 and 7.1: learners in the loop, trial by trial."""
 
 from __future__ import annotations
 
@@ -37,35 +32,16 @@ from workshop.beyond.studies.loop.learners import (
 )
 from workshop.report.code_hash import study
 
-LOAD = 5.0
-"""kg, in the hand from half-way on."""
-
-TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))
-"""Extents of the motions on which learners of the family are tested, degrees."""
-
-RATES = (0.1, 0.3, 1.0, 3.0, 10.0)
-"""What is tried of it, as multiples of the rates chosen."""
+LOAD = 5.0  # kg, in the hand from half-way on
+TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
+RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
 def trial(draw: Draw, controllers, rows, references, t, arm: Arm | None = None):
-    """One trial of controllers abreast.
+    """End-point errors (mm, RMS over the motion) and stops of one trial of controllers abreast.
 
-    Parameters
-    ----------
-    draw : Draw
-    controllers, rows
-        As of `ddlib.control.Abreast`.
-    references : Trajectory
-        Shape (rows, seeds, time, 2).
-    t : ndarray, shape (time,)
-    arm : Arm, optional
-        Default: that of the set-up.
-
-    Returns
-    -------
-    errors : ndarray, shape (rows, seeds)
-        Root mean square end-point error over the motion, mm.
-    stops : Stops
+    Errors have shape (rows, seeds), references (rows, seeds, time, 2); ``rows`` are those of each
+    controller, as in `Abreast`.
     """
     arm, guard = arm or draw.setup.arm, Watched(Guarded(Abreast(controllers, rows)))
     run = follow(arm, guard, references, t, effects=draw.effects)

@@ -23,36 +23,20 @@ from ddlib.trajectories import (
 )
 from workshop.beyond.rivals.protocol import Cases
 
+# 1,500 cases each; "both": every second case of the first two
 FAMILIES = ("pick and place", "circles", "both", "via points")
-"""What is learnt from: 1,500 cases each. Five motions of Appendix I; five circles; every second
-case of those ten; five motions with `VIA` via points."""
+VIA, MOST = 3, 6  # via points of the training motions, and most that are tested
+LEG = 1.5  # s, from point to point of steady motions
+RADIUS = (0.04, 0.12)  # m
+PERIOD = (1.5, 3.0)  # s, of a turn
+DISTANCE = (0.55, 0.75)  # m, of the centres: the hand comes within 0.43 to 0.87 m
+BEARING = (-80.0, -40.0)  # degrees, of the centres
 
-VIA, MOST = 3, 6
-"""Via points of the training motions, and most that are tested."""
-
-LEG = 1.5
-"""Time from point to point of motions whose pace does not depend on their number, s."""
-
-RADIUS = (0.04, 0.12)
-"""Range of the circles' radii, m."""
-
-PERIOD = (1.5, 3.0)
-"""Range of the time of a turn, s: one turn to two in the three seconds of a motion."""
-
-DISTANCE = (0.55, 0.75)
-"""Range of the centres' distances from the shoulder, m: the hand comes within 0.43 to 0.87 m."""
-
-BEARING = (-80.0, -40.0)
-"""Range of the centres' directions, degrees. With a negative elbow the shoulder then turns about
-where it does in pick-and-place."""
-
+# Circles within the angles of pick-and-place, where only the way the joints move is new.
 SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-50.0, -25.0)}
-"""Ranges of circles that lie within the angles of pick-and-place, where only the way the joints
-move is new."""
+CELLS = 6  # along each axis of the states
 
-CELLS = 6
-"""Cells along each axis of the states."""
-
+# Parts of a state: position, velocity and acceleration of the shoulder, then of the elbow.
 AXES = {
     "positions": [0, 3],
     "velocities": [1, 4],
@@ -60,13 +44,9 @@ AXES = {
     "positions and velocities": [0, 1, 3, 4],
     "all": list(range(6)),
 }
-"""Parts of a state: position, velocity and acceleration of the shoulder, then of the elbow."""
 
-TEST_DAY = 1000
-"""Seed of all tests: of their noise, and of the members that are drawn."""
-
-RAMP = 0.5
-"""Length of a smooth start or end, s."""
+TEST_DAY = 1000  # seed of all tests: noise and members
+RAMP = 0.5  # s, of a smooth start or end
 
 
 @dataclass(frozen=True)
@@ -113,19 +93,13 @@ class Circles:
 
     @property
     def centre(self) -> np.ndarray:
-        """Of the circles, from the shoulder, m, shape (runs, 2)."""
+        """Centres of the circles, from the shoulder, m, shape (runs, 2)."""
         angle = np.deg2rad(self.bearing_deg)
         return self.distance[:, None] * np.stack([np.cos(angle), np.sin(angle)], -1)
 
 
 def random_circles(runs: int, seed: int) -> Circles:
-    """Members of the family, each quantity uniform in its range, either way round.
-
-    Parameters
-    ----------
-    runs, seed : int
-        How many; of the draw.
-    """
+    """Members of the family, each quantity uniform in its range, either way round."""
     draw = np.random.default_rng(integer("seed", seed, 0))
     shape = (integer("runs", runs, 1),)
     ranges = (RADIUS, PERIOD, DISTANCE, BEARING)
@@ -135,15 +109,8 @@ def random_circles(runs: int, seed: int) -> Circles:
 def pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray:
     """Time as a motion sees it, with its two derivatives, shape (3, time).
 
-    Parameters
-    ----------
-    t : array_like, shape (time,)
-        Times, s; the motion lasts from 0 to `seconds`, and rests before and after.
-    start : {"jump", "smooth"}
-        "jump": full speed from the first moment to the last, as in Appendix I. "smooth": speed
-        rises and falls within `RAMP`, with continuous acceleration, so that the motion goes
-        less far.
-    seconds : float
+    "jump": full speed from the first moment to the last, as in Appendix I; "smooth": speed rises
+    and falls within `RAMP` with continuous acceleration, so that the motion goes less far.
     """
     t = shaped("t", t, "(time,)")
     one_of("start", start, ("jump", "smooth"))
@@ -180,11 +147,6 @@ def stirred(
     -------
     Trajectory
         Arrays of shape (runs, time, 2).
-
-    Raises
-    ------
-    Unreachable
-        If part of a circle cannot be reached.
     """
     one_of("elbow", elbow, ELBOWS)
     turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period
@@ -194,19 +156,9 @@ def stirred(
 
 
 def via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
-    """From rest at zero through some points and back, by splines of degree five.
+    """From rest at zero through points ``(runs, points, 2)``, rad, and back, by quintic splines.
 
-    The points follow each other at equal times; position, velocity and acceleration and two more
-    derivatives are continuous; the first two vanish at both ends.
-
-    Parameters
-    ----------
-    points : array_like, shape (runs, points, 2)
-        Angles, rad.
-    t : array_like, shape (time,)
-        Times, s.
-    seconds : float
-        Length of the motion, from 0 s on.
+    Points follow each other at equal times; the first two derivatives vanish at both ends.
     """
     points, t = shaped("points", points, "(runs, points, 2)"), shaped("t", t, "(time,)")
     number("seconds", seconds, 0.0, open_low=True)
@@ -219,13 +171,7 @@ def via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
 
 
 def random_points(runs: int, points: int, seed: int) -> np.ndarray:
-    """Via points, uniform over the square that pick-and-place turns in, shape (runs, points, 2).
-
-    Parameters
-    ----------
-    runs, points, seed : int
-        How many motions, via points of each; of the draw.
-    """
+    """Via points ``(runs, points, 2)``, rad, uniform over the angles of pick-and-place."""
     draw = np.random.default_rng(integer("seed", seed, 0))
     shape = (integer("runs", runs, 1), integer("points", points, 1), 2)
     return -np.deg2rad(draw.uniform(0.0, MAX_EXTENT_DEG, shape))
@@ -239,18 +185,7 @@ def times(seconds: float = MOTION_SECONDS) -> np.ndarray:
 def recorded(
     setup: Setup, reference: Trajectory, seconds: float = MOTION_SECONDS, controller=None
 ) -> Recording:
-    """Drive the arm of a set-up along references and log what its sensors say.
-
-    Parameters
-    ----------
-    setup : Setup
-    reference : Trajectory
-        At `times`, shape (..., time, 2).
-    seconds : float
-        Length of the motion.
-    controller : Controller, optional
-        In place of the set-up's own.
-    """
+    """Drive the arm of a set-up along references at `times`, and log what its sensors say."""
     return follow(
         setup.arm,
         setup.controller if controller is None else controller,
@@ -264,15 +199,7 @@ def recorded(
 
 
 def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
-    """Windows of each of `FAMILIES`: the same number of cases.
-
-    Parameters
-    ----------
-    runs : dict
-        As from `workshop.beyond.studies.loop.runs.days.training`.
-    width : int
-        Samples of a window.
-    """
+    """Windows of each of `FAMILIES`, from recordings by name: the same number of cases."""
     found = {name: Cases.windows(run, width) for name, run in runs.items()}
     halves = [found[name] for name in ("pick and place", "circles")]
     x, torque = (np.concatenate([getattr(c, n)[::2] for c in halves]) for n in ("x", "torque"))
@@ -281,13 +208,7 @@ def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
 
 
 def small_circles(runs: int, seed: int) -> Circles:
-    """Members with the ranges of `SMALL` in place of the family's.
-
-    Parameters
-    ----------
-    runs, seed : int
-        How many; of the draw.
-    """
+    """Members with the ranges of `SMALL` in place of the family's."""
     whole, draw = random_circles(runs, seed), np.random.default_rng((seed, 1))
     return replace(whole, **{name: draw.uniform(*r, runs) for name, r in SMALL.items()})
 
@@ -295,14 +216,7 @@ def small_circles(runs: int, seed: int) -> Circles:
 def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
     """Recordings of the tests: another draw of each family, and what lies beyond both.
 
-    Parameters
-    ----------
-    setup : Setup
-    members : int
-        Of each test.
-    vias : bool
-        Whether motions with via points are among them, quick ones (all in 3 s) and steady ones
-        (`LEG` from point to point).
+    Motions with via points are quick (all in 3 s) and steady (`LEG` from point to point).
     """
     today, t, arm = setup.repeated(TEST_DAY), times(), setup.arm
     circles = random_circles(members, TEST_DAY)
@@ -326,15 +240,7 @@ def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]
 
 
 def states(recording: Recording, setup: Setup) -> np.ndarray:
-    """Every fifth true state of a recording's motions, shape (states, 6), as in `AXES`.
-
-    Parameters
-    ----------
-    recording : Recording
-        With an axis of runs.
-    setup : Setup
-        Whose arm it is.
-    """
+    """Every fifth true state of a recording's motions, shape (states, 6), as in `AXES`."""
     return true_states(recording, setup)[:, ::5].reshape(-1, 6)
 
 
@@ -344,14 +250,6 @@ def coverage(setup: Setup, tests: dict, members: int) -> dict:
     Of the cells that the first family reaches, the share that the second one reaches; and the
     median distance from a state of the first to the nearest of the second, in standard
     deviations of all states. "tied": correlation of position and acceleration, by joint.
-
-    Parameters
-    ----------
-    setup : Setup
-    tests : dict
-        As from `asked`.
-    members : int
-        Of each family.
     """
     today, pair = setup.repeated(TEST_DAY), ("pick and place", "circles")
     again = (

@@ -56,11 +56,9 @@ from workshop.report import results
 from workshop.report.code_hash import study
 
 READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
+MEMBERS, FEW = 25, 10  # networks of a cell of Table 4-1, and in side experiments: one a day
 
-MEMBERS, FEW = 25, 10
-"""Networks: of each cell of Table 4-1, and in the side experiments and inside the loop.
-Every one runs on a day of its own; feedforwards without networks run on `FEW` days."""
-
+# Learn the windows of five recordings and run on the same day.
 RIVALS: dict[str, Callable] = {
     "identified": lambda day: Estimating(Identified()),
     "linear filter": lambda day: Linear(),
@@ -70,32 +68,17 @@ RIVALS: dict[str, Callable] = {
     ),
     "network, two hidden units": lambda day: BySolver(2, steps=60, decay=1e-6, seed=day),
 }
-"""Rivals that learn the windows of five recordings, each on `FEW` days. They run on the same day,
-with a straight line between samples of the log."""
 
-ROUNDED = (0.0, 0.02, 0.05, 0.1, 0.2)
-"""Lengths over which corners of the reference are averaged, s."""
+ROUNDED = (0.0, 0.02, 0.05, 0.1, 0.2)  # s: corners of the reference are averaged over it
+LOADS, FRICTIONS, LATE = (0.0, 2.0, 5.0, 10.0), (0.5, 1.0, 2.0), (0, 1, 3, 5)  # kg, factor, periods
+GAINS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)  # factors on the feedback
 
-LOADS, FRICTIONS, LATE = (0.0, 2.0, 5.0, 10.0), (0.5, 1.0, 2.0), (0, 1, 3, 5)
-"""Load in kg (Han, Hemami & Yurkovich 1987), friction as a factor, delay in control periods."""
-
-GAINS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)
-"""Factors on all gains of the feedback."""
-
+# Of the measured deviation, what a model inside the loop sees.
 SHARES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
-"""How much of the measured deviation a model inside the loop sees."""
-
-LATE_INSIDE = (0, 5)
-"""Delays of the loop with a model inside, control periods."""
-
-CORNERS = (16, 24, 32, 45, 48)
-"""Trajectories of the square that are tried with a model inside the loop."""
-
-LIMIT = (4.0, 4.0)
-"""Joint speeds at which the guard stops a run there, rad/s: five times the family's largest."""
-
-SHOWN = (-0.1, 1.0)
-"""The part of a motion that is shown over time, s."""
+LATE_INSIDE = (0, 5)  # delays with a model inside the loop, control periods
+CORNERS = (16, 24, 32, 45, 48)  # trajectories of the square that are tried there
+LIMIT = (4.0, 4.0)  # joint speeds of the guard there, rad/s: five times the family's largest
+SHOWN = (-0.1, 1.0)  # s
 
 
 def _nothing(q, qd, qdd):
@@ -266,8 +249,7 @@ def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
 def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
     """Largest answer of the linear loop to bounded torques, and what networks make of theirs.
 
-    Runs with a network are compared with runs with exact equations behind a window: their
-    torques differ by a bounded signal, whatever the reference does.
+    The torques of a network and of exact equations behind a window differ by a bounded signal.
     """
     elbow = float(reference.q[..., 1].mean())
     system = linear_loop(setup, elbow)
@@ -328,8 +310,7 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
 def run_time() -> dict:
     """Feedforwards of the square of extents under two readings of the controller.
 
-    End-point errors in mm, root mean squares over a motion; a value for each member (a network
-    or a day) is the median over the square.
+    End-point errors are RMS over a motion, mm; each member's is the median over the square.
     """
     reference = rounded(EXTENTS, 0.0)
     found: dict = {"points": POINTS, "extents": EXTENTS, "shares": SHARES, "limit": LIMIT}

@@ -26,51 +26,26 @@ from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.beyond.rivals.protocol import derivative_filters
 from workshop.report import results
 
-WIDTH = 21
-"""Samples of a window: the paper's best."""
-
-POINTS = 7
-"""Trajectories in a row of the square of extents."""
-
+WIDTH = 21  # samples of a window: the paper's best
+POINTS = 7  # trajectories in a row of the square of extents
 EDGE = MAX_EXTENT_DEG * np.arange(1, POINTS + 1) / POINTS
+# Of the square, degrees; the elbow's change fastest.
 EXTENTS = np.stack(np.meshgrid(EDGE, EDGE, indexing="ij"), -1).reshape(-1, 2)
-"""Extents of the square, degrees, shape (runs, 2); the elbow's change fastest."""
-
-INSIDE = inside_hull(EXTENTS)
-"""Whether they lie in the hull of the training trajectories."""
-
+INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
 FEWER = EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
-"""Every other one of either joint, for the side experiments."""
-
-T = time_grid(CONTROL_STEP, REST)
-"""Times of the control samples, s."""
-
-START = 0.5
-"""What counts as the start of a motion, s."""
-
+T = time_grid(CONTROL_STEP, REST)  # control samples, s
+START = 0.5  # s: what counts as the start of a motion
 Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def exact(setup: Setup, arm: Arm | None = None) -> Model:
-    """The equations of the arm, friction included: torque of a state.
-
-    Parameters
-    ----------
-    setup : Setup
-    arm : Arm, optional
-        Another arm in place of the set-up's, with the same friction.
-    """
+    """The equations of the set-up's arm or another, friction included: torque of a state."""
     body = arm or setup.arm
     return lambda q, qd, qdd: body.inverse_dynamics(q, qd, qdd) + setup.effects.friction_torque(qd)
 
 
 def with_impulse(setup: Setup) -> Model:
-    """`exact`, and where the reference's velocity jumps the impulse, within one control period.
-
-    Parameters
-    ----------
-    setup : Setup
-    """
+    """`exact`, with the impulse of each jump in velocity, within one control period."""
 
     def torque(q, qd, qdd):
         rate = np.diff(qd, axis=-2, append=qd[..., -1:, :]) / CONTROL_STEP
@@ -82,14 +57,7 @@ def with_impulse(setup: Setup) -> Model:
 
 
 def through_window(torque: Model, width: int = WIDTH) -> WindowFeedforward:
-    """Equations of a state that see windows: a polynomial in each gives the state.
-
-    Parameters
-    ----------
-    torque : callable
-        Of position, velocity and acceleration, as from `exact`.
-    width : int
-    """
+    """Equations of a state that see windows: a polynomial in each gives the state."""
     filters = derivative_filters(width, LOG_STEP)
 
     def model(windows):
@@ -99,15 +67,7 @@ def through_window(torque: Model, width: int = WIDTH) -> WindowFeedforward:
 
 
 def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[WindowFeedforward]:
-    """The first networks of a cell of Table 4-1 as feedforwards.
-
-    Parameters
-    ----------
-    setup : Setup
-    count, width : int
-    **options
-        Of `WindowFeedforward`.
-    """
+    """The first networks of a cell of Table 4-1 as feedforwards."""
     model = results.networks(width, setup.name)
     options = {"step": model.step, **options}
     return [
@@ -117,15 +77,9 @@ def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[Wi
 
 
 def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
-    """Computed torque with friction of the reference: `exact` at the measured state.
+    """Computed torque with the friction of the reference, at the measured state.
 
     As stiff as the set-up's feedback with the arm stretched, and critically damped.
-
-    Parameters
-    ----------
-    setup : Setup
-    arm : Arm, optional
-        What the controller takes the arm for; default: the set-up's.
     """
     kp = np.asarray(setup.controller.kp) / np.diag(setup.arm.mass_matrix(np.zeros(2)))
     kd = 2 * np.sqrt(kp)
@@ -142,14 +96,7 @@ def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
 
 
 def rounded(extents_deg, seconds: float) -> Trajectory:
-    """The paper's motions with rounded corners: averaged over a raised cosine in time.
-
-    Parameters
-    ----------
-    extents_deg : array_like, shape (..., 2)
-    seconds : float
-        Length of the raised cosine, s; 0: the paper's motions as they are.
-    """
+    """The paper's motions with corners averaged over a raised cosine of so many seconds."""
     plan = pick_and_place(extents_deg, T)
     half = round(number("seconds", seconds, 0.0, REST) / CONTROL_STEP / 2)
     if not half:
@@ -167,28 +114,13 @@ def rounded(extents_deg, seconds: float) -> Trajectory:
 
 
 def on_days(effects: Effects, setup: Setup, days) -> Effects:
-    """Effects with the encoder's zero of other days, which are the first axis of the runs.
-
-    Parameters
-    ----------
-    effects : Effects
-    setup : Setup
-        Whose encoder it is.
-    days : sequence of int
-        As in `Setup.repeated`.
-    """
+    """Effects with the encoder's zero of other days, which are the first axis of the runs."""
     zero = np.stack([setup.repeated(day).effects.encoder[0].angle for day in days])[:, None]
     return replace(effects, encoder=(EncoderZero(zero), *effects.encoder, EncoderZero(-zero)))
 
 
 def planned(models, reference: Trajectory) -> np.ndarray:
-    """Torques of several feedforwards along a reference, shape (models, ..., time, 2).
-
-    Parameters
-    ----------
-    models : sequence of callable
-    reference : Trajectory
-    """
+    """Torques of several feedforwards along a reference, shape (models, ..., time, 2), N m."""
     return time_first(np.stack([model(*reference) for model in models]))
 
 
@@ -198,28 +130,12 @@ def time_first(torque) -> np.ndarray:
 
 
 def given(torque, feedback) -> Feedforward:
-    """A feedforward of torques that are known for every control sample.
-
-    Parameters
-    ----------
-    torque : ndarray, shape (..., time, 2)
-    feedback : Controller
-    """
+    """A feedforward of torques ``(..., time, 2)`` that are known for every control sample."""
     return Feedforward(lambda *_: torque, feedback)
 
 
 def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) -> Recording:
-    """Follow a reference on several days; the days are the first axis of the runs.
-
-    Parameters
-    ----------
-    setup : Setup
-    controller : Controller or callable
-    reference : Trajectory
-    days : sequence of int
-    arm, effects : optional
-        In place of the set-up's; the encoder's zero is the day's.
-    """
+    """Follow a reference on several days, which become the first axis of the runs."""
     effects = on_days(effects or setup.effects, setup, days)
     return follow(
         arm or setup.arm, controller, reference, T, effects=effects, duration=MOTION_SECONDS
@@ -230,39 +146,20 @@ def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) 
 
 
 class Score(NamedTuple):
-    """End-point errors of runs, mm, each of shape (...): root mean squares over the motion.
-
-    Attributes
-    ----------
-    whole : ndarray
-        Over the whole motion; `start` and `rest`: over its first `START` seconds and after.
-    start, rest : ndarray
-    along, across : ndarray
-        Of the error along the path of the hand, and across it.
-    largest : ndarray
-        Largest error.
-    shoulder, elbow : ndarray
-        Root mean square of the joint errors, degrees.
-    """
+    """End-point errors of runs, mm, and joint errors, degrees: RMS over the motion."""
 
     whole: np.ndarray
-    start: np.ndarray
+    start: np.ndarray  # over the first `START` seconds
     rest: np.ndarray
-    along: np.ndarray
+    along: np.ndarray  # the path of the hand
     across: np.ndarray
-    largest: np.ndarray
+    largest: np.ndarray  # not the root mean square
     shoulder: np.ndarray
     elbow: np.ndarray
 
 
 def score(arm: Arm, recording: Recording) -> Score:
-    """End-point and joint errors of a recording.
-
-    Parameters
-    ----------
-    arm : Arm
-    recording : Recording
-    """
+    """End-point and joint errors of a recording."""
     moving = recording.motion
     wanted, wanted_rate, _ = (x[..., moving, :] for x in recording.reference)
     q = recording.q_true[..., moving, :]
@@ -290,13 +187,7 @@ def score(arm: Arm, recording: Recording) -> Score:
 
 
 def told(found: Score) -> dict:
-    """Medians over the square, one for each member (the first axis), and a map of `whole`.
-
-    Parameters
-    ----------
-    found : Score
-        Of shape (members, runs) of `EXTENTS`.
-    """
+    """Medians over the square of scores ``(members, runs)``, by member, and a map of `whole`."""
     row = {name: np.median(values, -1) for name, values in found._asdict().items()}
     row["inside"] = np.median(found.whole[:, INSIDE], -1)
     row["outside"] = np.median(found.whole[:, ~INSIDE], -1)
@@ -308,19 +199,10 @@ def told(found: Score) -> dict:
 
 
 def linear_loop(setup: Setup, elbow: float):
-    """The loop about one posture as a python-control system: torque errors in, joint errors out.
+    """The loop about one elbow angle as a python-control system, without Coulomb friction.
 
-    Parameters
-    ----------
-    setup : Setup
-        Its Coulomb friction is left out.
-    elbow : float
-        Elbow angle at which the mass matrix is taken, rad.
-
-    Returns
-    -------
-    control.StateSpace
-        Sampled; inputs are torques of shoulder and elbow, N m, held for a control period.
+    Inputs are torques of shoulder and elbow (N m), held for a control period; outputs joint errors
+    (rad).
     """
     feedback: PID = setup.controller
     joints = plant(
@@ -330,15 +212,7 @@ def linear_loop(setup: Setup, elbow: float):
 
 
 def through_loop(system, torque) -> np.ndarray:
-    """What the linear loop makes of torques, shape (..., time, 2), rad.
-
-    Parameters
-    ----------
-    system : control.StateSpace
-        From `linear_loop`.
-    torque : array_like, shape (..., time, 2)
-        N m, a value for each control sample.
-    """
+    """Joint errors (rad) that the linear loop makes of torques ``(..., time, 2)``, N m."""
     torque = np.asarray(torque)
     x = np.zeros((*torque.shape[:-2], system.nstates))
     found = np.empty(torque.shape)
@@ -351,15 +225,8 @@ def through_loop(system, torque) -> np.ndarray:
 def predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
     """End-point error that the linear loop predicts for a feedforward, RMS in mm, shape (...).
 
-    No motion is simulated: the torque that is missing goes through `linear_loop`, and joint errors
-    to the hand by the Jacobian of the plan.
-
-    Parameters
-    ----------
-    setup : Setup
-    torque : ndarray, shape (..., time, 2)
-        Feedforward for each control sample, N m.
-    reference : Trajectory
+    No motion is simulated: the missing torque goes through `linear_loop`, and joint errors to the
+    hand by the Jacobian of the plan.
     """
     system = linear_loop(setup, float(reference.q[..., 1].mean()))
     moving = (T >= 0) & (T < MOTION_SECONDS)
@@ -369,18 +236,10 @@ def predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
 
 
 def logged_error(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
-    """What a model's error on a recorded motion would do to the hand, RMS in mm, by member.
+    """What each member's error on a recorded motion would do to the hand, RMS in mm.
 
-    The error of the torques, predicted less measured, goes through `linear_loop`. Nothing of it
-    needs the model as a feedforward: a log, the feedback's gains and the arm's inertia are enough.
-
-    Parameters
-    ----------
-    setup : Setup
-    model : TorqueModel
-        An ensemble.
-    run : Recording
-        One motion.
+    Nothing of it needs the model as a feedforward: a log, the feedback's gains and the arm's
+    inertia are enough.
     """
     moving = run.motion
     missed = model.torque(sliding_windows(run.q, model.weights.width, moving)) - run.tau[moving]

@@ -51,19 +51,13 @@ from workshop.beyond.studies.loop.runs.days import training
 from workshop.report import results
 from workshop.report.code_hash import study
 
-DAYS, MEMBERS = 10, 40
-"""Days, each with its own noise, its own five training circles and its own initial weights;
-members of each family in a test."""
-
+DAYS, MEMBERS = 10, 40  # of training; members of each family in a test
 WIDTH, WIDER = 21, (11, 41)
-"""Samples of the windows; other window sizes."""
 
 NAMES = ("network", "two units", "linear filter", "identified")
-"""Who learns: the network with ten and with two hidden units, and the best of *Rivals*."""
+PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.beyond.widgets.stirring`
 
-PICKER = results.FOLDER / "stirring-picker.npz"
-"""What the chapter's picker shows: see `workshop.beyond.widgets.stirring`."""
-
+# Circles of the picker: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow.
 PLACES = {
     "distance": (0.45, 0.55, 0.65, 0.75, 0.85),
     "bearing": (-90, -75, -60, -45, -30),
@@ -71,23 +65,12 @@ PLACES = {
     "period": (1.5, 2.0, 3.0),
     "elbow": ELBOWS,
 }
-"""The picker's circles: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow."""
 
-SHOWN = 5
-"""Of the motion's samples every so many are kept for the picker."""
+SHOWN = 5  # of the samples, every so many are kept for the picker
 
 
 def maker(setup: Setup, name: str, seed: int) -> Rival:
-    """One of `NAMES` that has learnt nothing.
-
-    Parameters
-    ----------
-    setup : Setup
-        With the training of `JOINT_DAMPING`.
-    name : str
-    seed : int
-        Of the initial weights.
-    """
+    """One of `NAMES` that has learnt nothing."""
     if name == "identified":
         return Estimating(Identified())
     if name == "linear filter":
@@ -97,15 +80,7 @@ def maker(setup: Setup, name: str, seed: int) -> Rival:
 
 
 def errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
-    """RMSS by the test's own deviation, and the RMS errors of both joints, N m.
-
-    Parameters
-    ----------
-    model : callable
-        Torques of windows, as `workshop.beyond.rivals.Rival.torque`.
-    tests : dict
-        Cases by name.
-    """
+    """RMSS by the test's own deviation, and RMS errors of both joints (N m), of each test."""
     found = {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideFamilyWarning)
@@ -158,63 +133,24 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
 
 
 def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
-    """Torque of the arm's equations with its friction, N m.
-
-    Parameters
-    ----------
-    setup : Setup
-    q, qd, qdd : array_like, shape (..., 2)
-    """
+    """Torque of the arm's equations with its friction, N m."""
     return setup.arm.inverse_dynamics(q, qd, qdd) + setup.effects.friction_torque(qd)
 
 
 def behind(setup: Setup, width: int = WIDTH) -> Callable:
-    """The set-up's exact equations behind a window: derivatives by a cubic, friction included.
-
-    Parameters
-    ----------
-    setup : Setup
-    width : int
-        Samples of the window.
-
-    Returns
-    -------
-    callable
-        ``model(windows) -> torque``, as `ddlib.control.WindowFeedforward` wants it.
-    """
+    """The set-up's exact equations behind a window: derivatives by a cubic, friction included."""
     filters = np.stack([savitzky_golay(width, k, LOG_STEP) for k in range(3)])
     return lambda windows: needed(setup, *np.moveaxis(windows @ filters.T, -1, 0))
 
 
 def through(setup: Setup, torques, reference: Trajectory) -> Recording:
-    """Drive an arm with each of some feedforward torques over the set-up's own feedback.
-
-    Parameters
-    ----------
-    setup : Setup
-    torques : array_like, shape (models, runs, time, 2)
-        For each control sample, N m.
-    reference : Trajectory
-        Shape (runs, time, 2).
-
-    Returns
-    -------
-    Recording
-        With leading axes (models, runs).
-    """
+    """Drive an arm with feedforward torques ``(models, runs, time, 2)`` over its own feedback."""
     tiled = Trajectory(*(np.broadcast_to(x, torques.shape) for x in reference))
     return recorded(setup, tiled, controller=Feedforward(lambda *_: torques, setup.controller))
 
 
 def off(setup: Setup, log: Recording) -> np.ndarray:
-    """RMS distance of the hand from where it should be during the motion, shape (...), mm.
-
-    Parameters
-    ----------
-    setup : Setup
-    log : Recording
-        Shape (..., time, 2).
-    """
+    """RMS distance of the hand from where it should be during the motion, shape (...), mm."""
     error = end_point_error(setup.arm, log.reference.q, log.q_true)[..., log.motion, :]
     return 1000 * np.sqrt((error**2).sum(-1).mean(-1))
 
@@ -222,17 +158,7 @@ def off(setup: Setup, log: Recording) -> np.ndarray:
 def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     """All that may stand in the box "inverse arm" of Figure 2-1, by name.
 
-    Parameters
-    ----------
-    setup : Setup
-    models : dict
-        Lists of models of windows of `WIDTH` samples, by name.
-
-    Returns
-    -------
-    dict of list of callable
-        ``f(q, qd, qdd) -> torque``; besides `models`: none, the exact equations, and these
-        behind a window.
+    Besides lists of models of windows: none, the exact equations, and these behind a window.
     """
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
@@ -351,16 +277,10 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 
 @study
 def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
-    """What section 7.1 plans about other families of trajectories, done.
+    """Networks and rivals of each family of motions on all others, and their hands' errors.
 
-    Networks and rivals of each family on all others; which states the families visit; the hand's
-    errors with each as feedforward; filters beside a null. Also files with a network of each
+    Also which states the families visit, filters beside a null, and files with a network of each
     family and with the picker's torques.
-
-    Parameters
-    ----------
-    days, members : int
-        Training days; members of a family in each test.
     """
     found: dict = {"days": days, "members": members, "width": WIDTH, "setups": {}}
     every = (JOINT_DAMPING, NAMES, FAMILIES), (STATE_FEEDBACK, NAMES[::2], FAMILIES[:3])

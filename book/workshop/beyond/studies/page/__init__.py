@@ -1,1 +1,1 @@
-"""What readers try in the pages of Part IV: ``learner``, in the loop."""
+"""What readers try in the pages of Part IV."""

@@ -22,22 +22,18 @@ from workshop.beyond.studies.loop.runs.adaptive import (
 )
 from workshop.report.code_hash import study
 
-LOADS = (0, 5)
-"""Loads in the hand, kg."""
+LOADS = (0, 5)  # kg, in the hand
 
+# Rates of adaptation, as multiples of the chapter's.
 SPEEDS = {
     "a tenth": 0.1,
     "as in the chapter": 1.0,
     "ten times": 10.0,
     "a hundred times": 100.0,
 }
-"""Rates of adaptation, as multiples of the chapter's."""
 
 LEARNERS = ("none", "Slotine & Li", "Craig, Hsu & Sastry", "feedback-error learning")
-"""Who learns."""
-
-MOTIONS = 6
-"""Motions one after another: the family's, with random extents."""
+MOTIONS = 6  # one after another, with random extents
 
 
 @dataclass(frozen=True)
@@ -68,18 +64,10 @@ class _Kept:
 
 
 def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Errors (mm) and estimates of all learners, with and without friction, at all rates.
+    """Errors (mm) and estimates of all learners, without friction and with it, at all rates.
 
-    Parameters
-    ----------
-    load : int
-        kg.
-
-    Returns
-    -------
-    dict
-        By learner: errors of shape (friction, rate, motions), friction off first, and estimates
-        of shape (friction, rate, motions + 1, parameters).
+    Errors have shape (friction, rate, motions), estimates (friction, rate, motions + 1,
+    parameters).
     """
     setup, speeds = JOINT_DAMPING, list(SPEEDS.values())
     runs = 2 * len(speeds)

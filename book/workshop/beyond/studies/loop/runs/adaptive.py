@@ -23,43 +23,29 @@ from workshop.beyond.control.guarded import Guarded
 RIGID = PARAMETERS[:3]
 FRICTION = PARAMETERS[5:]
 FULL = (*RIGID, *FRICTION)
-"""Parameters that are adapted: the horizontal arm's, without and with friction."""
+TRUTH = np.array([CMU_DD_ARM_II.a, CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # without a load
+INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # kg m^2, stretched
 
-TRUTH = np.array([CMU_DD_ARM_II.a, CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])
-"""Base parameters of the arm without a load."""
-
-INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])
-"""What the joints of the stretched arm turn, each with the other at rest, kg m^2."""
-
+# Sizes of the parameters: rates go by their squares. Assumed.
 SIZES = np.array([5.0, 0.5, 0.5, 5.0, 1.0, 1.5, 0.5])
-"""Sizes of the parameters, in their units: rates are measured by their squares. Assumed."""
 
+# Box of the estimates of Craig, Hsu & Sastry: it holds the arm with 10 kg. Assumed.
 BOX = np.array([2.6, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]), np.array([14.0, 4.0, 2.5, 20.0, 5.0, 8.0, 3.0])
-"""Box of the estimates of Craig, Hsu & Sastry: it holds the arm with 10 kg. Assumed."""
+AFTER = 0.1  # s, rest before and after each motion
 
-AFTER = 0.1
-"""Rest recorded before and after each motion, s."""
-
+# Slotine & Li without and with friction; Craig, Hsu & Sastry; a reference model of each joint.
 LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
-"""Adaptive laws: Slotine & Li without and with friction among the parameters; Craig, Hsu & Sastry
-with it; model-reference control of each joint."""
 
+# Of a grid of nine, on four motions of another seed, the quickest that settles.
 RATES = {
     "joint damping": dict(zip(LAWS, (3.0, 3.0, 10.0, 0.01))),
     "state feedback": dict(zip(LAWS, (3.0, 10.0, 10.0, 0.3))),
 }
-"""Rates of adaptation: chosen by the eye from a grid of nine on four motions of another seed, for
-each law and set-up the quickest that settles."""
 
 
 @dataclass(frozen=True)
 class Beside:
-    """Controllers side by side: the first axis of the runs says whose they are.
-
-    Parameters
-    ----------
-    controllers : tuple of Controller
-    """
+    """Controllers side by side: the first axis of the runs says whose they are."""
 
     controllers: tuple[Controller, ...]
 
@@ -86,12 +72,6 @@ class Behind:
     """A controller that follows the motion of a linear model in place of the reference.
 
     Where the reference's velocity jumps, the model's does not.
-
-    Parameters
-    ----------
-    controller : Controller
-    model : ModelReference
-        Its linear model.
     """
 
     controller: Controller
@@ -107,12 +87,9 @@ class Behind:
         return self.controller.estimate
 
 
-POLE = 7.0
-"""Both poles of the model that smooths the reference, 1/s: at the family's largest jump the arm
-without a load stays below `LIMITS`."""
+POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the largest jump
 
 SMOOTH = ModelReference((POLE**2,) * 2, (2 * POLE,) * 2, (POLE,) * 2, np.zeros(8), np.zeros(8))
-"""Only its model is used."""
 
 
 def taught(controller: Controller, estimate) -> Controller:
@@ -124,8 +101,7 @@ def taught(controller: Controller, estimate) -> Controller:
     return replace(controller, estimate=estimate)
 
 
-LIMITS = np.array(CMU_DD_ARM_II_EFFECTS.actuator[0].limit)
-"""Torques that the motors can give, N m."""
+LIMITS = np.array(CMU_DD_ARM_II_EFFECTS.actuator[0].limit)  # N m, of the motors
 
 
 class Able:
@@ -151,10 +127,9 @@ class AbleModelReference(Able, ModelReference):
 
 
 def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
-    """The slope of a set-up, 1/s, and its linear loop: (a0, a1) of ``e'' + a1 e' + a0 e``.
+    """Slope of a set-up, 1/s, and its linear loop: (a0, a1) of ``e'' + a1 e' + a0 e``.
 
-    All laws have the damping term `KD` and the set-up's proportional gain; with the right
-    parameters all have this loop at the stretched arm without a load.
+    With the right parameters all laws have this loop at the stretched arm without a load.
     """
     slope = np.asarray(setup.controller.kp) / KD
     return slope, np.stack([slope * KD / INERTIA, slope + KD / INERTIA])
@@ -177,8 +152,8 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
         Of `LAWS`.
     setup : Setup
     start : array_like, shape (..., 3) or (..., 7), optional
-        Base parameters to begin with, and friction; default: those of the arm without a load. No
-        friction, if it is not given.
+        Base parameters to begin with, and friction if it is given; default: those of the arm
+        without a load.
     factor : float or array_like, shape (...)
         Times the law's rate.
     jumps : bool
@@ -214,37 +189,16 @@ def fixed(setup: Setup) -> dict[str, Controller]:
 
 
 class Trial(NamedTuple):
-    """What became of one motion, runs of shape (laws, runs).
+    """What became of one motion; arrays have shape (laws, runs)."""
 
-    Attributes
-    ----------
-    hand, settled : ndarray, shape (laws, runs)
-        Root mean square of the hand's error over the motion, mm; without its first third.
-    stops : Stops
-    laws : dict
-        The controllers with what they know after it.
-    """
-
-    hand: np.ndarray
-    settled: np.ndarray
+    hand: np.ndarray  # root mean square of the hand's error, mm
+    settled: np.ndarray  # the same without the motion's first third
     stops: object
-    laws: dict
+    laws: dict  # the controllers with what they know after it
 
 
 def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, **options) -> Trial:
-    """One motion of all laws side by side.
-
-    Parameters
-    ----------
-    laws : mapping
-        Controllers by name.
-    extents : array_like, shape (runs, 2)
-        Degrees.
-    arm, effects
-        The plant.
-    **options
-        ``velocity``, as in `ddlib.simulation.follow`.
-    """
+    """One motion of extents ``(runs, 2)``, degrees, of all laws side by side."""
     steps = np.arange(-round(AFTER / CONTROL_STEP), round((MOTION_SECONDS + AFTER) / CONTROL_STEP))
     t = steps * CONTROL_STEP
     reference = pick_and_place(extents, t)
@@ -277,13 +231,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
 
 @dataclass(frozen=True)
 class Rounded:
-    """Readings rounded to a step of each run's own, after a shift of its own; 0: not rounded.
-
-    Parameters
-    ----------
-    step, shift : array_like, shape (..., 1) and (..., 2)
-        rad.
-    """
+    """Readings rounded to a step of each run's own, after a shift of its own; 0: not rounded."""
 
     step: np.ndarray
     shift: np.ndarray
@@ -296,30 +244,14 @@ class Rounded:
 
 
 def rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
-    """The set-up's effects with an encoder's zero of its own in each run.
-
-    Parameters
-    ----------
-    setup : Setup
-    runs, seed : int
-        How many; of the zeros.
-    step : array_like, shape (runs,), optional
-        Steps of the encoders, rad; default: the set-up's.
-    """
+    """The set-up's effects, in each run with an encoder's zero (and step) of its own."""
     step = np.full(runs, setup.effects.encoder[0].step) if step is None else np.asarray(step)
     shift = np.random.default_rng(seed).uniform(0, 1, (runs, 2)) * step[:, None]
     return replace(setup.effects, encoder=(Rounded(step[:, None], shift),))
 
 
 def trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[Trial], dict]:
-    """Motions one after another, each law with what it has learnt; and the laws at the end.
-
-    Parameters
-    ----------
-    laws, arm, effects, **options
-        As in `trial`.
-    extents : array_like, shape (trials, runs, 2)
-    """
+    """Motions ``(trials, runs, 2)`` one after another, and the laws with what they have learnt."""
     found = []
     for each in extents:
         found.append(trial(laws, each, arm, effects, **options))
@@ -333,26 +265,12 @@ def drawn(runs: int, count: int, seed: int) -> np.ndarray:
 
 
 def by_law(found: list[Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
-    """Errors of the trials `found` by the names of `laws`, shape (trials, runs), mm.
-
-    Of `Trial` it is the attribute `what`.
-    """
+    """Errors of trials (an attribute of `Trial`) by the names of laws, shape (trials, runs), mm."""
     return {name: np.stack([getattr(t, what)[k] for t in found]) for k, name in enumerate(laws)}
 
 
 def excitation(extents) -> np.ndarray:
-    """Integral of Y'Y along motions, for base parameters as shares of the true ones.
-
-    Parameters
-    ----------
-    extents : array_like, shape (..., 2)
-        Degrees.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        (N m)^2 s.
-    """
+    """Integral of Y'Y along motions, for base parameters as shares of the true ones, (N m)^2 s."""
     t = (np.arange(1500) + 0.5) * 0.002
     wanted = pick_and_place(extents, t)
     Y = mixed_regressor(wanted.q, wanted.qd, wanted.qd, wanted.qdd) * TRUTH
@@ -360,16 +278,7 @@ def excitation(extents) -> np.ndarray:
 
 
 def sampled_lyapunov(law: SlotineLi, reference, t, effects: Effects) -> np.ndarray:
-    """The Lyapunov function at each control sample of runs without friction, (..., time).
-
-    Parameters
-    ----------
-    law : SlotineLi
-        Of the rigid body.
-    reference : Trajectory
-    t : array_like, shape (time,)
-    effects : Effects
-    """
+    """The Lyapunov function at each control sample of runs without friction, (..., time)."""
     kept = []
 
     class _Kept:

@@ -22,31 +22,30 @@ from ddlib.trajectories import (
     OutsideFamilyWarning,
     Trajectory,
     pick_and_place,
+    random_extents as random_members,
 )
-from ddlib.trajectories import random_extents as random_members
 from workshop.beyond.control.feedback_error import RigidBodyTerms
 from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating
-from workshop.beyond.studies.loop import joints, learners, learning, motions, stirring
-from workshop.beyond.studies.loop import run_time_parts as run_time
+from workshop.beyond.studies.loop import (
+    joints,
+    learners,
+    learning,
+    motions,
+    run_time_parts as run_time,
+    stirring,
+)
 from workshop.beyond.studies.loop.chain import Sample, chain, extents, recorded
 from workshop.beyond.studies.loop.runs import lines as batch
 from workshop.beyond.studies.loop.runs.days import recorded as recorded_days
 from workshop.report.code_hash import study
 
-COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)
-"""Seconds over which the copy of the plan is smoothed that exact equations are given."""
-
-STEPS = (5, 15, 60)
-"""Steps of the solver among which leaving one training run out may choose; 60 made Table 4-1."""
-
-DECAYS = (1e-6, 1e-3, 1e-2)
-"""Weight decays among which leaving one motion of four joints out may choose."""
-
-LATER, MEMBERS, TEST = 500, 12, 4711
-"""First of the days of these trials; test motions of a family, and their seed."""
+COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
+STEPS = (5, 15, 60)  # of the solver, to choose from; 60 made Table 4-1
+DECAYS = (1e-6, 1e-3, 1e-2)  # to choose from, with four joints
+LATER, MEMBERS, TEST = 500, 12, 4711  # first day; test motions, and their seed
 
 
 def _copies(setup: Setup, days) -> dict:
@@ -73,10 +72,7 @@ def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
 
 
 def _chosen_steps(run, day: int) -> int:
-    """Steps with the least error on the runs of pick-and-place that are left out in turn.
-
-    One descent passes through all of `STEPS`.
-    """
+    """Steps, of `STEPS`, with the least error on runs of pick-and-place left out in turn."""
     wrong = np.zeros(len(STEPS))
     for out in range(len(run.q)):
         rest = _cases(run[[k for k in range(len(run.q)) if k != out]], 4)
@@ -90,10 +86,7 @@ def _chosen_steps(run, day: int) -> int:
 
 
 def _stopped(setup: Setup, days, circles: bool) -> dict:
-    """Hands on circles and on pick-and-place, with training stopped by pick-and-place itself.
-
-    With ``circles`` also those of networks that learnt twenty circles.
-    """
+    """Hands with training stopped by pick-and-place itself, and after twenty circles if asked."""
     t = motions.times()
     asked = {
         "circles": motions.stirred(setup.arm, motions.random_circles(MEMBERS, TEST), t),
@@ -232,15 +225,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
 
 @study
 def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
-    """Four findings under other conditions, both set-ups where they were found in both.
-
-    Parameters
-    ----------
-    days : int
-        Of recordings.
-    seeds : int
-        Draws of four joints, and of practised motions.
-    """
+    """Four findings under other conditions, both set-ups where they were found in both."""
     both = (JOINT_DAMPING, STATE_FEEDBACK)
     solved = replace(STATE_FEEDBACK, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
     later = range(LATER, LATER + days)

@@ -11,31 +11,14 @@ from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_
 from workshop.beyond.studies.loop import motions
 from workshop.beyond.studies.loop.run_time_parts import on_days
 
-TRAINED = 5
-"""Motions of a family on a day: as many as Appendix I has for training."""
+TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training
 
 
 def recorded(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
-    """Drive the arm along the references of each day and log what its sensors say.
+    """Drive the arm along the references of each day, and log what its sensors say.
 
-    Parameters
-    ----------
-    setup : Setup
-    references : list of Trajectory
-        Of each day, at `motions.times`, shape (runs, time, 2).
-    days : sequence of int
-        Each with its own zero of the encoders, as in `Setup.repeated`, and its own torque noise:
-        a run's does not depend on what else is recorded.
-
-    Returns
-    -------
-    list of Recording
-        A recording for each day.
-
-    Raises
-    ------
-    ValueError
-        If there is not one reference for each day, or their shapes differ.
+    Each day has its own zero of the encoders, each run its own torque noise, whatever else is
+    recorded.
     """
     days = shaped("days", days, f"({len(references)},)").astype(int)
     together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
@@ -54,14 +37,7 @@ def recorded(setup: Setup, references: list[Trajectory], days) -> list[Recording
 
 
 def training(setup: Setup, days) -> list[dict[str, Recording]]:
-    """Recordings of five motions of each family, for each day.
-
-    Parameters
-    ----------
-    setup : Setup
-    days : sequence of int
-        The seeds of circles and via points, too.
-    """
+    """Recordings of five motions of each family, for each day, which is the seed of their draw."""
     t = motions.times()
     references = {
         "pick and place": lambda day: pick_and_place(APPENDIX_I[:TRAINED], t),

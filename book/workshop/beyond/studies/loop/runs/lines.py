@@ -13,18 +13,10 @@ from workshop.beyond.studies.loop.run_time_parts import drive, given, score, tim
 def driven(
     setup: Setup, made: dict, reference: Trajectory, **changed
 ) -> tuple[Recording, dict[str, slice]]:
-    """Recordings of all lines, and which part of them belongs to each.
+    """Recording of all lines, and which part of it belongs to each.
 
-    Parameters
-    ----------
-    setup : Setup
-    made : dict
-        Torques (N m) by the name of a line, shape (days, runs, time, 2) or (1, runs, time, 2),
-        and the days of each.
-    reference : Trajectory
-        What is to be followed, shape (runs, time, 2).
-    **changed
-        Another arm or other effects, as in `drive`.
+    ``made`` has by the name of a line its torques (N m), ``(days or 1, runs, time, 2)``, and its
+    days; ``changed`` is another arm or other effects.
     """
     every, days, parts = [], [], {}
     for name, (torque, own) in made.items():
@@ -36,13 +28,7 @@ def driven(
 
 
 def errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[str, np.ndarray]:
-    """Median end-point error over the runs on each day of each line, mm.
-
-    Parameters
-    ----------
-    setup, made, reference, **changed
-        As in `driven`.
-    """
+    """Median end-point error over the runs on each day of each line, mm."""
     log, parts = driven(setup, made, reference, **changed)
     middle = np.median(score(setup.arm, log).whole, -1)
     return {name: middle[part] for name, part in parts.items()}
