@@ -253,8 +253,8 @@ def _measured(measure: str, arguments: str) -> Measured:
 
 def function(measure: str) -> Callable:
     """The function of `workshop.report.measures` that a claim names as "module.function"."""
-    room, _, place = measure.partition(".")
-    module, _, name = place.rpartition(".")
+    room = "beyond" if measure.startswith("beyond.") else "report"
+    module, _, name = measure.removeprefix("beyond.").rpartition(".")
     return getattr(importlib.import_module(f"workshop.{room}.measures.{module}"), name)
 
 
