@@ -139,9 +139,9 @@ def _home(module: str, name: str | None) -> tuple[str, str | None]:
     if name is None or _file(module) is None:
         return module, name
     origin = _names(module, _text(module)).get(name)
-    if isinstance(origin, tuple):
+    if isinstance(origin, tuple) and origin != (module, name):
         return _home(*origin)
-    if origin is None and _file(f"{module}.{name}") is not None:
+    if not isinstance(origin, list) and _file(f"{module}.{name}") is not None:
         return f"{module}.{name}", None
     return module, name
 
