@@ -2,8 +2,7 @@
 
 A controller is a frozen description. ``start(reference, step)`` gives the control
 law for one run (or a batch of runs): a function ``law(k, q, qd)`` called once a
-control period with the sample number and the *measured* state. Where a controller is expected,
-a plain function will do, too: see `as_controller`.
+control period with the sample number and the *measured* state.
 """
 
 from __future__ import annotations
@@ -50,10 +49,6 @@ def as_controller(controller: Controller | Callable) -> Controller:
         of position, velocity and acceleration) and the measured state, each of shape (..., 2)
         in rad and rad/s, and returns torques in N m.
 
-    Raises
-    ------
-    TypeError
-        If it is neither.
     """
     if callable(getattr(controller, "start", None)):
         return controller
@@ -73,19 +68,10 @@ class PID:
 
     Parameters
     ----------
-    kp : array_like, shape (2,) or (runs, 2)
-        Proportional gain, N m/rad.
-    ki : array_like
-        Integral gain, N m/(rad s).
-    kd : array_like
-        Derivative gain, N m s/rad.
+    kp, ki, kd : array_like, shape (2,) or (runs, 2)
+        Gains per joint, N m/rad, N m/(rad s) and N m s/rad.
     integral_limit : float
         Largest magnitude of the integral's torque, N m (anti wind-up).
-
-    Raises
-    ------
-    ValueError
-        If a gain is negative, not finite or not one per joint.
     """
 
     kp: tuple[float, float]
@@ -125,13 +111,7 @@ class PID:
 
 
 def proportional(kp) -> PID:
-    """Proportional control: ``tau = kp (q_ref - q)``, the paper's controller (section 4).
-
-    Parameters
-    ----------
-    kp : array_like, shape (2,) or (runs, 2)
-        Gain in N m/rad per joint.
-    """
+    """The paper's controller (section 4), ``tau = kp (q_ref - q)``; gain in N m/rad per joint."""
     return PID(kp)
 
 

@@ -1,10 +1,4 @@
-"""Linear loops around a joint or an arm near one posture, as python-control systems.
-
-Joints obey ``M qdd + F qd + K q = tau`` with a constant inertia ``M`` (a number, or a mass
-matrix), viscous friction ``F`` and, where gravity pulls, its stiffness ``K``. The loops are
-those of `ddlib.control.controllers.PID`: position errors against a reference at rest, velocity
-of the reference zero.
-"""
+"""Linear PID loops around a joint or an arm near one posture, as python-control systems."""
 
 from __future__ import annotations
 
@@ -33,11 +27,6 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
     -------
     control.StateSpace
         States and outputs: the angles (rad) from the posture, then the velocities (rad/s).
-
-    Raises
-    ------
-    ValueError
-        If the inertia is not symmetric positive definite or the shapes do not fit.
     """
     inertia = np.atleast_2d(finite_array("inertia", inertia))
     joints = len(inertia)
@@ -57,15 +46,7 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
 
 
 def loop_gain(inertia, viscous, kp, ki=0.0, kd=0.0) -> control.TransferFunction:
-    """Open loop of one joint under PID control, from position error to position.
-
-    Parameters
-    ----------
-    inertia, viscous : float
-        kg m^2 and N m s/rad.
-    kp, ki, kd : float
-        Gains in N m/rad, N m/(rad s) and N m s/rad.
-    """
+    """Open loop of one joint (inertia, viscous friction) under PID, from error to position."""
     number("inertia", inertia, 0.0, open_low=True)
     for name, value in (("viscous", viscous), ("kp", kp), ("ki", ki), ("kd", kd)):
         number(name, value, 0.0)
@@ -80,12 +61,14 @@ def closed_loop(
 ) -> control.StateSpace:
     """The PID loop around joints: reference angles and disturbance torques in, angles out.
 
+    The reference's velocity is taken to be zero.
+
     Parameters
     ----------
     joints : control.StateSpace
         From `plant`.
     kp, ki, kd : float or array_like, shape (joint,)
-        Gains of `ddlib.control.controllers.PID`.
+        Gains of `ddlib.control.PID`.
     period : float, optional
         Control period in s: the torque is computed once a period and held. The loop is
         then a discrete-time system, exact at the samples. Default: continuous control.
@@ -111,15 +94,7 @@ def opened_loop(
     """The PID loop cut open where one joint's torque is commanded, the other loops closed.
 
     What goes in is that torque; what comes out is the torque with which the controller
-    answers, its sign reversed. For one joint alone this is the loop gain ``L`` of
-    `loop_gain`, and of its sampled counterpart.
-
-    Parameters
-    ----------
-    joints, kp, ki, kd, period, delay
-        As in `closed_loop`.
-    joint : int
-        Number of the joint whose loop is open.
+    answers, its sign reversed. Arguments are those of `closed_loop`.
     """
     number("joint", joint, 0, joints.ninputs - 1)
     A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
@@ -168,44 +143,20 @@ def _parts(joints, kp, ki, kd, period, delay):
 
 
 class Margins(NamedTuple):
-    """How far a stable loop is from instability.
+    """How far a stable loop is from instability."""
 
-    Attributes
-    ----------
-    phase_deg : float
-        Angle in degrees that the loop may lose at its crossover.
-    crossover : float
-        Frequency in rad/s at which the loop gain is 1.
-    upper_gain, lower_gain : float
-        Gain margins: factors by which the gain may rise and to which it may fall (infinite and 0 if
-        there is no such limit).
-    """
-
-    phase_deg: float
-    crossover: float
-    upper_gain: float
-    lower_gain: float
+    phase_deg: float  #: Angle in degrees that the loop may lose at its crossover.
+    crossover: float  #: Frequency in rad/s at which the loop gain is 1.
+    upper_gain: float  #: Factor by which the gain may rise; infinite without a limit.
+    lower_gain: float  #: Factor to which the gain may fall; 0 without a limit.
 
 
 def margins(loop) -> Margins:
-    """Gain and phase margins of an open loop, by python-control.
-
-    A sampled loop is first mapped to the w plane, ``z = (1 + w T / 2) / (1 - w T / 2)``:
-    the unit circle becomes the imaginary axis, on which the polynomials of python-control
-    are well conditioned; its frequencies are mapped back.
-
-    Parameters
-    ----------
-    loop : control.StateSpace or control.TransferFunction
-        From `opened_loop` or `loop_gain`; one input, one output.
-
-    Raises
-    ------
-    ValueError
-        If the loop gain never is 1.
-    """
+    """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control."""
     period = loop.dt or 0.0
     if period:
+        # To the w plane, z = (1 + w T / 2) / (1 - w T / 2): the unit circle becomes the imaginary
+        # axis, on which python-control's polynomials are well conditioned.
         state = np.eye(loop.nstates)
         inverse = np.linalg.inv(loop.A + state)
         A = 2 / period * inverse @ (loop.A - state)
@@ -231,13 +182,6 @@ def proportional_limit(inertia, viscous, period) -> float:
     With ``x = viscous period / inertia`` the poles of the sampled loop have the product
     ``exp(-x) + kp (...)``; it reaches 1 at the value returned, nearly ``2 viscous / period``.
     A very long period loses stability in another way (a real pole at -1); it is covered too.
-
-    Parameters
-    ----------
-    inertia, viscous : float
-        kg m^2 and N m s/rad.
-    period : float
-        Control period, s.
     """
     number("inertia", inertia, 0.0, open_low=True)
     number("viscous", viscous, 0.0)
@@ -246,7 +190,7 @@ def proportional_limit(inertia, viscous, period) -> float:
     if x < 1e-4:  # series: the closed form would lose its digits
         return 2 * viscous / period * (1 + x / 6)
     p = np.exp(-x)
-    swing = (1 - p) / ((1 - p) / x - p)
+    swing = (1 - p) / ((1 - p) / x - p)  # the product of the poles reaches 1
     flip = 2 * (1 + p) / (1 + p - 2 * (1 - p) / x)
     return viscous / period * min(swing, flip)
 

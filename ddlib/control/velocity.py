@@ -1,7 +1,6 @@
 """Velocity from position readings, up to the newest one: noise against lag.
 
-A causal estimate is a row of weights, oldest reading first, like the filters of
-`ddlib.analysis.filters`, which look ahead as well.
+A causal estimate is a row of weights, oldest reading first.
 """
 
 from __future__ import annotations
@@ -16,15 +15,7 @@ from ddlib.trajectories import Trajectory
 
 
 def difference(periods: int, step: float) -> np.ndarray:
-    """Weights of ``(q(t) - q(t - periods step)) / (periods step)``, shape ``(periods + 1,)``.
-
-    Parameters
-    ----------
-    periods : int
-        Sampling periods between the two readings, 1 or more.
-    step : float
-        Sampling period, s.
-    """
+    """Weights of ``(q(t) - q(t - periods step)) / (periods step)``, shape ``(periods + 1,)``."""
     span = integer("periods", periods, 1) * number("step", step, 0.0, open_low=True)
     weights = np.zeros(periods + 1)
     weights[[0, -1]] = -1 / span, 1 / span
@@ -32,23 +23,10 @@ def difference(periods: int, step: float) -> np.ndarray:
 
 
 def end_slope(width: int, degree: int, step: float) -> np.ndarray:
-    """Weights of the slope, at the newest reading, of a least-squares polynomial.
+    """Weights of the slope, at the newest of `width` readings, of a least-squares polynomial.
 
     A line (degree 1) gives the velocity half a window ago; a parabola has no lag, and pays
     for it in noise.
-
-    Parameters
-    ----------
-    width : int
-        Readings, more than `degree`.
-    degree : int
-        Degree of the polynomial, 1 or more.
-    step : float
-        Sampling period, s.
-
-    Returns
-    -------
-    ndarray, shape (width,)
     """
     integer("degree", degree, 1)
     integer("width", width, degree + 1)
@@ -70,15 +48,7 @@ def noise_gain(weights) -> np.ndarray:
 
 
 def lag(weights, step: float) -> np.ndarray:
-    """How late an estimate is, s: the true velocity of that long ago, to first order.
-
-    Parameters
-    ----------
-    weights : array_like, shape (..., width)
-        Oldest reading first.
-    step : float
-        Sampling period, s.
-    """
+    """How late an estimate is, s: the true velocity of that long ago, to first order."""
     weights = finite_array("weights", weights)
     age = np.arange(weights.shape[-1])[::-1] * number("step", step, 0.0, open_low=True)
     return weights @ age**2 / -2
@@ -88,16 +58,11 @@ def lag(weights, step: float) -> np.ndarray:
 class EstimatedVelocity:
     """A controller that gets its velocity from readings, not from a tachometer.
 
-    Parameters
-    ----------
-    feedback : Controller
-        What the estimated velocity is for.
-    weights : array_like, shape (width,) or (runs, width)
-        Weights of the estimate, oldest reading first; before the first reading the arm rests.
+    Before the first reading the arm is taken to be at rest.
     """
 
-    feedback: Controller
-    weights: tuple
+    feedback: Controller  #: What the estimated velocity is for.
+    weights: tuple  #: Of the estimate, oldest reading first, (width,) or (runs, width).
 
     def __post_init__(self):
         if finite_array("weights", self.weights).ndim == 0:

@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.signal import savgol_coeffs
 
-from ddlib.analysis import frequency_response, savitzky_golay
 from ddlib.control import EstimatedVelocity, difference, end_slope, lag, noise_gain, pd, stacked
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Quantisation
@@ -16,31 +13,12 @@ from ddlib.trajectories import pick_and_place, time_grid
 STEP = 0.002
 
 
-@settings(deadline=None)
-@given(
-    width=st.integers(3, 60),
-    degree=st.integers(1, 2),
-    coefficients=st.lists(st.floats(-10, 10), min_size=3, max_size=3),
-)
-def test_end_slope_is_exact_for_its_polynomials(width, degree, coefficients):
-    coefficients = coefficients[: degree + 1]
-    t = np.arange(1 - width, 1) * STEP
-    q = np.polynomial.polynomial.polyval(t, coefficients)
-    assert end_slope(width, degree, STEP) @ q == pytest.approx(coefficients[1], abs=1e-7)
-
-
 @pytest.mark.parametrize("width", [5, 21, 81])
 @pytest.mark.parametrize("degree", [1, 2, 3])
 def test_end_slope_against_scipy(width, degree):
     ours = end_slope(width, degree, STEP)
     scipys = savgol_coeffs(width, degree, deriv=1, delta=STEP, use="dot", pos=width - 1)
     np.testing.assert_allclose(ours, scipys, rtol=0, atol=1e-9 * np.abs(scipys).max())
-
-
-def test_difference_of_neighbours_is_the_line_through_two_readings():
-    np.testing.assert_allclose(difference(1, STEP), [-500.0, 500.0])
-    np.testing.assert_allclose(end_slope(2, 1, STEP), [-500.0, 500.0])
-    np.testing.assert_allclose(difference(4, 0.01) @ np.arange(5) * 0.01, 1.0)
 
 
 @pytest.mark.parametrize("periods", [1, 2, 10, 40])
@@ -59,30 +37,6 @@ def test_lag_is_the_delay_of_a_slow_sine(width):
         t = np.arange(1 - width, 1) * STEP
         answer = weights @ np.exp(2j * np.pi * 0.1 * t) / (2j * np.pi * 0.1)
         assert -np.angle(answer) / (2 * np.pi * 0.1) == pytest.approx(expected, abs=2e-5)
-
-
-def test_looking_ahead_is_better():
-    """The centred filter of the same width has no lag and a quarter of the parabola's noise."""
-    width = 21
-    centred = savitzky_golay(width, 1, STEP, degree=2)
-    assert noise_gain(end_slope(width, 2, STEP)) > 3.8 * noise_gain(centred)
-    slow = frequency_response(centred, [0.5], STEP)[0] / (2j * np.pi * 0.5)
-    assert abs(np.angle(slow)) < 1e-12
-
-
-@settings(deadline=None, max_examples=20)
-@given(seed=st.integers(0, 1000), width=st.integers(3, 30))
-def test_noise_gain_is_the_deviation_of_filtered_noise(seed, width):
-    weights = end_slope(width, 1, STEP)
-    noise = np.random.default_rng(seed).standard_normal((20_000, width))
-    assert np.std(noise @ weights) == pytest.approx(noise_gain(weights), rel=0.05)
-
-
-def test_filters_side_by_side():
-    rows = stacked([difference(1, STEP), difference(3, STEP), end_slope(3, 1, STEP)])
-    assert rows.shape == (3, 4)
-    np.testing.assert_allclose(lag(rows, STEP), np.array([0.5, 1.5, 1.0]) * STEP)
-    np.testing.assert_allclose(rows[0], [0, 0, -500, 500])
 
 
 def run(controller, **options):
@@ -118,20 +72,15 @@ def test_the_law_sees_the_estimate_only():
     np.testing.assert_allclose(recording.tau, 10 * (recording.reference.qd - speed), atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    "make, error, words",
-    [
-        (lambda: difference(0, STEP), ValueError, "periods"),
-        (lambda: difference(1.0, STEP), TypeError, "periods"),
-        (lambda: difference(1, 0.0), ValueError, "step"),
-        (lambda: end_slope(2, 2, STEP), ValueError, "width"),
-        (lambda: end_slope(5, 0, STEP), ValueError, "degree"),
-        (lambda: end_slope(5, 1, -1.0), ValueError, "step"),
-        (lambda: lag([1.0, np.nan], STEP), ValueError, "weights"),
-        (lambda: EstimatedVelocity(pd((1, 1), (1, 1)), 3.0), ValueError, "weights"),
-        (lambda: EstimatedVelocity(pd((1, 1), (1, 1)), [np.inf]), ValueError, "weights"),
-    ],
-)
-def test_bad_values_are_refused(make, error, words):
-    with pytest.raises(error, match=words):
-        make()
+def test_refusals():
+    feedback = pd((1, 1), (1, 1))
+    for name, call in (
+        ("periods", lambda: difference(0, STEP)),
+        ("step", lambda: difference(1, 0.0)),
+        ("width", lambda: end_slope(2, 2, STEP)),
+        ("degree", lambda: end_slope(5, 0, STEP)),
+        ("weights", lambda: lag([1.0, np.nan], STEP)),
+        ("weights", lambda: EstimatedVelocity(feedback, 3.0)),
+    ):
+        with pytest.raises(ValueError, match=f"^{name} must"):
+            call()
