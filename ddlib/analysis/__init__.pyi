@@ -7,7 +7,7 @@ from .coverage import (
 from .filters import (
     CLASSES as CLASSES,
     DERIVATIVES as DERIVATIVES,
-    Decomposition as Decomposition,
+    NAMED_CLASSES as NAMED_CLASSES,
     basis as basis,
     classify as classify,
     content as content,
@@ -49,7 +49,6 @@ from .overlap import (
     shared_cells as shared_cells,
 )
 from .response import (
-    Calibrated as Calibrated,
     calibrated as calibrated,
     decoded as decoded,
     decoded_sign as decoded_sign,
@@ -66,8 +65,6 @@ from .sensitivity import (
     transition_range as transition_range,
 )
 from .simplified import (
-    OTHER_JOINT as OTHER_JOINT,
-    VELOCITY_TERMS as VELOCITY_TERMS,
     linear_residual as linear_residual,
     share_of_other_joint as share_of_other_joint,
     share_of_velocity_terms as share_of_velocity_terms,

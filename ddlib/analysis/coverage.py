@@ -8,16 +8,9 @@ from ddlib._check import integer, number, shaped
 
 
 def cells_reached(samples, radius: float, cells: int) -> int:
-    """Number of cells of a hypercube that hold at least one sample.
+    """Number of cells that hold a sample, in a hypercube from -radius to radius.
 
-    Parameters
-    ----------
-    samples : array_like, shape (n, dimensions)
-        Points; those outside the cube count for no cell.
-    radius : float
-        Half the edge of the cube, which is centred at zero.
-    cells : int
-        Cells along each axis.
+    There are `cells` along each axis; samples ``(n, dimensions)`` outside count for none.
     """
     samples = shaped("samples", samples, "(n, dimensions)")
     number("radius", radius, 0.0, open_low=True)
@@ -30,20 +23,8 @@ def cells_reached(samples, radius: float, cells: int) -> int:
 def log10_reachable_share(width: int, step: float) -> float:
     """Upper bound on the share of windows in a cube whose neighbours differ by at most `step`.
 
-    The first sample is free; each further one lies within `step` of its neighbour, an interval
-    of length ``2 step`` at most.
-
-    Parameters
-    ----------
-    width : int
-        Samples of the window.
-    step : float
-        Largest difference between neighbours, as a share of the cube's edge.
-
-    Returns
-    -------
-    float
-        Decimal logarithm of the bound.
+    The first of `width` samples is free; each further one lies within `step`, a share of the
+    cube's edge, of its neighbour: an interval of length ``2 step`` at most.
     """
     integer("width", width, 1)
     number("step", step, 0.0, 0.5, open_low=True)
@@ -51,27 +32,13 @@ def log10_reachable_share(width: int, step: float) -> float:
 
 
 def used_dimensions(samples, resolution: float) -> int:
-    """Number of orthogonal directions in which samples vary by more than a resolution.
-
-    Parameters
-    ----------
-    samples : array_like, shape (n, dimensions)
-        Points.
-    resolution : float
-        Smallest standard deviation that counts, in the unit of the samples.
-    """
+    """Number of orthogonal directions in which samples deviate by more than a resolution."""
     number("resolution", resolution, 0.0)
     return int((principal_deviations(samples) > resolution).sum())
 
 
 def principal_deviations(samples) -> np.ndarray:
-    """Standard deviations along the principal directions of samples, largest first.
-
-    Parameters
-    ----------
-    samples : array_like, shape (n, dimensions)
-        Points, two or more.
-    """
+    """Standard deviations along the principal directions of samples, largest first."""
     samples = shaped("samples", samples, "(n, dimensions)")
     integer("samples", len(samples), 2)
     values = np.linalg.svd(samples - samples.mean(0), compute_uv=False)

@@ -2,7 +2,8 @@
 
 A weight function is a unit's weights from one joint's window, ``f(x)`` with x from
 -n to n samples, oldest first. Convolved with the position it estimates derivatives:
-even filters see acceleration, odd ones velocity (and jerk).
+even filters see acceleration, odd ones velocity (and jerk). Everywhere here the last axis of `f`
+is the window.
 """
 
 from __future__ import annotations
@@ -15,15 +16,9 @@ from ddlib._check import finite_array, integer, number, one_of
 
 
 class Decomposition(NamedTuple):
-    """The parts of a weight function; ``constant + even + odd`` is the function itself.
+    """The parts of a weight function; ``constant + even + odd`` is the function itself."""
 
-    Attributes
-    ----------
-    constant : ndarray, shape (..., 1)
-    even, odd : ndarray, shape (..., width)
-    """
-
-    constant: np.ndarray
+    constant: np.ndarray  # of shape (..., 1)
     even: np.ndarray
     odd: np.ndarray
 
@@ -51,15 +46,6 @@ def decompose(f, convention: str = "symmetric") -> Decomposition:
         "symmetric": the mean is taken out of the even part, so that the odd part is
         odd. "paper": as printed in section 5.1, where it is taken out of the *odd*
         part: the sum is the same, but "odd" is then not odd and "even" keeps the mean.
-
-    Returns
-    -------
-    Decomposition
-
-    Raises
-    ------
-    ValueError
-        If `f` is not finite or has an even number of samples.
     """
     f = odd_width(f)
     one_of("convention", convention, ("symmetric", "paper"))
@@ -88,13 +74,7 @@ def basis(width: int) -> np.ndarray:
 
 
 def content(f) -> np.ndarray:
-    """Components of weight functions along `basis`, shape ``(..., 4)``.
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions, 5 samples or more.
-    """
+    """Components of weight functions of 5 samples or more along `basis`, ``(..., 4)``."""
     f = odd_width(f)
     if f.shape[-1] < 5:
         raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
@@ -102,19 +82,7 @@ def content(f) -> np.ndarray:
 
 
 def pure_part(f, degree: int = 2) -> np.ndarray:
-    """Projection of weight functions onto polynomials: what they hold of low derivatives.
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions, 5 samples or more.
-    degree : int
-        2 keeps position, velocity and acceleration; at most 3.
-
-    Returns
-    -------
-    ndarray, shape (..., width)
-    """
+    """Projection of weight functions onto polynomials; 2 keeps all up to the acceleration."""
     kept = integer("degree", degree, 0, len(DERIVATIVES) - 1) + 1
     parts = content(f)
     return parts[..., :kept] @ basis(np.shape(f)[-1])[:kept]
@@ -122,6 +90,11 @@ def pure_part(f, degree: int = 2) -> np.ndarray:
 
 def shares(f) -> np.ndarray:
     """Share of each derivative in the energy of weight functions.
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Weight functions.
 
     Returns
     -------
@@ -137,10 +110,15 @@ def shares(f) -> np.ndarray:
     return np.concatenate([parts, np.clip(1 - parts.sum(-1, keepdims=True), 0, None)], -1)
 
 
-CLASSES = (
-    "velocity", "acceleration", "jerk", "velocity + acceleration",
-    "acceleration + jerk", "other mix", "not analysable",
-)  # fmt: skip
+NAMED_CLASSES = (
+    "velocity",
+    "acceleration",
+    "jerk",
+    "velocity + acceleration",
+    "acceleration + jerk",
+)
+OTHER_MIX, NOT_ANALYSABLE = "other mix", "not analysable"
+CLASSES = (*NAMED_CLASSES, OTHER_MIX, NOT_ANALYSABLE)
 """Names that `classify` gives."""
 
 
@@ -172,29 +150,11 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     varying = 1 - share[..., 0]
     rough = (share[..., 4] > (1 - smooth) * varying) | (varying < 1e-12)
     conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
-    names = [CLASSES[6], *CLASSES[:5]]
-    return np.select(conditions, names, CLASSES[5])
+    return np.select(conditions, [NOT_ANALYSABLE, *NAMED_CLASSES], OTHER_MIX)
 
 
 def purest(f, name: str) -> np.ndarray:
-    """The weight function of a class with the largest share of the named derivatives.
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions to choose from.
-    name : str
-        One of `CLASSES`.
-
-    Returns
-    -------
-    ndarray, shape (width,)
-
-    Raises
-    ------
-    ValueError
-        If no function is of that class.
-    """
+    """The weight function of a class with the largest share of the named derivatives."""
     one_of("name", name, CLASSES)
     f = odd_width(f)
     f = f.reshape(-1, f.shape[-1])
@@ -213,15 +173,6 @@ def upright(f) -> np.ndarray:
     A hidden unit and its negative are the same unit, so the sign is free: a velocity filter
     is turned so that its weights rise with time, an acceleration filter so that they are
     high at both ends.
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions, 5 samples or more.
-
-    Returns
-    -------
-    ndarray, shape (..., width)
     """
     f = odd_width(f)
     parts = content(f)[..., 1:]
@@ -271,17 +222,7 @@ def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) ->
 
 
 def frequency_response(f, frequencies, step: float) -> np.ndarray:
-    """Complex gain of weight functions for ``exp(i 2 pi nu t)``, shape (..., frequency).
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions, oldest sample first, centred on now.
-    frequencies : array_like, shape (frequency,)
-        In Hz.
-    step : float
-        Sampling period, s.
-    """
+    """Complex gain of filters for ``exp(i 2 pi nu t)``, with nu in Hz and the period in s."""
     f, frequencies = odd_width(f), finite_array("frequencies", frequencies)
     number("step", step, 0.0, open_low=True)
     half = f.shape[-1] // 2

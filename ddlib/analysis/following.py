@@ -21,7 +21,7 @@ QUANTITIES = DERIVATIVES[:3]
 """What outputs are compared with: position, velocity, acceleration."""
 
 LAYERS = {"hidden": "hidden_weights", "direct": "direct_weights"}
-"""Attributes of `ddlib.learning.network.Weights` that hold filters, by the name of their layer."""
+"""Attributes of `Weights` that hold filters, by the name of their layer."""
 
 
 def explained(target, *by) -> float:
@@ -32,19 +32,12 @@ def explained(target, *by) -> float:
     target : array_like, shape (cases,)
     *by : array_like, shape (cases,)
         One or more other signals.
-
-    Returns
-    -------
-    float
-        The coefficient of determination, between 0 and 1.
     """
     target = finite_array("target", target)
     signals = [finite_array("by", x) for x in by]
     if target.ndim != 1 or not signals or any(x.shape != target.shape for x in signals):
         shapes = [x.shape for x in signals]
-        raise ValueError(
-            f"by must hold signals of the shape of target {target.shape}, got {shapes}"
-        )
+        raise ValueError(f"by must hold signals of target's shape {target.shape}, got {shapes}")
     if target.std() == 0:
         raise ValueError("target must vary")
     return float(_explained(target[:, None], np.stack(signals, -1))[0])
@@ -60,21 +53,11 @@ def _explained(outputs, signals) -> np.ndarray:
 
 
 class Responses(NamedTuple):
-    """What the outputs of filters follow, along the last axis by `QUANTITIES`.
+    """What the outputs of filters follow, along the last axis by `QUANTITIES`."""
 
-    Attributes
-    ----------
-    alone : ndarray, shape (..., 3)
-        Squared correlation with each quantity.
-    unique : ndarray, shape (..., 3)
-        What the three together explain of the output and two without this one do not.
-    together : ndarray, shape (...)
-        What the three together explain.
-    """
-
-    alone: np.ndarray
-    unique: np.ndarray
-    together: np.ndarray
+    alone: np.ndarray  # squared correlation with each quantity
+    unique: np.ndarray  # what all together explain of the output, and all but this one do not
+    together: np.ndarray  # what all together explain, without the last axis
 
     @property
     def strongest(self) -> np.ndarray:
@@ -98,17 +81,12 @@ def followed(f, windows, states) -> Responses:
     -------
     Responses
         Leading shape ``(..., joint)``.
-
-    Raises
-    ------
-    ValueError
-        If the shapes do not fit.
     """
     f = finite_array("f", f)
     joints, width = f.shape[-2:]
     windows = shaped("windows", windows, f"(cases, {joints}, {width})")
     states = shaped("states", states, (len(windows), joints, 3))
-    found = []
+    by_joint = []
     for joint in range(f.shape[-2]):
         taps = f[..., joint, :].reshape(-1, f.shape[-1])
         outputs, signals = windows[:, joint] @ taps.T, states[:, joint]
@@ -116,30 +94,20 @@ def followed(f, windows, states) -> Responses:
         together = _explained(outputs, signals)
         others = ([1, 2], [0, 2], [0, 1])
         without = np.stack([_explained(outputs, signals[:, two]) for two in others], -1)
-        found.append((alone, np.clip(together[:, None] - without, 0, 1), together))
+        by_joint.append((alone, np.clip(together[:, None] - without, 0, 1), together))
     lead = f.shape[:-2]
     return Responses(
         *(
             np.stack([x.reshape(*lead, *x.shape[1:]) for x in joints], len(lead))
-            for joints in zip(*found)
+            for joints in zip(*by_joint)
         )
     )
 
 
 def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
-    """Filter that a whole network amounts to: the gradient of its torques, averaged over cases.
+    """Filter that a network amounts to: the gradient of its torques, averaged over windows.
 
-    Parameters
-    ----------
-    model : TorqueModel
-        One network or an ensemble.
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad.
-
-    Returns
-    -------
-    ndarray, shape (..., output, joint, width)
-        N m/rad.
+    In N m/rad, ``(..., output, joint, width)``; the windows of positions are in rad.
     """
     weights = model.weights
     hidden, output = weights.activity(model.scaled(windows))
@@ -155,18 +123,8 @@ def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
 def gains(f, step: float = LOG_STEP) -> np.ndarray:
     """Gains of filters on position, velocity and acceleration: moments of a Taylor expansion.
 
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Filters, oldest sample first.
-    step : float
-        Sampling period, s.
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        In the unit of `f`, times s for velocity and s^2 for acceleration. For the gradient of a
-        torque they are a stiffness (N m/rad), a damping (N m s/rad) and an inertia (kg m^2).
+    They are in the unit of `f`, times s for velocity and s^2 for acceleration. For the gradient of
+    a torque they are a stiffness (N m/rad), a damping (N m s/rad) and an inertia (kg m^2).
     """
     f = odd_width(f)
     number("step", step, 0.0, open_low=True)
@@ -175,34 +133,21 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
 
 
 def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict:
-    """Names of filters and what they follow, network by network.
+    """Names of an ensemble's filters and what they follow, network by network.
 
-    Parameters
-    ----------
-    model : TorqueModel
-        An ensemble.
-    windows, states
-        As in `followed`.
-    step : float
-        Sampling period of the windows, s.
-
-    Returns
-    -------
-    dict
-        For each of `LAYERS` shares of its filters, one for each member: ``"classes"`` by name,
-        ``"follow"`` by the quantity that the output correlates best with; ``"unique"``, medians
-        of the unique shares, ``(members, 3)``. And the whole networks' ``"gains"``,
-        ``(members, output, joint, 3)``.
+    For each of `LAYERS` these are shares of its filters, one for each member: ``"classes"`` by
+    name, ``"follow"`` by the quantity that the output correlates best with; ``"unique"``, medians
+    of the unique shares, ``(members, 3)``. Then come the whole networks' ``"gains"``.
     """
-    found: dict = {}
+    told: dict = {}
     for layer, attribute in LAYERS.items():
         f = getattr(model.weights, attribute)
         if f.ndim != 4:
             raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
         names, heard = classify(f), followed(f, windows, states)
-        found[layer] = {
+        told[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
             "unique": np.median(heard.unique, (1, 2)),
         }
-    return {**found, "gains": gains(mean_gradient(model, windows), step)}
+    return {**told, "gains": gains(mean_gradient(model, windows), step)}

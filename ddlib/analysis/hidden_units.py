@@ -1,7 +1,7 @@
 """Hidden units at work (section 5.2): saturation, ablation, cancellation, matching.
 
-All functions take the activities of hidden units along some cases, ``(..., cases, hidden)``,
-as `ddlib.learning.network.Weights.activity` gives them; leading axes are networks.
+Activities of hidden units along some cases are ``(..., cases, hidden)``, as `Weights.activity`
+gives them; leading axes are networks. Windows hold positions, rad, ``(cases, joint, width)``.
 """
 
 from __future__ import annotations
@@ -17,19 +17,7 @@ from ddlib.metrics import rmss
 
 
 def saturated(activity, margin: float = 0.1) -> np.ndarray:
-    """Share of cases in which each unit is nearly off or nearly on.
-
-    Parameters
-    ----------
-    activity : array_like, shape (..., cases, hidden)
-        Between 0 and 1.
-    margin : float
-        Nearly: below `margin` or above ``1 - margin``.
-
-    Returns
-    -------
-    ndarray, shape (..., hidden)
-    """
+    """Share of cases in which each unit is nearly off or on: below `margin` or above 1 less it."""
     activity = _activity(activity)
     number("margin", margin, 0.0, 0.5)
     return ((activity < margin) | (activity > 1 - margin)).mean(-2)
@@ -41,13 +29,6 @@ def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
     Between activities of `margin` and ``1 - margin`` a sigmoid's net input moves by
     ``2 ln((1 - margin) / margin)``, whatever the weights; large weights make the net input vary
     much, so that this width becomes a small part of what the unit sees.
-
-    Parameters
-    ----------
-    net_input : array_like, shape (..., cases, hidden)
-        Weighted sums, bias included: ``logit`` of the activities.
-    margin : float
-        Above 0, below 0.5.
     """
     net_input = finite_array("net_input", net_input)
     number("margin", margin, 0.0, 0.49, open_low=True)
@@ -55,40 +36,14 @@ def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
 
 
 def net_inputs(model: TorqueModel, windows) -> np.ndarray:
-    """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad.
-    """
+    """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``."""
     x, weights = model.scaled(windows), model.weights
     net = np.einsum("...hjw,njw->...nh", weights.hidden_weights, x)
     return net + weights.hidden_bias[..., None, :]
 
 
 def ablation(model: TorqueModel, windows, torque, group: int = 1) -> tuple[list, np.ndarray]:
-    """Error of one network when units are held at their mean activity.
-
-    Parameters
-    ----------
-    model : TorqueModel
-        A single network.
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad.
-    torque : array_like, shape (cases, joint)
-        Measured torques, N m.
-    group : int
-        How many units are held at the same time: 1 or 2.
-
-    Returns
-    -------
-    groups : list of tuple
-        The units held.
-    errors : ndarray, shape (groups,)
-        Pooled RMSS of each.
-    """
+    """Groups of 1 or 2 units of one network, and its RMSS when they rest at their mean activity."""
     integer("group", group, 1, 2)
     weights = model.weights
     if weights.hidden_bias.ndim != 1:
@@ -136,14 +91,7 @@ def refitted(features, torque, held_out, answer) -> np.ndarray:
 
 
 def with_filters(model: TorqueModel, hidden_weights) -> TorqueModel:
-    """Networks whose hidden units have other weights from the window, all else as it was.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    hidden_weights : array_like, shape (..., hidden, joint, width)
-        In the place of its own, of the same shape.
-    """
+    """Networks whose hidden units have other weights from the window, all else as it was."""
     return replace(model, weights=replace(model.weights, hidden_weights=hidden_weights))
 
 
@@ -152,12 +100,6 @@ def cancellation(model: TorqueModel, windows) -> np.ndarray:
 
     One minus the standard deviation of their sum over the sum of their standard deviations:
     0 if all push the same way at the same time, near 1 if they undo each other.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad.
     """
     hidden, _ = model.weights.activity(model.scaled(windows))
     parts = hidden[..., None, :] * model.weights.output_weights[..., None, :, :]

@@ -16,19 +16,9 @@ from ddlib.dynamics import Arm
 
 
 def acceleration_noise_gain(width: int, period: float) -> float:
-    """Deviation of the estimated acceleration for white noise of deviation 1 in the positions.
+    """Deviation of the estimated acceleration for noise of deviation 1 in the positions, 1/s^2.
 
-    Parameters
-    ----------
-    width : int
-        Window size in samples, odd, 3 or more.
-    period : float
-        Sampling period, s.
-
-    Returns
-    -------
-    float
-        In 1/s^2. It falls with the window's size like ``width ** -2.5``.
+    It falls with the window's size like ``width ** -2.5``; the sampling period is in s.
     """
     integer("width", width, 3)
     number("period", period, 0.0, open_low=True)
@@ -55,11 +45,6 @@ def noise_floor(
         Noise of the measured torques as a share of their deviation, 0 or more.
     period : float
         Sampling period, s.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is of the wrong kind or out of range.
     """
     deviation = positive("deviation", deviation, (2,))
     number("bits", bits, 1.0, 40.0)

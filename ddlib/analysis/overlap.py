@@ -10,13 +10,7 @@ from ddlib.analysis.coverage import cells_reached
 
 
 def nearest_distances(points, among) -> np.ndarray:
-    """Distance of each point to the nearest one of another set, shape (points,).
-
-    Parameters
-    ----------
-    points, among : array_like, shape (n, dimensions)
-        Scaled, so that a unit means as much along every axis.
-    """
+    """Distance of each point to the nearest one of another set, both ``(n, dimensions)``."""
     points = shaped("points", points, "(n, dimensions)")
     among = shaped("among", among, f"(n, {points.shape[1]})")
     for name, x in (("points", points), ("among", among)):
@@ -25,25 +19,7 @@ def nearest_distances(points, among) -> np.ndarray:
 
 
 def shared_cells(points, among, cells: int) -> float:
-    """Of the cells of the cube from -1 to 1 that one set reaches, the share another one reaches.
-
-    Parameters
-    ----------
-    points, among : array_like, shape (n, dimensions)
-        Within the cube; `points` reach the cells that are counted.
-    cells : int
-        Cells along each axis.
-
-    Returns
-    -------
-    float
-        Between 0 and 1.
-
-    Raises
-    ------
-    ValueError
-        If a point lies outside the cube.
-    """
+    """Of the cells of the cube from -1 to 1 that `points` reach, the share that `among` reach."""
     points = shaped("points", points, "(n, dimensions)")
     among = shaped("among", among, f"(n, {points.shape[1]})")
     for name, x in (("points", points), ("among", among)):

@@ -6,9 +6,8 @@ whole, with both windows, and a network by its gains: the inertia and the dampin
 shows, through the direct weights alone and through all of it.
 
 A gain is the factor of an acceleration filter in the least-squares fit of the network's filter by
-a position, a velocity and an acceleration filter. With the least-squares filters of a parabola
-(`ddlib.analysis.savitzky_golay`) as templates that is a moment of the filter,
-`ddlib.analysis.gains`, since they are the dual basis of 1, x and x²/2.
+a position, a velocity and an acceleration filter. With those of a parabola (`savitzky_golay`) as
+templates that is a moment of the filter (`gains`): they are the dual basis of 1, x and x²/2.
 """
 
 from __future__ import annotations
@@ -26,20 +25,7 @@ from ddlib.simulation import LOG_STEP
 
 
 def with_jerk(states, step: float = LOG_STEP) -> np.ndarray:
-    """States with the derivative of the acceleration as a fourth quantity.
-
-    Parameters
-    ----------
-    states : array_like, shape (..., time, joint, 3)
-        True position, velocity, acceleration, run by run.
-    step : float
-        Sampling period, s.
-
-    Returns
-    -------
-    ndarray, shape (..., time, joint, 4)
-        As `ddlib.analysis.filters.DERIVATIVES` names them; jerk by central differences, rad/s^3.
-    """
+    """States ``(..., time, joint, 3)`` with the acceleration's central differences as a fourth."""
     states = finite_array("states", states, 3)
     number("step", step, 0.0, open_low=True)
     if states.ndim < 3 or states.shape[-3] < 2:
@@ -49,20 +35,10 @@ def with_jerk(states, step: float = LOG_STEP) -> np.ndarray:
 
 
 def heard(outputs, states) -> Responses:
-    """What signals of units follow, each quantity by both joints together.
+    """What signals of units, ``(..., cases, units)``, follow of ``(cases, joint, quantities)``.
 
-    Parameters
-    ----------
-    outputs : array_like, shape (..., cases, units)
-        Net inputs, activities or sums of direct weights.
-    states : array_like, shape (cases, joint, quantities)
-        True motion, for instance from `with_jerk`.
-
-    Returns
-    -------
-    Responses
-        Shapes ``(..., units, quantities)`` and ``(..., units)``. ``alone``: R² on a quantity of
-        both joints; ``unique``: by how much R² on all falls without it (semi-partial).
+    ``alone`` is R² on a quantity of both joints; ``unique``: by how much R² on all falls without
+    it (semi-partial).
     """
     outputs, states = finite_array("outputs", outputs), finite_array("states", states)
     if states.ndim != 3 or outputs.ndim < 2 or outputs.shape[-2] != len(states):
@@ -93,51 +69,21 @@ def heard(outputs, states) -> Responses:
 
 
 def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
-    """What comes in at units: sums of the windows by the layer whose weights they pass.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad.
-
-    Returns
-    -------
-    dict of ndarray, shape (..., cases, units)
-        "hidden": net inputs of the hidden units; "direct": what the direct weights give to the
-        outputs.
-    """
+    """Net inputs of the "hidden" units, and what the "direct" weights give to the outputs."""
     x = model.scaled(windows)
     direct = np.einsum("...ojw,njw->...no", model.weights.direct_weights, x)
     return {"hidden": net_inputs(model, windows), "direct": direct}
 
 
 class Calibrated(NamedTuple):
-    """Gains of torques on position, velocity and acceleration, along the last axis.
+    """Stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2), ``(..., output, joint, 3)``."""
 
-    Attributes
-    ----------
-    direct, whole : ndarray, shape (..., output, joint, 3)
-        Through the direct weights alone, and through all of the network, averaged over cases:
-        stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2).
-    """
-
-    direct: np.ndarray
-    whole: np.ndarray
+    direct: np.ndarray  # through the direct weights alone
+    whole: np.ndarray  # through all of the network, averaged over cases
 
 
 def calibrated(model: TorqueModel, windows, step: float = LOG_STEP) -> Calibrated:
-    """Gains of networks in physical units, from their torques' mean gradient.
-
-    Parameters
-    ----------
-    model : TorqueModel
-        One network or an ensemble.
-    windows : array_like, shape (cases, joint, width)
-        Positions, rad, over which the gradient is averaged.
-    step : float
-        Sampling period of the windows, s.
-    """
+    """Gains of networks in physical units, from their torques' gradient averaged over windows."""
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
@@ -147,21 +93,11 @@ def calibrated(model: TorqueModel, windows, step: float = LOG_STEP) -> Calibrate
 
 
 def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
-    """How well a linear probe reads quantities from features that it was not fitted on.
+    """R² with which a linear probe of features reads quantities in cases it was not fitted on.
 
-    Parameters
-    ----------
-    features, held_out : array_like, shapes (cases, features) and (others, features)
-        For instance hidden activities on the training runs and on another one.
-    target, answer : array_like, shapes (cases, quantities) and (others, quantities)
-        What is to be read.
-    ridge : float
-        Penalty on the squared factors of standardised features, as a share of the cases.
-
-    Returns
-    -------
-    ndarray, shape (quantities,)
-        R² on the held-out cases; negative where their mean would have been a better guess.
+    It is fitted to `features` and `target`, with a `ridge` on the squared factors of standardised
+    features, as a share of the cases; `held_out` and `answer` are the other cases'. Negative where
+    their mean would have been a better guess.
     """
     target, answer = finite_array("target", target), finite_array("answer", answer)
     read = _probe(features, target, held_out, ridge)
@@ -171,17 +107,7 @@ def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarr
 def decoded_sign(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
     """How often a linear probe tells the sign of quantities (balanced accuracy, chance 0.5).
 
-    The probe is the least-squares classifier, fitted to +1 and -1.
-
-    Parameters
-    ----------
-    features, target, held_out, answer, ridge
-        As in `decoded`.
-
-    Returns
-    -------
-    ndarray, shape (quantities,)
-        Mean of the shares of positive and of negative cases that are told rightly.
+    It is the least-squares classifier, fitted to +1 and -1; arguments are those of `decoded`.
     """
     target, answer = finite_array("target", target), finite_array("answer", answer)
     if ((answer > 0).all(0) | (answer <= 0).all(0)).any():

@@ -1,7 +1,7 @@
 """What a network of states responds to (section 6): which inputs, and which ranges of them.
 
 A state has six numbers, position, velocity and acceleration of each joint. They are the last
-two axes, ``(joint, 3)``, everywhere here.
+two axes, ``(joint, width)`` with a width of 3, everywhere here. A model is one network or many.
 """
 
 from __future__ import annotations
@@ -21,23 +21,8 @@ INPUTS = ("q1", "v1", "a1", "q2", "v2", "a2")
 def input_shares(weights: Weights) -> np.ndarray:
     """Share of each input in the variance of each hidden unit's net input.
 
-    The squared weight over the sum of the squared weights: this holds for inputs that vary
-    independently and equally much, as in a cube of random states.
-
-    Parameters
-    ----------
-    weights : Weights
-        One network or an ensemble.
-
-    Returns
-    -------
-    ndarray, shape (..., hidden, joint, width)
-        Adds up to 1 over the last two axes.
-
-    Raises
-    ------
-    ValueError
-        If all weights of a unit are zero or one is not finite.
+    The squared weight over the sum of the squared weights, ``(..., hidden, joint, width)``: this
+    holds for inputs that vary independently and equally much, as in a cube of random states.
     """
     square = finite_array("weights.hidden_weights", weights.hidden_weights) ** 2
     total = square.sum((-2, -1), keepdims=True)
@@ -52,19 +37,7 @@ def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
     A unit's activity goes from `margin` to ``1 - margin`` while an input of weight w moves by
     ``2 ln((1 - margin) / margin) / |w|``. Inputs are scaled to 0..1, so 1 is the whole range of
     the training set. Longer than 1: the unit responds all along the input's range, and to no
-    part of it in particular.
-
-    Parameters
-    ----------
-    weights : Weights
-        One network or an ensemble.
-    margin : float
-        Above 0, below 0.5.
-
-    Returns
-    -------
-    ndarray, shape (..., hidden, joint, width)
-        Infinite for a weight of zero.
+    part of it in particular. Shape ``(..., hidden, joint, width)``.
     """
     number("margin", margin, 0.0, 0.49, open_low=True)
     size = np.abs(finite_array("weights.hidden_weights", weights.hidden_weights))
@@ -75,15 +48,8 @@ def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
 def transition_centre(model: TorqueModel) -> np.ndarray:
     """Value of each input at which a hidden unit's activity is one half, the others at zero.
 
-    Parameters
-    ----------
-    model : TorqueModel
-        One network or an ensemble.
-
-    Returns
-    -------
-    ndarray, shape (..., hidden, joint, width)
-        In the input's own unit; far outside its range for a unit that hardly responds to it.
+    In the input's own unit, ``(..., hidden, joint, width)``; far outside the input's range for a
+    unit that hardly responds to it.
     """
     weights = model.weights.hidden_weights
     zero = model.scaled(np.zeros((1, *weights.shape[-2:])))[0]
@@ -93,20 +59,9 @@ def transition_centre(model: TorqueModel) -> np.ndarray:
 
 
 def responses(model: TorqueModel, values, centre=None) -> np.ndarray:
-    """Activities of the hidden units while one input moves and the others stay.
+    """Activities of hidden units while one input passes through values and the others stay.
 
-    Parameters
-    ----------
-    model : TorqueModel
-        One network or an ensemble.
-    values : array_like, shape (points,)
-        What the moving input passes through, in its own unit.
-    centre : array_like, shape (joint, width), optional
-        The state at which the other inputs stay; default: all zero.
-
-    Returns
-    -------
-    ndarray, shape (..., joint, width, points, hidden)
+    They stay at `centre`, by default zero. Shape ``(..., joint, width, points, hidden)``.
     """
     values = shaped("values", values, "(points,)")
     shape = model.weights.hidden_weights.shape[-2:]

@@ -10,11 +10,9 @@ from ddlib.effects import IDEAL, Effects
 from ddlib.metrics import rmss
 from ddlib.trajectories import Trajectory
 
-VELOCITY_TERMS = ("centrifugal", "coriolis")
-"""Terms of `Arm.torque_terms` that grow with speed squared; Bejczy (1974) leaves them out."""
-
-OTHER_JOINT = ("coupling", *VELOCITY_TERMS)
-"""Terms that one joint feels because the other moves."""
+# terms of `Arm.torque_terms` that grow with speed squared; Bejczy (1974) leaves them out
+_VELOCITY_TERMS = ("centrifugal", "coriolis")
+_OTHER_JOINT = ("coupling", *_VELOCITY_TERMS)  # because the other joint moves
 
 
 def share_of_velocity_terms(
@@ -22,65 +20,32 @@ def share_of_velocity_terms(
 ) -> np.ndarray:
     """Velocity terms over the motor's torque, root mean square, for shoulder and elbow.
 
-    The error of a model that leaves them out, when the same path is travelled faster.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm.
-    trajectory : Trajectory
-        The motion, arrays ``(..., 2)``; all samples count alike.
-    speed : float
-        How many times faster than the trajectory.
-    effects : Effects
-        Of these, friction is part of the motor's torque.
+    The error of a model that leaves them out, when the same path is travelled `speed` times
+    faster. Of the effects, friction is part of the motor's torque.
     """
     number("speed", speed, 0.0, open_low=True)
     qd = speed * finite_array("trajectory.qd", trajectory.qd, 2)
     terms = arm.torque_terms(trajectory.q, qd, speed**2 * trajectory.qdd)
     needed = sum(terms.values()) + effects.friction_torque(qd)
-    return _rms(sum(terms[name] for name in VELOCITY_TERMS)) / _rms(needed)
+    return _rms(sum(terms[name] for name in _VELOCITY_TERMS)) / _rms(needed)
 
 
 def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) -> np.ndarray:
-    """Torque due to the other joint over the motor's torque, behind gears.
+    """Torque due to the other joint over the motor's torque, behind gears, shape ``(gears, 2)``.
 
-    Behind a gear of ratio N a rotor of inertia J acts on the joint like an inertia N^2 J.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm without its rotors.
-    trajectory : Trajectory
-        The motion, arrays ``(..., 2)``; all samples count alike.
-    gears : array_like, shape (n,)
-        Gear ratios.
-    rotor : float
-        Inertia of a rotor, kg m^2.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        Root mean squares divided, for shoulder and elbow.
+    Behind a gear of ratio N a rotor of inertia J (`rotor`, kg m^2) acts on the joint like an
+    inertia N^2 J. Root mean squares are divided, for shoulder and elbow.
     """
     gears = non_negative("gears", gears)
     number("rotor", rotor, 0.0)
     terms = arm.torque_terms(*trajectory)
-    other = _rms(sum(terms[name] for name in OTHER_JOINT))
+    other = _rms(sum(terms[name] for name in _OTHER_JOINT))
     whole = sum(terms.values())
     return np.array([other / _rms(whole + rotor * n**2 * trajectory.qdd) for n in gears])
 
 
 def linear_residual(arm: Arm, q, qd, qdd) -> float:
-    """RMSS that the best linear function of the states leaves of the torque, joints pooled.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm.
-    q, qd, qdd : array_like, shape (..., 2)
-        States: angles (rad), velocities (rad/s), accelerations (rad/s^2).
-    """
+    """RMSS that the best linear function of the states leaves of the torque, joints pooled."""
     tau = arm.inverse_dynamics(q, qd, qdd).reshape(-1, 2)
     x = np.concatenate([np.reshape(part, (-1, 2)) for part in (q, qd, qdd)], -1)
     x = np.append(x, np.ones((len(x), 1)), -1)

@@ -11,6 +11,7 @@ import traitlets as t
 from ddlib._check import integer
 from ddlib.analysis import (
     CLASSES,
+    NAMED_CLASSES,
     basis,
     classify,
     content,
@@ -174,7 +175,7 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, 
     every = weights[width].hidden_weights[list(members)]
     names = classify(every)
     presets = {}
-    for name in CLASSES[:5]:
+    for name in NAMED_CLASSES:
         if (names == name).any():
             place = np.argwhere((every == purest(every, name)).all(-1))[0]
             member, unit, joint = map(int, place)
