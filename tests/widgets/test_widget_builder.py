@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from axe import violations_in
-from reactions import first_answers
-from widget_pages import NEXT_FRAME, page_of
+from widget_pages import CALM, NEXT_FRAME, Finger, alerts, copied, cut, functions, page_of, phone
 
 from ddlib.analysis import followed, frequency_response
 from ddlib.setups import JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets import FilterBuilder, module
+from ddlib.widgets import FilterBuilder
 from ddlib.widgets.engine import builder
 
 SCORE = "document.querySelector('.ddlib-builder').score"
@@ -19,16 +17,13 @@ SCORE = "document.querySelector('.ddlib-builder').score"
 
 @pytest.fixture(scope="module")
 def widget():
-    return FilterBuilder()
+    return FilterBuilder(np.arange(-10, 11.0) ** 2)
 
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    page = browser.new_page()
-    script = module("elements.js", "physics.js", "builder.js").replace("export default", "void")
-    page.add_script_tag(content=script)
-    yield page.evaluate
-    page.close()
+    with functions(browser, "elements.js", "builder.js") as call:
+        yield call
 
 
 def drawn(n=20, seed=0):
@@ -77,21 +72,20 @@ def test_nothing_beats_least_squares_here():
 
 
 def test_starting_points_are_what_they_are_called():
-    low = [0.2, 0.4]
     for name, f in builder.starts().items():
-        assert f.shape == (21,) and np.abs(f).max() == pytest.approx(
-            0 if name == "Zero" else builder.TALL
-        )
-        gain = np.abs(frequency_response(f, low, LOG_STEP))
+        tall = 0 if name == "Zero" else builder.TALL
+        assert f.shape == (21,) and np.abs(f).max() == pytest.approx(tall)
+        low, high = np.abs(frequency_response(f, [0.2, 0.4], LOG_STEP))
         if name != "Zero":
-            order = 1 if name == "Velocity" else 2
-            assert gain[1] / gain[0] == pytest.approx(2**order, rel=0.05)
+            assert high / low == pytest.approx(2 if name == "Velocity" else 4, rel=0.05)
 
 
-@pytest.mark.parametrize("f", [np.zeros(20), [np.nan] * 21])
-def test_bad_filters_are_refused(f):
-    with pytest.raises(ValueError, match="f must"):
-        builder.score(f)
+def test_bad_filters_are_refused():
+    for f in (np.zeros(20), [np.nan] * 21):
+        with pytest.raises(ValueError, match="f must"):
+            builder.score(f)
+        with pytest.raises(ValueError, match="unit must"):
+            FilterBuilder(f)
 
 
 @pytest.mark.browser
@@ -99,7 +93,7 @@ def test_the_page_computes_the_same(evaluate):
     q, truth, step = builder.readings()
     every = [*drawn(), *builder.starts().values(), builder.least_squares()]
     zeros = builder.zeros()[[0, 3, 20]]
-    got = evaluate(
+    fits = evaluate(
         """([q, truth, step, zeros, filters]) => filters.map((f) => zeros.map((zero) => {
           const seen = q.map((x) => encoderReading(step, x + zero) - zero);
           const fit = fittedTo(truth, f, seen);
@@ -107,33 +101,24 @@ def test_the_page_computes_the_same(evaluate):
         }))""",
         [q.tolist(), truth.tolist(), step, zeros.tolist(), [list(map(float, f)) for f in every]],
     )
-    for f, row in zip(every, got):
-        for zero, cell in zip(zeros, row):
-            assert cell["error"] == pytest.approx(builder.score(f, zero), abs=1e-9)
-            np.testing.assert_allclose(cell["output"], builder.fitted(f, zero), atol=1e-7)
-
-
-@pytest.mark.browser
-def test_the_gain_is_that_of_the_filter(evaluate):
+    for f, row in zip(every, fits):
+        for zero, fit in zip(zeros, row):
+            assert fit["error"] == pytest.approx(builder.score(f, zero), abs=1e-9)
+            np.testing.assert_allclose(fit["output"], builder.fitted(f, zero), atol=1e-7)
     nu = builder.FREQUENCIES
     for f in drawn(2):
         given = [f.tolist(), nu.tolist(), LOG_STEP]
-        got = evaluate("([f, nu, step]) => nu.map((x) => gainOf(f, x, step))", given)
-        np.testing.assert_allclose(got, np.abs(frequency_response(f, nu, LOG_STEP)), atol=1e-9)
-
-
-def test_the_whole_figure_is_small(widget):
-    assert len(widget._esm.encode()) < 50_000 and len(widget.motion) < 6_000
-    assert widget.still and "trajectory 6" in widget.still_alt
-    assert all(line.count("`") % 2 == 0 for line in module("builder.js").splitlines())
+        gain = evaluate("([f, nu, step]) => nu.map((x) => gainOf(f, x, step))", given)
+        np.testing.assert_allclose(gain, np.abs(frequency_response(f, nu, LOG_STEP)), atol=1e-9)
 
 
 # In a page without a kernel
 
 
-def opened(tmp_path, visit, widget, query="", **options):
-    url = page_of(tmp_path / "page.html", widget)
-    return visit(f"{url}{query}", **options)
+def opened(tmp_path, visit, widget, query=""):
+    here = visit(f"{page_of(tmp_path / 'page.html', widget)}{query}", **CALM)
+    here.page.evaluate(NEXT_FRAME)
+    return here
 
 
 def place(page, k, v):
@@ -149,79 +134,67 @@ def heights(page):
     return np.array([float(stem.get_attribute("aria-valuenow")) for stem in stems])
 
 
+def press(page, name, role="button"):
+    page.get_by_role(role, name=name, exact=True).click()
+    page.evaluate(NEXT_FRAME)
+
+
 @pytest.mark.browser
 def test_named_filters_begin_and_are_scored(tmp_path, visit, widget):
-    here = opened(tmp_path, visit, widget)
-    page = here.page
-    page.evaluate(NEXT_FRAME)
+    page = opened(tmp_path, visit, widget).page
     for name, f in builder.starts().items():
-        page.get_by_role("button", name=name, exact=True).click()
-        page.evaluate(NEXT_FRAME)
+        press(page, name)
         assert page.evaluate(SCORE) == pytest.approx(builder.score(f), abs=1e-9)
         np.testing.assert_allclose(heights(page), f, atol=0.006)
     assert page.locator(".error").inner_text() == "1.00"
-    assert not here.problems
 
 
 @pytest.mark.browser
 def test_one_stroke_paints_across_stems(tmp_path, visit, widget):
     here = opened(tmp_path, visit, widget)
     page = here.page
-    page.evaluate(NEXT_FRAME)
     compare = page.get_by_role("button", name="Compare")
-    assert compare.is_disabled()
-    page.get_by_role("button", name="Zero", exact=True).click()
-    page.get_by_role("switch", name="Both sides alike").check()
-    page.evaluate(NEXT_FRAME)
+    press(page, "Zero")
+    press(page, "Both sides alike", "switch")
     assert compare.is_disabled()
     page.mouse.move(*place(page, 0, 0.8))
     page.mouse.down()
     page.mouse.move(*place(page, 10, -0.8))  # one event: all stems between are set
     page.mouse.up()
     page.evaluate(NEXT_FRAME)
-    found = heights(page)
-    np.testing.assert_allclose(found[:11], np.linspace(0.8, -0.8, 11), atol=0.03)
-    np.testing.assert_allclose(found, found[::-1], atol=0.011)
+    painted = heights(page)
+    np.testing.assert_allclose(painted[:11], np.linspace(0.8, -0.8, 11), atol=0.03)
+    np.testing.assert_allclose(painted, painted[::-1], atol=0.011)
     slack = page.evaluate(SCORE)
-    page.get_by_role("switch", name="Sum zero").check()
-    page.evaluate(NEXT_FRAME)
-    assert abs(heights(page).sum()) < 0.11
-    assert page.evaluate(SCORE) < 0.5 * slack
-    found = heights(page)
-    assert page.evaluate(SCORE) == pytest.approx(builder.score(found - found.mean()), abs=0.01)
+    press(page, "Sum zero", "switch")
+    level = heights(page)
+    assert abs(level.sum()) < 0.11 and page.evaluate(SCORE) < 0.5 * slack
+    assert page.evaluate(SCORE) == pytest.approx(builder.score(level - level.mean()), abs=0.01)
     compare.click()
     page.evaluate(NEXT_FRAME)
-    table = page.locator(".compared-with table")
-    rows = [row.split("\t") for row in table.inner_text().splitlines()[1:] if "\t" in row]
-    errors = [float(row[1]) for row in rows[1:]] if rows[0][0] == "weights" else None
+    table = page.locator(".compared-with tbody tr")
+    errors = [float(row.split("\t")[1]) for row in table.all_inner_texts()]
     assert errors == sorted(errors) and len(errors) == 8
     assert page.locator("svg.window .curve").count() == 2
-    assert page.locator(".chart .legend").first.inner_text().count("least squares") == 1
-    assert not here.problems + violations_in(page, "light", "dark")
-    page.get_by_role("button", name="Reset").click()
-    page.evaluate(NEXT_FRAME)
-    assert page.evaluate(SCORE) == pytest.approx(
-        builder.score(builder.starts()["Second difference"]), abs=1e-9
-    )
-    assert not table.is_visible()
+    assert "least squares" in page.locator(".chart .legend").first.inner_text()
+    press(page, "Reset to the start")
+    second = builder.starts()["Second difference"]
+    assert page.evaluate(SCORE) == pytest.approx(builder.score(second), abs=1e-9)
+    assert not table.first.is_visible() and not here.problems
 
 
 @pytest.mark.browser
 def test_stems_are_moved_by_keys(tmp_path, visit, widget):
     page = opened(tmp_path, visit, widget).page
-    page.get_by_role("button", name="Zero", exact=True).click()
+    press(page, "Zero")
     page.get_by_role("slider", name="Weight at 0 ms").focus()
-    page.keyboard.press("Shift+ArrowUp")
-    page.keyboard.press("ArrowUp")
-    page.keyboard.press("ArrowLeft")
-    page.keyboard.press("PageDown")
-    page.keyboard.press("End")
-    page.keyboard.press("ArrowDown")
+    keys = ("Shift+ArrowUp", "ArrowUp", "ArrowLeft", "PageDown", "End", "ArrowDown")
+    for key in keys:
+        page.keyboard.press(key)
     page.evaluate(NEXT_FRAME)
-    found = heights(page)
     wanted = np.zeros(21)
     wanted[[9, 10, 20]] = -0.1, 0.12, -0.02
-    np.testing.assert_allclose(found, wanted, atol=1e-9)
+    np.testing.assert_allclose(heights(page), wanted, atol=1e-9)
     assert page.evaluate(SCORE) == pytest.approx(builder.score(wanted), abs=1e-9)
     page.keyboard.press("0")
     page.evaluate(NEXT_FRAME)
@@ -231,110 +204,48 @@ def test_stems_are_moved_by_keys(tmp_path, visit, widget):
 
 
 @pytest.mark.browser
-def test_a_link_restores_what_was_drawn(tmp_path, visit, widget):
-    page = opened(tmp_path, visit, widget).page
-    page.evaluate(NEXT_FRAME)
-    page.mouse.move(*place(page, 2, 0.5))
-    page.mouse.down()
-    page.mouse.move(*place(page, 6, -0.3))
-    page.mouse.up()
-    page.get_by_role("switch", name="Sum zero").check()
-    page.get_by_role("button", name="Compare").click()
-    page.wait_for_timeout(600)
+def test_a_link_restores_what_was_drawn_and_code_gives_its_error(tmp_path, visit, widget, capsys):
+    query = f"?builder=f:{'a1gogo' * 7},zero:1,compare:1"
+    page = opened(tmp_path, visit, widget, query).page
     wanted, score = heights(page), page.evaluate(SCORE)
-    query = page.evaluate("location.search")
-    again = opened(tmp_path, visit, widget, query).page
-    again.evaluate(NEXT_FRAME)
-    np.testing.assert_array_equal(heights(again), wanted)
-    assert again.evaluate(SCORE) == score
-    assert again.locator(".compared-with table").is_visible()
+    assert page.locator(".compared-with table").is_visible() and np.ptp(wanted) > 0.3
+    page.mouse.click(*place(page, 2, 0.5))
+    page.wait_for_function("([query]) => !location.search.includes(query)", arg=[query[1:]])
+    again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
+    np.testing.assert_array_equal(heights(again), heights(page))
+    assert heights(page)[2] != wanted[2] and again.evaluate(SCORE) != score
+    for here in (again, opened(tmp_path, visit, widget, "?builder=f:s3").page):
+        exec(copied(here), {})
+        printed = float(capsys.readouterr().out)
+        assert printed == pytest.approx(here.evaluate(SCORE), abs=1e-9)
     wrong = opened(tmp_path, visit, widget, "?builder=f:zz").page
-    wrong.evaluate(NEXT_FRAME)
     assert heights(wrong)[10] == pytest.approx(-0.9)
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("query", ["", "?builder=f:s3", "?builder=f:" + "a1gogo" * 7 + ",zero:1"])
-def test_copied_code_gives_the_same_error(tmp_path, visit, widget, query, capsys):
-    page = opened(tmp_path, visit, widget, query).page
-    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
-    page.get_by_role("button", name="Code").click()
-    page.wait_for_function("window.copied")
-    exec(page.evaluate("window.copied"), {})
-    assert float(capsys.readouterr().out) == pytest.approx(page.evaluate(SCORE), abs=1e-9)
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("width, height", [(1280, 800), (390, 844)])
-def test_error_and_output_are_beside_the_stems(tmp_path, browser, widget, width, height):
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
-    page.goto(page_of(tmp_path / "page.html", widget))
-    page.wait_for_selector(".ddlib-builder .chart")
-    page.evaluate(NEXT_FRAME)
-    boxes = [
-        page.locator(place).first.bounding_box()
-        for place in ("svg.window", ".score", ".ddlib-builder .chart > svg")
-    ]
-    assert max(b["y"] + b["height"] for b in boxes) - min(b["y"] for b in boxes) < height - 100
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    context.close()
-
-
-@pytest.mark.browser
 def test_touch_draws_anywhere_and_scrolls_upwards_beside_the_dots(tmp_path, browser, widget):
-    context = browser.new_context(
-        viewport={"width": 390, "height": 600}, has_touch=True, is_mobile=True
-    )
-    page = context.new_page()
-    page.goto(page_of(tmp_path / "page.html", widget))
-    page.wait_for_selector(".ddlib-builder .stem")
-    page.evaluate(NEXT_FRAME)
-    devtools = context.new_cdp_session(page)
+    with phone(browser, page_of(tmp_path / "page.html", widget)) as page:
+        finger = Finger(page)
 
-    def swipe(start, end):
-        for k in range(10):
-            x, y = (a + (b - a) * k / 9 for a, b in zip(start, end))
-            kind = "touchMove" if k else "touchStart"
-            points = {"type": kind, "touchPoints": [{"x": x, "y": y}]}
-            devtools.send("Input.dispatchTouchEvent", points)
-            page.wait_for_timeout(20)
-        devtools.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        def stroke(start, end):
+            (x, y), (to, down) = place(page, *start), place(page, *end)
+            finger.swipe(x, y, to - x, down - y)
+
+        stroke((3, 0.0), (3, 0.7))
+        assert heights(page)[3] == pytest.approx(0.7, abs=0.03)
+        press(page, "Zero")
+        stroke((0, 0.9), (20, -0.9))  # far from every dot
+        np.testing.assert_allclose(heights(page), np.linspace(0.9, -0.9, 21), atol=0.05)
+        page.touchscreen.tap(*place(page, 18, 0.8))
         page.evaluate(NEXT_FRAME)
-
-    swipe(place(page, 3, 0.0), place(page, 3, 0.7))
-    assert heights(page)[3] == pytest.approx(0.7, abs=0.03)
-    assert page.evaluate("scrollY") == 0
-    page.get_by_role("button", name="Zero", exact=True).click()
-    page.evaluate(NEXT_FRAME)
-    start, end = place(page, 2, 0.9), place(page, 14, -0.9)  # far from every dot
-    swipe(start, end)
-    np.testing.assert_allclose(heights(page)[2:15], np.linspace(0.9, -0.9, 13), atol=0.05)
-    assert page.evaluate("scrollY") == 0
-    page.touchscreen.tap(*place(page, 18, 0.8))
-    page.evaluate(NEXT_FRAME)
-    assert heights(page)[18] == pytest.approx(0.8, abs=0.03)
-    before = heights(page)
-    x, y = place(page, 16, 0.8)
-    swipe((x, y), (x, y - 150))
-    np.testing.assert_array_equal(heights(page), before)
-    assert page.evaluate("scrollY") > 50
-    context.close()
+        assert heights(page)[18] == pytest.approx(0.8, abs=0.03)
+        before, scrolled = heights(page), page.evaluate("scrollY")
+        finger.swipe(*place(page, 16, 0.8), 0, -150)
+        np.testing.assert_array_equal(heights(page), before)
+        assert page.evaluate("scrollY") > scrolled + 50
 
 
 @pytest.mark.browser
 def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    def shorter(entry):
-        entry["buffers"][0]["data"] = entry["buffers"][0]["data"][:80]
-
-    page = visit(page_of(tmp_path / "page.html", widget, damages=[shorter])).page
-    assert "bytes of motion in place of" in page.get_by_role("alert").inner_text()
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("touch", [False, True])
-def test_its_first_handle_answers(tmp_path, visit, widget, touch):
-    options = {"width": 400, "has_touch": True, "is_mobile": True} if touch else {}
-    here = opened(tmp_path, visit, widget, **options)
-    first_answers(here.page.locator(".ddlib-builder"), touch)
-    assert not here.problems
+    (said,) = alerts(tmp_path, visit, widget, cut("motion", 80))
+    assert "bytes of motion in place of" in said

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from scipy.signal import freqz
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, page_of, settings
+from widget_pages import NEXT_FRAME, Finger, page_of, phone, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
-from ddlib.learning import TorqueModel, Weights
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import FLOOR, FREQUENCIES, FilterExplorer
@@ -21,6 +20,7 @@ from workshop.report import results
 CELLS = "weights of all units"
 MEMBERS = (1, 6)
 REACH = max(WINDOWS) // 2
+START = {"width": 21, "seed": 1, "unit": "shoulder torque", "joint": "shoulder"}
 
 
 @pytest.fixture(scope="module")
@@ -46,19 +46,8 @@ def gain_of(f) -> np.ndarray:
     return np.abs(freqz(f, worN=FREQUENCIES, fs=1 / LOG_STEP)[1])
 
 
-def test_baked_curves_are_the_exact_ones(explorer):
-    assert explorer.baked_bytes < 110_000 and explorer.spec["error"] < 1e-4
-    assert explorer.interpolation_error(100, seed=4) < 1e-4
-    assert FilterExplorer(explorer_models(explorer), (1, 6, 10, 21), checks=5).baked_bytes < 200_000
-
-
-def explorer_models(explorer) -> dict:
-    """Models of the same size as the explorer's, of random weights."""
-    scaler = results.networks(11).inputs
-    return {w: TorqueModel(Weights.random(22, w), scaler, scaler) for w in WINDOWS}
-
-
 def test_truths_of_every_filter(explorer, models):
+    assert explorer.interpolation_error(100, seed=4) < 1e-4
     for values in settings(explorer, 60, seed=2):
         f = weights_of(models, **values)
         shown = explorer.interpolate(**values)
@@ -117,36 +106,15 @@ def test_diagram_holds_every_weight_once(models):
     both = np.repeat(weights.output_weights.ravel(), 2)
     expected = np.sort(np.concatenate([counted, both]))
     np.testing.assert_array_equal(np.sort(cells[cells != 0]), expected)
-    assert len(cells) == 12 * (1 + 2 * 17) + 2 * 10 * 2
     hidden = cells[2 * (1 + 10 + 34) :].reshape(10, 1 + 2 + 34)
     np.testing.assert_array_equal(hidden[:, 1:3], weights.output_weights.T)
     np.testing.assert_array_equal(hidden[3, 3 + 3 : 3 + 14], weights.hidden_weights[3, 0])
 
 
-def test_zero_padding_needs_room():
-    np.testing.assert_array_equal(zero_padded([1, 2, 3], 2), [0, 1, 2, 3, 0])
-    with pytest.raises(ValueError, match="reach must be 10 samples or more, got 9"):
-        zero_padded(np.ones(21), 9)
-
-
-def test_chosen_filter_is_a_trait_away(explorer, models):
-    explorer.width, explorer.seed, explorer.unit, explorer.joint = 41, 6, "hidden 9", "elbow"
-    np.testing.assert_array_equal(explorer.filter, models[41].weights.hidden_weights[6, 9, 1])
-    explorer.unit = "elbow torque"
-    np.testing.assert_array_equal(explorer.filter, models[41].weights.direct_weights[6, 1, 1])
-    explorer.width = 21
-
-
-@pytest.mark.parametrize(
-    "name, bad", [("width", 13), ("width", np.nan), ("seed", 0), ("unit", "hidden 10"),
-                  ("joint", "wrist"), ("unit", None)],
-)  # fmt: skip
-def test_bad_choices_are_refused(explorer, name, bad):
-    with pytest.raises(TraitError, match=f"{name} must be one of"):
-        setattr(explorer, name, bad)
-
-
-def test_bad_models_are_refused(models):
+def test_bad_arguments_are_refused(explorer, models):
+    for name, bad in (("width", 13), ("seed", 0), ("unit", "hidden 10"), ("joint", "wrist")):
+        with pytest.raises(TraitError, match=f"{name} must be one of"):
+            setattr(explorer, name, bad)
     with pytest.raises(TypeError, match="two window sizes or more"):
         FilterExplorer({21: models[21]})
     with pytest.raises(TypeError, match="models must hold TorqueModels"):
@@ -157,6 +125,8 @@ def test_bad_models_are_refused(models):
         FilterExplorer({w: model[0] for w, model in models.items()})
     with pytest.raises(ValueError, match="members must be an integer from 0 to 24, got 25"):
         FilterExplorer(models, (0, 25))
+    with pytest.raises(ValueError, match="reach must be 10 samples or more, got 9"):
+        zero_padded(np.ones(21), 9)
 
 
 # In a page without a kernel
@@ -172,107 +142,77 @@ DOTS = r"""() => {
 CHOSEN = "document.querySelector('.hinton [aria-selected=true]').getAttribute('aria-label')"
 
 
-def squares(page, sign) -> np.ndarray:
-    """Areas of the diagram's squares of one sign."""
-    path = page.locator(f"svg.hinton .{sign}").get_attribute("d")
-    return np.array([float(a) for a in re.findall(r"h([\d.]+)v", path)]) ** 2
-
-
 def assert_shown(page, explorer, models, **values):
     page.evaluate(NEXT_FRAME)
     f = weights_of(models, **values)
-    expected = zero_padded(f, REACH)
     allowed = 2e-4 * np.abs(models[values["width"]].weights.largest).max() + 0.01 * np.ptp(f)
-    np.testing.assert_allclose(page.evaluate(DOTS), expected, atol=allowed)
+    np.testing.assert_allclose(page.evaluate(DOTS), zero_padded(f, REACH), atol=allowed)
     assert page.evaluate(CHOSEN) == f"{values['unit']}, {values['joint']}'s window"
     assert page.locator(".verdict").inner_text().endswith(f": {classify(f)}")
     cells = explorer.interpolate(**values)[CELLS]
-    large = cells[np.abs(cells) > 0.02 * np.abs(cells).max()]
-    areas = {sign: squares(page, sign) for sign in ("positive", "negative")}
-    sums = np.array([areas["positive"].sum(), areas["negative"].sum()])
+    paths = [page.locator(f"svg.hinton .{sign}").get_attribute("d") for sign in SIGNS]
+    sides = [[float(a) for a in re.findall(r"h([\d.]+)v", path)] for path in paths]
+    areas = np.array([np.square(side).sum() for side in sides])
     weights = np.array([cells[cells > 0].sum(), -cells[cells < 0].sum()])
-    np.testing.assert_allclose(sums / sums.sum(), weights / weights.sum(), atol=0.02)
-    assert sum(map(len, areas.values())) >= len(large)
+    np.testing.assert_allclose(areas / areas.sum(), weights / weights.sum(), atol=0.02)
+    assert sum(map(len, sides)) >= (np.abs(cells) > 0.02 * np.abs(cells).max()).sum()
+
+
+SIGNS = ("positive", "negative")
 
 
 @pytest.mark.browser
-def test_pointer_keys_and_menus_choose(tmp_path, visit, explorer, models):
-    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
+def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
     opened = visit(page_of(tmp_path / "page.html", explorer))
-    page = opened.page
-    values = {"width": 21, "seed": 1, "unit": "shoulder torque", "joint": "shoulder"}
-    assert_shown(page, explorer, models, **values)
+    page, values = opened.page, dict(START)
+
+    def shows(**changes):
+        values.update(changes)
+        assert_shown(page, explorer, models, **values)
 
     def place(unit, joint):
         label = f"{unit}, {joint}'s window"
         box = page.locator(f'[role=gridcell][aria-label="{label}"]').bounding_box()
         return box["x"] + 0.3 * box["width"], box["y"] + 0.6 * box["height"]
 
+    shows()
     page.mouse.click(*place("hidden 2", "elbow"))
-    assert_shown(page, explorer, models, **{**values, "unit": "hidden 2", "joint": "elbow"})
+    shows(unit="hidden 2", joint="elbow")
     page.mouse.move(*place("hidden 2", "shoulder"))
     page.mouse.down()
     page.mouse.move(*place("hidden 7", "elbow"), steps=6)
     page.mouse.up()
-    values |= {"unit": "hidden 7", "joint": "elbow"}
-    assert_shown(page, explorer, models, **values)
+    shows(unit="hidden 7", joint="elbow")
 
-    diagram_ = page.locator("svg.hinton")
-    diagram_.focus()
-    page.keyboard.press("ArrowUp")  # hidden 7, shoulder
-    page.keyboard.press("ArrowUp")  # hidden 5, elbow
-    page.keyboard.press("ArrowLeft")
-    values |= {"unit": "hidden 4"}
-    assert_shown(page, explorer, models, **values)
-    active = diagram_.get_attribute("aria-activedescendant")
+    page.locator("svg.hinton").focus()
+    for key in ("ArrowUp", "ArrowUp", "ArrowLeft"):  # by hidden 7, shoulder, to hidden 5, elbow
+        page.keyboard.press(key)
+    shows(unit="hidden 4")
+    active = page.locator("svg.hinton").get_attribute("aria-activedescendant")
     assert page.locator(f"#{active}").get_attribute("aria-selected") == "true"
-    for _ in range(15):
-        page.keyboard.press("ArrowUp")
-    page.keyboard.press("ArrowLeft")
-    values |= {"unit": "shoulder torque", "joint": "shoulder"}
-    assert_shown(page, explorer, models, **values)
+    for key in ["ArrowUp"] * 15 + ["ArrowLeft"]:
+        page.keyboard.press(key)
+    shows(unit="shoulder torque", joint="shoulder")
 
     page.get_by_label("Window size").select_option(label="41 samples")
     page.get_by_label("Network").select_option(label="seed 6")
     page.get_by_label("Unit", exact=True).select_option(label="hidden 9")
-    values |= {"width": 41, "seed": 6, "unit": "hidden 9"}
-    assert_shown(page, explorer, models, **values)
+    shows(width=41, seed=6, unit="hidden 9")
     page.get_by_label("Network").press("ArrowUp")
-    values |= {"seed": 1}
-    assert_shown(page, explorer, models, **values)
-    assert not opened.problems
-
-
-@pytest.mark.browser
-def test_a_named_filter_is_a_button(tmp_path, visit, explorer, models):
-    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
-    opened = visit(page_of(tmp_path / "page.html", explorer))
-    for name, values in explorer.spec["presets"]["options"]:
-        opened.page.get_by_role("button", name=name, exact=True).click()
-        assert_shown(opened.page, explorer, models, **values)
-    ticks = opened.page.locator(".chart > svg").nth(3).locator("text.x").all_text_contents()
+    shows(seed=1)
+    for name, named in explorer.spec["presets"]["options"]:
+        page.get_by_role("button", name=name, exact=True).click()
+        shows(**named)
+    ticks = page.locator(".chart > svg").nth(3).locator("text.x").all_text_contents()
     assert ticks[:-1] == ["0.5", "1", "2", "5", "10", "20"] and not opened.problems
 
 
 @pytest.mark.browser
 def test_touch_chooses_and_scrolls(tmp_path, browser, explorer, models):
-    explorer.unit, explorer.joint, explorer.seed = "shoulder torque", "shoulder", 1
-    size = {"width": 380, "height": 700}
-    context = browser.new_context(viewport=size, has_touch=True, is_mobile=True)
-    page = context.new_page()
-    page.goto(page_of(tmp_path / "page.html", explorer))
-    page.wait_for_selector(".hinton .positive[d]", state="attached")
-    assert page.evaluate("document.documentElement.scrollWidth") <= 380
-    box = page.locator('[aria-label="hidden 6, shoulder\'s window"]').bounding_box()
-    page.touchscreen.tap(box["x"] + 20, box["y"] + box["height"] / 2)
-    values = {"width": 21, "seed": 1, "unit": "hidden 6", "joint": "shoulder"}
-    assert_shown(page, explorer, models, **values)
-    client = context.new_cdp_session(page)
-    for k in range(12):  # a finger that moves up over the diagram
-        point = {"x": 190, "y": box["y"] - 15 * k}
-        kind = "touchMove" if k else "touchStart"
-        client.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
-    client.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    page.wait_for_function("scrollY > 100")
-    assert_shown(page, explorer, models, **values)
-    context.close()
+    with phone(browser, page_of(tmp_path / "page.html", explorer)) as page:
+        box = page.locator('[aria-label="hidden 6, shoulder\'s window"]').bounding_box()
+        page.touchscreen.tap(box["x"] + 20, box["y"] + box["height"] / 2)
+        assert_shown(page, explorer, models, **START | {"unit": "hidden 6"})
+        Finger(page).swipe(190, box["y"], 0, -165)  # up over the diagram
+        page.wait_for_function("scrollY > 100")
+        assert_shown(page, explorer, models, **START | {"unit": "hidden 6"})
