@@ -10,7 +10,7 @@ from book_pages import ROOT
 SOURCES = ("ddlib", "pyproject.toml", "README.md", "LICENSE")
 WITHOUT_TORCH = (
     *("dynamics", "effects", "control", "simulation", "identification", "analysis"),
-    *("figures", "widgets"),
+    *("figures", "widgets", "trajectories", "metrics", "tables", "paper", "_check"),
 )
 
 IMPORT = """

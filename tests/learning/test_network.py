@@ -1,5 +1,7 @@
 """The window network: sums by hand, counts of the paper, symmetries and files."""
 
+import subprocess
+import sys
 import warnings
 import zipfile
 
@@ -240,3 +242,24 @@ def test_missing_and_damaged_files(tmp_path):
         path.write_bytes(damaged)
         with pytest.raises(ValueError, match="is not a model file"):
             TorqueModel.load(path)
+
+
+def test_stored_networks_and_their_data_need_no_torch(tmp_path):
+    """PyTorch is blocked; scipy stumbles over a None in `sys.modules`, so by a finder."""
+    path = tmp_path / "model.npz"
+    model(2, 5).save(path)
+    code = f"""
+import sys
+
+class NoTorch:
+    def find_spec(name, path=None, target=None):
+        if name.partition(".")[0] == "torch":
+            raise ImportError("torch is blocked")
+
+sys.meta_path.insert(0, NoTorch)
+from ddlib.learning import Directions, History, TorqueModel, TrainingSet, default_rate, surrogate
+print(TorqueModel.load({str(path)!r}).weights)
+"""
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stdout.startswith("Weights(2 networks, 10 hidden units")
