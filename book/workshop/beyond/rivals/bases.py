@@ -16,93 +16,52 @@ from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 from workshop.beyond.rivals.protocol import NotFitted, Rival
 
-MOST = 5000
-"""Functions at most."""
-
-BLOCK = 2000
-"""Cases whose functions are computed at once."""
-
-KINDS_OF_POLYNOMIAL = {"monomials": polyvander, "chebyshev": chebvander}
-"""Polynomials of one variable that products are made of."""
+_MOST = 5000  # functions at most
+_BLOCK = 2000  # cases whose functions are computed at once
+_POLYNOMIALS = {"monomials": polyvander, "chebyshev": chebvander}  # of one variable
 
 
-def exponents(variables: int, degree: int) -> np.ndarray:
-    """All exponents of a total degree at most, shape (terms, variables), lowest degrees first.
-
-    Parameters
-    ----------
-    variables, degree : int
-        1 or more; 0 or more.
-
-    Raises
-    ------
-    ValueError
-        If there are more than `MOST`.
-    """
+def _exponents(variables: int, degree: int) -> np.ndarray:
+    """All exponents of a total degree at most, shape (terms, variables), lowest degrees first."""
     integer("variables", variables, 1)
     terms = comb(variables + integer("degree", degree, 0), degree)
     _few(terms)
-    found = np.zeros((1, 0), dtype=int)
+    rows = np.zeros((1, 0), dtype=int)
     for _ in range(variables):
-        room = degree - found.sum(1)
-        found = np.concatenate(
+        room = degree - rows.sum(1)
+        rows = np.concatenate(
             [np.c_[np.repeat(row[None], left + 1, 0), np.arange(left + 1)]
-             for row, left in zip(found, room)]
+             for row, left in zip(rows, room)]
         )  # fmt: skip
-    return found[np.argsort(found.sum(1), kind="stable")]
+    return rows[np.argsort(rows.sum(1), kind="stable")]
 
 
-def wave_numbers(variables: int, order: int) -> np.ndarray:
-    """Whole-number wave vectors but one of each opposite pair, shape (waves, variables).
-
-    Parameters
-    ----------
-    variables : int
-        1 or more.
-    order : int
-        Most that the absolute values sum up to; 1 or more.
-
-    Raises
-    ------
-    ValueError
-        If their sines and cosines are more than `MOST`.
-    """
+def _wave_numbers(variables: int, order: int) -> np.ndarray:
+    """Whole-number wave vectors of a sum of sizes at most `order`, one of each opposite pair."""
     integer("order", order, 1)
-    found = []
-    for size in exponents(variables, order)[1:]:
+    waves = []
+    for size in _exponents(variables, order)[1:]:
         moving = np.flatnonzero(size)
-        _few(2 * len(found))
+        _few(2 * len(waves))
         for signs in product((1, -1), repeat=len(moving) - 1):  # the first is positive
             wave = size.copy()
             wave[moving[1:]] *= np.array(signs, dtype=int)
-            found.append(wave)
-    return np.array(found)
+            waves.append(wave)
+    return np.array(waves)
 
 
 def _few(terms):
-    if terms > MOST:
-        raise ValueError(f"degree or order must give at most {MOST} functions, got {terms}")
+    if terms > _MOST:
+        raise ValueError(f"degree or order must give at most {_MOST} functions, got {terms}")
 
 
 class Solution(NamedTuple):
-    """Linear least squares, solved for any penalty on the squared coefficients.
+    """Linear least squares by singular values, solved for any penalty on squared coefficients."""
 
-    Attributes
-    ----------
-    sizes : ndarray, shape (directions,)
-        Singular values of the design over the root of the number of cases, largest first.
-    directions : ndarray, shape (directions, functions)
-        Their directions among coefficients.
-    seen : ndarray, shape (directions, joint)
-        What the target says along each.
-    floor : float
-        A singular value at most so large is taken for rounding.
-    """
-
-    sizes: np.ndarray
-    directions: np.ndarray
-    seen: np.ndarray
-    floor: float
+    sizes: np.ndarray  # singular values over the root of the number of cases, largest first
+    directions: np.ndarray  # theirs among the coefficients, a row each
+    seen: np.ndarray  # what the target says along each, a column for each joint
+    floor: float  # a singular value at most so large is taken for rounding
 
     @classmethod
     def of(cls, design, target) -> Solution:
@@ -115,17 +74,7 @@ class Solution(NamedTuple):
         return cls(sizes, directions, left.T @ target / root, floor)
 
     def coefficients(self, ridge: float = 0.0) -> np.ndarray:
-        """Those with the least mean squared error plus `ridge` times their squares' sum.
-
-        Parameters
-        ----------
-        ridge : float
-            For 0: the shortest of the least-squares solutions.
-
-        Returns
-        -------
-        ndarray, shape (functions, joint)
-        """
+        """Least mean squared error plus `ridge` times squared coefficients; for 0 the shortest."""
         number("ridge", ridge, 0.0)
         kept = self.sizes > self.floor
         factor = self.sizes[kept] / (self.sizes[kept] ** 2 + ridge)
@@ -135,12 +84,8 @@ class Solution(NamedTuple):
 class Basis(Rival):
     """Torque as a sum of functions of the state, fitted by least squares.
 
-    States are scaled so that the training states' box has edges from -1 to 1.
-
-    Parameters
-    ----------
-    ridge : float
-        Penalty on squared coefficients (`Solution.coefficients`); the mean torque is free of it.
+    States are scaled so that the training states' box has edges from -1 to 1. The mean torque is
+    free of the penalty `ridge` on squared coefficients.
     """
 
     def __init__(self, ridge: float = 0.0):
@@ -155,17 +100,11 @@ class Basis(Rival):
         self.coefficients = self._solution.coefficients(self.ridge)
 
     def _torque(self, x):
-        blocks = np.array_split(x, max(1, len(x) // BLOCK))
+        blocks = np.array_split(x, max(1, len(x) // _BLOCK))
         return np.concatenate([self.mean + self.design(b) @ self.coefficients for b in blocks])
 
     def with_ridge(self, ridge: float) -> Basis:
-        """The same fitted rival with another penalty, at nearly no cost.
-
-        Parameters
-        ----------
-        ridge : float
-            0 or more.
-        """
+        """The same fitted rival with another penalty, at nearly no cost."""
         if not hasattr(self, "coefficients"):
             raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         other = copy(self)
@@ -182,13 +121,7 @@ class Basis(Rival):
         """Their values ``(cases, functions)`` at scaled states ``(cases, variables)``."""
 
     def design(self, x) -> np.ndarray:
-        """Values of all functions, shape (cases, functions), once it has been fitted.
-
-        Parameters
-        ----------
-        x : ndarray, shape (cases, joint, 3)
-            States.
-        """
+        """Values of all functions ``(cases, functions)`` at states, once it has been fitted."""
         return self._functions(((x - self.centre) / self.half).reshape(len(x), -1))
 
     def count(self):
@@ -197,35 +130,28 @@ class Basis(Rival):
 
 
 class Polynomial(Basis):
-    """A polynomial of the state of some total degree.
+    """A polynomial of the state: products of Chebyshev polynomials or of powers.
 
-    Parameters
-    ----------
-    degree : int
-        Largest sum of a term's exponents.
-    kind : {"chebyshev", "monomials"}
-        Products of Chebyshev polynomials or of powers. Both span the same functions: without a
-        penalty they differ where the cases leave coefficients open, and by rounding.
-    ridge : float
-        As in `Basis`.
+    `degree` is the largest sum of a term's exponents. Both kinds span the same functions: without
+    a penalty they differ where the cases leave coefficients open, and by rounding.
     """
 
     def __init__(self, degree: int = 3, kind: str = "chebyshev", ridge: float = 0.0):
         super().__init__(ridge)
         self.degree = integer("degree", degree, 0)
-        self.kind_of = one_of("kind", kind, tuple(KINDS_OF_POLYNOMIAL))
+        self.kind_of = one_of("kind", kind, tuple(_POLYNOMIALS))
 
     def __repr__(self):
         return f"Polynomial({self.degree}, {self.kind_of!r}, ridge={self.ridge:g})"
 
     def _prepare(self, variables):
-        self.exponents = exponents(variables, self.degree)
+        self.exponents = _exponents(variables, self.degree)
 
     def _functions(self, u):
-        found = np.ones((len(u), len(self.exponents)))
-        for values, power in zip(np.moveaxis(u, 1, 0), self.exponents.T):
-            found *= KINDS_OF_POLYNOMIAL[self.kind_of](values, self.degree)[:, power]
-        return found
+        values = np.ones((len(u), len(self.exponents)))
+        for variable, power in zip(np.moveaxis(u, 1, 0), self.exponents.T):
+            values *= _POLYNOMIALS[self.kind_of](variable, self.degree)[:, power]
+        return values
 
     def operations(self):
         """Arithmetic of one prediction."""
@@ -243,14 +169,8 @@ class Polynomial(Basis):
 class Fourier(Basis):
     """A Fourier series of the state: sines and cosines of waves in all directions.
 
-    Parameters
-    ----------
-    order : int
-        Largest sum of a wave's whole numbers of periods along all axes.
-    period : float
-        Of the longest wave, in edges of the box; over 1, so that opposite sides may differ.
-    ridge : float
-        As in `Basis`.
+    `order` is the largest sum of a wave's whole numbers of periods along all axes, `period` that
+    of the longest wave in edges of the box: over 1, so that opposite sides may differ.
     """
 
     def __init__(self, order: int = 2, period: float = 2.0, ridge: float = 0.0):
@@ -262,7 +182,7 @@ class Fourier(Basis):
         return f"Fourier({self.order}, ridge={self.ridge:g})"
 
     def _prepare(self, variables):
-        self.waves = wave_numbers(variables, self.order)
+        self.waves = _wave_numbers(variables, self.order)
 
     def _functions(self, u):
         angle = np.pi / self.period * (u @ self.waves.T)

@@ -10,11 +10,8 @@ from ddlib._check import integer, number
 from ddlib.dynamics import Operations
 from workshop.beyond.rivals.tables import Bounded
 
-BLOCK = 300
-"""Cases whose updates are found at once, by one triangular system."""
-
-WORSE = 1e3
-"""A training error that has grown this many times over its first value has diverged."""
+_BLOCK = 300  # cases whose updates are solved at once, by one triangular system
+_WORSE = 1e3  # a training error that has grown this many times has diverged
 
 
 class Diverged(RuntimeError):
@@ -32,6 +29,8 @@ class CMAC(Bounded):
     The delta rule takes the cases in their order, again and again, and adds
     ``rate * (torque - sum) / layers`` to every weight of the sum. With weights `slots` fewer than
     cubes, cubes get their weight by a hash of their number, and some share one: they collide.
+    An update is a step of Kaczmarz's method: it lands nearer to every solution as long as
+    ``rate * overlap < 2``, and else `fit` may raise `Diverged`.
 
     Parameters
     ----------
@@ -48,34 +47,6 @@ class CMAC(Bounded):
         Passes through the cases.
     limits, beyond
         As in `workshop.beyond.rivals.tables.Bounded`.
-
-    Attributes
-    ----------
-    history : list of float
-        Root mean square error over the deviation of the training torques, before training and
-        after each pass.
-    visited, occupied : int
-        Cubes that training cases lie in, and the weights that belong to these.
-    sharing : float
-        Share of the visited cubes that share a weight with another one.
-    overlap : float
-        Largest squared length of a case's row over `layers`: 1 if its cubes all have their own
-        weights, more if some of them share one. See Notes.
-
-    Raises
-    ------
-    Diverged
-        In `fit`, if the error grows without bound.
-
-    Notes
-    -----
-    An update is a step towards the hyperplane of weights that give the case its torque, as in the
-    method of Kaczmarz. It lands nearer to every point of it as long as ``rate * overlap < 2``.
-    Collisions of *different* cases' cubes do not enter; only those among one case's own do.
-
-    The updates of a block of cases are found exactly, without a loop: with rows ``a_i``, Gram
-    matrix ``G = A A'``, ``L`` what is below its diagonal, and errors ``r`` before the block, they
-    solve ``(layers / rate + L) d = r``, and the weights change by ``A' d``.
     """
 
     def __init__(
@@ -93,20 +64,23 @@ class CMAC(Bounded):
         self.known = np.unique(cubes)
         rows = self._rows(cubes)
         visited = self.known
-        slot = np.arange(len(visited)) if self.slots is None else hashed(visited, self.slots)
+        slot = np.arange(len(visited)) if self.slots is None else _hashed(visited, self.slots)
         _, where, count = np.unique(slot, return_inverse=True, return_counts=True)
-        self.visited, self.occupied = len(visited), len(count)
-        self.sharing = float((count[where] > 1).mean())
+        self.visited, self.occupied = len(visited), len(count)  # cubes, and weights that are theirs
+        self.sharing = float((count[where] > 1).mean())  # of the visited cubes
+        # largest squared length of a case's row: 1 if all its cubes have weights of their own
         self.overlap = float(rows.power(2).sum(1).max() / self.layers)
         self.weights = np.zeros((rows.shape[1], torque.shape[1]))
-        self.history = []
+        self.history = []  # error in deviations of the torque, before training and after each pass
         self._train(rows, torque)
 
     @np.errstate(over="ignore", invalid="ignore")  # divergence is told below
     def _train(self, rows, torque):
+        # In a block of rows A, let L be what is below the diagonal of A A' and r the errors before
+        # it: then (layers / rate + L) d = r gives the sum of its updates, A' d, exactly.
         blocks = []
-        for start in range(0, len(torque), BLOCK):
-            a, y = rows[start : start + BLOCK], torque[start : start + BLOCK]
+        for start in range(0, len(torque), _BLOCK):
+            a, y = rows[start : start + _BLOCK], torque[start : start + _BLOCK]
             gram = np.tril((a @ a.T).toarray(), -1)
             gram[np.diag_indices_from(gram)] = self.layers / self.rate
             blocks.append((a, a.T.tocsr(), gram, y))
@@ -114,7 +88,7 @@ class CMAC(Bounded):
         deviation = np.where(deviation > 0, deviation, 1.0)
         for epoch in range(self.epochs + 1):
             self.history.append(_error(rows @ self.weights - torque, deviation))
-            if not self.history[-1] < WORSE * self.history[0] + 1e-300:
+            if not self.history[-1] < _WORSE * self.history[0] + 1e-300:
                 raise Diverged(
                     f"{self!r} diverges: after {epoch} passes the error is {self.history[-1]:.3g} "
                     f"deviations of the torque; rate x overlap is {self.rate * self.overlap:.3g}, "
@@ -153,7 +127,7 @@ class CMAC(Bounded):
             ones = (self.known[place] == cubes.ravel()).astype(float)
             size = len(self.known)
         else:
-            place, size = hashed(cubes.ravel(), self.slots), self.slots
+            place, size = _hashed(cubes.ravel(), self.slots), self.slots
             ones = np.ones(place.size)
         return sparse.csr_array((ones, (cases, place)), shape=(len(cubes), size))
 
@@ -174,25 +148,8 @@ def _error(left, deviation) -> float:
     return float(found) if np.isfinite(found) else np.inf
 
 
-def hashed(numbers, slots: int) -> np.ndarray:
-    """Slots of whole numbers, as if drawn at random, the same at every call.
-
-    Parameters
-    ----------
-    numbers : array_like of int
-        0 or more.
-    slots : int
-        How many there are.
-
-    Returns
-    -------
-    ndarray of int
-        From 0 to ``slots - 1``.
-
-    Notes
-    -----
-    The finaliser of SplitMix64 (Steele, Lea & Flood 2014).
-    """
+def _hashed(numbers, slots: int) -> np.ndarray:
+    """Slots of whole numbers by the finaliser of SplitMix64 (Steele, Lea & Flood 2014)."""
     mixed = np.asarray(numbers, dtype=np.uint64) + np.uint64(0x9E3779B97F4A7C15)
     for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
         mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)

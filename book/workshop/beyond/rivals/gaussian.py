@@ -1,11 +1,5 @@
 """Gaussian processes: a prediction with its own uncertainty, from every case that was seen.
 
-- `GaussianProcess`: the exact one, with a squared exponential kernel (Rasmussen & Williams 2006)
-- `SemiParametric`: the arm's known equations and friction, and a process for what they leave
-  (Nguyen-Tuong & Peters 2010)
-- `RandomFeatures`: ridge regression on random cosines, the same kernel at a fixed size
-  (Rahimi & Recht 2007)
-
 The state of a process may be past positions, the window of the paper (Dalla Libera et al. 2020).
 """
 
@@ -28,11 +22,8 @@ from ddlib.identification import FRICTION, GRAVITY, RIGID
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import KINDS, Rival
 
-STEPS = 100
-"""Iterations that a search for hyperparameters may take."""
-
-TINY = 1e-9
-"""Share of the torque below which what is left over counts as rounding."""
+_STEPS = 100  # iterations that a search for hyperparameters may take
+_TINY = 1e-9  # share of the torque below which what is left over counts as rounding
 
 
 class Inputs:
@@ -41,13 +32,6 @@ class Inputs:
     Neighbouring positions are nearly equal, and what tells a torque is their small differences.
     Directions are the principal ones of the training inputs, each scaled to unit variance, so that
     a kernel sees small ones as well as large ones.
-
-    Parameters
-    ----------
-    x : ndarray, shape (cases, joint, rows)
-        Training inputs.
-    directions : int, optional
-        How many. Default: none, every number by itself.
     """
 
     def __init__(self, x, directions: int | None = None):
@@ -81,31 +65,20 @@ class Inputs:
 
 
 class GaussianProcess(Rival):
-    """An exact Gaussian process for each joint, squared exponential kernel and noise.
+    """An exact Gaussian process for each joint (Rasmussen & Williams 2006).
 
-    Each feature has a length of its own in the kernel. Lengths, size and noise maximise the
-    marginal likelihood of a subset of the cases; the process is then conditioned on all.
-
-    Parameters
-    ----------
-    kind : {"windows", "states"}
-    directions : int, optional
-        Principal directions of the inputs as features (`Inputs`). Default: every number.
-    subset : int
-        Cases for the search of hyperparameters, drawn at random.
-    restarts : int
-        Further searches, from random starts.
-    seed : int
-        Of the subset and the starts.
+    The kernel is squared exponential, with a length for each feature, plus noise. Lengths, size and
+    noise maximise the marginal likelihood of a subset of the cases; the process is then conditioned
+    on all of them.
     """
 
     def __init__(
         self,
         kind: str = "windows",
         *,
-        directions: int | None = None,
-        subset: int = 300,
-        restarts: int = 1,
+        directions: int | None = None,  # principal ones of the inputs as features, or each number
+        subset: int = 300,  # cases for the search of hyperparameters, drawn at random
+        restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
         self.kind = one_of("kind", kind, KINDS)
@@ -142,17 +115,7 @@ class GaussianProcess(Rival):
         return self.level + self.unit * np.stack(each, -1)
 
     def deviation(self, x) -> np.ndarray:
-        """Standard deviation of the torque that would be measured, noise included.
-
-        Parameters
-        ----------
-        x : array_like, shape (cases, joint, rows)
-            As in `torque`, with its errors and warnings.
-
-        Returns
-        -------
-        ndarray, shape (cases, joint)
-        """
+        """Deviation of the torque that would be measured, noise included; `x` as for `torque`."""
         self.torque(x)
         return self._deviation(np.asarray(x, dtype=float))
 
@@ -163,7 +126,7 @@ class GaussianProcess(Rival):
 
     @property
     def lengths(self) -> np.ndarray:
-        """Lengths of the kernel, one a feature, shape (joint, features); long: no matter."""
+        """Lengths of the kernel, shape (joint, features); a long one matters little."""
         return np.stack([process.kernel_.k1.k2.length_scale for process in self.processes])
 
     @property
@@ -191,16 +154,10 @@ class GaussianProcess(Rival):
 
 
 class SemiParametric(Rival):
-    """The equations of a two-link arm with friction, and Gaussian processes for what they leave.
+    """The arm's equations with friction, and Gaussian processes for what they leave.
 
-    The parameters come first, by weighted least squares; the processes learn the residual.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Parameters, as in `ddlib.identification`.
-    **options
-        Of `GaussianProcess`, but for its kind.
+    The parameters `names` come first, by weighted least squares; `options` are those of
+    `GaussianProcess` (Nguyen-Tuong & Peters 2010).
     """
 
     def __init__(self, names: Sequence[str] = (*RIGID, *GRAVITY, *FRICTION), **options):
@@ -210,7 +167,7 @@ class SemiParametric(Rival):
     def _fit(self, x, torque):
         self.known._fit(x, torque)
         left = torque - self.parametric(x)
-        self.exact = bool((left.std(0) <= TINY * torque.std(0)).all())
+        self.exact = bool((left.std(0) <= _TINY * torque.std(0)).all())
         if not self.exact:
             self.rest._fit(x, left)
 
@@ -241,23 +198,11 @@ class SemiParametric(Rival):
 
 
 class RandomFeatures(Rival):
-    """Ridge regression on random cosines of the inputs.
+    """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007).
 
     Their products approach a squared exponential kernel as they become more, so this is a Gaussian
     process at a fixed number of stored numbers. The length of the kernel and the penalty are those
     of the least error when each case in turn is left out.
-
-    Parameters
-    ----------
-    kind : {"windows", "states"}
-    features : int
-        How many cosines.
-    directions : int, optional
-        As in `GaussianProcess`.
-    lengths : sequence of float
-        Lengths to try, in standard deviations of the inputs.
-    seed : int
-        Of the cosines.
     """
 
     PENALTIES = tuple(np.logspace(-10, 2, 13))
@@ -267,8 +212,8 @@ class RandomFeatures(Rival):
         kind: str = "windows",
         features: int = 300,
         *,
-        directions: int | None = None,
-        lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),
+        directions: int | None = None,  # as in `GaussianProcess`
+        lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
         self.kind = one_of("kind", kind, KINDS)
@@ -296,7 +241,7 @@ class RandomFeatures(Rival):
         return self.level + self.unit * found.reshape(len(x), -1)
 
     def kernel(self, x, y) -> np.ndarray:
-        """What the products of the features say of the kernel, ``(cases of x, cases of y)``."""
+        """Products of the features of two sets of inputs, ``(cases of x, cases of y)``."""
         first, second = (self.cosines.transform(self.inputs(np.asarray(z))) for z in (x, y))
         return first @ second.T
 
@@ -317,8 +262,8 @@ class RandomFeatures(Rival):
 
 
 def _ascend(objective, start, bounds):
-    """Search of hyperparameters, cut off after `STEPS` iterations."""
+    """Search of hyperparameters, cut off after `_STEPS` iterations."""
     found = minimize(
-        objective, start, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": STEPS}
+        objective, start, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": _STEPS}
     )
     return found.x, found.fun

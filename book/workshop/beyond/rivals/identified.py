@@ -17,22 +17,14 @@ from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_stat
 from ddlib.learning import check_width
 from workshop.beyond.rivals.protocol import KINDS, Rival
 
-RIDGES = tuple(10.0**k for k in range(-12, 1))
-"""Penalties among which `Linear` chooses, in units of the largest singular value squared."""
+RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 
 
 class Identified(Rival):
     """Base parameters of a two-link arm and its friction, by weighted least squares.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Parameters to find, from `RIGID`, `GRAVITY` and `FRICTION` of `ddlib.identification`.
-
-    Attributes
-    ----------
-    estimate : Estimate
-        After `fit`: parameters with their standard errors.
+    `names` are the parameters to find, from `RIGID`, `GRAVITY` and `FRICTION` of
+    `ddlib.identification`; after `fit`, `estimate` holds them with their standard errors.
     """
 
     def __init__(self, names: Sequence[str] = RIGID + FRICTION):
@@ -96,19 +88,9 @@ def _blurred(speed):
 class Linear(Rival):
     """Linear least squares on windows or states, with a constant and a ridge.
 
-    Columns count by their deviation. The ridge is chosen by leaving out one of `blocks` equal
-    parts of the training cases at a time; with five recordings of one length these are the runs.
-
-    Parameters
-    ----------
-    kind : {"windows", "states"}
-    width : int, optional
-        How many samples in the middle of a window are used, odd; default: all.
-    ridge : float, optional
-        Penalty in units of the largest singular value squared, 0 or more; default: chosen from
-        `RIDGES`.
-    blocks : int
-        Parts for the choice, 2 or more.
+    Columns count by their deviation. `width` is how many samples in the middle of a window are
+    used. The ridge, in units of the largest singular value squared, is given or chosen from
+    `RIDGES`, by leaving out one of `blocks` equal parts of the training cases at a time.
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):

@@ -20,13 +20,9 @@ from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 from workshop.beyond.rivals.protocol import NotFitted, Rival
 
-GRAVITIES = ("potential", "vector", "none")
-"""Gravity is the gradient of a potential (the public code), outputs (the paper), or nothing."""
-
-DIAGONALS = ("softplus", "relu")
-"""What keeps the diagonal of L from being negative; the public code has "relu"."""
-
-AS_PUBLISHED = {
+_GRAVITIES = ("potential", "vector", "none")
+_DIAGONALS = ("softplus", "relu")
+AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
     "diagonal": "relu",
@@ -39,10 +35,9 @@ AS_PUBLISHED = {
     "decay": 1e-5,
     "scaled": False,
 }
-"""Options of `LagrangianNetwork` like those of the public code; there 10,000 epochs follow."""
 
 
-class Units(NamedTuple):
+class _Units(NamedTuple):
     """Units of inputs, torque and acceleration, whose root velocities have; errors' weights."""
 
     mean: np.ndarray
@@ -52,7 +47,7 @@ class Units(NamedTuple):
     weights: np.ndarray
 
     @classmethod
-    def of(cls, x, torque, scaled: bool) -> Units:
+    def of(cls, x, torque, scaled: bool) -> _Units:
         """Units that make states and torques of size 1, or do nothing if not `scaled`."""
         ones = np.ones(x.shape[1])
         if not scaled:
@@ -69,11 +64,10 @@ class Units(NamedTuple):
         )
 
 
-class Energies(nn.Module):
+class _Energies(nn.Module):
     """The network: from positions to a lower triangle, a gravity torque, and their derivatives.
 
-    Derivatives by the positions go forward through the layers, beside the activities. The
-    arguments are those of `LagrangianNetwork`; friction is two numbers a joint.
+    Derivatives by the positions go forward through the layers, beside the activities.
     """
 
     def __init__(self, joints, hidden, gravity, diagonal, gain, bias, friction, generator):
@@ -132,63 +126,33 @@ class LagrangianNetwork(Rival):
     Adam on minibatches with squared weights as penalty, then, if asked for, L-BFGS in double
     precision on all cases. `AS_PUBLISHED` has the settings of the public code; the defaults differ
     in scaled units, a larger step that falls to zero along half a cosine, and a smooth diagonal.
-
-    Parameters
-    ----------
-    hidden : sequence of int
-        Softplus units of each layer.
-    gravity : {"potential", "vector", "none"}
-        See `GRAVITIES`.
-    friction : bool
-        Whether to learn viscous and Coulomb friction, too.
-    diagonal : {"softplus", "relu"}
-        See `DIAGONALS`.
-    floor : float
-        Least eigenvalue of the mass matrix, in the network's units.
-    gain, bias : float
-        Of the outputs that make L when training starts: the size of their weights, and what is
-        added on the diagonal.
-    epochs, batch : int
-        Passes of Adam through the cases, and cases of a step. What is left of a pass is skipped.
-    rate, annealed : float, bool
-        Step size of Adam, and whether it falls to zero.
-    decay : float
-        Penalty on the weights.
-    finish : int
-        Iterations of L-BFGS.
-    scaled : bool
-        Whether torques, accelerations and positions are scaled (`Units`).
-    seed : int
-        Of the initial weights and the order of cases.
-    watch : callable, optional
-        ``watch(epoch, self)``, called after each epoch of Adam.
     """
 
     def __init__(
         self,
-        hidden: Sequence[int] = (64, 64),
+        hidden: Sequence[int] = (64, 64),  # softplus units of each layer
         *,
-        gravity: str = "potential",
-        friction: bool = False,
-        diagonal: str = "softplus",
-        floor: float = 1e-4,
-        gain: float = 0.1,
-        bias: float = 0.5,
-        epochs: int = 300,
-        batch: int = 256,
+        gravity: str = "potential",  # "vector": outputs as in the paper; or "none"
+        friction: bool = False,  # whether to learn viscous and Coulomb friction, too
+        diagonal: str = "softplus",  # or "relu": what keeps the diagonal of L from being negative
+        floor: float = 1e-4,  # least eigenvalue of the mass matrix, in the network's units
+        gain: float = 0.1,  # size of the output weights that make L when training starts
+        bias: float = 0.5,  # what is added on the diagonal of L then
+        epochs: int = 300,  # of Adam
+        batch: int = 256,  # cases of a step; what is left of a pass is skipped
         rate: float = 5e-3,
-        annealed: bool = True,
-        decay: float = 0.0,
-        finish: int = 0,
-        scaled: bool = True,
-        seed: int = 0,
-        watch: Callable[[int, LagrangianNetwork], None] | None = None,
+        annealed: bool = True,  # whether the rate falls to zero
+        decay: float = 0.0,  # penalty on squared weights
+        finish: int = 0,  # iterations of L-BFGS
+        scaled: bool = True,  # whether positions, accelerations and torques are scaled
+        seed: int = 0,  # of the initial weights and the order of cases
+        watch: Callable[[int, LagrangianNetwork], None] | None = None,  # after each epoch of Adam
     ):
         self.hidden = tuple(integer("hidden", units, 1) for units in hidden)
         integer("hidden layers", len(self.hidden), 1)
-        self.gravity_from = one_of("gravity", gravity, GRAVITIES)
+        self.gravity_from = one_of("gravity", gravity, _GRAVITIES)
         self.friction, self.annealed, self.scaled = bool(friction), bool(annealed), bool(scaled)
-        self.diagonal = one_of("diagonal", diagonal, DIAGONALS)
+        self.diagonal = one_of("diagonal", diagonal, _DIAGONALS)
         self.floor = number("floor", floor, 0.0, open_low=True)
         self.gain, self.bias = number("gain", gain, 0.0), number("bias", bias)
         self.epochs = integer("epochs", epochs, 0)
@@ -201,10 +165,10 @@ class LagrangianNetwork(Rival):
 
     def _fit(self, x, torque):
         joints = x.shape[1]
-        self.units = Units.of(x, torque, self.scaled)
+        self.units = _Units.of(x, torque, self.scaled)
         generator = torch.Generator().manual_seed(self.seed)
         start = self.gain, self.bias, self.friction, generator
-        self.network = Energies(joints, self.hidden, self.gravity_from, self.diagonal, *start)
+        self.network = _Energies(joints, self.hidden, self.gravity_from, self.diagonal, *start)
         target = torque / self.units.torque
         self._descend(self._tensors(x), torch.tensor(target, dtype=torch.float32), generator)
         self.network.double()
@@ -256,7 +220,7 @@ class LagrangianNetwork(Rival):
         return (error * error).sum(1).mean()
 
     def _tensors(self, x):
-        """Scaled positions, velocities, accelerations and friction signs, of the network's type."""
+        """Scaled positions, velocities, accelerations and signs, as the network's numbers."""
         q, qd, qdd = np.moveaxis(x, -1, 0)
         time = np.sqrt(self.units.acceleration)
         sign = np.clip(qd / SIGN_SPEED, -1.0, 1.0)
@@ -284,7 +248,7 @@ class LagrangianNetwork(Rival):
             return self.units.torque * self._dynamics(*self._tensors(x)).double().numpy()
 
     def _parts(self, q):
-        """Triangle, its derivatives by position, gravity and potential as arrays, scaled units."""
+        """Triangle, its derivatives by position, gravity and potential, in scaled units."""
         if not hasattr(self, "network"):
             raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         q = finite_array("q", q, self.network.joints)
@@ -328,13 +292,7 @@ class LagrangianNetwork(Rival):
         return self.units.torque * found.reshape(*lead, lower.shape[-1])
 
     def potential_energy(self, q) -> np.ndarray:
-        """Potential that was learnt, but for a constant, shape ``(...)``, J.
-
-        Raises
-        ------
-        ValueError
-            If gravity does not come from a potential.
-        """
+        """Potential that was learnt, but for a constant, shape ``(...)``, J."""
         if self.gravity_from != "potential":
             raise ValueError(f"gravity must be 'potential', got {self.gravity_from!r}")
         lead, (*_, found) = self._parts(q)

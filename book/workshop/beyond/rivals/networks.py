@@ -29,19 +29,8 @@ class Network(Rival):
     """A network with sigmoid hidden units and direct weights; how it is trained is left open.
 
     Positions of a window are scaled by the joint's range, states by that of each quantity. The
-    scaling of the inputs goes into the weights and biases and is not stored for itself.
-
-    Parameters
-    ----------
-    hidden : int
-        Hidden units, 1 or more.
-    kind : {"windows", "states"}
-    initial : float
-        Initial weights are uniform in plus or minus this.
-    scaling : tuple of float
-        Range of the scaled inputs.
-    seed : int
-        Of the initial weights.
+    scaling of the inputs goes into the weights and biases and is not stored for itself. Initial
+    weights are uniform in plus or minus `initial`.
     """
 
     def __init__(
@@ -90,16 +79,7 @@ class Network(Rival):
 
 
 class ByDescent(Network):
-    """The network by batch descent with momentum.
-
-    Parameters
-    ----------
-    epochs : int
-    rate, momentum, warm_up
-        As in `ddlib.learning.train_ensemble`.
-    hidden, **options
-        As in `Network`.
-    """
+    """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
 
     def __init__(
         self, hidden=HIDDEN_UNITS, epochs=EPOCHS, *, rate=None, momentum=0.95, warm_up=0, **options
@@ -119,13 +99,8 @@ class ByDescent(Network):
 class BySolver(Network):
     """The network by Levenberg-Marquardt; it may stop before it has converged.
 
-    Parameters
-    ----------
-    steps : int
-    decay : float
-        As in `ddlib.learning.levenberg_marquardt.solve`.
-    hidden, **options
-        As in `Network`.
+    Beside `steps` and `decay` of `ddlib.learning.levenberg_marquardt.solve` there are the kind of
+    the inputs ("windows" or "states"), the size of the initial weights, and the seed.
     """
 
     def __init__(self, hidden=HIDDEN_UNITS, steps=60, *, decay=0.0, **options):
@@ -142,18 +117,7 @@ class BySolver(Network):
 
 
 class ByAdam(Network):
-    """The network by Adam with decoupled weight decay, all cases at once, inputs from -1 to 1.
-
-    Parameters
-    ----------
-    epochs : int
-    rate : float
-        Largest step size; see `adam`.
-    decay : float
-        Weight decay.
-    hidden, **options
-        As in `Network`.
-    """
+    """The network by Adam with decoupled weight decay, all cases at once, inputs from -1 to 1."""
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):
         super().__init__(hidden, **{"scaling": (-1.0, 1.0), **options})
@@ -172,33 +136,11 @@ class ByAdam(Network):
 def adam(
     module: torch.nn.Module, x, y, epochs: int, rate: float, decay: float, batch=None, seed=0
 ) -> float:
-    """Train a module in place by Adam, the step size falling along half a cosine.
+    """Train a module in place by Adam with decoupled weight decay (Loshchilov & Hutter 2019).
 
-    Decoupled weight decay: Loshchilov & Hutter (2019).
-
-    Parameters
-    ----------
-    module : torch.nn.Module
-        Of inputs ``(cases, joint, rows)`` to outputs ``(cases, output)``.
-    x, y : array_like
-        Scaled inputs and targets.
-    epochs : int
-    rate, decay : float
-        Step size at the start, above 0, and weight decay, 0 or more.
-    batch : int, optional
-        Cases of a step, drawn anew in each epoch; default: all.
-    seed : int
-        Of the draws.
-
-    Returns
-    -------
-    float
-        Mean squared error of the last step's cases before it.
-
-    Raises
-    ------
-    TrainingDiverged
-        If the error is no longer finite.
+    It takes scaled inputs ``(cases, joint, rows)`` to targets ``(cases, output)``. The step size
+    falls from `rate` along half a cosine; a `batch` of cases is drawn anew in each epoch, by
+    default all. The mean squared error of the last step's cases before it is returned.
     """
     number("rate", rate, 0.0, open_low=True)
     number("decay", decay, 0.0)

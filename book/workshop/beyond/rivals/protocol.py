@@ -39,11 +39,7 @@ from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning
 
 KINDS = ("windows", "states")
-"""What a rival may see: windows of positions, or positions, velocities and accelerations."""
-
-MARGIN = 0.1
-"""How far inputs may lie outside the box of the training inputs before a rival warns, as a share of
-the box's edge."""
+MARGIN = 0.1  # share of the training box's edge by which inputs may leave it without a warning
 
 
 class NotFitted(RuntimeError):
@@ -52,30 +48,16 @@ class NotFitted(RuntimeError):
 
 @dataclass(frozen=True)
 class Cases:
-    """What a rival learns from, or is asked.
+    """What a rival learns from, or is asked: windows or states, and torques.
 
-    Attributes
-    ----------
-    x : ndarray, shape (cases, joint, rows)
-        Windows of positions, oldest sample first (rad); or states: position (rad), velocity
-        (rad/s) and acceleration (rad/s^2).
-    torque : ndarray, shape (cases, joint)
-        N m, or whatever unit the drive has.
-    kind : {"windows", "states"}
-        Which of the two `x` is.
-    step : float
-        Sampling period of the windows, s.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an array has another shape or is not finite, or another argument is out of range.
+    Windows of positions are of shape (cases, joint, width), rad, oldest sample first; states of
+    shape (cases, joint, 3): position (rad), velocity (rad/s) and acceleration (rad/s^2).
     """
 
     x: np.ndarray
-    torque: np.ndarray
-    kind: str
-    step: float
+    torque: np.ndarray  # (cases, joint), N m, or whatever unit the drive has
+    kind: str  # "windows" or "states"
+    step: float  # sampling period of the windows, s
 
     def __post_init__(self):
         one_of("kind", self.kind, KINDS)
@@ -103,13 +85,7 @@ class Cases:
         return cls(states.reshape(-1, joints, 3), tau.reshape(-1, joints), "states", recording.step)
 
     def estimated(self, degree: int = 3) -> Cases:
-        """The states that a polynomial through each window gives at its centre.
-
-        Parameters
-        ----------
-        degree : int
-            Of the polynomial, fitted by least squares: 2 or more, less than the width.
-        """
+        """The states that a polynomial of this degree through each window gives at its centre."""
         if self.kind != "windows":
             raise ValueError(f"kind must be 'windows' to estimate states, got {self.kind!r}")
         filters = derivative_filters(self.x.shape[-1], self.step, degree)
@@ -117,17 +93,7 @@ class Cases:
 
 
 def derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
-    """Filters that estimate position, velocity and acceleration, shape (3, width).
-
-    Parameters
-    ----------
-    width : int
-        Samples of a window, odd.
-    step : float
-        Sampling period, s.
-    degree : int
-        Of the polynomial that is fitted to a window.
-    """
+    """Filters of a window for position, velocity and acceleration at its centre, (3, width)."""
     return np.stack([savitzky_golay(width, k, step, degree) for k in range(3)])
 
 
@@ -139,26 +105,9 @@ class Rival(ABC):
     """
 
     kind = "states"
-    """What it wants to see, of `KINDS`."""
 
     def fit(self, data: Cases) -> Rival:
-        """Learn from cases, all at once; what was learnt before is forgotten.
-
-        Parameters
-        ----------
-        data : Cases
-            Of the rival's kind.
-
-        Returns
-        -------
-        Rival
-            Itself.
-
-        Raises
-        ------
-        ValueError
-            If there are no cases or they are of another kind.
-        """
+        """Learn from cases, all at once; what was learnt before is forgotten."""
         if data.kind != self.kind:
             raise ValueError(f"data must be {self.kind} for {self!r}, got {data.kind}")
         if not len(data):
@@ -170,43 +119,24 @@ class Rival(ABC):
         return self
 
     def torque(self, x) -> np.ndarray:
-        """Predicted torque.
+        """Predicted torque, shape (cases, joint), of inputs as in `Cases`.
 
-        Parameters
-        ----------
-        x : array_like, shape (cases, joint, rows)
-            As in `Cases`.
-
-        Returns
-        -------
-        ndarray, shape (cases, joint)
-
-        Raises
-        ------
-        NotFitted
-            Before `fit`.
-        ValueError
-            If `x` has another number of joints or rows than the training cases, is not finite,
-            or lies where the rival has no answer.
-
-        Warns
-        -----
-        OutsideFamilyWarning
-            If a value lies outside the box of the training inputs by more than `MARGIN`.
+        Where the rival has no answer it raises a ValueError; inputs that lie outside the box of the
+        training inputs by more than `MARGIN` are answered with an `OutsideFamilyWarning`.
         """
         if not hasattr(self, "_shape"):
             raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         joints, rows = self._shape
         x = shaped("x", x, f"(cases, {joints}, {rows})")
         outside = self.outside(x)
-        found = self._torque(x)
+        predicted = self._torque(x)
         if outside.any():
             warnings.warn(
                 f"{outside.sum()} of {len(x)} inputs lie outside what {self!r} was trained on",
                 OutsideFamilyWarning,
                 stacklevel=2,
             )
-        return found
+        return predicted
 
     def outside(self, x) -> np.ndarray:
         """Whether inputs ``(cases, joint, rows)`` lie outside the training box by `MARGIN`."""
@@ -235,15 +165,7 @@ class Rival(ABC):
 
 
 class Estimating(Rival):
-    """A rival of states that sees windows: a polynomial in each window gives the states.
-
-    Parameters
-    ----------
-    rival : Rival
-        Of kind "states".
-    degree : int
-        Of the polynomial (`Cases.estimated`).
-    """
+    """A rival of states that sees windows: a polynomial in each window gives the states."""
 
     kind = "windows"
 
@@ -277,38 +199,16 @@ class Estimating(Rival):
 
 
 class Trial(NamedTuple):
-    """How a rival fared.
-
-    Attributes
-    ----------
-    rmss : dict of float
-        Error on each set of cases, by name: pooled over the joints, divided by the set's own
-        standard deviation, as in Table 4-1.
-    count : int
-        Stored numbers.
-    operations : Operations
-        Of one prediction.
-    seconds : float
-        Processor time of training, s.
-    """
+    """How a rival fared; errors are by set, pooled over joints, over the set's own deviation."""
 
     rmss: dict[str, float]
-    count: int
-    operations: Operations
-    seconds: float
+    count: int  # stored numbers
+    operations: Operations  # of one prediction
+    seconds: float  # of processor time, for training
 
 
 def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> Trial:
-    """Train a rival and test it; a test beyond its training inputs is meant, and no warning.
-
-    Parameters
-    ----------
-    rival : Rival
-        It is trained here.
-    training : Cases
-    tests : mapping of str to Cases
-        Sets to predict, the training set too if it is wanted.
-    """
+    """Train a rival and test it on named sets; a test beyond its training inputs is no warning."""
     began = time.process_time()
     rival.fit(training)
     seconds = time.process_time() - began

@@ -18,28 +18,14 @@ from ddlib.learning import Weights
 from workshop.beyond.rivals.networks import adam
 from workshop.beyond.rivals.protocol import Rival
 
-BATCH = 100
-"""Cases of a step of descent."""
+_BATCH = 100  # cases of a step of descent
 
 
 def as_convolution(weights: Weights) -> nn.Module:
     """The window network as a convolutional one, in double precision.
 
-    Parameters
-    ----------
-    weights : Weights
-        Of one network.
-
-    Returns
-    -------
-    torch.nn.Module
-        Of scaled positions ``(recordings, joint, time)`` to output activities ``(recordings,
-        output, time - width + 1)``: no window is cut, and none is computed twice.
-
-    Raises
-    ------
-    ValueError
-        If there are several networks.
+    It takes scaled positions ``(recordings, joint, time)`` to output activities ``(recordings,
+    output, time - width + 1)``: no window is cut, and none is computed twice.
     """
     if weights.hidden_bias.ndim != 1:
         raise ValueError(f"weights must be of one network, got {weights!r}")
@@ -74,16 +60,6 @@ class Sequence(Rival):
 
     Each joint's window enters as its middle position and the deviations from it, both scaled to
     a deviation of 1; torques likewise. The scaling counts among the stored numbers.
-
-    Parameters
-    ----------
-    channels : int
-        Units of each layer, 1 or more.
-    epochs : int
-    rate, decay : float
-        As in `workshop.beyond.rivals.networks.adam`.
-    seed : int
-        Of the initial weights and of the order of cases.
     """
 
     kind = "windows"
@@ -107,7 +83,7 @@ class Sequence(Rival):
             torch.manual_seed(self.seed)
             self.network = self._network(joints, width, torque.shape[1])
         scaled = (torque - self.offset) / self.spread
-        options = self.epochs, self.rate, self.decay, BATCH, self.seed
+        options = self.epochs, self.rate, self.decay, _BATCH, self.seed
         adam(self.network, self._channels(x), scaled, *options)
 
     @staticmethod
@@ -133,18 +109,9 @@ class Sequence(Rival):
 
 
 class Convolution(Sequence):
-    """Two layers of convolutions along the window, then a linear one over all that is left.
+    """Two layers of convolutions along the window, then a linear one over all that is left."""
 
-    Parameters
-    ----------
-    channels : int
-        Filters of each convolution.
-    epochs, **options
-        As in `Sequence`.
-    """
-
-    TAPS = 5
-    """Samples that a filter sees."""
+    TAPS = 5  # samples that a filter sees
 
     def __init__(self, channels=8, epochs=100, **options):
         super().__init__(channels, epochs, **options)
@@ -176,15 +143,7 @@ class Convolution(Sequence):
 
 
 class Recurrent(Sequence):
-    """A gated recurrent unit that reads the window; its last state gives the torques.
-
-    Parameters
-    ----------
-    channels : int
-        Units of the state.
-    epochs, **options
-        As in `Sequence`.
-    """
+    """A gated recurrent unit that reads the window; its last state gives the torques."""
 
     def __init__(self, channels=16, epochs=60, **options):
         super().__init__(channels, epochs, **options)

@@ -15,18 +15,10 @@ from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 from workshop.beyond.rivals.protocol import MARGIN, Rival
 
-OVER = {"states": 3, "motions": 2, "configurations": 1}
-"""What a table may lie over, and how many quantities of a joint are its axes: position, velocity
-and acceleration; position and velocity; position alone."""
-
-BEYOND = ("refuse", "edge")
-"""What becomes of a state outside a table: a ValueError, or the state on the edge next to it."""
-
-QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s^2"))
-"""Of a joint's state, with their units."""
-
-AXES = 8
-"""Most axes of a multilinear table: each doubles the corners of a cell."""
+_OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
+_BEYOND = ("refuse", "edge")
+_QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad/s^2"))
+_AXES = 8  # most axes of a multilinear table: each doubles the corners of a cell
 
 
 class TableSize(NamedTuple):
@@ -37,57 +29,24 @@ class TableSize(NamedTuple):
     bytes: int
 
 
-def table_size(cells: int, axes: int = 6, numbers: int = 2, width: int = 4) -> TableSize:
-    """Cells and memory of a table that has every cell.
-
-    Parameters
-    ----------
-    cells : int
-        Of each axis.
-    axes : int
-        Six for the states of two joints.
-    numbers : int
-        Kept in a cell: two torques.
-    width : int
-        Bytes of a number.
-    """
+def table_size(
+    cells: int,  # of each axis
+    axes: int = 6,  # for the states of two joints
+    numbers: int = 2,  # kept in a cell: two torques
+    width: int = 4,  # bytes of a number
+) -> TableSize:
+    """Cells and memory of a table with every cell."""
     for name, value in (("cells", cells), ("axes", axes), ("numbers", numbers), ("width", width)):
         integer(name, value, 1)
     all_cells = int(cells) ** axes
     return TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
 
 
-def cells_within(memory: float, axes: int = 6, numbers: int = 2, width: int = 4) -> int:
-    """Cells of each axis of the largest full table that fits a memory; 0 if none does.
-
-    Parameters
-    ----------
-    memory : float
-        Bytes, 0 or more.
-    axes, numbers, width : int
-        As in `table_size`.
-    """
-    number("memory", memory, 0.0)
-    found = 0
-    while table_size(found + 1, axes, numbers, width).bytes <= memory:
-        found += 1
-    return found
-
-
 def corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes around points of the unit cube, and their weights in multilinear interpolation.
 
-    Parameters
-    ----------
-    u : array_like, shape (points, axes)
-        From 0 to 1.
-    cells : int
-        Of each axis.
-
-    Returns
-    -------
-    nodes : ndarray of int, shape (points, 2**axes, axes)
-    weights : ndarray, shape (points, 2**axes)
+    Of points ``(points, axes)`` they are of shape ``(points, 2**axes, axes)`` and ``(points,
+    2**axes)``.
     """
     u = shaped("u", u, "(points, axes)")
     low = np.clip(np.floor(u * cells).astype(int), 0, cells - 1)
@@ -107,24 +66,11 @@ def corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
 def full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
-    """What a table would answer that has the right torque in every cell.
+    """What a table would answer that has the right torque in every cell, shape (cases, joint).
 
-    Parameters
-    ----------
-    function : callable
-        ``function(states)`` gives torques ``(cases, joint)``; asked at the nodes needed alone.
-    x : array_like, shape (cases, joint, 3)
-        States, inside the limits.
-    limits : array_like, shape (2, joint, 3)
-        Least and largest values.
-    cells : int
-        Of each axis.
-    interpolated : bool
-        Multilinear between nodes at the cells' corners; else the torque at the cell's centre.
-
-    Returns
-    -------
-    ndarray, shape (cases, joint)
+    `function` gives the torques of states, and is asked at the nodes that are needed alone: at the
+    corners of the cells, between which it is multilinear, or at the middles. `limits` are the least
+    and the largest values, shape (2, joint, 3).
     """
     low, high = limits = shaped("limits", limits, "(2, joint, 3)")
     x = shaped("x", x, f"(cases, {limits.shape[1]}, 3)")
@@ -145,20 +91,16 @@ def full_table(
 class Bounded(Rival):
     """A rival that has room for a box of states and no other.
 
-    Parameters
-    ----------
-    limits : array_like, shape (2, joint, 3), optional
-        Least and largest values of position (rad), velocity (rad/s) and acceleration (rad/s^2).
-        Default: the box of the training states, wider by `MARGIN` of its edge on each side.
-    beyond : {"refuse", "edge"}
-        A state outside is refused by a ValueError, or taken to the edge.
+    The box is given by `limits`, the least and largest states, or else that of the training states,
+    wider by `MARGIN` of its edge on each side. A state outside is refused by a ValueError, or, with
+    ``beyond="edge"``, taken to the edge.
     """
 
     def __init__(self, limits=None, beyond: str = "refuse"):
         self.limits = limits if limits is None else shaped("limits", limits, "(2, joint, 3)")
         if limits is not None and not (self.limits[0] < self.limits[1]).all():
             raise ValueError("limits must have least values below the largest ones")
-        self.beyond = one_of("beyond", beyond, BEYOND)
+        self.beyond = one_of("beyond", beyond, _BEYOND)
 
     def _bound(self, x) -> np.ndarray:
         """The box, decided by training states; they in units of it."""
@@ -185,7 +127,7 @@ def _inside(x, low, high, beyond) -> np.ndarray:
     out = (u < -1e-9) | (u > 1 + 1e-9)
     if beyond == "refuse" and out.any():
         case, joint, which = np.argwhere(out)[0]
-        name, unit = QUANTITIES[which]
+        name, unit = _QUANTITIES[which]
         raise ValueError(
             f"x must lie in the table: {name} of joint {joint} from {low[joint, which]:.4g} to "
             f"{high[joint, which]:.4g} {unit}, got {x[case, joint, which]:.4g} "
@@ -198,11 +140,6 @@ class Nearest(Bounded):
     """All training cases are kept; the torque is that of the nearest.
 
     Distances are in units of the training states' standard deviation, each quantity its own.
-
-    Parameters
-    ----------
-    limits, beyond
-        As in `Bounded`.
     """
 
     def _fit(self, x, torque):
@@ -244,8 +181,7 @@ class CellTable(Bounded):
     friction : bool
         Over configurations: velocities and their signs are among what torque is linear in.
     ridge : float
-        Weight of a penalty on squared coefficients, as a share of the mean of their columns'
-        squares over all cases: it acts as so many cases that say zero.
+        Penalty on squared coefficients: it acts as so many cases that say zero.
     limits, beyond
         As in `Bounded`.
     """
@@ -255,7 +191,7 @@ class CellTable(Bounded):
         limits=None, beyond: str = "refuse",
     ):  # fmt: skip
         super().__init__(limits, beyond)
-        self.cells, self.over = integer("cells", cells, 1), one_of("over", over, tuple(OVER))
+        self.cells, self.over = integer("cells", cells, 1), one_of("over", over, tuple(_OVER))
         self.friction, self.ridge = friction, number("ridge", ridge, 0.0, open_low=True)
 
     def __repr__(self):
@@ -281,7 +217,7 @@ class CellTable(Bounded):
         return np.einsum("np,npj->nj", self._columns(x), self.coefficients[nearest])
 
     def _places(self, u) -> np.ndarray:
-        u = u[..., : OVER[self.over]].reshape(len(u), -1)
+        u = u[..., : _OVER[self.over]].reshape(len(u), -1)
         return np.minimum((u * self.cells).astype(int), self.cells - 1)
 
     def _columns(self, x) -> np.ndarray:
@@ -322,21 +258,8 @@ class GridTable(Bounded):
     """Torques at the nodes of a grid over states, multilinear between them.
 
     The nodes get the torques that fit all cases best by least squares, with a penalty on their
-    distance from the mean torque, so a node next to which nothing was recorded has the mean.
-
-    Parameters
-    ----------
-    cells : int
-        Of each axis; one more node.
-    ridge : float
-        Weight of the penalty: so many cases at each node that say the mean.
-    limits, beyond
-        As in `Bounded`.
-
-    Raises
-    ------
-    ValueError
-        In `fit`, for more joints than `AXES` allows.
+    distance from the mean torque: `ridge` is so many cases at each node that say it. A node next
+    to which nothing was recorded has the mean. For more axes than `_AXES` `fit` raises ValueError.
     """
 
     def __init__(self, cells: int = 4, ridge: float = 1e-3, limits=None, beyond: str = "refuse"):
@@ -348,9 +271,9 @@ class GridTable(Bounded):
         return f"GridTable({self.cells})"
 
     def _fit(self, x, torque):
-        if x[0].size > AXES:
+        if x[0].size > _AXES:
             raise ValueError(
-                f"data must have at most {AXES // 3} joints for a multilinear table, "
+                f"data must have at most {_AXES // 3} joints for a multilinear table, "
                 f"got {x.shape[1]}"
             )
         index, weights = self._corners(self._bound(x))
