@@ -6,7 +6,6 @@ from .equations import (
     repeat as repeat,
 )
 from .known_axes import (
-    FRICTION_TERMS as FRICTION_TERMS,
     joint_columns as joint_columns,
     joint_terms as joint_terms,
 )
@@ -20,7 +19,6 @@ from .regression import (
     SIGN_SPEED as SIGN_SPEED,
     Equations as Equations,
     Estimate as Estimate,
-    columns as columns,
     excitation as excitation,
     from_states as from_states,
     least_squares as least_squares,

@@ -1,8 +1,8 @@
 """From recordings to equations for identification: differences, smoothing, modulation.
 
-A recording holds quantised positions. Differences of them are noisy, and noise in the motion
-biases least squares; smoothing filters bend what they smooth, and that biases it too.
-Modulating functions (Shinbrot 1957) need no acceleration and treat torque and motion alike.
+Differences of quantised positions are noisy, and noise in the motion biases least squares;
+smoothing filters bend what they smooth, and that biases it too. Modulating functions need no
+acceleration and treat torque and motion alike.
 """
 
 from __future__ import annotations
@@ -28,20 +28,11 @@ from ddlib.identification.regression import (
 )
 from ddlib.simulation import Recording, record
 
-SLOW = 0.1
-"""Where a joint moves slower than this (rad/s), the sign of its friction is not trusted."""
+SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 
 
 def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
-    """Equations with velocity and acceleration from differences of neighbouring samples.
-
-    Parameters
-    ----------
-    recording : Recording
-        Leading axes of `q` before those of the reference are repetitions.
-    names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
-    """
+    """Equations with velocity and acceleration from differences of neighbouring samples."""
     return by_smoothing(recording, 3, names)  # parabolas through three samples
 
 
@@ -51,20 +42,9 @@ def by_smoothing(
     names: Sequence[str] = RIGID + FRICTION,
     smooth_torque: bool = False,
 ) -> Equations:
-    """Equations with the derivatives of parabolas, fitted to windows of the positions.
+    """Equations with the derivatives of parabolas in windows of `width` (odd) samples.
 
-    The filters of Savitzky & Golay (1964).
-
-    Parameters
-    ----------
-    recording : Recording
-        As in `by_differences`.
-    width : int
-        Samples of a window, odd.
-    names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
-    smooth_torque : bool
-        Whether the torque passes through the same window.
+    The filters of Savitzky & Golay (1964), for the torque too if it is to be smoothed.
     """
     if integer("width", width, 3) % 2 == 0:
         raise ValueError(f"width must be an odd number of samples, got {width}")
@@ -94,7 +74,7 @@ def by_modulation(
     Parameters
     ----------
     recording : Recording
-        As in `by_differences`.
+        Leading axes of `q` before those of the reference are repetitions.
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     width : float
@@ -104,11 +84,6 @@ def by_modulation(
     hold : float, optional
         Time for which the controller holds a torque, s: a sample stands for the torque half
         of it later. Default: as the recording says, its computing time included.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, or nothing says how long torques were held.
     """
     begin, end = recording.span
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step
@@ -128,6 +103,7 @@ def by_modulation(
         a = columns(rows[j], names, torque)
         parts = []
         for run, keep in enumerate(steady[j]):
+            # bumps overlap: the inverse Cholesky factor makes their torque noise independent
             whiten = np.linalg.inv(np.linalg.cholesky(later[keep] @ later[keep].T))
             parts.append((whiten @ a[..., run, keep, :], torque[..., run, keep] @ whiten.T))
         regressors.append(np.concatenate([x for x, _ in parts], -2))
@@ -146,18 +122,8 @@ def repeat(
 ) -> Recording:
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
-    Parameters
-    ----------
-    arm, controller, effects
-        As in `ddlib.simulation.simulate.record`.
-    extents_deg : array_like, shape (runs, 2)
-        Extents in degrees.
-    repetitions : int
-        How often. In each the zero of the encoders falls elsewhere within a step.
-    seed : int
-        Of the noise and of the encoders' zeros.
-    **options
-        Duration, rests and periods, as in `ddlib.simulation.simulate.record`.
+    Arguments are those of `ddlib.simulation.record`. In each repetition the zero of the encoders
+    falls elsewhere within a step.
 
     Returns
     -------
@@ -218,10 +184,9 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
 
 
 def _bumps(t, width, length) -> list[np.ndarray]:
-    """B-splines inside a motion from 0 to `length` s and their first two derivatives.
+    """B-splines inside a motion of `length` s and their first two derivatives, (bumps, time).
 
-    Each ``(bumps, time)``. The log jumps where the reference starts and stops; no bump reaches
-    over these samples.
+    The log jumps where the reference starts and stops; no bump reaches over these samples.
     """
     knot = width / 6
     shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)

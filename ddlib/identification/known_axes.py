@@ -1,23 +1,18 @@
 """Six joints of which only the axes are known: what each motor's current may depend on.
 
-Of a geared arm that somebody else recorded one knows the directions of its axes, and neither its
-masses nor its lengths nor what a motor makes of an ampere. Then each joint gets equations of its
-own, linear in unknown factors, whose terms follow from Lagrange's equation:
+Each joint gets equations of its own, linear in unknown factors, by Lagrange's equation:
 
-- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. What joint 1
-  turns is a sum of cosines and sines of twice ``q2``, of ``q3``, of ``2 q2 + q3`` and of twice
-  ``q2 + q3``. Joints 2 and 3 are a planar pair under gravity and under the centrifugal torque of
-  joint 1.
-- Axis 4 lies in the plane of the pair, axis 5 crosses it at a right angle, axis 6 crosses axis 5 at
-  a right angle. Joints 4 to 6 feel each its own acceleration, some of what carries it, and the
-  weight of a wrist whose centre lies on axis 6.
+- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. Joints 2 and 3
+  are a planar pair under gravity and under the centrifugal torque of joint 1.
+- Axis 4 lies in the plane of the pair; axes 5 and 6 cross the one before at a right angle. Joints 4
+  to 6 feel each its own acceleration, some of what carries it, and the weight of a wrist whose
+  centre lies on axis 6.
 - Motor 6 turns joint 5, too, so that both feel friction of the sum of their velocities.
 
 The angles of joints 2 and 3 come with their cosine and their sine, so that their zeros need not be
 known; those of joints 4 and 5 are zero where axis 5 is parallel to axis 2, and axis 6 to axis 4.
-Assumed are masses that are symmetric about the plane of the pair, a wrist that joints 1 to 3 carry
-as a part of the forearm and that has no velocity terms, and viscous and Coulomb friction. The
-Coriolis terms of joint 1 follow from Lagrange's equation by ``d/dt (b(q) q1') = b q1'' + b' q1'``.
+Assumed are masses that are symmetric about the plane of the pair, and a wrist that joints 1 to 3
+carry as a part of the forearm and that has no velocity terms.
 """
 
 from __future__ import annotations
@@ -27,28 +22,16 @@ import numpy as np
 from ddlib._check import integer, shaped
 from ddlib.identification.regression import SIGN_SPEED
 
-JOINTS = 6
-"""Number of joints."""
-
-FRICTION_TERMS = ("velocity", "sign", "velocity, motor 6", "sign, motor 6")
-"""Terms of the friction; all joints have the first two."""
+_JOINTS = 6
+_FRICTION = ("velocity", "sign", "velocity, motor 6", "sign, motor 6")
 
 
 def joint_terms(states) -> tuple[dict[str, np.ndarray], ...]:
-    """What each joint's current is a weighted sum of.
+    """What each joint's current is a weighted sum of: by joint ``{name: column (cases,)}``.
 
-    Parameters
-    ----------
-    states : array_like, shape (cases, 6, 3)
-        Positions (rad), velocities (rad/s), accelerations (rad/s^2) of six joints.
-
-    Returns
-    -------
-    tuple of dict
-        For each joint ``{name: column of shape (cases,)}``; the friction's are named as in
-        `FRICTION_TERMS`.
+    `states` holds position (rad), velocity and acceleration of six joints, ``(cases, 6, 3)``.
     """
-    states = shaped("states", states, f"(cases, {JOINTS}, 3)")
+    states = shaped("states", states, f"(cases, {_JOINTS}, 3)")
     q, v, a = np.moveaxis(states, -1, 0)
     sign = np.clip(v / SIGN_SPEED, -1, 1)
     rows = [_vertical(q, v, a), *_pair(q, v, a), *_wrist(q, a)]
@@ -65,19 +48,9 @@ def joint_terms(states) -> tuple[dict[str, np.ndarray], ...]:
 
 
 def joint_columns(states, joint: int, friction: bool = True) -> np.ndarray:
-    """The terms of one joint as a matrix, ``(cases, factors)``.
-
-    Parameters
-    ----------
-    states
-        As in `joint_terms`.
-    joint : int
-        0 to 5.
-    friction : bool
-        Whether the friction's terms are among them.
-    """
-    row = joint_terms(states)[integer("joint", joint, 0, JOINTS - 1)]
-    kept = [x for name, x in row.items() if friction or name not in FRICTION_TERMS]
+    """The `joint_terms` of one joint (0 to 5) as a matrix, ``(cases, factors)``."""
+    row = joint_terms(states)[integer("joint", joint, 0, _JOINTS - 1)]
+    kept = [x for name, x in row.items() if friction or name not in _FRICTION]
     return np.stack(kept, -1)
 
 
@@ -92,6 +65,7 @@ def _angles(q) -> dict[str, tuple]:
 
 
 def _vertical(q, v, a) -> dict:
+    """Joint 1: ``d/dt (b(q) q1') = b q1'' + b' q1'`` for each part b of its inertia."""
     row = {"q1''": a[:, 0]}
     for name, (angle, second, third) in _angles(q).items():
         rate = second * v[:, 1] + third * v[:, 2]

@@ -1,9 +1,4 @@
-"""Least squares one sample at a time: what a controller can afford while it runs.
-
-The recursion gives after every sample what batch least squares would give for all samples so far,
-with a penalty on the distance from the first guess (Ljung 1999, section 11.2). A factor below 1
-forgets: a sample that is n steps old counts ``forgetting ** n``.
-"""
+"""Least squares one sample at a time: what a controller can afford while it runs."""
 
 from __future__ import annotations
 
@@ -15,23 +10,18 @@ from ddlib._check import number, shaped
 class RecursiveLeastSquares:
     """Estimates of ``target = weights @ features``, sample by sample.
 
+    After every sample they are what batch least squares would give for all samples so far, with a
+    penalty on the distance from the first guess (Ljung 1999, section 11.2).
+
     Parameters
     ----------
     weights : array_like, shape (..., outputs, features)
-        First guess; leading axes are runs, each with an estimate of its own.
+        First guess, later the estimate; leading axes are runs, each with an estimate of its own.
     penalty : float
-        Weight of the first guess: it is ``penalty / 2`` times the squared distance from it,
-        above 0.
+        Weight of the first guess, above 0.
     forgetting : float
-        Above 0, at most 1; 1: nothing is forgotten. Features that are not excited are forgotten
-        all the same: the estimate's uncertainty then grows without bound.
-
-    Attributes
-    ----------
-    weights : ndarray, shape (..., outputs, features)
-        The estimate after the last sample.
-    covariance : ndarray, shape (..., features, features)
-        Inverse of the (discounted) sum of squares, ``penalty`` included; of all outputs alike.
+        A sample that is n steps old counts ``forgetting ** n``; at most 1. Features that are not
+        excited are forgotten all the same: the estimate's uncertainty then grows without bound.
     """
 
     def __init__(self, weights, penalty: float = 1e-3, forgetting: float = 1.0):
@@ -42,23 +32,7 @@ class RecursiveLeastSquares:
         self.covariance = np.broadcast_to(np.eye(count) / penalty, (*runs, count, count))
 
     def update(self, features, target) -> np.ndarray:
-        """Learn from one sample; what the estimate before it would have said.
-
-        Parameters
-        ----------
-        features : array_like, shape (..., features)
-        target : array_like, shape (..., outputs)
-
-        Returns
-        -------
-        ndarray, shape (..., outputs)
-            The prediction before learning.
-
-        Raises
-        ------
-        ValueError
-            If a shape does not fit or a number is not finite; nothing is learnt then.
-        """
+        """Learn from one sample; what the estimate before it would have said, (..., outputs)."""
         *runs, outputs, count = self.weights.shape
         features = shaped("features", features, (*runs, count))
         target = shaped("target", target, (*runs, outputs))

@@ -1,8 +1,7 @@
-"""Base parameters and friction from recordings, with a confidence for each.
+"""Base parameters and friction by linear least squares, with a confidence for each.
 
-The torque is linear in the parameters, so identification is linear least squares once
-the motion is known (An, Atkeson & Hollerbach 1988; Khosla 1986). How the motion is found in
-recordings of quantised positions is the subject of `ddlib.identification.equations`.
+The torque is linear in the parameters once the motion is known (An, Atkeson & Hollerbach 1988;
+Khosla 1986).
 """
 
 from __future__ import annotations
@@ -19,56 +18,30 @@ from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
 
-RIGID = ("a", "b", "d")
-"""Base parameters of a horizontal two-link arm, kg m^2."""
-
-GRAVITY = ("g1", "g2")
-"""Gravity moments of a vertical arm, N m."""
-
+RIGID = ("a", "b", "d")  #: Base parameters of a horizontal two-link arm, kg m^2.
+GRAVITY = ("g1", "g2")  #: Gravity moments of a vertical arm, N m.
+#: Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow.
 FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
-"""Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow."""
-
-SIGN_SPEED = 0.005
-"""Below this estimated speed (rad/s) the sign of a velocity is blurred."""
+SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity is blurred.
 
 
 class Equations(NamedTuple):
-    """Linear equations ``torque = regressor @ parameters + noise``, a set for each joint.
+    """Linear equations ``torque = regressor @ parameters + noise``, a set for each joint."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        The parameters.
-    regressor : tuple of ndarray, each (..., equations, parameters)
-    torque : tuple of ndarray, each (..., equations)
-    """
-
-    names: tuple[str, ...]
-    regressor: tuple[np.ndarray, ...]
-    torque: tuple[np.ndarray, ...]
+    names: tuple[str, ...]  #: The parameters.
+    regressor: tuple[np.ndarray, ...]  #: Each (..., equations, parameters).
+    torque: tuple[np.ndarray, ...]  #: Each (..., equations).
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Parameters with their uncertainty; leading axes are repetitions.
+    """Parameters with their uncertainty; leading axes are repetitions."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        The parameters.
-    values, errors : ndarray, shape (..., parameters)
-        Estimates and their standard errors.
-    noise : ndarray, shape (..., joint)
-        Standard deviation of an equation's torque, N m.
-    freedom : int
-        Degrees of freedom: equations minus parameters.
-    """
-
-    names: tuple[str, ...]
-    values: np.ndarray
-    errors: np.ndarray
-    noise: np.ndarray
-    freedom: int
+    names: tuple[str, ...]  #: The parameters.
+    values: np.ndarray  #: Estimates, (..., parameters).
+    errors: np.ndarray  #: Their standard errors.
+    noise: np.ndarray  #: Standard deviation of an equation's torque, (..., joint), N m.
+    freedom: int  #: Degrees of freedom: equations minus parameters.
 
     def half_width(self, level: float = 0.95) -> np.ndarray:
         """Half the width of the confidence interval, from Student's distribution."""
@@ -76,14 +49,7 @@ class Estimate:
         return student.ppf(0.5 + level / 2, self.freedom) * self.errors
 
     def covers(self, truth, level: float = 0.95) -> np.ndarray:
-        """Whether each confidence interval holds the true parameter.
-
-        Parameters
-        ----------
-        truth : array_like, shape (parameters,)
-        level : float
-            Confidence, 0 to 1.
-        """
+        """Whether each confidence interval holds the true parameter."""
         truth = finite_array("truth", truth, len(self.names))
         return np.abs(self.values - truth) <= self.half_width(level)
 
@@ -100,11 +66,6 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
         Leading axes are repetitions, each solved for itself.
     rounds : int
         How often the weights are renewed.
-
-    Raises
-    ------
-    ValueError
-        If there are not more equations than parameters, or they do not determine them all.
     """
     integer("rounds", rounds, 1)
     names, regressors, torques = equations
@@ -124,10 +85,10 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
         if not (size > 0).all() or np.linalg.cond(triangle / size[..., None, :]).max() > 1e10:
             raise ValueError(f"equations must determine all of {', '.join(names)}; they do not")
         inverse = np.linalg.inv(triangle)
-        found = np.einsum("...np,...n->...p", basis, y / sigma)
-        left = y - np.einsum("...np,...p->...n", basis, found) * sigma
+        projected = np.einsum("...np,...n->...p", basis, y / sigma)
+        left = y - np.einsum("...np,...p->...n", basis, projected) * sigma
         noise = np.stack([_spread(left[..., j], basis[..., j, :]) for j in joints], -1)
-    values = np.einsum("...pq,...q->...p", inverse, found)
+    values = np.einsum("...pq,...q->...p", inverse, projected)
     freedom = sum(counts) - len(names)
     return Estimate(names, values, np.linalg.norm(inverse, axis=-1), noise, freedom)
 
@@ -158,12 +119,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
     """What an identification should find, in the order of `names`.
 
-    Parameters
-    ----------
-    arm, effects
-        The plant; of its frictions the viscous and Coulomb ones are known here.
-    names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    Of the effects' frictions the viscous and Coulomb ones are known here.
     """
     _known(names)
     viscous = sum(
@@ -176,15 +132,7 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
 
 
 def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID) -> float:
-    """Condition number of the regressor along a motion; infinite if a parameter is unseen.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The motion, arrays of shape ``(..., time, 2)``.
-    names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
-    """
+    """Condition number of the regressor along a motion; infinite if a parameter is unseen."""
     equations = from_states(*trajectory, np.zeros(2), names)
     values = np.linalg.svd(
         np.concatenate([a.reshape(-1, len(names)) for a in equations.regressor]), compute_uv=False
@@ -205,16 +153,6 @@ def _known(names) -> None:
 
 
 def columns(row: dict, names: Sequence[str], like) -> np.ndarray:
-    """The regressor of one joint, ``(..., parameters)``.
-
-    Parameters
-    ----------
-    row : dict
-        For each parameter that the joint feels, its column.
-    names : sequence of str
-        Parameters wanted, from `RIGID`, `GRAVITY` and `FRICTION`.
-    like : ndarray
-        Shape of the zeros for a parameter that the joint does not feel.
-    """
+    """The regressor (..., parameters) of one joint from columns by name, zeros `like` if unfelt."""
     _known(names)
     return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
-from ddlib.effects import IDEAL, CoulombFriction, Effects, ViscousFriction
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.identification import (
     FRICTION,
     GRAVITY,
@@ -16,7 +15,6 @@ from ddlib.identification import (
     least_squares,
     true_parameters,
 )
-from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
 FRICTIONS = Effects((ViscousFriction((0.5, 0.15)), CoulombFriction((0.4, 0.1))))
@@ -41,31 +39,6 @@ def test_exact_states_give_exact_parameters(arm):
     np.testing.assert_allclose(found.values, true_parameters(arm, FRICTIONS, ALL), atol=1e-10)
     assert found.names == ALL and found.freedom == 400 - 9
     assert found.errors.max() < 1e-10 and found.noise.max() < 1e-10
-
-
-def test_noise_free_recordings_give_base_parameters_to_1e_minus_8():
-    arm, effects = CMU_DD_ARM_II, Effects((ViscousFriction((0.5, 0.15)),))
-    names = (*RIGID, "F_v1", "F_v2")
-    run = record(arm, pd((300.0, 90.0), (35.0, 10.0)), APPENDIX_I[:5], effects=effects)
-    net = run.tau_true - effects.friction_torque(run.qd_true)
-    qdd = arm.forward_dynamics(run.q_true, run.qd_true, net)
-    samples = (x.reshape(-1, 2) for x in (run.q_true, run.qd_true, qdd, run.tau_true))
-    found = least_squares(from_states(*samples, names))
-    np.testing.assert_allclose(
-        found.values, true_parameters(arm, effects, names), rtol=0, atol=1e-8
-    )
-
-
-def test_each_repetition_is_solved_for_itself():
-    motion = states(60)
-    noise = np.random.default_rng(1).normal(size=(5, 60, 2)) * [0.3, 0.1]
-    y = torque(CMU_DD_ARM_II, motion) + noise
-    together = least_squares(from_states(*motion, y, RIGID + FRICTION))
-    assert together.values.shape == together.errors.shape == (5, 7)
-    assert together.noise.shape == (5, 2)
-    one = least_squares(from_states(*motion, y[3], RIGID + FRICTION))
-    np.testing.assert_allclose(together.values[3], one.values, rtol=1e-9)
-    np.testing.assert_allclose(together.errors[3], one.errors, rtol=1e-9)
 
 
 def test_least_squares_agrees_with_the_textbook_for_equal_noise():
@@ -98,14 +71,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     assert (found.values.std(0)[:3] < alike.values.std(0)[:3]).all()
 
 
-def test_half_width_is_students():
-    found = least_squares(Equations(("x",), (np.ones((3, 1)),), (np.array([1.0, 2.0, 3.0]),)))
-    # mean 2, standard deviation 1, t(0.975, 2) = 4.303
-    assert found.values[0] == pytest.approx(2.0)
-    assert found.half_width()[0] == pytest.approx(4.3027 / np.sqrt(3), rel=1e-4)
-    assert found.covers([4.4])[0] and not found.covers([4.6])[0]
-
-
 def test_excitation_is_the_regressors_condition_number():
     both = pick_and_place(APPENDIX_I[0], T)
     y = CMU_DD_ARM_II.regressor(*both)[..., :3].reshape(-1, 3)
@@ -116,12 +81,6 @@ def test_excitation_is_the_regressors_condition_number():
     assert together < min(excitation(pick_and_place(e, T)) for e in APPENDIX_I[:3])
     still = Trajectory(*np.zeros((3, 10, 2)))
     assert excitation(still) == np.inf
-
-
-def test_true_parameters_come_from_the_plant():
-    assert true_parameters(REYES_KELLY_ARM, IDEAL, FRICTION).tolist() == [0.0] * 4
-    known = true_parameters(REYES_KELLY_ARM, FRICTIONS, ("F_c2", "g1", "b"))
-    assert known == pytest.approx([0.1, REYES_KELLY_ARM.gravity_moments[0], REYES_KELLY_ARM.b])
 
 
 def test_refusals():
