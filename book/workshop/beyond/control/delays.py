@@ -9,28 +9,13 @@ from ddlib._check import finite_array, number
 
 
 def late_poles(joints: control.StateSpace, gain, period: float, late: float) -> np.ndarray:
-    """Poles of sampled state feedback with a delay between reading and torque.
+    """Poles of sampled state feedback with a delay between reading and torque, in the z plane.
 
-    The torque ``-gain x`` of a reading at ``k period`` is applied from ``k period + late``
-    on and held for a period. Between two changes of the torque the joints are solved exactly,
-    so the loop is a difference equation; its states are those of the joints and the torques
-    that are still on their way (Astrom & Wittenmark 1997).
-
-    Parameters
-    ----------
-    joints : control.StateSpace
-        From `ddlib.control.linear.plant`.
-    gain : array_like, shape (joint, state)
-        Feedback of angles and velocities.
-    period : float
-        Control period, s.
-    late : float
-        Delay, s, not negative; may be longer than a period.
-
-    Returns
-    -------
-    ndarray of complex
-        Poles in the z plane: stable if all lie inside the unit circle.
+    The torque ``-gain x`` of a reading at ``k period`` is applied from ``k period + late`` on and
+    held for a period, s; the delay may be longer than that. Between two changes of the torque the
+    joints, from `ddlib.control.linear.plant`, are solved exactly, so the loop is a difference
+    equation; its states are those of the joints and the torques that are still on their way (Astrom
+    & Wittenmark 1997).
     """
     number("period", period, 0.0, open_low=True)
     whole, late = divmod(number("late", late, 0.0) / period + 1e-12, 1.0)

@@ -20,14 +20,9 @@ from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regress
 
 @dataclass(frozen=True)
 class RigidBodyTerms:
-    """The regressor's columns and friction as the terms of a feedback-error learner.
+    """The regressor's columns and friction: terms that can represent the arm exactly.
 
-    The terms of 1987 could not be had; these can represent the arm exactly.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of `workshop.beyond.control.adaptive.PARAMETERS`.
+    `names` are those of `workshop.beyond.control.adaptive.regressor.PARAMETERS`.
     """
 
     names: Sequence[str] = PARAMETERS[:3]
@@ -45,14 +40,9 @@ class GenericTerms:
     and ``cos 2 q2``; each joint has weights of its own. Accelerations times ``cos q2``, velocities
     times ``sin q2`` and the sign of a velocity, of which the torque of two links with Coulomb
     friction is made, are not among them.
-
-    Attributes
-    ----------
-    count : int
-        Terms of both joints.
     """
 
-    count: int = field(default=2 * 7 * 4, init=False)
+    count: int = field(default=2 * 7 * 4, init=False)  # terms of both joints
 
     def __call__(self, q, qd, qdd) -> np.ndarray:
         """Terms of each joint along a motion, shape (..., 2, terms)."""
@@ -69,31 +59,17 @@ class GenericTerms:
 
 @dataclass(frozen=True)
 class FeedbackErrorLearning:
-    """Learn the weights of given terms while controlling.
+    """Learn the weights of given terms while controlling (Kawato, Furukawa & Suzuki 1987).
 
     The torque is ``terms(desired motion) weights + feedback``; the weights move by
     ``d weights/dt = rate terms' feedback``. Where the feedback is ``gain s`` with one gain for all
     joints, this is Slotine & Li's law at the desired state with ``rate gain`` in place of its rate.
-
-    Parameters
-    ----------
-    terms : callable
-        ``terms(q, qd, qdd)`` over the desired motion, ``(..., time, 2)``, gives
-        ``(..., time, 2, terms)``.
-    rate : array_like, shape (terms,) or (..., terms)
-        Of learning, 0 or more; leading axes are runs.
-    weights : array_like, shape (terms,) or (..., terms)
-        What the run begins with; leading axes are runs.
-    feedback : Controller or callable
-        What corrects, and teaches.
-
-    Source: Kawato, Furukawa & Suzuki 1987; Miyamoto, Kawato, Setoyama & Suzuki 1988.
     """
 
-    terms: Callable
-    rate: Sequence[float]
-    weights: Sequence[float]
-    feedback: Controller
+    terms: Callable  # of q, qd, qdd of the desired motion: (..., time, 2, terms)
+    rate: Sequence[float]  # of learning, (..., terms)
+    weights: Sequence[float]  # what the run begins with, (..., terms)
+    feedback: Controller  # corrects, and teaches
 
     def __post_init__(self):
         rate = shaped("rate", self.rate, "(..., terms)")
@@ -109,8 +85,6 @@ class FeedbackErrorLearning:
 
 
 class _Law:
-    """A running learner: called once a control period, it remembers its weights."""
-
     def __init__(self, controller, terms, feedback, step):
         self._terms, self._feedback = terms, feedback
         self._rate = step * np.asarray(controller.rate, float)
@@ -130,36 +104,24 @@ class _Law:
 
 
 class MotionMemory:
-    """Iterative learning control: the torque of one motion, kept over time and corrected by trials.
+    """Iterative learning control (Arimoto, Kawamura & Miyazaki 1984) of one motion.
 
-    After a trial the stored torque gains ``rate`` times what the feedback added `lead` samples
-    later, and is smoothed. It knows this motion and no other; played on a motion of another
-    length it is stretched.
-
-    Parameters
-    ----------
-    feedback : Controller or callable
-        What corrects, and teaches.
-    rate : float
-        0 or more.
-    lead : int
-        Control samples by which the feedback's torque comes later than what it is due to.
-    smoothing : float
-        Deviation of a Gaussian over control samples; 0: none.
-
-    Attributes
-    ----------
-    torque : ndarray, shape (..., time, 2)
-        What is stored, N m; the number 0 before the first trial.
-
-    Source: Arimoto, Kawamura & Miyazaki 1984.
+    It stores a torque over time; after a trial that gains ``rate`` times what the feedback added
+    `lead` samples later, and is smoothed. It knows this motion and no other; played on a motion of
+    another length it is stretched.
     """
 
-    def __init__(self, feedback, rate: float, lead: int = 0, smoothing: float = 0.0):
+    def __init__(
+        self,
+        feedback,
+        rate: float,
+        lead: int = 0,  # control samples by which the feedback comes later than what it is due to
+        smoothing: float = 0.0,  # deviation of a Gaussian, in control samples; 0: none
+    ):
         self.feedback = as_controller(feedback)
         self.rate = number("rate", rate, 0.0)
         self.lead, self.smoothing = integer("lead", lead, 0), number("smoothing", smoothing, 0.0)
-        self.torque = np.zeros(())
+        self.torque = np.zeros(())  # N m, shape (..., time, 2) after the first trial
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s; it learns nothing yet."""
@@ -185,8 +147,6 @@ class MotionMemory:
 
 
 class _Remembered:
-    """A stored torque and feedback, which is kept."""
-
     def __init__(self, played, feedback):
         self.played, self._feedback, self._added = played, feedback, []
 

@@ -11,13 +11,8 @@ from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
 REASONS = ("", "shoulder angle", "elbow angle", "shoulder speed", "elbow speed")
-"""Why a run was stopped, by its number in `Stops.reason`; nothing if it was not."""
-
-ANGLES = (np.pi, 2.8)
-"""Largest angles of shoulder and elbow, rad: half a turn, and an elbow nearly folded. Assumed."""
-
-SPEEDS = (20.0, 20.0)
-"""Largest joint speeds, rad/s: several times what the family of Appendix I asks for. Assumed."""
+_ANGLES = (np.pi, 2.8)  # rad: half a turn, and an elbow nearly folded; assumed
+_SPEEDS = (20.0, 20.0)  # rad/s: several times what the family of Appendix I asks for; assumed
 
 
 @dataclass(frozen=True)
@@ -25,25 +20,13 @@ class Guarded:
     """A controller whose motors are switched off where the arm leaves its limits.
 
     From then on the run's torque is zero, and the controller inside is shown the reference in
-    place of the arm, so that a learner has nothing to learn from. Other runs go on.
-
-    Parameters
-    ----------
-    controller : Controller or callable
-    angles : array_like, shape (2,)
-        Largest magnitudes of the angles, rad.
-    speeds : array_like, shape (2,)
-        Largest magnitudes of the velocities, rad/s.
-
-    Raises
-    ------
-    ValueError
-        If a limit is not positive.
+    place of the arm, so that a learner has nothing to learn from. Other runs go on. Limits are the
+    largest magnitudes of angles, rad, and of velocities, rad/s, of shoulder and elbow.
     """
 
     controller: Controller
-    angles: tuple[float, float] = ANGLES
-    speeds: tuple[float, float] = SPEEDS
+    angles: tuple[float, float] = _ANGLES
+    speeds: tuple[float, float] = _SPEEDS
 
     def __post_init__(self):
         for name in ("angles", "speeds"):
@@ -56,18 +39,10 @@ class Guarded:
 
 @dataclass(frozen=True)
 class Stops:
-    """Which runs were stopped, when and why.
+    """Which runs were stopped, when and why."""
 
-    Attributes
-    ----------
-    time : ndarray, shape (...)
-        After the first control sample, s; infinite for runs that were not stopped.
-    reason : ndarray of int, shape (...)
-        Index into `REASONS`.
-    """
-
-    time: np.ndarray
-    reason: np.ndarray
+    time: np.ndarray  # after the first control sample, s; infinite for runs that were not stopped
+    reason: np.ndarray  # index into `REASONS`
 
     @property
     def stopped(self) -> np.ndarray:
@@ -75,14 +50,8 @@ class Stops:
         return np.isfinite(self.time)
 
     def running(self, t) -> np.ndarray:
-        """Whether each run was under control at times of a log, shape (..., time).
-
-        Parameters
-        ----------
-        t : array_like, shape (time,)
-            Times, s; the first is that of the first control sample.
-        """
-        t = np.asarray(t, float)
+        """Whether each run was under control at times of a log (s), shape (..., time)."""
+        t = np.asarray(t, float)  # from that of the first control sample on
         return t - t[0] < np.asarray(self.time)[..., None] - 1e-9
 
     def __str__(self):
@@ -96,8 +65,6 @@ class Stops:
 
 
 class _Law:
-    """A running guard: called once a control period, it remembers who was stopped."""
-
     def __init__(self, guard: Guarded, reference: Trajectory, step: float):
         self._reference, self._step = reference, step
         self._limits = np.concatenate([guard.angles, guard.speeds]).astype(float)
@@ -120,5 +87,4 @@ class _Law:
 
     @property
     def stops(self) -> Stops:
-        """What happened to each run until now."""
         return Stops(self._sample * self._step, self._reason)

@@ -23,12 +23,8 @@ from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.windowed import reference_windows
 
-TEACHERS = ("torque", "feedback", "nobody")
-"""What a learner is taught by: measured windows with the applied torque, desired windows with the
-feedback's torque, or nothing at all."""
-
-NEAREST = 0.02
-"""Least distance of a scaled torque from the ends of the output unit, for `LastLayer`."""
+_TEACHERS = ("torque", "feedback", "nobody")
+_NEAREST = 0.02  # least distance of a scaled torque from the ends of the output unit
 
 
 def _sigmoid(x):
@@ -42,17 +38,9 @@ def _with_one(x):
 class OnlineNetwork:
     """The window network with its scaling, in plain arrays that a learner replaces.
 
-    Parameters
-    ----------
-    model : TorqueModel
-        Networks of `ddlib.learning`; leading axes of the weights are runs.
-
-    Attributes
-    ----------
-    hidden : ndarray, shape (..., hidden, joint width + 1)
-        Weights of the hidden units, the bias last.
-    output : ndarray, shape (..., 2, hidden + joint width + 1)
-        Weights of the output units: of hidden units, of the window, the bias.
+    Leading axes of the weights are runs. The hidden units' weights are ``(..., hidden, joint width
+    + 1)`` with the bias last, the output units' ``(..., 2, hidden + joint width + 1)``: of hidden
+    units, of the window, the bias.
     """
 
     def __init__(self, model):
@@ -64,18 +52,7 @@ class OnlineNetwork:
         self.output = np.concatenate([w.output_weights, flat[1], w.output_bias[..., None]], -1)
 
     def features(self, windows) -> tuple[np.ndarray, np.ndarray]:
-        """What the hidden units see, and what the output units see.
-
-        Parameters
-        ----------
-        windows : ndarray, shape (..., cases, joint, width)
-            rad.
-
-        Returns
-        -------
-        seen : ndarray, shape (..., cases, joint width + 1)
-        features : ndarray, shape (..., cases, hidden + joint width + 1)
-        """
+        """What the hidden units and the output units see of windows (rad), a row for each case."""
         x = self.inputs.target[0] + (windows - self._low) * self._gain
         seen = _with_one(x.reshape(*x.shape[:-2], -1))
         hidden = _sigmoid(seen @ np.swapaxes(self.hidden, -1, -2))
@@ -101,18 +78,8 @@ class OnlineNetwork:
     def gradient(self, windows, error=None, torque=None) -> tuple[np.ndarray, np.ndarray]:
         """Backpropagation: how half the squared error falls, in scaled units, mean over cases.
 
-        Parameters
-        ----------
-        windows : ndarray, shape (..., cases, joint, width)
-        error : ndarray, shape (..., cases, 2)
-            Torque that is wanted beyond the network's, N m; or else
-        torque : ndarray, shape (..., cases, 2)
-            The torque that is wanted.
-
-        Returns
-        -------
-        hidden, output : ndarray
-            Of the shapes of the weights; their direction is the one to go.
+        It is of the shapes of both layers' weights, and the direction to go. Either the wanted
+        torque is given, ``(..., cases, 2)``, N m, or what it is beyond the network's (`error`).
         """
         seen, features = self.features(windows)
         o = self.activity(features)
@@ -126,25 +93,17 @@ class OnlineNetwork:
 
 
 class OnlineDescent(OnlineNetwork):
-    """All weights learn by gradient descent, a step for each sample.
+    """All weights learn by gradient descent, a step for each sample."""
 
-    Parameters
-    ----------
-    model : TorqueModel
-        What it begins with; leading axes of the weights are runs.
-    rate : float or array_like
-        Of a step, in scaled units, 0 or more; of many: one for each run, with the runs' axes.
-    momentum : float
-        Share of the last step that is taken again.
-    replay : int
-        Earlier samples that are drawn and learnt again in each step.
-    memory : int
-        Samples that are kept for it, the youngest.
-    seed : int
-        Of the drawing, which is the same for all runs.
-    """
-
-    def __init__(self, model, rate, momentum=0.0, replay=0, memory=3000, seed=0):
+    def __init__(
+        self,
+        model,  # what it begins with, a `TorqueModel`
+        rate,  # of a step, in scaled units; one number, or one for each run
+        momentum=0.0,
+        replay=0,  # earlier samples that are drawn and learnt again in each step
+        memory=3000,  # samples that are kept for it, the youngest
+        seed=0,  # of the drawing, which is the same for all runs
+    ):
         super().__init__(model)
         self.rate = non_negative("rate", np.asarray(rate, float))[..., None, None]
         self.momentum = number("momentum", momentum, 0.0, 0.999)
@@ -175,14 +134,8 @@ class OnlineDescent(OnlineNetwork):
 class LastLayer(OnlineNetwork):
     """The output units' weights learn by recursive least squares; the hidden units stay.
 
-    The target of a unit is the net input that would give the wanted torque.
-
-    Parameters
-    ----------
-    model : TorqueModel
-    recursion : callable
-        ``recursion(weights)`` gives the estimate that learns from these weights on: a
-        `ddlib.identification.RecursiveLeastSquares`.
+    The target of a unit is the net input that would give the wanted torque. ``recursion(weights)``
+    gives what learns from these weights on: a `ddlib.identification.RecursiveLeastSquares`.
     """
 
     def __init__(self, model, recursion):
@@ -192,22 +145,15 @@ class LastLayer(OnlineNetwork):
     def learn(self, windows, torque) -> None:
         """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
         features = self.features(windows[..., None, :, :])[1][..., 0, :]
-        wanted = np.clip(self.scaled(torque), NEAREST, 1 - NEAREST)
+        wanted = np.clip(self.scaled(torque), _NEAREST, 1 - _NEAREST)
         self.estimate.update(features, np.log(wanted / (1 - wanted)))
         self.output = self.estimate.weights
 
 
 class LinearFilter:
-    """A linear filter of the window, without hidden units, by recursive least squares.
+    """A linear filter of scaled windows, without hidden units, by recursive least squares.
 
-    Parameters
-    ----------
-    inputs : Scaler
-        Of positions, rad.
-    weights : array_like, shape (..., 2, joint width + 1)
-        In N m per scaled unit; what it begins with.
-    recursion : callable
-        As in `LastLayer`.
+    Its weights are ``(..., 2, joint width + 1)``, N m for a scaled unit.
     """
 
     def __init__(self, inputs, weights, recursion):
@@ -236,24 +182,12 @@ class LinearFilter:
 class OnlineFeedforward:
     """A learner of windows as feedforward that goes on learning while it controls.
 
-    Parameters
-    ----------
-    learner
-        `OnlineDescent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)`` of windows
-        ``(..., cases, joint, width)`` and, by what teaches it, ``learn(windows, torque)`` or
-        ``correct(windows, feedback)`` of one window for each run. It outlives the run.
-    feedback : Controller or callable
-    width : int
-        Samples of a window, odd.
-    teacher : {"torque", "feedback", "nobody"}
-        As in `TEACHERS`. With "nobody" the learner is kept as it is when the run begins.
-    every : int
-        Control periods between two samples of a window.
-    limit : array_like, shape (2,)
-        Largest torques of the motors, N m: what is learnt is what they can have given.
+    The learner is `OnlineDescent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)``
+    and, by what teaches it, ``learn(windows, torque)`` or ``correct(windows, feedback)`` of one
+    window for each run. It outlives the run. Its teacher is the applied torque, with measured
+    windows; the feedback's torque, with desired windows; or nobody: then it is kept as it is when
+    the run begins.
 
-    Notes
-    -----
     It learns from samples at which the reference of any run moves. Measured windows are learnt
     half a window late, when their last sample is there. Before its first and after its last
     sample the reference is taken to rest.
@@ -261,16 +195,16 @@ class OnlineFeedforward:
 
     learner: object
     feedback: Controller
-    width: int = 21
-    teacher: str = "torque"
-    every: int = 5
-    limit: Sequence[float] = (np.inf, np.inf)
+    width: int = 21  # odd
+    teacher: str = "torque"  # or "feedback" or "nobody"
+    every: int = 5  # control periods between two samples of a window
+    limit: Sequence[float] = (np.inf, np.inf)  # largest torques of the motors that are learnt, N m
 
     def __post_init__(self):
         if integer("width", self.width, 3) % 2 == 0:
             raise ValueError(f"width must be odd, so that a window has a centre, got {self.width}")
         integer("every", self.every, 1)
-        one_of("teacher", self.teacher, TEACHERS)
+        one_of("teacher", self.teacher, _TEACHERS)
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
@@ -278,8 +212,6 @@ class OnlineFeedforward:
 
 
 class _Law:
-    """A running learner: called once a control period."""
-
     def __init__(self, controller: OnlineFeedforward, reference: Trajectory, feedback):
         self._feedback, self._every, self._limit = feedback, controller.every, controller.limit
         self._teacher, learner = controller.teacher, controller.learner
@@ -317,14 +249,7 @@ class _Law:
 
 @dataclass(frozen=True)
 class Abreast:
-    """Several controllers in one batch, each for some rows of the first axis of runs.
-
-    Parameters
-    ----------
-    controllers : sequence of Controller
-    rows : sequence of int
-        How many rows each one has.
-    """
+    """Several controllers in one batch, each for so many rows of the first axis of runs."""
 
     controllers: Sequence[Controller]
     rows: Sequence[int]
@@ -345,8 +270,6 @@ class Abreast:
 
 
 class _Abreast:
-    """Laws that run side by side."""
-
     def __init__(self, controller: Abreast, reference: Trajectory, step: float):
         ends = np.cumsum(controller.rows)
         self._parts = [slice(end - n, end) for end, n in zip(ends, controller.rows)]

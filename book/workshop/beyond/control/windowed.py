@@ -18,27 +18,14 @@ from ddlib._check import integer, non_negative, number, one_of, shaped
 from ddlib.control.controllers import PID, ControlLaw, Controller, Feedforward, as_controller
 from ddlib.trajectories import Trajectory
 
-BETWEEN = ("window", "line", "hold")
-"""What happens between two samples of the log: a window of its own around each control sample, a
-straight line from torque to torque, or the last torque is held."""
+_BETWEEN = ("window", "line", "hold")
 
 
 def reference_windows(q, width: int, every: int) -> np.ndarray:
-    """A view of the windows around all samples of a reference.
+    """A view of the windows around all samples of a reference, ``(..., time, joint, width)``.
 
-    Parameters
-    ----------
-    q : ndarray, shape (..., time, joint)
-        Positions, rad. Before the first and after the last sample they are taken to rest.
-    width : int
-        Samples of a window, odd.
-    every : int
-        Steps between two samples of a window.
-
-    Returns
-    -------
-    ndarray, shape (..., time, joint, width)
-        Read-only.
+    Before the first and after the last sample the reference is taken to rest; `every` is the number
+    of steps between two samples of a window.
     """
     reach = width // 2 * every
     ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
@@ -50,53 +37,27 @@ def reference_windows(q, width: int, every: int) -> np.ndarray:
 class WindowFeedforward:
     """Torques of a reference by a model of windows; for `ddlib.control.Feedforward`.
 
-    Parameters
-    ----------
-    model : callable
-        ``model(windows) -> torque`` over windows ``(cases, joint, width)``, rad, oldest sample
-        first; torques ``(cases, joint)``, N m.
-    width : int
-        Window size, odd.
-    every : int
-        Control periods between two samples of a window: 5 for 10 ms and 2 ms.
-    between : {"window", "line", "hold"}
-        As in `BETWEEN`.
-    step : float, optional
-        Sampling period of the windows that the model was trained on, s. If it is given, `check`
-        refuses loops with another one.
-
-    Notes
-    -----
-    Before its first and after its last sample the reference is taken to rest.
+    Before its first and after its last sample the reference is taken to rest. Between two samples
+    of the log there is a window of its own around each control sample, a straight line from torque
+    to torque, or the last torque is held.
     """
 
-    model: Callable
-    width: int
-    every: int = 5
-    between: str = "window"
-    step: float | None = None
+    model: Callable  # of windows (cases, joint, width), rad, oldest first: torque (cases, joint)
+    width: int  # odd
+    every: int = 5  # control periods between two samples of a window: 10 ms by 2 ms
+    between: str = "window"  # or "line" or "hold"
+    step: float | None = None  # sampling period of the windows of training, s; see `check`
 
     def __post_init__(self):
         if integer("width", self.width, 3) % 2 == 0:
             raise ValueError(f"width must be odd, so that a window has a centre, got {self.width}")
         integer("every", self.every, 1)
-        one_of("between", self.between, BETWEEN)
+        one_of("between", self.between, _BETWEEN)
         if self.step is not None:
             number("step", self.step, 0.0, open_low=True)
 
     def check(self, control_step: float) -> None:
-        """Refuse a loop in which the windows would have another sampling period.
-
-        Parameters
-        ----------
-        control_step : float
-            Control period of the loop, s.
-
-        Raises
-        ------
-        ValueError
-            If `every` control periods are not the period of the model's training windows.
-        """
+        """Refuse a loop in which the windows' sampling period would not be the model's."""
         period = self.every * number("control_step", control_step, 0.0, open_low=True)
         if self.step is not None and abs(period / self.step - 1) > 1e-6:
             raise ValueError(
@@ -106,19 +67,7 @@ class WindowFeedforward:
             )
 
     def __call__(self, q, qd, qdd) -> np.ndarray:
-        """Torque for every control sample of a reference.
-
-        Parameters
-        ----------
-        q : array_like, shape (..., time, joint)
-            Desired positions, rad.
-        qd, qdd : array_like
-            Not used: a window of positions is all that the model sees.
-
-        Returns
-        -------
-        ndarray, shape (..., time, joint)
-        """
+        """Torque for every sample of a reference ``(..., time, joint)`` by its positions."""
         q = shaped("q", q, "(..., time, joint)")
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
@@ -144,14 +93,8 @@ class WindowFeedforward:
 class PlannedTorque:
     """Torques of a planned motion by a model of windows, added to a feedback law (Figure 2-1).
 
-    `ddlib.control.controllers.Feedforward` does the same for any model; this one knows that a
-    model of windows has a sampling period, and refuses a loop that does not give it.
-
-    Parameters
-    ----------
-    feedforward : WindowFeedforward
-    feedback : Controller or callable
-        Corrects what the model gets wrong.
+    `ddlib.control.Feedforward` does the same for any model; this one knows that a model of windows
+    has a sampling period, and refuses a loop that does not give it.
     """
 
     feedforward: WindowFeedforward
@@ -169,17 +112,8 @@ class MeasuredWindows:
 
     The nearest thing to computed torque that a model of windows allows: up to the centre its
     window holds measured positions, after it the plan. The model is part of the feedback then,
-    and can make the loop unstable.
-
-    Parameters
-    ----------
-    feedforward : WindowFeedforward
-        With a window of its own for every control sample (``between="window"``).
-    feedback : Controller or callable
-        Beside it.
-    share : array_like, shape (...)
-        How much of the measured deviation from the plan is put into the windows, 0 or more: 0 is
-        `PlannedTorque`, 1 what was measured. Axes are runs.
+    and can make the loop unstable. With `share` only so much of the measured deviation from the
+    plan is put into the windows: 0 is `PlannedTorque`, 1 what was measured. Its axes are runs.
     """
 
     feedforward: WindowFeedforward
@@ -220,21 +154,10 @@ class MeasuredWindows:
 
 
 def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
-    """How a model's torque changes with each past sample of its windows, the mean over cases.
+    """How a model's torque changes with past samples of its windows, the mean over cases.
 
-    Parameters
-    ----------
-    model : callable
-        As of `WindowFeedforward`.
-    windows : array_like, shape (cases, joint, width)
-        rad, oldest sample first.
-    step : float
-        Of the central difference quotient, rad.
-
-    Returns
-    -------
-    ndarray, shape (torque, joint, width // 2 + 1)
-        N m/rad, oldest sample first, the centre last.
+    By central differences, shape (torque, joint, width // 2 + 1), N m/rad: the oldest sample first,
+    the centre last.
     """
     windows = shaped("windows", windows, "(cases, joint, width)")
     joints, width = windows.shape[1:]
@@ -252,25 +175,8 @@ def poles_inside(
 ) -> np.ndarray:
     """Poles of a sampled loop with a linear model of windows inside (`MeasuredWindows`).
 
-    Parameters
-    ----------
-    joints : control.StateSpace
-        From `ddlib.control.linear.plant`.
-    feedback : PID
-        Without an integral.
-    past : array_like, shape (torque, joint, samples)
-        N m/rad, times the share that is measured, as from `past_slopes`.
-    period : float
-        Control period, s.
-    every : int
-        Control periods between two samples of a window.
-    late : int
-        Control periods by which the torque comes late.
-
-    Returns
-    -------
-    ndarray of complex
-        In the z plane: stable if all lie inside the unit circle.
+    `past` are the slopes (N m/rad) of `past_slopes`, times the share that is measured; the torque
+    comes late by so many control periods. The feedback has no integral.
     """
     n = joints.ninputs
     past = shaped("past", past, f"({n}, {n}, samples)")

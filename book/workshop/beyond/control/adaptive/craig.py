@@ -17,8 +17,7 @@ from workshop.beyond.control.adaptive.regressor import (
 )
 from workshop.beyond.control.adaptive.running import RunningLaw
 
-MARGIN = 0.9
-"""Largest b of `CraigHsuSastry`, as a share of that which makes the mass matrix singular."""
+_MARGIN = 0.9  # largest b as a share of that which makes the mass matrix singular
 
 
 @dataclass(frozen=True)
@@ -27,39 +26,19 @@ class CraigHsuSastry:
 
     The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
     move by ``rate Y(q, qd, qdd)' M^-1 (de/dt + weight e)`` and are held in a box, and b where M can
-    be inverted.
-
-    Parameters
-    ----------
-    kp, kd : array_like, shape (..., 2)
-        Gains, 1/s^2 and 1/s.
-    weight : array_like, shape (..., 2)
-        Of the error in the adaptation, 1/s; below `kd`, so that the error's equation passes
-        energy on without gaining any (it is strictly positive real).
-    rate, estimate, names
-        As in `SlotineLi`; the names begin with a, b, d.
-    low, high : array_like, shape (parameters,)
-        The box of the estimates; d above 0 and below a.
-    acceleration : callable, optional
-        ``acceleration(q, qd, torque)`` at a reading, under the torque held until then; default:
-        the difference of velocities.
-
-    Raises
-    ------
-    ValueError
-        If the box holds a and d for which no b makes the mass matrix positive definite, or
-        another number is out of range.
+    be inverted. With `weight` below `kd` the error's equation passes energy on without gaining any
+    (it is strictly positive real).
     """
 
-    kp: tuple[float, float]
-    kd: tuple[float, float]
-    weight: tuple[float, float]
+    kp: tuple[float, float]  # 1/s^2
+    kd: tuple[float, float]  # 1/s
+    weight: tuple[float, float]  # of the error in the adaptation, 1/s
     rate: Sequence[float]
     estimate: Sequence[float]
-    low: Sequence[float]
+    low: Sequence[float]  # the box of the estimates, with d above 0 and below a
     high: Sequence[float]
-    names: Sequence[str] = PARAMETERS[:3]
-    acceleration: Callable | None = None
+    names: Sequence[str] = PARAMETERS[:3]  # they begin with a, b, d
+    acceleration: Callable | None = None  # of q, qd and the torque held; default: by difference
 
     def __post_init__(self):
         for name in ("kp", "kd", "weight"):
@@ -80,15 +59,7 @@ class CraigHsuSastry:
             )
 
     def output(self, estimate, wanted: Trajectory, q, qd, qdd) -> tuple[np.ndarray, np.ndarray]:
-        """Torque and the estimate's rate of change in continuous time, outside the box too.
-
-        Parameters
-        ----------
-        estimate, wanted, q, qd
-            As in `SlotineLi.output`.
-        qdd : array_like, shape (..., 2)
-            Measured acceleration, rad/s^2.
-        """
+        """Torque and the estimate's rate of change in continuous time, outside the box too."""
         estimate = np.asarray(estimate, float)
         error, error_rate = wanted.q - q, wanted.qd - qd
         asked = wanted.qdd + np.asarray(self.kd) * error_rate + np.asarray(self.kp) * error
@@ -116,7 +87,7 @@ class CraigHsuSastry:
 
     def _invertible(self, estimate):
         a, b, d = np.moveaxis(estimate[..., :3], -1, 0)
-        most = MARGIN * np.sqrt(d * (a - d))
+        most = _MARGIN * np.sqrt(d * (a - d))
         return np.concatenate(
             [np.stack([a, np.clip(b, -most, most), d], -1), estimate[..., 3:]], -1
         )

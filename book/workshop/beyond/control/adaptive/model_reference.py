@@ -24,27 +24,15 @@ class ModelReference:
     ``rate phi (de/dt + weight e)`` with ``e = q_m - q``: for a joint with inertia and viscous
     friction alone a function of e and the gains' errors never rises.
 
-    Parameters
-    ----------
-    stiffness, damping : array_like, shape (2,)
-        a0 and a1 of each joint's model, 1/s^2 and 1/s, above 0.
-    weight : array_like, shape (2,)
-        1/s, above 0 and below `damping`.
-    rate, estimate : array_like, shape (..., 8)
-        Speeds and first values of four gains of the shoulder (kg m^2, N m/rad, N m s/rad, N m),
-        then of the elbow.
-    leakage : float
-        As in `SlotineLi`.
-
     Source: Parks 1966, for each joint by itself as in Dubowsky & DesForges 1979.
     """
 
-    stiffness: tuple[float, float]
-    damping: tuple[float, float]
-    weight: tuple[float, float]
-    rate: Sequence[float]
-    estimate: Sequence[float]
-    leakage: float = 0.0
+    stiffness: tuple[float, float]  # a0 of each joint's model, 1/s^2
+    damping: tuple[float, float]  # a1, 1/s
+    weight: tuple[float, float]  # 1/s, below `damping`
+    rate: Sequence[float]  # (..., 8): of four gains of the shoulder, then of the elbow
+    estimate: Sequence[float]  # theirs at first: kg m^2, N m/rad, N m s/rad, N m
+    leakage: float = 0.0  # as of `SlotineLi`
 
     def __post_init__(self):
         for name in ("stiffness", "damping", "weight"):
@@ -78,15 +66,7 @@ class ModelReference:
         return free, push[:, 0], ahead[:, 0]
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
-        """Torque and the estimate's rate of change in continuous time.
-
-        Parameters
-        ----------
-        estimate, q, qd
-            As in `SlotineLi.output`.
-        wanted : Trajectory
-            One sample of the model's motion.
-        """
+        """Torque and the estimate's rate of change in continuous time; `wanted` is the model's."""
         a0, a1 = np.asarray(self.stiffness), np.asarray(self.damping)
         command = wanted.qdd + a1 * wanted.qd + a0 * wanted.q
         command, q, qd = np.broadcast_arrays(command, q, qd)

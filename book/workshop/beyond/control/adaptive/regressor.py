@@ -12,8 +12,7 @@ PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
 """What can be adapted: base parameters (kg m^2), gravity moments (N m), viscous (N m s/rad) and
 Coulomb (N m) friction of both joints."""
 
-SIGN_SPEED = 0.02
-"""Coulomb friction is taken for linear in the velocity below this speed, rad/s."""
+_SIGN_SPEED = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
 
 
 def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.ndarray:
@@ -21,20 +20,8 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
 
     With ``v = qd`` and ``a = qdd`` it is `ddlib.dynamics.Arm.regressor` and friction. C is the
     matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`).
-    The form is that of Slotine & Li 1987, for two links.
-
-    Parameters
-    ----------
-    q, qd : array_like, shape (..., 2)
-        Angles (rad) and velocities (rad/s).
-    v, a : array_like, shape (..., 2)
-        Another velocity (rad/s) and another acceleration (rad/s^2).
-    names : sequence of str
-        Parameters, from `PARAMETERS`.
-
-    Returns
-    -------
-    ndarray, shape (..., 2, parameters)
+    The form is that of Slotine & Li 1987, for two links; its shape is (..., 2, parameters), and
+    `names` are some of `PARAMETERS`.
     """
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
     for name in names:
@@ -43,10 +30,7 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
 
 
 def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
-    """`mixed_regressor` of arrays `q`, `qd`, `v`, `a` and known `names`: nothing is checked.
-
-    It is for the inner loop of a simulation.
-    """
+    """`mixed_regressor` without checks, for the inner loop of a simulation."""
     q, qd, v, a = np.broadcast_arrays(q, qd, v, a)
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
     (w1, w2), (v1, v2), (a1, a2) = ((x[..., 0], x[..., 1]) for x in (qd, v, a))
@@ -67,7 +51,7 @@ def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
         else:
             joint = int(name[-1]) - 1
             rate = v[..., joint]
-            own = rate if name.startswith("F_v") else np.clip(rate / SIGN_SPEED, -1.0, 1.0)
+            own = rate if name.startswith("F_v") else np.clip(rate / _SIGN_SPEED, -1.0, 1.0)
             Y[..., joint, k] = own
     return Y
 

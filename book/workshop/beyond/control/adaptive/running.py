@@ -42,12 +42,7 @@ class RunningLaw:
 
 @dataclass(frozen=True)
 class Watched:
-    """A controller whose last law can be asked after the run: ``watched.law``.
-
-    Parameters
-    ----------
-    controller : Controller or callable
-    """
+    """A controller whose last law can be asked after the run: ``watched.law``."""
 
     controller: Controller
     _laws: list = field(default_factory=list, compare=False, repr=False)

@@ -25,42 +25,18 @@ class SlotineLi:
 
     With ``e = q_ref - q``, the velocity ``v = qd_ref + slope e`` and ``s = v - qd`` the torque is
     ``Y(q, qd, v, dv/dt) estimate + gain s``, and the estimate moves by
-    ``d estimate/dt = rate Y' s``.
-
-    Parameters
-    ----------
-    gain : array_like, shape (..., 2)
-        Of s, N m s/rad, above 0.
-    slope : array_like, shape (..., 2)
-        How fast an error would die out on ``s = 0``, 1/s, above 0.
-    rate : array_like, shape (..., parameters)
-        Speed of adaptation, in the parameter's unit per N m rad; 0: it is not adapted.
-    estimate : array_like, shape (..., parameters)
-        What the run begins with.
-    names : sequence of str
-        The parameters, from `PARAMETERS`.
-    at : {"measured", "desired"}
-        The state at which Y is taken: "desired" is Y of the reference alone, which can be computed
-        beforehand (Sadegh & Horowitz 1990). Then `lyapunov` may rise.
-    dead_zone : array_like, shape (..., 2)
-        Size of s, rad/s, within which nothing is learnt, and which is taken off beyond it.
-    leakage : float
-        Rate at which the estimate goes back to what the run began with, 1/s.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range or a shape does not fit.
+    ``d estimate/dt = rate Y' s``. With ``at="desired"`` Y is that of the reference alone, which can
+    be computed beforehand (Sadegh & Horowitz 1990); then `lyapunov` may rise.
     """
 
-    gain: tuple[float, float]
-    slope: tuple[float, float]
-    rate: Sequence[float]
-    estimate: Sequence[float]
+    gain: tuple[float, float]  # of s, N m s/rad
+    slope: tuple[float, float]  # how fast an error would die out on s = 0, 1/s
+    rate: Sequence[float]  # (..., parameters), their unit per N m rad; 0: it is not adapted
+    estimate: Sequence[float]  # (..., parameters): what the run begins with
     names: Sequence[str] = PARAMETERS[:3]
-    at: str = "measured"
-    dead_zone: tuple[float, float] = (0.0, 0.0)
-    leakage: float = 0.0
+    at: str = "measured"  # or "desired": the state at which Y is taken
+    dead_zone: tuple[float, float] = (0.0, 0.0)  # of s, rad/s: taken off, nothing is learnt within
+    leakage: float = 0.0  # rate at which the estimate goes back to what the run began with, 1/s
 
     def __post_init__(self):
         one_of("at", self.at, ("measured", "desired"))
@@ -73,21 +49,9 @@ class SlotineLi:
         check_parameters(self)
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
-        """Torque and the estimate's rate of change in continuous time.
+        """Torque ``(..., 2)`` and the estimate's rate of change per second, in continuous time.
 
-        Parameters
-        ----------
-        estimate : array_like, shape (..., parameters)
-        wanted : Trajectory
-            One sample of the reference.
-        q, qd : array_like, shape (..., 2)
-            Measured state.
-
-        Returns
-        -------
-        torque : ndarray, shape (..., 2)
-        change : ndarray, shape (..., parameters)
-            Per second.
+        `wanted` is one sample of the reference, `q` and `qd` are measured.
         """
         s, v, a = self._sliding(wanted, q, qd)
         if self.at == "desired":
@@ -103,14 +67,6 @@ class SlotineLi:
 
         On a rigid body with the parameters `truth`, in continuous time, it falls at the rate
         ``s' gain s`` and never rises. Parameters with a rate of 0 are left out; they must be right.
-
-        Parameters
-        ----------
-        arm : Arm
-            The plant.
-        truth : array_like, shape (parameters,)
-        estimate, wanted, q, qd
-            As in `output`.
         """
         s = self._sliding(wanted, q, qd)[0]
         kinetic = 0.5 * np.einsum("...i,...ij,...j", s, arm.mass_matrix(q), s)
