@@ -71,6 +71,10 @@ class Cases:
     def __len__(self):
         return len(self.x)
 
+    def __getitem__(self, rows) -> Cases:
+        """Some of the cases: a slice, a mask or an array of indices."""
+        return Cases(self.x[rows], self.torque[rows], self.kind, self.step)
+
     @classmethod
     def windows(cls, recording: Recording, width: int) -> Cases:
         """All windows of `width` measured positions in the motions of a recording, runs joined."""

@@ -27,15 +27,10 @@ PROCESSES = {
 }
 
 
-def _some(cases: Cases, rows) -> Cases:
-    return Cases(cases.x[rows], cases.torque[rows], cases.kind, cases.step)
-
-
 def _asked(rival, cases: Cases) -> dict:
     within = isinstance(rival, Estimating)
     deviation = getattr(rival.rival if within else rival, "deviation", None)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         found = rival.torque(cases.x)
         row = {"rmss": float(rmss(found, cases.torque))}
         if deviation is not None:
@@ -56,9 +51,9 @@ def gaussian_intervals() -> dict:
         training, six = split(JOINT_DAMPING.repeated(day).record())
         windows = Cases.windows(training, WIDTH)
         out = np.random.default_rng(day).random(len(windows)) < KEPT
-        sets = {"kept out": _some(windows, out), "trajectory 6": Cases.windows(six, WIDTH)}
+        sets = {"kept out": windows[out], "trajectory 6": Cases.windows(six, WIDTH)}
         for name, make in PROCESSES.items():
-            rival = make().fit(_some(windows, ~out))
+            rival = make().fit(windows[~out])
             for part, cases in sets.items():
                 rows[name][part].append(_asked(rival, cases))
     return {"days": DAYS, "level": LEVEL, "processes": rows}

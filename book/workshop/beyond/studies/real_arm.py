@@ -278,8 +278,8 @@ def _processes(subset: int = 120) -> dict:
             kind = "windows" if name == "windows" else "states"
             process = GaussianProcess(kind, subset=subset, restarts=0, **more)
             process.fit(Cases(x[training], y[training], kind, data.step))
-            with warnings.catch_warnings():  # beyond its training inputs on purpose
-                warnings.simplefilter("ignore", OutsideFamilyWarning)
+            # beyond its training inputs on purpose
+            with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
                 answer = process.torque(x[test])
             answer += known[test] if name == "on the rest" else 0
             rows[name].append(wrong(answer, data, test).mean())

@@ -49,14 +49,9 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     }
     seen: dict = {inputs: {} for inputs in INPUTS}
     for name, (part, every) in parts.items():
-        seen["positions"][name] = _every(Cases.windows(part, WIDTH), every)
-        exact = Cases.states(part, true_states(part, setup))
-        seen["exact states"][name] = _every(exact, every)
-    return seen, _every(Cases.windows(whole.recording, WIDTH), SHOWN)
-
-
-def _every(cases: Cases, step: int) -> Cases:
-    return Cases(cases.x[::step], cases.torque[::step], cases.kind, cases.step)
+        seen["positions"][name] = Cases.windows(part, WIDTH)[::every]
+        seen["exact states"][name] = Cases.states(part, true_states(part, setup))[::every]
+    return seen, Cases.windows(whole.recording, WIDTH)[::SHOWN]
 
 
 def _seen(line, inputs: str, size, seed: int):
@@ -132,8 +127,7 @@ def _row(name, inputs, size, found) -> dict:
 
 
 def _asked(rival, asked: Cases) -> np.ndarray:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         return rival.torque(asked.x)
 
 

@@ -28,10 +28,8 @@ POINTS, STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 def _cases(setup: Setup, recording: Recording, kind: str, stride: int = 1) -> Cases:
     if kind == "exact":
-        found = Cases.states(recording, true_states(recording, setup))
-    else:
-        found = Cases.windows(recording, WIDTH).estimated()
-    return Cases(found.x[::stride], found.torque[::stride], "states", found.step)
+        return Cases.states(recording, true_states(recording, setup))[::stride]
+    return Cases.windows(recording, WIDTH).estimated()[::stride]
 
 
 @cache
@@ -69,8 +67,7 @@ def _floor(day: int) -> float:
 
 
 def _errors(rival: Rival, sets: dict[str, Cases]) -> dict[str, float]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         return {name: float(rmss(rival.torque(c.x), c.torque)) for name, c in sets.items()}
 
 
@@ -181,8 +178,7 @@ def _around(kind: str, days) -> dict:
 
 def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
     """Error on each trajectory of the square, shape (runs,)."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         left = (rival.torque(everywhere.x) - everywhere.torque) / scale
     return np.sqrt((left**2).reshape(POINTS**2, -1).mean(-1))
 

@@ -8,15 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
-from ddlib.effects import (
-    IDEAL,
-    Backlash,
-    DeadZone,
-    Delay,
-    Effects,
-    Ripple,
-    StribeckFriction,
-)
+from ddlib.effects import IDEAL, Backlash, DeadZone, Delay, Effects, Ripple, StribeckFriction
 from ddlib.setups import (
     JOINT_DAMPING,
     JOINT_DAMPING_COULOMB,
@@ -28,23 +20,7 @@ from ddlib.setups import (
 from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
-from workshop.beyond.studies.loop.runs.adaptive import (
-    FULL,
-    LAWS,
-    SIZES,
-    TRUTH,
-    Rounded,
-    by_law,
-    drawn,
-    excitation,
-    fixed,
-    gains,
-    make,
-    rounding,
-    sampled_lyapunov,
-    trial,
-    trials,
-)
+from workshop.beyond.studies.loop.runs import adaptive as batch
 from workshop.report.code_hash import study
 
 SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
@@ -67,7 +43,7 @@ BED = {
     "ripple": lambda e: replace(e, motor=(Ripple(cogging=MOST),)),
 }
 
-FRICTION_TRUTH = np.concatenate([TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
+FRICTION_TRUTH = np.concatenate([batch.TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
 ZONE = (0.17, 0.14)  # rad/s: friction at the largest speed over the damping term
 FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))  # rates of the map of stops, over those elsewhere
 LATE = (0, 1, 2, 3, 5)  # delays of that map, control periods
@@ -75,20 +51,20 @@ LATE = (0, 1, 2, 3, 5)  # delays of that map, control periods
 
 def _course(setup: Setup, seed: int = 1) -> dict:
     """Errors and estimates from trial to trial, before and after a load is taken up."""
-    start = np.broadcast_to(BEGIN * TRUTH, (SEEDS, 3))
+    start = np.broadcast_to(BEGIN * batch.TRUTH, (SEEDS, 3))
     laws = {
-        **fixed(setup),
-        **{law: make(law, setup, start) for law in LAWS},
-        "with friction, jumps": make("with friction", setup, start, jumps=True),
+        **batch.fixed(setup),
+        **{law: batch.make(law, setup, start) for law in batch.LAWS},
+        "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
-    extents, effects = drawn(SEEDS, 2 * TRIALS, seed), rounding(setup, SEEDS, seed)
-    found, laws = trials(laws, extents[:TRIALS], setup.arm, effects)
-    loaded, laws = trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
+    extents, effects = batch.drawn(SEEDS, 2 * TRIALS, seed), batch.rounding(setup, SEEDS, seed)
+    found, laws = batch.trials(laws, extents[:TRIALS], setup.arm, effects)
+    loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
     found += loaded
-    known = [n for n in laws if n.startswith(LAWS)]
+    known = [n for n in laws if n.startswith(batch.LAWS)]
     return {
-        "settled": by_law(found, laws),
-        "hand": by_law(found, laws, "hand"),
+        "settled": batch.by_law(found, laws),
+        "hand": batch.by_law(found, laws, "hand"),
         "stopped": int(sum(t.stops.stopped.sum() for t in found)),
         "estimates": {
             n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
@@ -99,13 +75,13 @@ def _course(setup: Setup, seed: int = 1) -> dict:
 
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
-    laws = {**fixed(setup), **{law: make(law, setup) for law in LAWS}}
-    effects, rows = rounding(setup, SEEDS, seed), []
+    laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in batch.LAWS}}
+    effects, rows = batch.rounding(setup, SEEDS, seed), []
     settings = [(m, 0) for m in LOADS] + [(PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        found, _ = trials(laws, drawn(SEEDS, 2, seed), with_load(setup.arm, mass), slow)
-        rows.append({"load": mass, "late": late, "settled": by_law(found, laws)})
+        found, _ = batch.trials(laws, batch.drawn(SEEDS, 2, seed), with_load(setup.arm, mass), slow)
+        rows.append({"load": mass, "late": late, "settled": batch.by_law(found, laws)})
     return {"rows": rows}
 
 
@@ -113,35 +89,35 @@ def _sensors(seed: int = 3) -> dict:
     """The third and fourth motion over the encoder, with a tachometer and without."""
     runs, setup = len(BITS) * SEEDS, JOINT_DAMPING
     step = np.repeat(2 * np.pi / 2 ** np.array(BITS), SEEDS)
-    effects, rows = rounding(setup, runs, seed, step), {}
-    extents = np.tile(drawn(SEEDS, TRIALS, seed), (1, len(BITS), 1))
-    start = np.broadcast_to(BEGIN * TRUTH, (runs, 3))
+    effects, rows = batch.rounding(setup, runs, seed, step), {}
+    extents = np.tile(batch.drawn(SEEDS, TRIALS, seed), (1, len(BITS), 1))
+    start = np.broadcast_to(BEGIN * batch.TRUTH, (runs, 3))
 
     def exact(q, qd, torque):
         limited = effects.actuator[0].apply(torque)
         return setup.arm.forward_dynamics(q, qd, limited - effects.friction_torque(qd))
 
     laws = {
-        "Slotine & Li": make("with friction", setup, start),
-        "Craig, differences": make("measured acceleration", setup, start),
-        "Craig, exact": make("measured acceleration", setup, start, acceleration=exact),
+        "Slotine & Li": batch.make("with friction", setup, start),
+        "Craig, differences": batch.make("measured acceleration", setup, start),
+        "Craig, exact": batch.make("measured acceleration", setup, start, acceleration=exact),
     }
     for velocity in ("tachometer", "difference"):
-        found, after = trials(laws, extents, setup.arm, effects, velocity=velocity)
+        found, after = batch.trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
                 "settled": errors[-1].reshape(len(BITS), SEEDS),
                 "estimate": after[name].estimate.reshape(len(BITS), SEEDS, -1),
             }
-            for name, errors in by_law(found, laws).items()
+            for name, errors in batch.by_law(found, laws).items()
         }
     return rows
 
 
 def _law(rate: float = 3.0) -> SlotineLi:
     """Slotine & Li's law for the rigid body alone, from half of its parameters."""
-    slope, _ = gains(STATE_FEEDBACK)
-    return SlotineLi(KD, slope, rate * SIZES[:3] ** 2, BEGIN * TRUTH)
+    slope, _ = batch.gains(STATE_FEEDBACK)
+    return SlotineLi(KD, slope, rate * batch.SIZES[:3] ** 2, BEGIN * batch.TRUTH)
 
 
 def _lyapunov() -> dict:
@@ -159,7 +135,9 @@ def _lyapunov() -> dict:
     y0 = np.concatenate([np.zeros(4), law.estimate])
     found = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
     wanted = smooth_pick_and_place(extents, t)
-    truth = law.lyapunov(CMU_DD_ARM_II, TRUTH, found[:, 4:], wanted, found[:, :2], found[:, 2:4])
+    truth = law.lyapunov(
+        CMU_DD_ARM_II, batch.TRUTH, found[:, 4:], wanted, found[:, :2], found[:, 2:4]
+    )
     rows = {"continuous": _rises(truth)}
     grid = np.arange(-50, 1550) * 0.002
     step = 2 * np.pi / 2 ** np.array([np.inf, 16.0, 12.5])
@@ -168,8 +146,8 @@ def _lyapunov() -> dict:
         ("family", pick_and_place(APPENDIX_I, grid)),
     ):
         reference = Trajectory(*(np.broadcast_to(x, (3, *x.shape)) for x in reference))
-        effects = Effects(encoder=(Rounded(step[:, None, None], np.zeros(2)),))
-        values = sampled_lyapunov(law, reference, grid, effects)
+        effects = Effects(encoder=(batch.Rounded(step[:, None, None], np.zeros(2)),))
+        values = batch.sampled_lyapunov(law, reference, grid, effects)
         for bits, each in zip(("perfect", "16 bits", "12.5 bits"), values):
             rows[f"{name}, {bits}"] = [_rises(v, grid) for v in each]
     return rows
@@ -194,18 +172,18 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
     """What is found along single motions, repeated, and along the family; no friction."""
     extents = np.concatenate([APPENDIX_I, APPENDIX_I[:1]])
     course = np.broadcast_to(extents, (count, *extents.shape)).copy()
-    course[:, -1] = drawn(1, count, seed)[:, 0]
-    start = np.broadcast_to(BEGIN * TRUTH, (len(extents), 3))
+    course[:, -1] = batch.drawn(1, count, seed)[:, 0]
+    start = np.broadcast_to(BEGIN * batch.TRUTH, (len(extents), 3))
     laws = {
-        "learning": make("rigid body", STATE_FEEDBACK, start),
-        "knowing": make("rigid body", STATE_FEEDBACK, factor=0.0),
-        "not learning": make("rigid body", STATE_FEEDBACK, start, factor=0.0),
+        "learning": batch.make("rigid body", STATE_FEEDBACK, start),
+        "knowing": batch.make("rigid body", STATE_FEEDBACK, factor=0.0),
+        "not learning": batch.make("rigid body", STATE_FEEDBACK, start, factor=0.0),
     }
-    found, laws = trials(laws, course, CMU_DD_ARM_II, IDEAL)
+    found, laws = batch.trials(laws, course, CMU_DD_ARM_II, IDEAL)
     return {
-        "eigenvalues": np.linalg.eigvalsh(excitation(APPENDIX_I)),
-        "settled": by_law(found, laws),
-        "estimate": laws["learning"].estimate / TRUTH,
+        "eigenvalues": np.linalg.eigvalsh(batch.excitation(APPENDIX_I)),
+        "settled": batch.by_law(found, laws),
+        "estimate": laws["learning"].estimate / batch.TRUTH,
     }
 
 
@@ -214,19 +192,21 @@ def _drift(seed: int = 5, count: int = 10) -> dict:
     setup, runs = JOINT_DAMPING, 2 * SEEDS
     whole = np.broadcast_to(FRICTION_TRUTH, (runs, 7))
     laws = {
-        "plain": make("with friction", setup, whole, 10.0),
-        "dead zone": make("with friction", setup, whole, 10.0, dead_zone=ZONE),
-        "leakage": make("with friction", setup, whole, 10.0, leakage=0.3),
-        "friction unmodelled": make("rigid body", setup, whole[:, :3], 10.0),
-        "unmodelled, dead zone": make("rigid body", setup, whole[:, :3], 10.0, dead_zone=ZONE),
+        "plain": batch.make("with friction", setup, whole, 10.0),
+        "dead zone": batch.make("with friction", setup, whole, 10.0, dead_zone=ZONE),
+        "leakage": batch.make("with friction", setup, whole, 10.0, leakage=0.3),
+        "friction unmodelled": batch.make("rigid body", setup, whole[:, :3], 10.0),
+        "unmodelled, dead zone": batch.make(
+            "rigid body", setup, whole[:, :3], 10.0, dead_zone=ZONE
+        ),
     }
     step = np.where(np.arange(runs) < SEEDS, setup.effects.encoder[0].step, 0.0)
     course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
-    found, _ = trials(laws, course, setup.arm, rounding(setup, runs, seed, step))
+    found, _ = batch.trials(laws, course, setup.arm, batch.rounding(setup, runs, seed, step))
     return {
-        "settled": by_law(found, laws),
+        "settled": batch.by_law(found, laws),
         "estimates": {
-            n: np.stack([t.laws[n].estimate for t in found])[..., :3] / TRUTH for n in laws
+            n: np.stack([t.laws[n].estimate for t in found])[..., :3] / batch.TRUTH for n in laws
         },
     }
 
@@ -235,18 +215,20 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     """Friction alone adapted, the rigid body known, after Canudas et al. 1987."""
     viscous, coulomb = (np.asarray(f.slope if k == 0 else f.level) for k, f in
                         enumerate(setup.effects.friction))  # fmt: skip
-    right = np.concatenate([TRUTH, viscous, coulomb])
-    only = np.where(np.arange(len(FULL)) < 3, 0.0, 1.0)
+    right = np.concatenate([batch.TRUTH, viscous, coulomb])
+    only = np.where(np.arange(len(batch.FULL)) < 3, 0.0, 1.0)
     laws = {
-        "none": make("with friction", setup, factor=0.0),
-        "adapted": make("with friction", setup, np.broadcast_to(TRUTH, (SEEDS, 3))),
-        "known": make("with friction", setup, right, factor=0.0),
+        "none": batch.make("with friction", setup, factor=0.0),
+        "adapted": batch.make("with friction", setup, np.broadcast_to(batch.TRUTH, (SEEDS, 3))),
+        "known": batch.make("with friction", setup, right, factor=0.0),
     }
     inner = laws["adapted"].controller
     laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
-    found, after = trials(laws, drawn(SEEDS, TRIALS, seed), setup.arm, rounding(setup, SEEDS, seed))
+    found, after = batch.trials(
+        laws, batch.drawn(SEEDS, TRIALS, seed), setup.arm, batch.rounding(setup, SEEDS, seed)
+    )
     return {
-        "settled": by_law(found, laws),
+        "settled": batch.by_law(found, laws),
         "estimate": after["adapted"].estimate[:, 3:],
         "truth": right[3:],
     }
@@ -257,36 +239,36 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
     setup, rows = JOINT_DAMPING, {}
     right = np.broadcast_to(FRICTION_TRUTH, (SEEDS, 7))
     laws = {
-        "adapted": make("with friction", setup, right),
-        "held": make("with friction", setup, FRICTION_TRUTH, factor=0.0),
+        "adapted": batch.make("with friction", setup, right),
+        "held": batch.make("with friction", setup, FRICTION_TRUTH, factor=0.0),
     }
     bare = {
-        "rigid, adapted": make("rigid body", setup, right[:, :3]),
-        "rigid, held": make("rigid body", setup, TRUTH, factor=0.0),
+        "rigid, adapted": batch.make("rigid body", setup, right[:, :3]),
+        "rigid, held": batch.make("rigid body", setup, batch.TRUTH, factor=0.0),
     }
     for k, (name, added) in enumerate(BED.items()):
         given = laws if k else {**laws, **bare}
-        effects = added(rounding(setup, SEEDS, seed))
-        found, after = trials(given, drawn(SEEDS, count, seed), setup.arm, effects)
+        effects = added(batch.rounding(setup, SEEDS, seed))
+        found, after = batch.trials(given, batch.drawn(SEEDS, count, seed), setup.arm, effects)
         rows[name] = {
-            "settled": {n: x[-1] for n, x in by_law(found, given).items()},
+            "settled": {n: x[-1] for n, x in batch.by_law(found, given).items()},
             "estimate": after["adapted"].estimate / FRICTION_TRUTH,
         }
         if given is not laws:
-            rows[name]["rigid"] = after["rigid, adapted"].estimate / TRUTH
+            rows[name]["rigid"] = after["rigid, adapted"].estimate / batch.TRUTH
     return rows
 
 
 def _map(setup: Setup = JOINT_DAMPING) -> dict:
     """Where runs are stopped: rate of adaptation against delay, and why."""
     extents = np.tile(APPENDIX_I[[0, 5]], (len(FACTORS), 1))
-    factor, names = np.repeat(FACTORS, 2), LAWS[1:]
-    start, rows = np.broadcast_to(BEGIN * TRUTH, (len(extents), 3)), []
+    factor, names = np.repeat(FACTORS, 2), batch.LAWS[1:]
+    start, rows = np.broadcast_to(BEGIN * batch.TRUTH, (len(extents), 3)), []
     for late in LATE:
-        laws = {n: make(n, setup, start, factor) for n in names}
+        laws = {n: batch.make(n, setup, start, factor) for n in names}
         effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
-        first = trial(laws, extents, setup.arm, effects)
-        again = trial(first.laws, extents, setup.arm, effects)
+        first = batch.trial(laws, extents, setup.arm, effects)
+        again = batch.trial(first.laws, extents, setup.arm, effects)
         ended = first.stops.stopped
         time = np.where(ended, first.stops.time, 3.2 + again.stops.time)
         reason = np.where(ended, first.stops.reason, again.stops.reason)

@@ -29,17 +29,7 @@ from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from workshop.beyond.rivals.identified import Linear
 from workshop.beyond.rivals.protocol import Cases, derivative_filters
-from workshop.beyond.studies.loop.chain import (
-    EVERY,
-    MOTIONS,
-    REACH,
-    SPACING,
-    Chain,
-    Sample,
-    chain,
-    extents,
-    recorded,
-)
+from workshop.beyond.studies.loop import chain as arms
 from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 
@@ -61,7 +51,7 @@ TEST_MOTIONS, TEST_SEED = 20, 1000
 UNITS = (5, 20, 40)  # besides the report's ten, at four joints
 STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000  # of random states
 MAIN = 20  # training motions of the networks whose filters are read
-REST = SPACING * LOG_STEP  # s, from one tap of a window to the next
+REST = arms.SPACING * LOG_STEP  # s, from one tap of a window to the next
 
 
 def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
@@ -74,29 +64,31 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
     initial = options.pop("initial", INITIAL)
     start = Weights.random(1, width, hidden, joints, joints, initial=initial, seed=seed)
     options = {"steps": STEPS, "decay": DECAY, **options}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
+    # the number of steps is the setting
+    with warnings.catch_warnings(action="ignore", category=NotConverged):
         return solve(start, data, test=data.transform(*test), progress=False, **options)
 
 
-def sets(made: Chain, motions: int, seed: int, **options) -> Sample:
+def sets(made: arms.Chain, motions: int, seed: int, **options) -> arms.Sample:
     """A training set of `CASES` windows from so many motions of an arm."""
-    return recorded(made, extents(made.joints, motions, seed), seed, **options).thinned(CASES)
+    return arms.recorded(made, arms.extents(made.joints, motions, seed), seed, **options).thinned(
+        CASES
+    )
 
 
-def tested(made: Chain, **options) -> Sample:
+def tested(made: arms.Chain, **options) -> arms.Sample:
     """The test motions, every fourth of their windows."""
-    drawn = extents(made.joints, TEST_MOTIONS, TEST_SEED)
-    return recorded(made, drawn, TEST_SEED, **options).thinned(CASES)
+    drawn = arms.extents(made.joints, TEST_MOTIONS, TEST_SEED)
+    return arms.recorded(made, drawn, TEST_SEED, **options).thinned(CASES)
 
 
-def linear(training: Sample, test: Sample) -> float:
+def linear(training: arms.Sample, test: arms.Sample) -> float:
     """Error of a linear filter of the windows, its ridge chosen by leaving parts out."""
     rival = Linear().fit(Cases(training.windows, training.torque, "windows", REST))
     return float(rmss(rival._torque(test.windows), test.torque))
 
 
-def identified(made: Chain, training: Sample, test: Sample) -> tuple[float, float]:
+def identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> tuple[float, float]:
     """Errors (training, test) of the equations with friction, by least squares.
 
     States come from a polynomial through each window, of the degree, 3 or 4, that fits better.
@@ -115,7 +107,7 @@ def identified(made: Chain, training: Sample, test: Sample) -> tuple[float, floa
     return error, float(rmss(answer, test.torque))
 
 
-def equations(made: Chain, windows, degree: int) -> np.ndarray:
+def equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
     """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
 
     Its states are those of polynomials of this degree through the windows.
@@ -134,7 +126,7 @@ def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     """Errors of networks and of a linear filter, by joints and their numbers of motions."""
     rows = []
     for joints, motions in ladder.items():
-        made = chain(joints, reading)
+        made = arms.chain(joints, reading)
         test = tested(made)
         for count_of in motions:
             row = {"joints": joints, "motions": count_of}
@@ -157,7 +149,7 @@ def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> 
     """Errors of the identified equations, by joints and motions, one for each of the seeds."""
     rows = []
     for n in joints:
-        made = chain(n)
+        made = arms.chain(n)
         test = tested(made)
         for m in motions:
             each = [identified(made, sets(made, m, s), test) for s in range(1, 1 + seeds)]
@@ -170,12 +162,16 @@ def closed_loops(seeds: int = SEEDS) -> list[dict]:
     """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
     rows = []
     for setup in (JOINT_DAMPING, STATE_FEEDBACK):
-        made = chain(2, setup.name)
+        made = arms.chain(2, setup.name)
         for motions in (5, MAIN):
-            drawn = [extents(2, motions, seed) for seed in range(1, 1 + seeds)]
-            loop = setup.record(np.vstack([extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
-            for spacing in (SPACING, 1) if motions == MAIN else (SPACING,):
-                kinds = ("closed loop", *MOTIONS) if spacing > 1 else ("closed loop", MOTIONS[0])
+            drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
+            loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
+            for spacing in (arms.SPACING, 1) if motions == MAIN else (arms.SPACING,):
+                kinds = (
+                    ("closed loop", *arms.MOTIONS)
+                    if spacing > 1
+                    else ("closed loop", arms.MOTIONS[0])
+                )
                 for kind in kinds:
                     if kind == "closed loop":
                         parts = _cut(loop, spacing, motions)
@@ -192,7 +188,7 @@ def closed_loops(seeds: int = SEEDS) -> list[dict]:
                         {
                             "reading": setup.name,
                             "motions": motions,
-                            "taps": 2 * REACH // spacing + 1,
+                            "taps": 2 * arms.REACH // spacing + 1,
                             "kind": kind,
                             "deviation": test.torque.std(0),
                             "training": [h.training[-1, 0] for h in errors],
@@ -202,23 +198,23 @@ def closed_loops(seeds: int = SEEDS) -> list[dict]:
     return rows
 
 
-def _cut(loop, spacing: int, motions: int) -> list[Sample]:
+def _cut(loop, spacing: int, motions: int) -> list[arms.Sample]:
     """Test set and training sets of a recording of closed loops, cut as `recorded` does."""
-    centres = np.arange(loop.motion.start, loop.motion.stop, EVERY)
-    taps = centres[:, None] + np.arange(-REACH, REACH + 1, spacing)
+    centres = np.arange(loop.motion.start, loop.motion.stop, arms.EVERY)
+    taps = centres[:, None] + np.arange(-arms.REACH, arms.REACH + 1, spacing)
     windows, torque = np.moveaxis(loop.q[:, taps], -1, -2), loop.tau[:, centres]
     ends = [0, *range(TEST_MOTIONS, len(windows) + 1, motions)]
     made = []
     for first, last in pairwise(ends):
         x, y = windows[first:last], torque[first:last]
         flat = x.reshape(-1, *x.shape[2:]), y.reshape(-1, 2)
-        made.append(Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
+        made.append(arms.Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
     return made
 
 
 def units() -> list[dict]:
     """Four joints with other numbers of hidden units."""
-    made = chain(4)
+    made = arms.chain(4)
     test = tested(made)
     rows = []
     for hidden in UNITS:
@@ -238,7 +234,7 @@ def random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.nd
     """Random states of section 6 for more joints, and the rigid body's torque, N m."""
     rng = np.random.default_rng((seed, joints))
     states = rng.uniform(-np.pi, np.pi, (samples, joints, 3))
-    return states, chain(joints).arm.inverse_dynamics(*np.moveaxis(states, -1, 0))
+    return states, arms.chain(joints).arm.inverse_dynamics(*np.moveaxis(states, -1, 0))
 
 
 def random_states() -> list[dict]:
@@ -262,13 +258,13 @@ def random_states() -> list[dict]:
 
 def pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
     """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia."""
-    made = chain(joints)
+    made = arms.chain(joints)
     test = tested(made)
     inertia = mass_matrix(made.arm, test.states[..., 0]).mean(0)
     found: dict = {"real": [], "unrelated": []}
     used: dict = {"real": [], "unrelated": []}
     for seed in range(1, 1 + seeds):
-        whole = recorded(made, extents(joints, MAIN, seed), seed)
+        whole = arms.recorded(made, arms.extents(joints, MAIN, seed), seed)
         runs = whole.torque.reshape(MAIN, -1, joints)
         torques = {"real": runs, "unrelated": surrogate("phases", runs, seed)}
         step = -(-len(whole.torque) // CASES)
@@ -307,7 +303,7 @@ def interactions() -> dict:
     """How much of each torque is owed to the other joints: RMS without them, over the deviation."""
     found = {}
     for joints in (2, 3, 4, 5, 7):
-        made = chain(joints)
+        made = arms.chain(joints)
         states = tested(made).states
         whole, alone = made.torque(states), np.zeros(states.shape[:2])
         for j in range(joints):

@@ -24,12 +24,7 @@ from workshop.beyond.control.feedback_error import (
     MotionMemory,
     RigidBodyTerms,
 )
-from workshop.beyond.control.online import (
-    LastLayer,
-    LinearFilter,
-    OnlineDescent,
-    OnlineFeedforward,
-)
+from workshop.beyond.control.online import LastLayer, LinearFilter, OnlineDescent, OnlineFeedforward
 from workshop.report import results
 
 SEEDS, TUNED = 10, 1000  # draws; the first of those on which rates were chosen

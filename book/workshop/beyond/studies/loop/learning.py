@@ -17,19 +17,7 @@ from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.feedback_error import GenericTerms, RigidBodyTerms
 from workshop.beyond.control.guarded import Guarded
 from workshop.beyond.control.online import Abreast
-from workshop.beyond.studies.loop.learners import (
-    NAMES,
-    RATE,
-    TRIALS,
-    Draw,
-    Terms,
-    by_feedback,
-    candidates,
-    grid,
-    lineup,
-    motions,
-    tiled,
-)
+from workshop.beyond.studies.loop import learners
 from workshop.report.code_hash import study
 
 LOAD = 5.0  # kg, in the hand from half-way on
@@ -37,7 +25,7 @@ TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
 RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
-def trial(draw: Draw, controllers, rows, references, t, arm: Arm | None = None):
+def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
     """End-point errors (mm, RMS over the motion) and stops of one trial of controllers abreast.
 
     Errors have shape (rows, seeds), references (rows, seeds, time, 2); ``rows`` are those of each
@@ -59,46 +47,46 @@ def _repeated(reference: Trajectory, count: int) -> Trajectory:
     return Trajectory(*(np.broadcast_to(x, (count, *x.shape)) for x in reference))
 
 
-def _practise(draw, learners, reference, t, tested: Trajectory | None = None):
+def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
     """Trials of one motion: errors by trial of each learner, and of a second motion on the way."""
-    errors = {name: [] for name in learners}
-    rows = [1] * len(learners) * (2 if tested else 1)
-    for _ in range(TRIALS):
-        now = [learner.controller() for learner in learners.values()]
-        frozen = [x.controller(False) for x in learners.values()] if tested else []
+    errors = {name: [] for name in pupils}
+    rows = [1] * len(pupils) * (2 if tested else 1)
+    for _ in range(learners.TRIALS):
+        now = [learner.controller() for learner in pupils.values()]
+        frozen = [x.controller(False) for x in pupils.values()] if tested else []
         every = _repeated(reference, len(now))
         if tested:
             more = _repeated(tested, len(now))
             every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
         found = trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
-        for k, (name, learner) in enumerate(learners.items()):
+        for k, (name, learner) in enumerate(pupils.items()):
             errors[name].append(found[:, k])
             learner.keep(now[k])
     return {name: np.array(each) for name, each in errors.items()}
 
 
-def _motion(draw: Draw) -> dict:
+def _motion(draw: learners.Draw) -> dict:
     """Practise one motion, be asked for others, go on to the other extents."""
-    learners, asked = lineup(draw), motions(draw)
+    pupils, asked = learners.lineup(draw), learners.motions(draw)
     t, reference = asked["the same"]
-    first = _practise(draw, learners, reference, t)
+    first = _practise(draw, pupils, reference, t)
     tests = {}
     plain = [Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller),
              Feedforward(draw.equations, draw.setup.controller)]  # fmt: skip
     for name, (times, wanted) in asked.items():
-        frozen = [learner.controller(False) for learner in learners.values()]
-        learning = [copy.deepcopy(learner).controller() for learner in learners.values()]
-        count = len(plain) + 2 * len(learners)
+        frozen = [learner.controller(False) for learner in pupils.values()]
+        learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
+        count = len(plain) + 2 * len(pupils)
         found = trial(
             draw, plain + frozen + learning, [1] * count, _repeated(wanted, count), times
         )[0]
         tests[name] = {
             "no feedforward": found[0],
             "exact equations": found[1],
-            "frozen": dict(zip(learners, found[2:])),
-            "learning": dict(zip(learners, found[2 + len(learners) :])),
+            "frozen": dict(zip(pupils, found[2:])),
+            "learning": dict(zip(pupils, found[2 + len(pupils) :])),
         }
-    second = _practise(draw, learners, asked["other extents"][1], t, reference)
+    second = _practise(draw, pupils, asked["other extents"][1], t, reference)
     return {
         "practice": {name: x[:, 0] for name, x in first.items()},
         "tests": tests,
@@ -107,26 +95,28 @@ def _motion(draw: Draw) -> dict:
     }
 
 
-def _family(draw: Draw, learners: Mapping | None = None) -> dict:
+def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
     """Practise members of the paper's family; a load from half-way on; tests on three motions."""
-    learners, t = learners or candidates(draw), grid()
+    pupils, t = pupils or learners.candidates(draw), learners.grid()
     loaded = with_load(draw.setup.arm, LOAD)
     tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in TESTS]
-    practice, tested = ({name: [] for name in ("no feedforward", *learners)} for _ in range(2))
+    practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
     plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
-    rows, size = [1 + len(TESTS)] + [1, len(TESTS)] * len(learners), 1 + len(TESTS)
+    rows, size = [1 + len(TESTS)] + [1, len(TESTS)] * len(pupils), 1 + len(TESTS)
 
     def once(trial_number, arm, learning=True):
         every = _rows(pick_and_place(draw.family[:, trial_number], t), *tests)
-        every = Trajectory(*(np.concatenate([x] * (1 + len(learners))) for x in every))
+        every = Trajectory(*(np.concatenate([x] * (1 + len(pupils))) for x in every))
         controllers = [plain]
-        for learner in learners.values():
+        for learner in pupils.values():
             controllers += [learner.controller(learning), learner.controller(False)]
         found = trial(draw, controllers, rows, every, t, arm)[0]
-        return found.reshape(1 + len(learners), size, draw.seeds)
+        return found.reshape(1 + len(pupils), size, draw.seeds)
 
-    for k in range(2 * TRIALS):
-        for name, found in zip(practice, once(k, draw.setup.arm if k < TRIALS else loaded)):
+    for k in range(2 * learners.TRIALS):
+        for name, found in zip(
+            practice, once(k, draw.setup.arm if k < learners.TRIALS else loaded)
+        ):
             practice[name].append(found[0])
             tested[name].append(found[1:].mean(0))
     after = once(0, draw.setup.arm, learning=False)
@@ -139,26 +129,26 @@ def _family(draw: Draw, learners: Mapping | None = None) -> dict:
     }
 
 
-def _rates(draw: Draw) -> dict:
+def _rates(draw: learners.Draw) -> dict:
     """Six trials of one motion at several rates: the last error, and who was stopped."""
-    t, reference = motions(draw)["the same"]
+    t, reference = learners.motions(draw)["the same"]
     many, rates = len(RATES), np.array(RATES)[:, None]
-    model = replace(draw.untrained, weights=tiled(draw.untrained.weights, many))
-    learners = {
-        "exact terms": Terms(RigidBodyTerms(NAMES), draw, RATE * rates),
-        "generic terms": Terms(GenericTerms(), draw, RATE * rates),
-        "network, by feedback": by_feedback(model, draw, rates + np.zeros(draw.seeds)),
+    model = replace(draw.untrained, weights=learners.tiled(draw.untrained.weights, many))
+    pupils = {
+        "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners.RATE * rates),
+        "generic terms": learners.Terms(GenericTerms(), draw, learners.RATE * rates),
+        "network, by feedback": learners.by_feedback(model, draw, rates + np.zeros(draw.seeds)),
     }
-    every, stopped = _repeated(reference, many * len(learners)), False
-    for _ in range(TRIALS // 2):
-        now = [learner.controller() for learner in learners.values()]
+    every, stopped = _repeated(reference, many * len(pupils)), False
+    for _ in range(learners.TRIALS // 2):
+        now = [learner.controller() for learner in pupils.values()]
         errors, stops = trial(draw, now, [many] * len(now), every, t)
         stopped = stopped | stops.stopped
-        for learner, controller in zip(learners.values(), now):
+        for learner, controller in zip(pupils.values(), now):
             learner.keep(controller)
-    shape = (len(learners), many, draw.seeds)
+    shape = (len(pupils), many, draw.seeds)
     errors, stopped = errors.reshape(shape), np.reshape(stopped, shape)
-    return {name: {"error": e, "stopped": s} for name, e, s in zip(learners, errors, stopped)}
+    return {name: {"error": e, "stopped": s} for name, e, s in zip(pupils, errors, stopped)}
 
 
 @study
@@ -166,7 +156,7 @@ def learning_in_the_loop() -> dict:
     """End-point errors of all learners, mm, for each reading of section 4."""
     found = {}
     for setup in (JOINT_DAMPING, STATE_FEEDBACK):
-        draw = Draw(setup)
+        draw = learners.Draw(setup)
         parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
         found[setup.name] = parts
-    return {"setups": found, "rates": RATES, "trials": TRIALS, "load": LOAD}
+    return {"setups": found, "rates": RATES, "trials": learners.TRIALS, "load": LOAD}

@@ -29,29 +29,7 @@ from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.lagrangian import LagrangianNetwork
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating
-from workshop.beyond.studies.loop.run_time_parts import (
-    EXTENTS,
-    FEWER,
-    POINTS,
-    WIDTH,
-    T,
-    computed_torque,
-    drive,
-    exact,
-    given,
-    linear_loop,
-    logged_error,
-    networks,
-    planned,
-    predicted,
-    rounded,
-    score,
-    through_loop,
-    through_window,
-    told,
-    with_impulse,
-)
-from workshop.beyond.studies.loop.runs import lines as batch
+from workshop.beyond.studies.loop import run_time_parts as parts
 from workshop.report import results
 from workshop.report.code_hash import study
 
@@ -89,10 +67,10 @@ def _lines(setup: Setup) -> dict[str, list]:
     """Feedforwards by name: one model for all days, or one for each."""
     return {
         "none": [_nothing],
-        "exact": [exact(setup)],
-        "exact, with its impulses": [with_impulse(setup)],
-        **{f"exact, window {w}": [through_window(exact(setup), w)] for w in WINDOWS},
-        **{f"network, window {w}": networks(setup, MEMBERS, w) for w in WINDOWS},
+        "exact": [parts.exact(setup)],
+        "exact, with its impulses": [parts.with_impulse(setup)],
+        **{f"exact, window {w}": [parts.through_window(parts.exact(setup), w)] for w in WINDOWS},
+        **{f"network, window {w}": parts.networks(setup, MEMBERS, w) for w in WINDOWS},
     }
 
 
@@ -100,9 +78,9 @@ def _few(setup: Setup) -> dict[str, list]:
     """Those of the side experiments."""
     return {
         "none": [_nothing],
-        "exact": [exact(setup)],
-        "exact, window": [through_window(exact(setup))],
-        "network": networks(setup, FEW),
+        "exact": [parts.exact(setup)],
+        "exact, window": [parts.through_window(parts.exact(setup))],
+        "network": parts.networks(setup, FEW),
     }
 
 
@@ -114,14 +92,14 @@ def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
     """Scores of all lines over the square, and the torques of the networks."""
     rows, torques = {}, {}
     for name, models in _lines(setup).items():
-        torque = planned(models, reference)
-        log = drive(setup, given(torque, setup.controller), reference, _days(models))
-        rows[name] = told(score(setup.arm, log))
+        torque = parts.planned(models, reference)
+        log = parts.drive(setup, parts.given(torque, setup.controller), reference, _days(models))
+        rows[name] = parts.told(parts.score(setup.arm, log))
         if name.startswith("network"):
             torques[name] = torque
     days = range(1, 1 + FEW)
-    log = drive(setup, computed_torque(setup), reference, days)
-    rows["computed torque"] = told(score(setup.arm, log))
+    log = parts.drive(setup, parts.computed_torque(setup), reference, days)
+    rows["computed torque"] = parts.told(parts.score(setup.arm, log))
     return rows, torques
 
 
@@ -130,17 +108,21 @@ def _rivals(setup: Setup, reference: Trajectory) -> dict:
     made: dict = {name: ([], []) for name in RIVALS}
     days = range(1, 1 + FEW)
     for day in days:
-        training, six = (Cases.windows(part, WIDTH) for part in split(setup.repeated(day).record()))
+        training, six = (
+            Cases.windows(part, parts.WIDTH) for part in split(setup.repeated(day).record())
+        )
         for name, make in RIVALS.items():
             rival = make(day).fit(training)
-            feedforward = WindowFeedforward(rival.torque, WIDTH, between="line", step=LOG_STEP)
+            feedforward = WindowFeedforward(
+                rival.torque, parts.WIDTH, between="line", step=LOG_STEP
+            )
             torques, scores = made[name]
             scores.append(rmss(rival.torque(six.x), six.torque))
             torques.append(_by_run(feedforward, reference))
     rows = {}
     for name, (torques, scores) in made.items():
-        log = drive(setup, given(np.stack(torques), setup.controller), reference, days)
-        rows[name] = {**told(score(setup.arm, log)), "RMSS": scores}
+        log = parts.drive(setup, parts.given(np.stack(torques), setup.controller), reference, days)
+        rows[name] = {**parts.told(parts.score(setup.arm, log)), "RMSS": scores}
     return rows
 
 
@@ -152,8 +134,8 @@ def _by_run(model: WindowFeedforward, reference: Trajectory) -> np.ndarray:
 
 def _course(setup: Setup) -> dict:
     """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
-    reference = rounded(APPENDIX_I[5:], 0.0)
-    log, parts = batch.driven(setup, _made(_lines(setup), reference), reference)
+    reference = parts.rounded(APPENDIX_I[5:], 0.0)
+    log, slices = parts.driven(setup, _made(_lines(setup), reference), reference)
     shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
     gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
     joints = np.rad2deg(log.tracking_error)
@@ -162,22 +144,24 @@ def _course(setup: Setup) -> dict:
             "hand": np.median(gap[part], (0, 1))[shown],
             "joints": np.median(joints[part], (0, 1))[shown],
         }
-        for name, part in parts.items()
+        for name, part in slices.items()
     }
     return {**found, "time": log.t[shown]}
 
 
 def _made(lines: dict, reference) -> dict:
     """Torques of lines along a reference, with the days of their members."""
-    return {name: (planned(models, reference), _days(models)) for name, models in lines.items()}
+    return {
+        name: (parts.planned(models, reference), _days(models)) for name, models in lines.items()
+    }
 
 
 def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:
     """The same, and computed torque."""
     days = range(1, 1 + FEW)
-    log = drive(setup, computed_torque(setup), reference, days, **changed)
-    middle = np.median(score(setup.arm, log).whole, -1)
-    return batch.errors(setup, made, reference, **changed) | {"computed torque": middle}
+    log = parts.drive(setup, parts.computed_torque(setup), reference, days, **changed)
+    middle = np.median(parts.score(setup.arm, log).whole, -1)
+    return parts.errors(setup, made, reference, **changed) | {"computed torque": middle}
 
 
 def _corner(setup: Setup) -> dict:
@@ -185,18 +169,18 @@ def _corner(setup: Setup) -> dict:
     lines = _few(setup)
 
     def along(reference):
-        return batch.errors(setup, _made(lines, reference), reference)
+        return parts.errors(setup, _made(lines, reference), reference)
 
-    found = {f"{seconds:g}": along(rounded(FEWER, seconds)) for seconds in ROUNDED}
-    return {"rounded": found, "smooth": along(smooth_pick_and_place(FEWER, T))}
+    found = {f"{seconds:g}": along(parts.rounded(parts.FEWER, seconds)) for seconds in ROUNDED}
+    return {"rounded": found, "smooth": along(smooth_pick_and_place(parts.FEWER, parts.T))}
 
 
 def _rates(setup: Setup, reference) -> dict:
     """What is done between the samples of the log, and windows at the wrong period."""
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
-    lines = {name: networks(setup, FEW, **how) for name, how in options.items()}
-    return batch.errors(setup, _made(lines, reference), reference)
+    lines = {name: parts.networks(setup, FEW, **how) for name, how in options.items()}
+    return parts.errors(setup, _made(lines, reference), reference)
 
 
 def _changed(setup: Setup, made: dict, reference) -> dict:
@@ -204,7 +188,9 @@ def _changed(setup: Setup, made: dict, reference) -> dict:
     found: dict = {"load": {}, "friction": {}, "delay": {}}
     for load in LOADS:
         arm = with_load(setup.arm, load)
-        knows = _made({"exact, window, knows": [through_window(exact(setup, arm))]}, reference)
+        knows = _made(
+            {"exact, window, knows": [parts.through_window(parts.exact(setup, arm))]}, reference
+        )
         found["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
     viscous, coulomb = setup.effects.friction
     for factor in FRICTIONS:
@@ -226,7 +212,7 @@ def _gains(setup: Setup, made: dict, reference) -> dict:
     for factor in GAINS:
         kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
         other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
-        found[f"{factor:g}"] = batch.errors(other, made, reference)
+        found[f"{factor:g}"] = parts.errors(other, made, reference)
     return found
 
 
@@ -240,8 +226,8 @@ def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
         found[str(width)] = {
             "end point": rows[name]["whole"],
             "RMSS": errors(model, recording).test,
-            "through the loop": logged_error(setup, model, split(recording)[1]),
-            "planned": np.median(predicted(setup, torques[name], reference), -1),
+            "through the loop": parts.logged_error(setup, model, split(recording)[1]),
+            "planned": np.median(parts.predicted(setup, torques[name], reference), -1),
         }
     return found
 
@@ -252,14 +238,14 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
     The torques of a network and of exact equations behind a window differ by a bounded signal.
     """
     elbow = float(reference.q[..., 1].mean())
-    system = linear_loop(setup, elbow)
+    system = parts.linear_loop(setup, elbow)
     knock = np.zeros((2, 5000, 2))
     knock[[0, 1], 0, [0, 1]] = 1.0
-    gain = np.abs(through_loop(system, knock)).sum(1).T  # (angle, torque), rad/(N m)
+    gain = np.abs(parts.through_loop(system, knock)).sum(1).T  # (angle, torque), rad/(N m)
     days = range(1, 1 + len(torques))
-    other = planned([through_window(exact(setup))], reference)
+    other = parts.planned([parts.through_window(parts.exact(setup))], reference)
     runs = [
-        drive(setup, given(torque, setup.controller), reference, days)
+        parts.drive(setup, parts.given(torque, setup.controller), reference, days)
         for torque in (torques, other)
     ]
     apart = np.abs(runs[0].q_true - runs[1].q_true).max(-2)
@@ -274,9 +260,9 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
 
 def _inside(setup: Setup) -> dict:
     """Models inside the loop: which runs the guard stops, the error of the others."""
-    reference = rounded(EXTENTS[list(CORNERS)], 0.0)
+    reference = parts.rounded(parts.EXTENTS[list(CORNERS)], 0.0)
     shares, found = np.array(SHARES)[:, None], {}
-    models = {"exact, window": [through_window(exact(setup))], "network": networks(setup, FEW)}
+    models = {name: _few(setup)[name] for name in ("exact, window", "network")}
     day = setup.repeated(1).effects
     for name, several in models.items():
         for late in LATE_INSIDE:
@@ -286,9 +272,9 @@ def _inside(setup: Setup) -> dict:
                 law = Watched(
                     Guarded(MeasuredWindows(model, setup.controller, shares), speeds=LIMIT)
                 )
-                log = follow(setup.arm, law, reference, T, effects=effects, duration=3.0)
+                log = follow(setup.arm, law, reference, parts.T, effects=effects, duration=3.0)
                 row["stopped"].append(law.law.stops.stopped.mean(1))
-                row["error"].append(np.median(score(setup.arm, log).whole, 1))
+                row["error"].append(np.median(parts.score(setup.arm, log).whole, 1))
                 row["poles"].append(_largest_poles(setup, model, reference, late))
             found[f"{name}, {late}"] = row
     return found
@@ -296,7 +282,9 @@ def _inside(setup: Setup) -> dict:
 
 def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int) -> list[float]:
     """Size of the largest pole of the linear loop with a model inside, at each of `SHARES`."""
-    windows = sliding_windows(reference.q[..., 250:1750:5, :], WIDTH).reshape(-1, 2, WIDTH)
+    windows = sliding_windows(reference.q[..., 250:1750:5, :], parts.WIDTH).reshape(
+        -1, 2, parts.WIDTH
+    )
     past = past_slopes(model.model, windows[::10])
     viscous = np.asarray(setup.effects.friction[0].coefficient)
     joints = plant(setup.arm.mass_matrix([0.0, float(windows[:, 1].mean())]), viscous)
@@ -312,15 +300,19 @@ def run_time() -> dict:
 
     End-point errors are RMS over a motion, mm; each member's is the median over the square.
     """
-    reference = rounded(EXTENTS, 0.0)
-    found: dict = {"points": POINTS, "extents": EXTENTS, "shares": SHARES, "limit": LIMIT}
+    reference = parts.rounded(parts.EXTENTS, 0.0)
+    found: dict = {
+        "points": parts.POINTS,
+        "extents": parts.EXTENTS,
+        "shares": SHARES,
+        "limit": LIMIT,
+    }
     found["readings"] = {}
-    fewer = rounded(FEWER, 0.0)
+    fewer = parts.rounded(parts.FEWER, 0.0)
     for setup in READINGS:
         made = _made(_few(setup), fewer)
         rows, torques = _square(setup, reference)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", OutsideFamilyWarning)
+        with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
             rows |= _rivals(setup, reference)
         found["readings"][setup.name] = {
             "square": rows,
@@ -330,7 +322,7 @@ def run_time() -> dict:
             "changed": _changed(setup, made, fewer),
             "gains": _gains(setup, made, fewer),
             "scatter": _scatter(setup, rows, torques, reference),
-            "bound": _bound(setup, torques[f"network, window {WIDTH}"], reference),
+            "bound": _bound(setup, torques[f"network, window {parts.WIDTH}"], reference),
             "inside": _inside(setup),
         }
     return found

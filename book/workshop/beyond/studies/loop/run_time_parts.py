@@ -15,13 +15,7 @@ from ddlib.effects import Effects, EncoderZero
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.setups import Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
-from ddlib.trajectories import (
-    MAX_EXTENT_DEG,
-    MOTION_SECONDS,
-    Trajectory,
-    pick_and_place,
-    time_grid,
-)
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.beyond.rivals.protocol import derivative_filters
 from workshop.report import results
@@ -121,10 +115,10 @@ def on_days(effects: Effects, setup: Setup, days) -> Effects:
 
 def planned(models, reference: Trajectory) -> np.ndarray:
     """Torques of several feedforwards along a reference, shape (models, ..., time, 2), N m."""
-    return time_first(np.stack([model(*reference) for model in models]))
+    return _time_first(np.stack([model(*reference) for model in models]))
 
 
-def time_first(torque) -> np.ndarray:
+def _time_first(torque) -> np.ndarray:
     """Torques unchanged, but one sample of all runs lies together in memory."""
     return np.moveaxis(np.ascontiguousarray(np.moveaxis(torque, -2, 0)), 0, -2)
 
@@ -140,6 +134,23 @@ def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) 
     return follow(
         arm or setup.arm, controller, reference, T, effects=effects, duration=MOTION_SECONDS
     )
+
+
+def driven(
+    setup: Setup, made: dict, reference: Trajectory, **changed
+) -> tuple[Recording, dict[str, slice]]:
+    """Recording of all lines, and which part of it belongs to each.
+
+    ``made`` has by the name of a line its torques (N m), ``(days or 1, runs, time, 2)``, and its
+    days; ``changed`` is another arm or other effects.
+    """
+    every, days, parts = [], [], {}
+    for name, (torque, own) in made.items():
+        parts[name] = slice(len(days), len(days) + len(own))
+        days += own
+        every.append(np.broadcast_to(torque, (len(own), *torque.shape[1:])))
+    law = given(_time_first(np.concatenate(every)), setup.controller)
+    return drive(setup, law, reference, days, **changed), parts
 
 
 # --- scores -------------------------------------------------------------------------------
@@ -184,6 +195,13 @@ def score(arm: Arm, recording: Recording) -> Score:
         shoulder=joints[..., 0],
         elbow=joints[..., 1],
     )
+
+
+def errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[str, np.ndarray]:
+    """Median end-point error over the runs on each day of each line, as of `driven`, mm."""
+    log, parts = driven(setup, made, reference, **changed)
+    middle = np.median(score(setup.arm, log).whole, -1)
+    return {name: middle[part] for name, part in parts.items()}
 
 
 def told(found: Score) -> dict:

@@ -10,20 +10,13 @@ from itertools import product
 
 import numpy as np
 
-from ddlib.analysis import (
-    CLASSES,
-    calibrated,
-    classify,
-    heard,
-    savitzky_golay,
-    unit_inputs,
-)
+from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
 from ddlib.learning import NotConverged, TorqueModel, related, surrogate
 from ddlib.metrics import rmss
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup, true_states
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording
+from ddlib.simulation import CONTROL_STEP, Recording
 from ddlib.trajectories import (
     MOTION_SECONDS,
     OutsideFamilyWarning,
@@ -35,18 +28,8 @@ from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating, Rival
-from workshop.beyond.studies.loop.motions import (
-    FAMILIES,
-    TEST_DAY,
-    Circles,
-    asked,
-    coverage,
-    learnt,
-    random_circles,
-    recorded,
-    stirred,
-    times,
-)
+from workshop.beyond.studies.loop import motions
+from workshop.beyond.studies.loop.run_time_parts import exact, through_window
 from workshop.beyond.studies.loop.runs.days import training
 from workshop.report import results
 from workshop.report.code_hash import study
@@ -82,8 +65,7 @@ def maker(setup: Setup, name: str, seed: int) -> Rival:
 def errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     """RMSS by the test's own deviation, and RMS errors of both joints (N m), of each test."""
     found = {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         for name, cases in tests.items():
             torque = model(cases.x)
             left = np.sqrt(((torque - cases.torque) ** 2).mean(0))
@@ -92,15 +74,14 @@ def errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
 
 
 def _fitted(rival: Rival, cases: Cases) -> Rival:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NotConverged)  # it stops after its steps
+    # it stops after its steps
+    with warnings.catch_warnings(action="ignore", category=NotConverged):
         return rival.fit(cases)
 
 
 def _answers(tests: dict, width: int) -> dict[str, Cases]:
     """Every third window of recordings."""
-    found = {name: Cases.windows(run, width) for name, run in tests.items()}
-    return {n: Cases(c.x[::3], c.torque[::3], c.kind, c.step) for n, c in found.items()}
+    return {name: Cases.windows(run, width)[::3] for name, run in tests.items()}
 
 
 def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict) -> tuple:
@@ -109,7 +90,7 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     rivals: dict = {pair: [] for pair in product(names, families)}
     found: dict = {name: {family: {} for family in families} for name in names}
     for day, run in enumerate(runs):
-        cases = learnt(run, width)
+        cases = motions.learnt(run, width)
         for (name, family), trained in rivals.items():
             trained.append(_fitted(maker(setup, name, day), cases[family]))
             every = errors(trained[-1].torque, {"training": cases[family], **answers})
@@ -127,26 +108,22 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
         for k in range(len(runs)):
             for part, error in errors(table[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, NAMES[:1], width, FAMILIES[1:2], runs, tests)[1]
+        other = _transfer(setup, NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
         found[str(width)] = {"pick and place": mine, **other["network"]}
     return found
 
 
 def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
     """Torque of the arm's equations with its friction, N m."""
-    return setup.arm.inverse_dynamics(q, qd, qdd) + setup.effects.friction_torque(qd)
-
-
-def behind(setup: Setup, width: int = WIDTH) -> Callable:
-    """The set-up's exact equations behind a window: derivatives by a cubic, friction included."""
-    filters = np.stack([savitzky_golay(width, k, LOG_STEP) for k in range(3)])
-    return lambda windows: needed(setup, *np.moveaxis(windows @ filters.T, -1, 0))
+    return exact(setup)(q, qd, qdd)
 
 
 def through(setup: Setup, torques, reference: Trajectory) -> Recording:
     """Drive an arm with feedforward torques ``(models, runs, time, 2)`` over its own feedback."""
     tiled = Trajectory(*(np.broadcast_to(x, torques.shape) for x in reference))
-    return recorded(setup, tiled, controller=Feedforward(lambda *_: torques, setup.controller))
+    return motions.recorded(
+        setup, tiled, controller=Feedforward(lambda *_: torques, setup.controller)
+    )
 
 
 def off(setup: Setup, log: Recording) -> np.ndarray:
@@ -162,18 +139,18 @@ def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     """
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
-        "exact equations": [lambda *motion: needed(setup, *motion)],
-        "exact behind a window": [WindowFeedforward(behind(setup), WIDTH)],
+        "exact equations": [exact(setup)],
+        "exact behind a window": [through_window(exact(setup))],
         **{n: [WindowFeedforward(model, WIDTH) for model in ms] for n, ms in models.items()},
     }
 
 
 def _hands(setup: Setup, rivals: dict, members: int) -> dict:
     """End-point errors (mm) on circles and on pick-and-place, shape (models, runs)."""
-    t, today = times(), setup.repeated(TEST_DAY)
-    motions = {
-        "circles": stirred(setup.arm, random_circles(members, TEST_DAY), t),
-        "pick and place": pick_and_place(random_extents(members, TEST_DAY), t),
+    t, today = motions.times(), setup.repeated(motions.TEST_DAY)
+    references = {
+        "circles": motions.stirred(setup.arm, motions.random_circles(members, motions.TEST_DAY), t),
+        "pick and place": pick_and_place(random_extents(members, motions.TEST_DAY), t),
     }
     models = {
         f"{name}, {family}": [r._torque for r in trained]
@@ -183,7 +160,7 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
     named = boxes(setup, models)
     ends = np.cumsum([len(ms) for ms in named.values()])[:-1]
     found: dict = {name: {} for name in named}
-    for motion, reference in motions.items():
+    for motion, reference in references.items():
         torques = np.stack([f(*reference) for ms in named.values() for f in ms])
         parts = np.split(off(setup, through(today, torques, reference)), ends)
         for name, errors_of in zip(named, parts):
@@ -234,7 +211,7 @@ def network_path(family: str):
 def _keep(setup: Setup, rivals: dict, table: dict) -> dict[str, TorqueModel]:
     """Save, of each family, the network with the median error on its own test."""
     kept = {}
-    for family in FAMILIES[:3]:
+    for family in motions.FAMILIES[:3]:
         part = family if family != "both" else "circles"
         order = np.argsort([error[0] for error in table["network"][family][part]])
         kept[family] = rivals["network", family][order[len(order) // 2]].model
@@ -247,18 +224,18 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
     *extents, elbows = (PLACES if places is None else places).values()
     named = {n: ms[0] for n, ms in boxes(setup, {f: [m.torque] for f, m in kept.items()}).items()}
     del named["exact equations"]
-    shape, t = tuple(map(len, (*extents, elbows))), times()
+    shape, t = tuple(map(len, (*extents, elbows))), motions.times()
     distance, bearing, radius, period = (x.ravel() for x in np.meshgrid(*extents, indexing="ij"))
     near, far = reach(setup.arm)
     fine = np.flatnonzero((distance - radius > near) & (distance + radius < far))
-    circles = Circles(radius, period, distance, bearing, np.zeros(len(radius), bool))[fine]
+    circles = motions.Circles(radius, period, distance, bearing, np.zeros(len(radius), bool))[fine]
     first = round(-t[0] / CONTROL_STEP)
     shown = slice(first, first + round(MOTION_SECONDS / CONTROL_STEP), SHOWN * 5)
     reached = np.zeros((len(distance), len(elbows)), bool)
     torque = np.zeros((3, *reached.shape, len(t[shown]), 2))
     hand = np.zeros((len(named), *reached.shape))
     for e, elbow in enumerate(elbows):
-        reference = stirred(setup.arm, circles, t, elbow)
+        reference = motions.stirred(setup.arm, circles, t, elbow)
         torques = np.stack([model(*reference) for model in named.values()])
         reached[fine, e] = True
         hand[:, fine, e] = off(setup, through(setup, torques, reference))
@@ -283,24 +260,27 @@ def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
     family and with the picker's torques.
     """
     found: dict = {"days": days, "members": members, "width": WIDTH, "setups": {}}
-    every = (JOINT_DAMPING, NAMES, FAMILIES), (STATE_FEEDBACK, NAMES[::2], FAMILIES[:3])
+    every = (
+        (JOINT_DAMPING, NAMES, motions.FAMILIES),
+        (STATE_FEEDBACK, NAMES[::2], motions.FAMILIES[:3]),
+    )
     for setup, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
         runs = training(setup, range(days))
-        tests = asked(setup, members, vias=main)
+        tests = motions.asked(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
         rivals, table = _transfer(setup, names, WIDTH, families, runs, tests)
         row = {
             "deviations": {n: Cases.windows(r, WIDTH).torque.std(0) for n, r in tests.items()},
             "errors": table,
-            "coverage": coverage(setup, tests, members),
+            "coverage": motions.coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),
         }
         if main:
             row["wider"] = _wider(setup, runs, tests)
             row["filters"] = _filters(setup, rivals, runs)
-            _picker(setup.repeated(TEST_DAY), _keep(setup, rivals, table))
+            _picker(setup.repeated(motions.TEST_DAY), _keep(setup, rivals, table))
         found["setups"][setup.name] = row
     return found

@@ -38,7 +38,6 @@ from workshop.beyond.studies.loop import (
     stirring,
 )
 from workshop.beyond.studies.loop.chain import Sample, chain, extents, recorded
-from workshop.beyond.studies.loop.runs import lines as batch
 from workshop.beyond.studies.loop.runs.days import recorded as recorded_days
 from workshop.report.code_hash import study
 
@@ -55,18 +54,17 @@ def _copies(setup: Setup, days) -> dict:
     torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in COPIES}
     torques["network"] = run_time.planned(run_time.networks(setup, len(days)), plan)
     made = {name: (torque, days) for name, torque in torques.items()}
-    return batch.errors(setup, made, plan)
+    return run_time.errors(setup, made, plan)
 
 
 def _cases(run, every: int) -> Cases:
-    found = Cases.windows(run, stirring.WIDTH)
-    return Cases(found.x[::every], found.torque[::every], found.kind, found.step)
+    return Cases.windows(run, stirring.WIDTH)[::every]
 
 
 def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
     rival = BySolver(10, steps, decay=JOINT_DAMPING.decay, initial=INITIAL, seed=day)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
+    # the number of steps is the setting
+    with warnings.catch_warnings(action="ignore", category=NotConverged):
         rival.fit(cases)
     return rival
 
@@ -117,8 +115,7 @@ def _five(t) -> Trajectory:
 
 def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
     """Median over a family of the hand's error, one for each model of each name, mm."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", OutsideFamilyWarning)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         torques = {
             name: [WindowFeedforward(m._torque, stirring.WIDTH)(*reference) for m in several]
             for name, several in models.items()
@@ -179,7 +176,7 @@ def _part(sample: Sample, cases: np.ndarray) -> Sample:
 def _practised(setup: Setup, seeds: int) -> dict:
     """One motion practised, then frozen on others, mm: three motions, and a scaled memory."""
     draw = learners.Draw(setup, first=LATER, seeds=seeds)
-    asked = learning.motions(draw)
+    asked = learners.motions(draw)
     practise = {
         "in step": asked["the same"],
         "out of step": (learners.grid(), _out_of_step(draw)),
