@@ -13,76 +13,40 @@ from ddlib._check import integer
 from workshop import BOOK
 
 FOLDER = BOOK / "data"
-"""Where the files are."""
+PUBLISHED_TEST = ("e", "q", "v")  # kept for the test by the loader of Deep Lagrangian Networks
+RATE = 1000  # samples a second of the real arm's recording
 
-PUBLISHED_TEST = ("e", "q", "v")
-"""Characters that the loader of Deep Lagrangian Networks keeps for the test, if not told."""
-
-RATE = 1000
-"""Samples a second of the real arm's recording."""
-
-REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)
-"""Turns of each motor of the TX40 for one turn of its joint, from the source's configuration.
-Motor 6 turns joint 5, too."""
-
-VISCOUS = (8.05, 5.53, 1.97, 1.11, 1.86, 0.65)
-"""Viscous friction of the TX40's joints, N m s/rad, from the source's configuration."""
-
-COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)
-"""Coulomb friction of the TX40's joints, N m, from the source's configuration."""
+# from the configuration of the TX40's source
+REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)  # turns of a motor; motor 6 turns joint 5, too
+COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)  # friction of the joints, N m
 
 
 @dataclass(frozen=True)
 class Characters:
-    """Characters that a simulated two-joint arm with gravity draws, 25 samples a second.
+    """Characters that a simulated two-joint arm with gravity draws, one after the other.
 
-    The samples of all characters stand one after the other.
-
-    Attributes
-    ----------
-    labels : ndarray of str, shape (characters,)
-    length : ndarray of int, shape (characters,)
-        Samples of each character.
-    t : ndarray, shape (samples,)
-        s, from the beginning of each character.
-    q, qd, qdd : ndarray, shape (samples, 2)
-        rad, rad/s, rad/s^2; the first angle is counted from the horizontal.
-    tau, inertial, coriolis, gravity : ndarray, shape (samples, 2)
-        The torque and its parts, N m.
-    mass_matrix : ndarray, shape (samples, 2, 2)
-        kg m^2.
+    Angles are rad, the first one counted from the horizontal, torque and its parts N m.
     """
 
     labels: np.ndarray
-    length: np.ndarray
-    t: np.ndarray
+    length: np.ndarray  # samples of each character
+    t: np.ndarray  # s, from the beginning of each character
     q: np.ndarray
     qd: np.ndarray
     qdd: np.ndarray
-    tau: np.ndarray
+    tau: np.ndarray  # the sum of the three that follow
     inertial: np.ndarray
     coriolis: np.ndarray
     gravity: np.ndarray
     mass_matrix: np.ndarray
 
-    STEP = 0.04
-    """Sampling period, s."""
+    STEP = 0.04  # sampling period, s
 
     def __len__(self) -> int:
         return len(self.labels)
 
     def of(self, labels) -> Characters:
-        """Some of the characters, in the order of the file.
-
-        Parameters
-        ----------
-        labels : iterable of str
-
-        Raises
-        ------
-        ValueError
-            If one of them is not there, or none is asked for.
-        """
+        """Those of some labels, in the order of the file."""
         labels = set(labels)
         if not labels or labels - set(self.labels):
             raise ValueError(
@@ -97,51 +61,22 @@ class Characters:
         return replace(self, **chosen)
 
     def split(self, test=PUBLISHED_TEST) -> tuple[Characters, Characters]:
-        """The characters to learn from, and those to be tested on.
-
-        Parameters
-        ----------
-        test : iterable of str
-            Labels of the latter; default: as published (`PUBLISHED_TEST`).
-        """
+        """The characters to learn from, and those to be tested on."""
         test = set(test)
         return self.of(set(self.labels) - test), self.of(test)
 
 
 @dataclass(frozen=True)
 class RealArm:
-    """A recording of a real arm.
-
-    Attributes
-    ----------
-    t : ndarray, shape (samples,)
-        s.
-    q : ndarray, shape (samples, 6)
-        Positions of the joints, rad.
-    current : ndarray, shape (samples, 6)
-        Currents of the motors, A.
-    step : float
-        Sampling period, s.
-    """
+    """A recording of a real arm."""
 
     t: np.ndarray
-    q: np.ndarray
-    current: np.ndarray
+    q: np.ndarray  # rad
+    current: np.ndarray  # of the motors, A
     step: float
 
     def at(self, rate: int) -> RealArm:
-        """The same at fewer samples a second, each the mean of several.
-
-        Parameters
-        ----------
-        rate : int
-            Samples a second, a divisor of those that there are.
-
-        Raises
-        ------
-        ValueError
-            If it is not.
-        """
+        """The same at fewer samples a second, each the mean of several."""
         now = round(1 / self.step)
         if now % integer("rate", rate, 1, now):
             raise ValueError(f"rate must divide {now} samples a second, got {rate}")
@@ -157,15 +92,6 @@ class RealArm:
 def characters() -> Characters:
     """Twenty characters, drawn by somebody else's simulated arm (MIT licence).
 
-    Returns
-    -------
-    Characters
-
-    Raises
-    ------
-    FileNotFoundError
-        Outside the book's repository.
-
     Source: M. Lutter, C. Ritter, J. Peters, "Deep Lagrangian Networks", ICLR 2019; the file is
     that of the repository milutter/deep_lagrangian_networks.
     """
@@ -176,17 +102,8 @@ def characters() -> Characters:
 def staubli() -> RealArm:
     """Nine seconds of a Stäubli TX40, six joints on exciting trajectories (Apache licence 2.0).
 
-    Returns
-    -------
-    RealArm
-        At `RATE` samples a second, each the mean of five of the source's.
-
-    Raises
-    ------
-    FileNotFoundError
-        Outside the book's repository.
-
-    Source: repository thanhndv212/figaroh-examples, examples/staubli_TX40.
+    Source: repository thanhndv212/figaroh-examples, examples/staubli_TX40, of which each sample is
+    the mean of five.
     """
     with np.load(FOLDER / "staubli-tx40.npz") as file:
         q, current = np.deg2rad(file["position_deg"]), np.array(file["current_a"])

@@ -14,19 +14,12 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.page.learner import LEARNERS, LOADS, MOTIONS, SPEEDS
 from workshop.report import results
 
-SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}
-"""Estimates that are shown, and their places among the parameters."""
+SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # estimates, by place among the parameters
+_LABELS = dict(zip(SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
+MOST_ERROR = 20.0  # mm, the largest that is shown; a run that the guard stopped has a larger one
+BOUNDS = (-2.0, 6.0)  # smallest and largest multiple of a true value that is shown
 
-LABELS = dict(zip(SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
-"""What the chart calls them."""
-
-MOST_ERROR = 20.0
-"""Largest error that is shown, mm; a run that the guard stopped has a larger one, too."""
-
-BOUNDS = (-2.0, 6.0)
-"""Smallest and largest multiple of a true value that is shown."""
-
-NOTE = (
+_NOTE = (
     "Damped joints, an encoder of 12.5 bits, a tachometer; it begins with the base parameters of "
     "the arm without a load, and no friction. The hand's error is its root mean square over a "
     "motion, without the first third. A triangle: the error is larger, or the guard stopped the "
@@ -35,19 +28,8 @@ NOTE = (
 
 
 @cache
-def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Committed errors (mm) and estimates of all learners, with and without friction.
-
-    Parameters
-    ----------
-    load : int
-        kg, one of `workshop.beyond.studies.page.learner.LOADS`.
-
-    Returns
-    -------
-    dict
-        By learner, as from `workshop.beyond.studies.page.learner.learned`.
-    """
+def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Committed errors (mm) and estimates of all learners, with and without friction."""
     found = results.read("loop-learner")["loads"][str(load)]
     return {
         name: tuple(np.array(one[key], dtype=float) for key in ("errors", "estimates"))
@@ -56,13 +38,7 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 
 class LoopLearner(CurveWidget):
-    """Pick a load, friction, a learner and its rate; see the error fall, and the estimates.
-
-    Parameters
-    ----------
-    **options
-        Passed on to `CurveWidget`.
-    """
+    """Pick a load, friction, a learner and its rate; see the error fall, and the estimates."""
 
     def __init__(self, **options):
         motions = np.arange(1, MOTIONS + 1)
@@ -85,7 +61,7 @@ class LoopLearner(CurveWidget):
                 ),
                 Panel(
                     "Estimates over true values",
-                    LABELS,
+                    _LABELS,
                     "motions done, number",
                     np.arange(MOTIONS + 1),
                     y_fit=True,
@@ -97,29 +73,23 @@ class LoopLearner(CurveWidget):
                 "without; below, estimates of a, b, d and of the shoulder's viscous and Coulomb "
                 "friction as multiples of the true values.",
                 "title": "The loop with a learner inside",
-                "note": NOTE,
+                "note": _NOTE,
                 "depends": {"nobody": ["load", "friction"]},
                 **options,
             },
         )
 
 
-def truth(load: int) -> np.ndarray:
-    """The parameters that an arm with a load and friction has, in the order of `FULL`.
-
-    Parameters
-    ----------
-    load : int
-        kg.
-    """
+def _truth(load: int) -> np.ndarray:
+    """The parameters that an arm with a load (kg) and friction has, in the order of `FULL`."""
     arm = with_load(JOINT_DAMPING.arm, load)
     return np.array([arm.a, arm.b, arm.d, *JOINT_DAMPING_VISCOUS, *JOINT_DAMPING_COULOMB])
 
 
 def _curves(load, friction, learner, rate) -> dict:
-    found, k = learned(load), list(SPEEDS).index(rate)
+    found, k = _learned(load), list(SPEEDS).index(rate)
     errors, estimates = found[learner]
-    relative = estimates[int(friction), k] / truth(load)
+    relative = estimates[int(friction), k] / _truth(load)
     curves = {name: np.clip(relative[:, place], *BOUNDS) for name, place in SHOWN.items()}
     nobody = found[LEARNERS[0]][0][int(friction), 0]
     shown = np.minimum(errors[int(friction), k], MOST_ERROR)

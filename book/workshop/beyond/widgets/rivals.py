@@ -18,7 +18,7 @@ from workshop.beyond.studies.rivals import GRID, TORQUES
 
 MEASURED = "measured"
 
-NOTE = (
+_NOTE = (
     "Each rival sees measured positions, learnt from the five training recordings, and has the "
     "size within the stored numbers of the network of 1988, or its smallest. RMSS: root mean "
     "square error over the standard deviation of all measured torques of the square."
@@ -28,20 +28,8 @@ NOTE = (
 class RivalPicker(CurveWidget):
     """Pick a trajectory and a rival; see its torque there, and the errors of all rivals.
 
-    Parameters
-    ----------
-    path : path
-        What the study ``rivals`` kept: names, and torques of shape ``(names, runs, samples, 2)``,
-        the measured ones first.
-    rival : str
-        Shown at the start.
-    **options
-        Passed on to `CurveWidget`.
-
-    Raises
-    ------
-    ValueError
-        If there is no such rival.
+    `path` holds what the study ``rivals`` kept: names, and torques ``(names, runs, samples, 2)``,
+    the measured ones first.
     """
 
     def __init__(self, path: Path = TORQUES, rival: str = "linear filter", **options):
@@ -92,7 +80,7 @@ class RivalPicker(CurveWidget):
                 "alt": f"Torques of both joints over time: measured, by the {REFERENCE} and by "
                 f"the {rival}; below, bars with the errors of {len(rivals)} rivals.",
                 "title": "Picker of rivals",
-                "note": NOTE,
+                "note": _NOTE,
                 "depends": {**depends, "errors": place},
                 **options,
             },

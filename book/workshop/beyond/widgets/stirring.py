@@ -22,8 +22,7 @@ LINES = {
     "exact behind a window": "equations",
     "pick and place": "network of pick-and-place",
     "circles": "network of circles",
-}
-"""Whose torques are shown, and what the legend calls them."""
+}  # whose torques are shown, and what the legend calls them
 
 BARS = {
     "none": "none",
@@ -31,15 +30,11 @@ BARS = {
     "pick and place": "pick",
     "circles": "circles",
     "both": "both",
-}
-"""What stood in the box "inverse arm", and what the bars call it."""
+}  # what stood in the box "inverse arm", and what the bars call it
+_BOX = (-0.35, -1.0, 0.95, 0.35)  # what is drawn: left, bottom, right, top, m from the shoulder
+_ARM = JOINT_DAMPING.arm
 
-BOX = (-0.35, -1.0, 0.95, 0.35)
-"""The part of the workspace that is drawn: left, bottom, right, top, m from the shoulder."""
-
-ARM = JOINT_DAMPING.arm
-
-NOTE = (
+_NOTE = (
     "The hand goes round counter-clockwise for three seconds, from the point farthest from the "
     "shoulder. Torques are feedforward torques from windows of the desired motion; the equations "
     "are exact and see the same windows. Bars: RMS error of the hand under joint damping with "
@@ -52,15 +47,7 @@ class StirringPicker(CurveWidget):
     """Drag a circle through the workspace; see joint angles, torques, and the hand's errors.
 
     A circle that the hand cannot follow, or only with the arm stretched, is refused with a
-    sentence. Its curves are zero.
-
-    Parameters
-    ----------
-    path : path
-        What the study ``stirring`` kept: names, which circles of `PLACES` can be reached, errors
-        of the hand and torques.
-    **options
-        Passed on to `CurveWidget`.
+    sentence. Its curves are zero. `path` holds what the study ``stirring`` kept.
     """
 
     _esm = module(*SCRIPT, "stirring.js")
@@ -114,12 +101,12 @@ class StirringPicker(CurveWidget):
                 "alt": "Joint angles and torques of a circle of the hand over three seconds; "
                 "below, bars with the error of the hand for five kinds of feedforward.",
                 "title": "Stirring picker",
-                "note": NOTE,
+                "note": _NOTE,
                 **options,
             },
         )
-        lengths, limits = map(float, ARM.lengths), list(reach(ARM))
-        space = {"lengths": list(lengths), "reach": limits, "box": list(BOX)}
+        lengths, limits = map(float, _ARM.lengths), list(reach(_ARM))
+        space = {"lengths": list(lengths), "reach": limits, "box": list(_BOX)}
         self.set_trait("workspace", space)
 
     def _curves(self, **place) -> dict:
@@ -128,7 +115,7 @@ class StirringPicker(CurveWidget):
         if self._reached[at]:
             values = (place[n] for n in ("radius", "period", "distance", "bearing"))
             circle = Circles(*(np.array([v], float) for v in values), np.array([False]))
-            angles = np.rad2deg(stirred(ARM, circle, self._times, place["elbow"]).q[0])
+            angles = np.rad2deg(stirred(_ARM, circle, self._times, place["elbow"]).q[0])
         return {
             **{f"{joint} angle": angles[:, j] for j, joint in enumerate(JOINTS)},
             **{
