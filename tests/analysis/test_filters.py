@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.polynomial import Polynomial
 from scipy.signal import freqz
 
 from ddlib.analysis import (
-    CLASSES,
     DERIVATIVES,
     basis,
     classify,
@@ -48,62 +46,49 @@ def legendre(width):
     return {"position": 1 + 0 * x, "velocity": x, "acceleration": parabola, "jerk": cubic}
 
 
+def mix(width, **weights):
+    """Pure functions with given energies; a negative one turns the function."""
+    known = legendre(width)
+    return sum(
+        np.sign(w) * np.sqrt(abs(w)) * known[n] / np.linalg.norm(known[n])
+        for n, w in weights.items()
+    )
+
+
 # --- even and odd parts -------------------------------------------------------------------
 
 
 @settings(max_examples=50)
 @given(f=functions)
 def test_the_parts_are_what_they_are_called_and_sum_to_the_function(f):
-    parts = decompose(f)
+    """The paper takes the constant from the odd part, which is then not odd."""
+    parts, printed = decompose(f), decompose(f, "paper")
     np.testing.assert_allclose(parts.sum(), f, atol=1e-12)
     np.testing.assert_allclose(parts.odd, -parts.odd[::-1], atol=1e-12)
     np.testing.assert_allclose(parts.even, parts.even[::-1], atol=1e-12)
-    assert parts.constant.shape == (1,)
     assert parts.constant[0] == pytest.approx(np.mean(f), abs=1e-12)
     assert parts.even.mean() == pytest.approx(0, abs=1e-12)
     mixed = [a @ b for a, b in ((parts.odd, parts.even), (parts.odd, np.ones(len(f))))]
     np.testing.assert_allclose(mixed, 0, atol=1e-9)
-
-
-@settings(max_examples=50)
-@given(f=functions)
-def test_the_paper_takes_the_constant_from_the_odd_part(f):
-    ours, printed = decompose(f), decompose(f, "paper")
     np.testing.assert_allclose(printed.sum(), f, atol=1e-12)
     np.testing.assert_allclose(printed.even, (f + f[::-1]) / 2, atol=1e-12)
     np.testing.assert_allclose(printed.odd, (f - f[::-1]) / 2 - f.mean(), atol=1e-12)
-    np.testing.assert_allclose(printed.constant, ours.constant)
-
-
-def test_the_printed_odd_part_is_not_odd():
-    f = np.array([1.0, 2.0, 6.0])
-    assert decompose(f, "paper").odd[1] == -3.0
-    assert decompose(f).odd[1] == 0.0
 
 
 def test_known_functions_come_out_as_what_they_are():
     x = grid(21)
     f = 4 + 0.5 * x + np.cos(x)
-    parts = decompose(f)
-    np.testing.assert_allclose(parts.odd, 0.5 * x, atol=1e-12)
-    np.testing.assert_allclose(parts.even, np.cos(x) - np.cos(x).mean(), atol=1e-12)
     many = decompose(np.stack([f, 2 * f, -f]).reshape(3, 1, 21))
     assert many.constant.shape == (3, 1, 1) and many.even.shape == (3, 1, 21)
     np.testing.assert_allclose(many.odd[1, 0], x, atol=1e-12)
+    np.testing.assert_allclose(many.even[0, 0], np.cos(x) - np.cos(x).mean(), atol=1e-12)
 
 
 @pytest.mark.parametrize("name", [decompose, content, shares, classify, roughness])
-@pytest.mark.parametrize(
-    "f", [np.ones(10), np.ones((3, 4)), np.ones(1), 1.0, [0.0, np.nan, 1.0, 2.0, 3.0]]
-)
+@pytest.mark.parametrize("f", [np.ones((3, 4)), np.ones(1), 1.0, [0.0, np.nan, 1.0, 2.0, 3.0]])
 def test_functions_of_a_window_are_finite_and_have_a_centre(name, f):
     with pytest.raises(ValueError, match=r"^f must"):
         name(f)
-
-
-def test_convention_is_known():
-    with pytest.raises(ValueError, match="convention must be one of 'symmetric', 'paper'"):
-        decompose(np.ones(5), "printed")
 
 
 # --- derivatives -----------------------------------------------------------------------------
@@ -112,48 +97,35 @@ def test_convention_is_known():
 @pytest.mark.parametrize("width", [5, *WIDTHS, 81])
 def test_basis_is_orthonormal_and_known(width):
     b = basis(width)
-    assert b.shape == (4, width)
     np.testing.assert_allclose(b @ b.T, np.eye(4), atol=1e-12)
     for row, known in zip(b, legendre(width).values()):
         np.testing.assert_allclose(row, known / np.linalg.norm(known), atol=1e-12)
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("order", range(4))
-def test_pure_functions_have_one_share(width, order):
-    f = -2.5 * list(legendre(width).values())[order]
-    np.testing.assert_allclose(shares(f), np.eye(5)[order], atol=1e-12)
-    np.testing.assert_allclose(content(f)[order], -np.linalg.norm(f))
-
-
-@pytest.mark.parametrize("width", WIDTHS)
 def test_shares_of_a_sum_are_its_energies(width):
     x = grid(width).astype(float)
-    quartic = x**4
-    cubic_fit = Polynomial.fit(x, quartic, 3)(x)
-    rest = quartic - cubic_fit
+    rest = x**4 - Polynomial.fit(x, x**4, 3)(x)
     known = [*legendre(width).values(), rest]
     f = sum(np.sqrt(weight) * k / np.linalg.norm(k) for weight, k in zip((1, 2, 3, 4, 5), known))
     np.testing.assert_allclose(shares(f), np.arange(1, 6) / 15, atol=1e-12)
+    np.testing.assert_allclose(content(f), np.sqrt([1, 2, 3, 4]))
+    np.testing.assert_allclose(shares(-3 * f[::-1]), shares(f), atol=1e-12)
+    for order, pure in enumerate(known):
+        np.testing.assert_allclose(shares(-2.5 * pure), np.eye(5)[order], atol=1e-12)
 
 
 @settings(max_examples=50)
-@given(f=functions.filter(lambda f: np.abs(f).max() > 1e-3), scale=st.sampled_from([-3.0, 0.1]))
-def test_shares_sum_to_one_whatever_the_scale(f, scale):
+@given(f=functions.filter(lambda f: np.abs(f).max() > 1e-3))
+def test_shares_sum_to_one(f):
     s = shares(f)
     assert s.shape == (5,) and (s >= 0).all()
     assert s.sum() == pytest.approx(1, abs=1e-9)
-    np.testing.assert_allclose(shares(scale * f), s, atol=1e-9)
-
-
-def test_shares_of_time_reversed_functions_are_the_same():
-    f = random((6, 21))
-    np.testing.assert_allclose(shares(f[:, ::-1]), shares(f), atol=1e-12)
 
 
 def test_response_to_a_polynomial_motion():
     """A filter without position share does not see where the arm stands, and so on."""
-    f = {name: k for name, k in legendre(11).items()}
+    f = legendre(11)
     x = grid(11)
     assert f["velocity"] @ (7.0 + 0 * x) == 0
     assert f["acceleration"] @ (7.0 + 3.0 * x) == pytest.approx(0, abs=1e-9)
@@ -162,25 +134,24 @@ def test_response_to_a_polynomial_motion():
         assert f[name] @ motion > 1
 
 
-def test_refusals_of_content():
+def test_pure_part_keeps_polynomials_and_nothing_else():
+    x = np.linspace(-1, 1, 21)
+    rng = np.random.default_rng(1)
+    for degree in range(4):
+        poly = Polynomial(rng.normal(size=degree + 1))(x)
+        assert np.allclose(pure_part(poly, degree), poly)
+        f = rng.normal(size=(3, 21))
+        fitted = [Polynomial.fit(x, one, degree)(x) for one in f]
+        assert np.allclose(pure_part(f, degree), fitted)
+    with pytest.raises(ValueError, match="degree"):
+        pure_part(f, 4)
     with pytest.raises(ValueError, match="5 samples or more"):
         content(np.ones(3))
     with pytest.raises(ValueError, match="must not be zero everywhere"):
         shares(np.stack([np.ones(7), np.zeros(7)]))
-    with pytest.raises(ValueError, match="width must be an integer from 4"):
-        basis(3)
 
 
 # --- names -------------------------------------------------------------------------------
-
-
-def mix(width, **weights):
-    known = legendre(width)
-    return sum(
-        np.sign(w) * np.sqrt(abs(w)) * known[n] / np.linalg.norm(known[n])
-        for n, w in weights.items()
-    )
-
 
 NAMED = [
     (dict(velocity=1), "velocity"),
@@ -197,15 +168,18 @@ NAMED = [
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("weights, name", NAMED, ids=lambda x: x if isinstance(x, str) else "")
-def test_names_of_pure_and_mixed_functions(width, weights, name):
-    f = mix(width, **weights)
-    noise = random(width)
-    noise *= 0.03 * np.linalg.norm(mix(width, **{**weights, "position": 0})) / np.sqrt(width)
-    np.testing.assert_array_equal(classify([f, -f, 40 * f, f + noise]), [name] * 4)
+def test_names_of_pure_and_mixed_functions(width):
+    for weights, name in NAMED:
+        f = mix(width, **weights)
+        noise = random(width)
+        noise *= 0.03 * np.linalg.norm(mix(width, **{**weights, "position": 0})) / np.sqrt(width)
+        names = classify([[f, -f], [40 * f, f + noise]])
+        np.testing.assert_array_equal(names, [[name] * 2] * 2)
+    for value in (1.0, 0.1, 0.3, -2.7, 1e-9):  # a constant has no derivative
+        assert classify(np.full(width, value)) == "not analysable"
 
 
-def test_rough_functions_are_not_analysable():
+def test_rough_functions_are_not_analysable_and_thresholds_are_kept():
     alternating = (-1.0) ** np.arange(21)
     assert classify(alternating) == "not analysable"
     assert (classify(random((40, 41))) == "not analysable").mean() > 0.9
@@ -216,30 +190,8 @@ def test_rough_functions_are_not_analysable():
     np.testing.assert_array_equal(classify([below, above]), ["velocity", "not analysable"])
     assert classify(above, smooth=0.7) == "velocity"
     assert classify(above + 100.0) == "not analysable"  # a constant does not smooth
-
-
-def test_the_threshold_of_purity():
-    f = mix(21, velocity=0.75, jerk=0.25)
-    assert classify(f) == "other mix" and classify(f, pure=0.7) == "velocity"
-
-
-@pytest.mark.parametrize("value", [1.0, 0.1, 0.3, -2.7, 1e-9])
-@pytest.mark.parametrize("width", WIDTHS)
-def test_a_constant_has_no_derivative_to_be_named_after(width, value):
-    assert classify(np.full(width, value)) == "not analysable"
-
-
-def test_names_keep_the_leading_shape():
-    f = np.stack([[mix(11, velocity=1), mix(11, jerk=1)], [mix(11, acceleration=1)] * 2])
-    names = classify(f)
-    assert names.shape == (2, 2) and set(names.ravel()) <= set(CLASSES)
-    np.testing.assert_array_equal(names, [["velocity", "jerk"], ["acceleration", "acceleration"]])
-
-
-@pytest.mark.parametrize("option", [dict(pure=0.4), dict(pure=1.1), dict(smooth=-0.1)])
-def test_thresholds_are_shares(option):
-    with pytest.raises(ValueError, match=f"{next(iter(option))} must lie in"):
-        classify(np.arange(5.0), **option)
+    mixed = mix(21, velocity=0.75, jerk=0.25)
+    assert classify(mixed) == "other mix" and classify(mixed, pure=0.7) == "velocity"
 
 
 def test_the_purest_of_a_class():
@@ -257,8 +209,17 @@ def test_the_purest_of_a_class():
     np.testing.assert_array_equal(purest(f, "velocity + acceleration"), f[2])
     with pytest.raises(ValueError, match="no function of class 'jerk'"):
         purest(f, "jerk")
-    with pytest.raises(ValueError, match="name must be one of"):
-        purest(f, "speed")
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_filter_is_turned_so_that_its_strongest_derivative_counts_positive(sign):
+    x = grid(21).astype(float)
+    turned = upright(sign * np.array([x, x**2 - np.mean(x**2), 20 * x - x**2, x**3]))
+    np.testing.assert_array_equal(turned[0], x)
+    assert turned[1][10] < 0 < turned[1][0]
+    np.testing.assert_array_equal(turned[2], 20 * x - x**2)
+    np.testing.assert_array_equal(turned[3], x**3)
+    np.testing.assert_array_equal(upright(sign * x), x)
 
 
 # --- roughness ---------------------------------------------------------------------------
@@ -268,7 +229,6 @@ def test_roughness_of_lines_noise_and_zigzag():
     x = grid(21)
     np.testing.assert_allclose(roughness([3 + 2 * x, -0.1 * x]), 0, atol=1e-20)
     assert roughness(np.full(21, 0.3)) == 0
-    assert (roughness(np.full((5000, 21), 0.3)) == 0).all()
     noise = roughness(random((3000, 41)))
     assert noise.mean() == pytest.approx(1, abs=0.05)
     # second differences of +1, -1 are 4 in size: 16 / (6 x variance)
@@ -277,12 +237,11 @@ def test_roughness_of_lines_noise_and_zigzag():
     assert roughness(x**2) < 0.01 < roughness(np.sin(x)) < 1
 
 
-@pytest.mark.parametrize("count", [1, 7, 50, 120])
-@pytest.mark.parametrize("level", [0.0, 1.0, -4.0])  # their mean is exact, so the variance is 0
-def test_constants_have_no_roughness_whatever_memory_holds(level, count):
+@pytest.mark.parametrize("count", [1, 7, 50])
+def test_constants_have_no_roughness_whatever_memory_holds(count):
     waste = [np.full(count, np.nan) for _ in range(50)]
     del waste  # numpy hands small arrays out again as they were
-    assert (roughness(np.full((count, 21), level)) == 0).all()
+    assert (roughness(np.full((count, 21), 1.0)) == 0).all()
 
 
 @settings(max_examples=50)
@@ -294,19 +253,6 @@ def test_roughness_does_not_depend_on_scale_and_offset(f, a, b):
 # --- reference filters ---------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("derivative", range(4))
-def test_savitzky_golay_is_exact_on_cubics(width, derivative):
-    step = 0.01
-    cubic = Polynomial([0.3, -1.2, 5.0, 40.0])
-    window = cubic(grid(width) * step)
-    weights = savitzky_golay(width, derivative, step)
-    exact = cubic.deriv(derivative)(0.0) if derivative else cubic(0.0)
-    assert weights @ window == pytest.approx(exact, rel=1e-7)
-    if derivative == 1:  # oldest sample first: a rising position gives a positive velocity
-        assert savitzky_golay(width, 1, step, 2) @ grid(width) > 0
-
-
 @pytest.mark.parametrize("width, degree", [(11, 2), (21, 4), (41, 3), (7, 6)])
 def test_savitzky_golay_is_a_least_squares_fit(width, degree):
     noisy, x = random(width), grid(width) * 0.01
@@ -315,6 +261,8 @@ def test_savitzky_golay_is_a_least_squares_fit(width, degree):
         exact = fitted.deriv(derivative)(0.0) if derivative else fitted(0.0)
         ours = savitzky_golay(width, derivative, 0.01, degree) @ noisy
         assert ours == pytest.approx(exact, rel=1e-6)
+    # oldest sample first: a rising position gives a positive velocity
+    assert savitzky_golay(width, 1, 0.01, degree) @ grid(width) > 0
 
 
 @pytest.mark.parametrize("width, gain", [(11, 683), (21, 133.5), (41, 25.0)])
@@ -327,23 +275,6 @@ def test_acceleration_noise_gains(width, gain, degree):
     parabola = legendre(width)["acceleration"] * 0.01**2
     assert own == pytest.approx(2 / np.linalg.norm(parabola), rel=1e-9)
     assert classify(weights) == "acceleration"
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        ((10, 1, 0.01), "width must be odd"),
-        ((1, 0, 0.01), "width must be an integer from 3"),
-        ((11, 4, 0.01), "derivative must be an integer from 0 to 3"),
-        ((11, -1, 0.01), "derivative must"),
-        ((5, 1, 0.01, 5), "degree must be an integer from 0 to 4"),
-        ((11, 1, 0.0), "step must"),
-        ((11, 1, np.nan), "step must"),
-    ],
-)
-def test_savitzky_golay_refuses_bad_values(arguments, words):
-    with pytest.raises(ValueError, match=words):
-        savitzky_golay(*arguments)
 
 
 # --- frequency response --------------------------------------------------------------------
@@ -362,64 +293,11 @@ def test_frequency_response_is_scipys_without_the_delay(width):
         np.testing.assert_allclose(gain, causal / delay, atol=1e-10)
 
 
-def test_frequency_response_is_what_a_sine_meets():
-    f, step = random(21), 0.01
-    times = 0.37 + grid(21) * step
-    for nu in (0.5, 3.0, 17.0):
-        wave = np.exp(2j * np.pi * nu * times)
-        gain = frequency_response(f, [nu], step)[0]
-        assert gain == pytest.approx(f @ wave / np.exp(2j * np.pi * nu * 0.37), rel=1e-9)
-
-
 def test_differentiators_have_the_gain_of_a_derivative_at_low_frequency():
     nu = np.array([0.02, 0.1])
     omega = 2 * np.pi * nu
     for order in (0, 1, 2, 3):
         gain = frequency_response(savitzky_golay(21, order, 0.01), nu, 0.01)
         np.testing.assert_allclose(gain, (1j * omega) ** order, rtol=0.02)
-
-
-def test_even_functions_have_real_gain_and_odd_ones_imaginary():
-    parts = decompose(random(11))
-    nu = np.linspace(0, 50, 30)
-    even, odd = (frequency_response(p, nu, 0.01) for p in (parts.even, parts.odd))
-    np.testing.assert_allclose(even.imag, 0, atol=1e-12)
-    np.testing.assert_allclose(odd.real, 0, atol=1e-12)
-    assert np.abs(odd).max() > 0.1 < np.abs(even).max()
-
-
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        ((np.ones(10), [1.0], 0.01), "f must"),
-        ((np.ones(11), [np.nan], 0.01), "frequencies must be finite"),
-        ((np.ones(11), [1.0], 0.0), "step must"),
-    ],
-)
-def test_frequency_response_refuses_bad_values(arguments, words):
-    with pytest.raises(ValueError, match=words):
-        frequency_response(*arguments)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_a_filter_is_turned_so_that_its_strongest_derivative_counts_positive(sign):
-    x = grid(21).astype(float)
-    turned = upright(sign * np.array([x, x**2 - np.mean(x**2), 20 * x - x**2, x**3]))
-    np.testing.assert_array_equal(turned[0], x)
-    assert turned[1][10] < 0 < turned[1][0]
-    np.testing.assert_array_equal(turned[2], 20 * x - x**2)
-    np.testing.assert_array_equal(turned[3], x**3)
-    np.testing.assert_array_equal(upright(sign * x), x)
-
-
-def test_pure_part_keeps_polynomials_and_nothing_else():
-    x = np.linspace(-1, 1, 21)
-    rng = np.random.default_rng(1)
-    for degree in range(4):
-        poly = np.polynomial.Polynomial(rng.normal(size=degree + 1))(x)
-        assert np.allclose(pure_part(poly, degree), poly)
-        f = rng.normal(size=(3, 21))
-        fitted = [np.polynomial.Polynomial.fit(x, one, degree)(x) for one in f]
-        assert np.allclose(pure_part(f, degree), fitted)
-    with pytest.raises(ValueError, match="degree"):
-        pure_part(f, 4)
+    with pytest.raises(ValueError, match="frequencies must be finite"):
+        frequency_response(np.ones(11), [np.nan], 0.01)

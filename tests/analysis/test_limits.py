@@ -23,8 +23,7 @@ from ddlib.analysis import (  # fmt: skip
     simplified,
 )
 from ddlib.control import PID, linear, pd, velocity
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.dynamics import Arm, Link, derivation, serial  # fmt: skip
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm, Link, derivation, serial  # fmt: skip
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, actuators, friction, real_arm  # fmt: skip
 from ddlib.identification import equations, regression  # fmt: skip
 from ddlib.learning import autograd, descent, levenberg_marquardt, network, training, windows

@@ -5,8 +5,8 @@ import pytest
 
 from ddlib.analysis import linear_residual, share_of_other_joint, share_of_velocity_terms
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
-from ddlib.effects import IDEAL, CoulombFriction, Effects
-from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
+from ddlib.effects import CoulombFriction, Effects
+from ddlib.trajectories import APPENDIX_I, pick_and_place
 
 MOTION = pick_and_place(APPENDIX_I[:3], np.arange(300) * 0.01)
 SEPARATE = Arm("no coupling", a=2.0, b=0.0, d=1e-9, lengths=(0.5, 0.4))
@@ -41,6 +41,8 @@ def test_gears_hide_the_other_joint_by_their_square():
     np.testing.assert_allclose(shares[2] / shares[3], 4.0, rtol=0.02)
     without = share_of_other_joint(CMU_DD_ARM_II, MOTION, [100.0], rotor=0.0)
     np.testing.assert_allclose(without, shares[:1])
+    with pytest.raises(ValueError, match="gears must not be negative"):
+        share_of_other_joint(CMU_DD_ARM_II, MOTION, [-1.0], 0.1)
     assert share_of_other_joint(SEPARATE, MOTION, [1.0], 0.0)[0, 0] < 1e-6
 
 
@@ -51,15 +53,3 @@ def test_a_linear_arm_has_no_linear_residual():
     assert linear_residual(line, *states) < 1e-12
     residual = [linear_residual(CMU_DD_ARM_II, *(x * s for x in states)) for s in (0.01, 0.3, 1.0)]
     assert residual[0] < 1e-3 < residual[1] < residual[2] < 1.0
-
-
-def test_refusals():
-    with pytest.raises(ValueError, match="speed must lie"):
-        share_of_velocity_terms(CMU_DD_ARM_II, MOTION, 0.0, IDEAL)
-    with pytest.raises(ValueError, match="gears must not be negative"):
-        share_of_other_joint(CMU_DD_ARM_II, MOTION, [-1.0], 0.1)
-    with pytest.raises(ValueError, match="rotor must lie"):
-        share_of_other_joint(CMU_DD_ARM_II, MOTION, [1.0], -0.1)
-    bad = Trajectory(MOTION.q, np.full_like(MOTION.qd, np.nan), MOTION.qdd)
-    with pytest.raises(ValueError, match=r"trajectory\.qd must be finite"):
-        share_of_velocity_terms(CMU_DD_ARM_II, bad)
