@@ -6,9 +6,11 @@ import gc
 import os
 import shutil
 import tempfile
+from functools import cache
 
 import chromium
 import pytest
+from bs4 import BeautifulSoup
 from hypothesis import settings
 
 from workshop.report.evidence import verdicts
@@ -55,6 +57,12 @@ def built():
     if not (chromium.HTML / ".built-from").is_file():
         pytest.fail("there is no clean build of the book: run `make book` first")
     return chromium.HTML
+
+
+@pytest.fixture(scope="session")
+def parsed(built):
+    """``parsed(name)`` is a built page, read once."""
+    return cache(lambda name: BeautifulSoup((built / f"{name}.html").read_bytes(), "html.parser"))
 
 
 @pytest.fixture(scope="session")

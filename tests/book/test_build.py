@@ -15,8 +15,7 @@ from bs4 import BeautifulSoup
 from sphinx import builders
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-from build import build as write_pages
-from build import messages, report
+from build import build as write_pages, messages, report
 from dd_book import CELL_INPUTS, PAGE_INPUTS, deal, digest
 from dd_failures import failing_cell, last_line
 

@@ -1,26 +1,19 @@
-"""The built pages, in a real browser and as plain HTML."""
+"""The built pages in a real browser: each is clean in both colours, wide and narrow, and mounts."""
 
 from __future__ import annotations
 
 import base64
 import gzip
 import json
-import re
-from functools import lru_cache
-from pathlib import Path
-from urllib.parse import unquote, urldefrag, urlsplit
 
 import chromium
 import numpy as np
 import pytest
 from axe import violations_in
 from book_pages import PAGES, ROOT, WITH_WIDGETS
-from bs4 import BeautifulSoup
 
-browser_test = pytest.mark.browser
-built_test = pytest.mark.built
+pytestmark = pytest.mark.browser
 
-STATE_TAG = r'<script type="application/vnd\.jupyter\.widget-state\+json">'
 VIEW_TAG = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
 VIEW = 'script[type="application/vnd.jupyter.widget-view+json"]'
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
@@ -104,10 +97,6 @@ CHECKS = r"""
 """
 
 
-def address(page: str, kind: str, built: Path, site: str) -> str:
-    return (built / f"{page}.html").as_uri() if kind == "file" else f"{site}/{page}.html"
-
-
 def seen(opened, scheme: str, width: int) -> list[str]:
     """What a reader would see as wrong in a colour scheme and a width."""
     opened.page.emulate_media(color_scheme=scheme)
@@ -130,7 +119,6 @@ def too_heavy(opened) -> list[str]:
     return [f"{sum(sizes.values())} bytes: {heaviest}"] * (sum(sizes.values()) > 500_000)
 
 
-@browser_test
 @pytest.mark.parametrize("name", [*PAGES, *GENERATED])
 def test_page_is_clean(name, site, visit):
     """Opened in the dark, then in light, and unfolded: one load for all.
@@ -147,7 +135,6 @@ def test_page_is_clean(name, site, visit):
     assert not problems + violations_in(opened.page, "light", "dark")
 
 
-@browser_test
 @pytest.mark.parametrize("name", PAGES)
 def test_page_is_clean_as_a_file(name, built, visit):
     """Opened from a folder, narrow from the start, then wide."""
@@ -156,7 +143,6 @@ def test_page_is_clean_as_a_file(name, built, visit):
     assert not problems + opened.problems
 
 
-@browser_test
 def test_cards_on_a_phone_are_headed_like_their_table(site, visit):
     page = visit(f"{site}/book/ledger.html", "light", NARROW).page
     cells = page.evaluate("""() => [...document.querySelectorAll("table.cards")].flatMap((table) =>
@@ -187,7 +173,6 @@ FAULTS = {
 }
 
 
-@browser_test
 def test_what_a_reader_would_see_is_seen(tmp_path, visit):
     page = tmp_path / "page.html"
     html = "<!doctype html><html data-theme='light' data-widgets='1'><meta charset='utf-8'>"
@@ -196,153 +181,56 @@ def test_what_a_reader_would_see_is_seen(tmp_path, visit):
     assert not [fault for fault in FAULTS if not any(fault in line for line in found)]
 
 
-@browser_test
-@pytest.mark.parametrize(
-    "fault",
-    [
-        '<img alt="x" src="data:image/svg+xml,%3Csvg xmlns=%22http://www.w3.org/2000/svg%22/%3E">',
-        '<script>new Function("return 1")()</script>',
-        '<script src="https://example.org/x.js"></script>',
-        '<style>@import "https://example.org/x.css";</style>',
-        '<script src="gone.js"></script>',
-    ],
+FORBIDDEN = (
+    '<img alt="x" src="data:image/svg+xml,%3Csvg xmlns=%22http://www.w3.org/2000/svg%22/%3E">',
+    '<script>new Function("return 1")()</script>',
+    '<script src="https://example.org/x.js"></script>',
+    '<style>@import "https://example.org/x.css";</style>',
+    '<script src="gone.js"></script>',
 )
-def test_what_the_policy_forbids_is_seen(fault, tmp_path, visit):
+
+
+def test_what_the_policy_forbids_is_seen(tmp_path, visit):
     (tmp_path / "favicon.ico").touch()
-    (tmp_path / "page.html").write_text(f"<!doctype html><title>t</title><body>{fault}</body>")
     with chromium.serve(tmp_path) as address:
-        assert visit(f"{address}/page.html").problems
+        for k, fault in enumerate(FORBIDDEN):
+            page = tmp_path / f"{k}.html"
+            page.write_text(f"<!doctype html><title>t</title><body>{fault}</body>")
+            assert visit(f"{address}/{page.name}").problems, fault
 
 
-@built_test
-def test_pages_with_widgets_are_known(built):
-    pages = {name: (built / f"{name}.html").read_text(encoding="utf-8") for name in PAGES}
-    assert [name for name in PAGES if "jupyter.widget-view+json" in pages[name]] == WITH_WIDGETS
-
-
-@built_test
-@pytest.mark.parametrize("name", WITH_WIDGETS)
-def test_widgets_are_light(name, built):
-    """At most 400 kB of baked values for a widget; where the page computes, what it starts from."""
-    page = (built / f"{name}.html").read_text(encoding="utf-8")
-    saved = json.loads(re.search(rf"{STATE_TAG}(.*?)</script>", page, re.DOTALL)[1])["state"]
-    sizes = {
-        model: {b["path"][0]: len(base64.b64decode(b["data"])) for b in entry.get("buffers", ())}
-        for model, entry in saved.items()
-    }
-    baked = {model: sum(parts.values()) for model, parts in sizes.items()}
-    shown = {model: entry["state"].get("spec") for model, entry in saved.items()}
-    live = {model for model, spec in shown.items() if spec and {"live", "kind"} & set(spec)}
-    assert max(baked.values()) > 0 or live
-    tables = [size for model in live for size in map(sizes[model].get, ("baked", "exact")) if size]
-    assert not tables  # of what it would show
-    assert all(baked[model] <= 32_000 for model in live)  # weights, a recording
-    assert max(baked.values()) <= 400_000
-
-
-def test_text_on_canvases_can_be_read():
-    """They are drawn in pixels of the page, so their sizes are those of the scripts."""
-    scripts = (ROOT / "ddlib" / "widgets" / "static").glob("*.js")
-    text = "".join(path.read_text(encoding="utf-8") for path in scripts)
-    fonts = re.findall(r"\.font = (.+)", text)
-    sizes = [float(re.match(r'"(?:bold |italic )?([\d.]+)px', font)[1]) for font in fonts]
-    assert sizes and min(sizes) >= 9
-
-
-@browser_test
 @pytest.mark.parametrize("kind", ["file", "http"])
 def test_root_leads_to_the_book(kind, built, site, visit):
-    opened = visit(address("index", kind, built, site), lands=f"**/{PAGES[0]}.html")
+    root = built.as_uri() if kind == "file" else site
+    opened = visit(f"{root}/index.html", lands=f"**/{PAGES[0]}.html")
     assert opened.page.locator("article h1").count() == 1
     assert not opened.problems
 
 
-@browser_test
-@pytest.mark.parametrize("name", WITH_WIDGETS)
-def test_stills_stand_in_where_there_is_no_script(name, site, browser):
+def test_stills_stand_in_where_there_is_no_script(site, browser):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     problems = []
     page.on("console", lambda message: problems.append(message.text))
     page.on("requestfailed", lambda request: problems.append(request.url))
-    page.goto(f"{site}/{name}.html")
-    stills = page.locator("img.still")
-    assert stills.count() == page.locator(VIEW).count() > 0
-    for still in stills.all():
-        assert still.is_visible() and still.bounding_box()["height"] > 50
-        assert still.get_attribute("alt")
+    for name in WITH_WIDGETS:
+        page.goto(f"{site}/{name}.html")
+        stills = page.locator("img.still")
+        assert stills.count() == page.locator(VIEW).count() > 0, name
+        for still in stills.all():
+            assert still.is_visible() and still.bounding_box()["height"] > 50, name
+            assert still.get_attribute("alt")
     assert not problems
     context.close()
 
 
-@browser_test
-def test_there_is_one_search_field(built, site, visit):
-    opened = visit(address(PAGES[1], "http", built, site))
+def test_there_is_one_search_field(site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html")
     fields = opened.page.locator("button.search-button-field")
     assert sum(fields.nth(i).is_visible() for i in range(fields.count())) == 1
 
 
-# Links
-
-
-@lru_cache
-def soup(path: Path) -> BeautifulSoup:
-    return BeautifulSoup(path.read_text(encoding="utf-8"), "html.parser")
-
-
-@lru_cache
-def anchors(path: Path) -> frozenset[str]:
-    tags = soup(path).find_all(True)
-    return frozenset(tag.get(key) for tag in tags for key in ("id", "name") if tag.get(key))
-
-
-def broken_links(path: Path) -> list[str]:
-    """Links and resources of a page that lead to no file or no anchor."""
-    broken = []
-    for tag in soup(path).find_all(True):
-        for link in (tag.get("href"), tag.get("src")):
-            if not link or urlsplit(link).scheme or link.startswith("//"):
-                continue
-            target, anchor = urldefrag(link)
-            target = path.parent / unquote(urlsplit(target).path) if target else path
-            if not target.is_file():
-                broken.append(link)
-            elif anchor and target.suffix == ".html" and unquote(anchor) not in anchors(target):
-                broken.append(link)
-    return broken
-
-
-@built_test
-@pytest.mark.parametrize("name", [*PAGES, "search", "genindex"])
-def test_links_resolve(name, built):
-    page = built / f"{name}.html"
-    assert soup(page).find("a", href=True)
-    assert not broken_links(page)
-
-
-def test_broken_links_are_seen(tmp_path):
-    page = tmp_path / "page.html"
-    page.write_text(
-        '<p id="here"><a href="#here">a</a><a href="#gone">b</a><a href="no.html">c</a>'
-        '<a href="https://example.org">d</a><img src="no.png"></p>'
-    )
-    assert broken_links(page) == ["#gone", "no.html", "no.png"]
-
-
-@built_test
-@pytest.mark.parametrize("name", PAGES)
-def test_page_loads_nothing_from_outside(name, built):
-    tags = soup(built / f"{name}.html").find_all(["script", "link", "img", "iframe", "source"])
-    loaded = [
-        tag.get("src") or tag.get("href") or ""
-        for tag in tags
-        if "canonical" not in tag.get("rel", [])
-    ]
-    assert loaded
-    assert not [link for link in loaded if re.match(r"(https?:)?//", link)]
-
-
-# The script that mounts widgets
+# --- the script that mounts widgets ----------------------------------------------------------
 
 ESM = """
 export default {
@@ -385,32 +273,21 @@ def saved_state(**modules: str) -> str:
     )
 
 
-@browser_test
-def test_mounted_widget_has_its_data_and_reacts(tmp_path, visit):
-    opened = visit(widget_page(tmp_path, saved_state(good=ESM), ["good", "good"]))
+def test_widgets_have_their_data_and_react_and_a_failing_one_says_so(tmp_path, visit):
+    state = saved_state(
+        good=ESM, syntax="export default {", run="export default {render() { nope() }}"
+    )
+    opened = visit(widget_page(tmp_path, state, ["syntax", "good", "run", "good", "absent"]))
     labels = opened.page.locator(".ddlib-widget b")
     assert labels.all_inner_texts() == ["true true 0.5"] * 2
     opened.page.locator("button").first.click()
     assert labels.all_inner_texts() == ["true true 2.5"] * 2  # both views share the model
-    assert not opened.problems
+    _, run, absent = opened.page.locator("[role=alert]").all_inner_texts()
+    assert "nope is not defined" in run and "its state is not in the page" in absent
 
 
-@browser_test
-def test_failing_widget_says_so_and_spares_the_others(tmp_path, visit):
-    state = saved_state(
-        good=ESM, syntax="export default {", run="export default {render() { nope() }}"
-    )
-    opened = visit(widget_page(tmp_path, state, ["syntax", "good", "run", "absent"]))
-    alerts = opened.page.locator("[role=alert]").all_inner_texts()
-    assert len(alerts) == 3
-    assert "nope is not defined" in alerts[1]
-    assert "its state is not in the page" in alerts[2]
-    assert opened.page.locator(".ddlib-widget b").inner_text() == "true true 0.5"
-
-
-@browser_test
-@pytest.mark.parametrize("state", ["", "{", "null", '{"state": {"good": {}}}'])
-def test_damaged_state_is_reported(state, tmp_path, visit):
-    opened = visit(widget_page(tmp_path, state, ["good"]))
-    assert opened.page.locator("[role=alert]").count() == 1
-    assert opened.page.locator("#end").is_visible()
+def test_damaged_state_is_reported(tmp_path, visit):
+    for state in ("", "{", "null", '{"state": {"good": {}}}'):
+        page = visit(widget_page(tmp_path, state, ["good"])).page
+        assert page.locator("[role=alert]").count() == 1, state
+        assert page.locator("#end").is_visible()

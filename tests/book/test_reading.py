@@ -1,4 +1,4 @@
-"""Code on the built pages: what is to be read stands open, plumbing by a switch, answers folded."""
+"""The switch for all code: what is to be read stands open, plumbing by a switch."""
 
 from __future__ import annotations
 
@@ -8,17 +8,13 @@ import sys
 import chromium
 import pytest
 from axe import violations_in
-from book_pages import CHAPTERS, PAGES, ROOT, source
-from bookkeeping import lines_of_bookkeeping
-from bs4 import BeautifulSoup
+from book_pages import CHAPTERS, ROOT, source
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_reading
 
 browser_test = pytest.mark.browser
-built_test = pytest.mark.built
 
-NOTEBOOKS = [page for page in PAGES if source(page).suffix == ".ipynb"]
 BUTTON = ".btn-all-code"
 # Pieces of code that a reader sees, with what the page calls a piece of code to read.
 SEEN = """
@@ -30,68 +26,6 @@ SEEN = """
 def sources(page: str) -> list[str]:
     cells = json.loads(source(page).read_text(encoding="utf-8"))["cells"]
     return ["".join(c["source"]).strip() for c in cells if c["cell_type"] == "code"]
-
-
-def open_code(html: str) -> list[str]:
-    """What stands in the open without a script or a click."""
-    cells = BeautifulSoup(html, "html.parser").select("article .cell:not(.tag_bookkeeping)")
-    found = [pre for cell in cells for pre in cell.select(".cell_input pre")]
-    return [pre.get_text() for pre in found if not pre.find_parent("details")]
-
-
-def open_answers(html: str) -> list[str]:
-    """What follows a question of *On your own* and is not folded, apart from questions."""
-    section = BeautifulSoup(html, "html.parser").select_one("#on-your-own")
-    shown = [el for el in section.find_all(recursive=False) if el.name not in {"h2", "span"}]
-    folded = [el for el in shown if el.name == "details" or el.select_one(":scope > details")]
-    questions = [el for el in shown if el.select_one(":scope > strong")]
-    asked = questions[0] if questions else None
-    found, open_ = [], False
-    for el in shown:
-        if el in folded:
-            open_ = True
-        elif el in questions:
-            open_ = False
-        elif open_ or asked is None:
-            found.append(el.get_text())
-    return found
-
-
-@built_test
-@pytest.mark.parametrize("name", NOTEBOOKS)
-def test_no_line_of_bookkeeping_on_a_page(name, built):
-    shown = open_code((built / f"{name}.html").read_text(encoding="utf-8"))
-    assert not [line for code in shown for line in lines_of_bookkeeping(code)]
-    assert not [code for code in shown if code.strip() not in sources(name)]
-
-
-@built_test
-@pytest.mark.parametrize("name", CHAPTERS)
-def test_no_answer_stands_in_the_open_on_a_page(name, built):
-    html = (built / f"{name}.html").read_text(encoding="utf-8")
-    assert not open_answers(html)
-    assert BeautifulSoup(html, "html.parser").select("#on-your-own details")
-
-
-@built_test
-@pytest.mark.parametrize("name", NOTEBOOKS)
-def test_nothing_of_a_notebook_is_lost_on_its_page(name, built):
-    html = (built / f"{name}.html").read_text(encoding="utf-8")
-    code = [pre.get_text().strip() for pre in BeautifulSoup(html, "html.parser").select("pre")]
-    assert not [cell for cell in sources(name) if cell not in code]
-
-
-def test_faults_of_a_page_are_seen():
-    cell = '<div class="cell"><div class="cell_input"><pre>{}</pre></div></div>'
-    folded = cell.replace("<pre>", "<details><pre>").replace("</pre>", "</pre></details>")
-    html = f"<article>{cell.format('f(x)')}{folded.format('import x')}</article>"
-    assert open_code(html) == ["f(x)"]
-    assert open_code(html.replace("f(x)", "quote(x)")) == ["quote(x)"]
-    asked = "<p><strong>1. So?</strong> How many?</p>"
-    fold = '<div class="cell"><details>code</details></div><details>It is 5.</details>'
-    section = '<article><section id="on-your-own"><h2>On your own</h2>{}</section></article>'
-    assert open_answers(section.format(asked + fold + asked + fold)) == []
-    assert open_answers(section.format(asked + fold + "<p>It is 5.</p>")) == ["It is 5."]
 
 
 @pytest.mark.parametrize(

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import re
 import sys
 
 import pytest
-from book_pages import PAGES, ROOT
-from bs4 import BeautifulSoup, Comment
+from book_pages import ROOT
 from docutils import nodes
 from docutils.utils import new_document
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_typography
 from dd_typography import MINUS, NO_BREAK, typeset
-
-PROSE = "article :is(p, h1, h2, h3, li, td, th, figcaption, dd)"
-NOT_PROSE = "code, pre, script, style, svg, mjx-container, .math, .sig, .cell_output, .ddlib-widget"
 
 
 @pytest.mark.parametrize(
@@ -65,18 +60,3 @@ def test_code_is_as_it_was_written():
     assert set_pieces(nodes.literal("", "x = -1 s"), nodes.Text("-3 s")) == (
         f"x = -1 s-3{NO_BREAK}s"
     )
-
-
-@pytest.mark.built
-@pytest.mark.parametrize("name", PAGES)
-def test_no_line_of_a_page_can_part_a_number_from_its_unit(name, built):
-    soup = BeautifulSoup((built / f"{name}.html").read_text(encoding="utf-8"), "html.parser")
-    for el in soup.select(NOT_PROSE):
-        el.replace_with("\n")
-    parted, minus = [], []
-    for el in soup.select(PROSE):
-        own = [t for t in el.find_all(string=True, recursive=False) if not isinstance(t, Comment)]
-        for text in own:
-            parted += re.findall(r"\d (?:N m|kg|mm|rad/s|Hz|ms)(?!\w)", text)
-            minus += re.findall(r"(?:^|[\s(])-\d[\d.]*", text)
-    assert not parted and not minus

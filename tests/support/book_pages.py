@@ -31,7 +31,11 @@ def has_widgets(page: str) -> bool:
     path = source(page)
     if path is None or path.suffix != ".ipynb":
         return False
-    return bool(re.search(r"from ddlib\.widgets|\bwidgets\.[A-Z]", path.read_text("utf-8")))
+    return bool(
+        re.search(
+            r"from (?:ddlib|workshop\.beyond)\.widgets|\bwidgets\.[A-Z]", path.read_text("utf-8")
+        )
+    )
 
 
 WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

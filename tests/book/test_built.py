@@ -1,0 +1,206 @@
+"""The built pages as plain HTML: links, prose, code and answers, each asked of every page."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import re
+import sys
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlsplit
+
+import pytest
+from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, source
+from bookkeeping import lines_of_bookkeeping
+from bs4 import BeautifulSoup, Comment
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_search
+
+built_test = pytest.mark.built
+NOTEBOOKS = [page for page in PAGES if source(page).suffix == ".ipynb"]
+
+
+def plain(html: str) -> BeautifulSoup:
+    return BeautifulSoup(html, "html.parser")
+
+
+# --- links --------------------------------------------------------------------------------
+
+
+def broken_links(path: Path, read) -> list[str]:
+    """Links and resources of a page that lead to no file or no anchor; `read` parses a file."""
+    broken = []
+    for tag in read(path).find_all(True):
+        for link in (tag.get("href"), tag.get("src")):
+            if not link or urlsplit(link).scheme or link.startswith("//"):
+                continue
+            target, anchor = urldefrag(link)
+            target = path.parent / unquote(urlsplit(target).path) if target else path
+            if not target.is_file():
+                broken.append(link)
+            elif anchor and target.suffix == ".html":
+                broken += [link] * (unquote(anchor) not in anchors(target, read))
+    return broken
+
+
+ANCHORS: dict[Path, set[str]] = {}
+
+
+def anchors(path: Path, read) -> set[str]:
+    path = path.resolve()
+    if path not in ANCHORS:
+        tags = read(path).find_all(True)
+        ANCHORS[path] = {tag.get(key) for tag in tags for key in ("id", "name")}
+    return ANCHORS[path]
+
+
+def loaded_from_outside(page: BeautifulSoup) -> list[str]:
+    tags = page.find_all(["script", "link", "img", "iframe", "source"])
+    own = [tag for tag in tags if "canonical" not in tag.get("rel", [])]
+    addresses = [tag.get("src") or tag.get("href") or "" for tag in own]
+    return [address for address in addresses if re.match(r"(https?:)?//", address)]
+
+
+@built_test
+def test_links_resolve_and_nothing_comes_from_outside(built, parsed):
+    def read(path):
+        return parsed(path.resolve().relative_to(built.resolve()).with_suffix("").as_posix())
+
+    names = [*PAGES, "search", "genindex"]
+    assert all(parsed(name).find("a", href=True) for name in names)
+    broken = {name: broken_links(built / f"{name}.html", read) for name in names}
+    assert not {name: links for name, links in broken.items() if links}
+    outside = {name: loaded_from_outside(parsed(name)) for name in PAGES}
+    assert not {name: links for name, links in outside.items() if links}
+
+
+def test_broken_links_and_outside_ones_are_seen(tmp_path):
+    page = tmp_path / "page.html"
+    page.write_text(
+        '<p id="here"><a href="#here">a</a><a href="#gone">b</a><a href="no.html">c</a>'
+        '<a href="https://example.org">d</a><img src="no.png"><img src="//example.org/x.png">'
+    )
+    assert broken_links(page, lambda path: plain(path.read_text())) == [
+        "#gone", "no.html", "no.png",
+    ]  # fmt: skip
+    assert loaded_from_outside(plain(page.read_text())) == ["//example.org/x.png"]
+
+
+# --- prose --------------------------------------------------------------------------------
+
+PROSE = "article :is(p, h1, h2, h3, li, td, th, figcaption, dd)"
+NOT_PROSE = "code, pre, script, style, svg, mjx-container, .math, .sig, .cell_output, .ddlib-widget"
+PARTED = re.compile(r"\d (?:N m|kg|mm|rad/s|Hz|ms)(?!\w)|(?:^|[\s(])-\d[\d.]*")
+
+
+def badly_set(page: BeautifulSoup) -> list[str]:
+    """Numbers that a line can part from their unit, and hyphens for a minus."""
+    elements = [el for el in page.select(PROSE) if el.css.closest(NOT_PROSE) is None]
+    texts = [text for el in elements for text in el.find_all(string=True, recursive=False)]
+    return [x for t in texts if not isinstance(t, Comment) for x in PARTED.findall(t)]
+
+
+@built_test
+def test_numbers_are_well_set(parsed):
+    assert not {name: found for name in PAGES if (found := badly_set(parsed(name)))}
+
+
+# --- code and answers ---------------------------------------------------------------------
+
+
+def sources(page: str) -> list[str]:
+    cells = json.loads(source(page).read_text(encoding="utf-8"))["cells"]
+    return ["".join(c["source"]).strip() for c in cells if c["cell_type"] == "code"]
+
+
+def open_code(page: BeautifulSoup) -> list[str]:
+    """What stands in the open without a script or a click."""
+    cells = page.select("article .cell:not(.tag_bookkeeping)")
+    found = [pre for cell in cells for pre in cell.select(".cell_input pre")]
+    return [pre.get_text() for pre in found if not pre.find_parent("details")]
+
+
+def open_answers(page: BeautifulSoup) -> list[str]:
+    """What follows a question of *On your own* and is not folded, apart from questions."""
+    section = page.select_one("#on-your-own")
+    shown = [el for el in section.find_all(recursive=False) if el.name not in {"h2", "span"}]
+    found, asked = [], True
+    for el in shown:
+        if el.name == "details" or el.select_one(":scope > details"):
+            asked = False
+        elif el.select_one(":scope > strong"):
+            asked = True
+        elif not asked:
+            found.append(el.get_text())
+    return found
+
+
+@built_test
+def test_code_in_the_open_teaches_and_none_is_lost(parsed):
+    wrong = {}
+    for name in NOTEBOOKS:
+        shown, own = open_code(parsed(name)), sources(name)
+        all_code = {pre.get_text().strip() for pre in parsed(name).select("pre")}
+        wrong[name] = [line for code in shown for line in lines_of_bookkeeping(code)]
+        wrong[name] += [code for code in shown if code.strip() not in own]
+        wrong[name] += [cell for cell in own if cell not in all_code]
+    assert not {name: found for name, found in wrong.items() if found}
+
+
+@built_test
+def test_no_answer_stands_in_the_open(parsed):
+    assert not {name: found for name in CHAPTERS if (found := open_answers(parsed(name)))}
+    assert all(parsed(name).select("#on-your-own details") for name in CHAPTERS)
+
+
+def test_faults_of_a_page_are_seen():
+    cell = '<div class="cell"><div class="cell_input"><pre>{}</pre></div></div>'
+    folded = cell.replace("<pre>", "<details><pre>").replace("</pre>", "</pre></details>")
+    html = f"<article>{cell.format('f(x)')}{folded.format('import x')}</article>"
+    assert open_code(plain(html)) == ["f(x)"]
+    asked = "<p><strong>1. So?</strong> How many?</p>"
+    fold = '<div class="cell"><details>code</details></div><details>It is 5.</details>'
+    section = '<article><section id="on-your-own"><h2>On your own</h2>{}</section></article>'
+    assert open_answers(plain(section.format(asked + fold + asked + fold))) == []
+    assert open_answers(plain(section.format(asked + fold + "<p>It is 5.</p>"))) == ["It is 5."]
+    prose = "<article><p>3 N m and -2<code>-1</code></p><pre><p>4 kg</p></pre></article>"
+    assert badly_set(plain(prose)) == ["3 N m", " -2"]
+
+
+# --- weight -------------------------------------------------------------------------------
+
+
+@built_test
+def test_pages_with_widgets_are_known_and_light(parsed):
+    """At most 400 kB of baked values for a widget; where the page computes, what it starts from."""
+    kind = "application/vnd.jupyter.widget-"
+    assert [p for p in PAGES if parsed(p).find(type=f"{kind}view+json")] == WITH_WIDGETS
+    heavy = []
+    for name in WITH_WIDGETS:
+        saved = json.loads(parsed(name).find(type=f"{kind}state+json").string)["state"]
+        for model, entry in saved.items():
+            sizes = {
+                buffer["path"][0]: len(base64.b64decode(buffer["data"]))
+                for buffer in entry.get("buffers", ())
+            }
+            live = {"live", "kind"} & set(entry["state"].get("spec") or ())
+            tables = live and {"baked", "exact"} & {part for part, size in sizes.items() if size}
+            if tables or sum(sizes.values()) > (32_000 if live else 400_000):
+                heavy.append((name, model, sizes))
+    assert not heavy
+
+
+@built_test
+def test_the_texts_of_the_search_are_light(built):
+    texts = (built / "_static" / dd_search.FILE).read_bytes()
+    assert 30_000 < len(gzip.compress(texts, 6)) < 100_000
+
+
+def test_text_on_canvases_can_be_read():
+    """They are drawn in pixels of the page, so their sizes are those of the scripts."""
+    text = "".join(p.read_text("utf-8") for p in ROOT.glob("ddlib/widgets/static/*.js"))
+    sizes = re.findall(r'\.font = "(?:bold |italic )?([\d.]+)px', text)
+    assert len(sizes) == len(re.findall(r"\.font = ", text)) > 0
+    assert min(map(float, sizes)) >= 9
