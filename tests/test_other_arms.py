@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
 
 from ddlib.analysis import decompose
 from ddlib.control import pd
@@ -29,7 +28,7 @@ from ddlib.identification import (
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import predict
 from ddlib.simulation import Recording, record
-from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
+from ddlib.trajectories import APPENDIX_I, Trajectory
 
 DATA = Path(__file__).parents[1] / "book" / "data"
 ARM = Arm(
@@ -79,9 +78,6 @@ def joined(parts: list[Equations]) -> Equations:
     )
 
 
-# --- the file ---------------------------------------------------------------------------
-
-
 def test_the_file_is_what_its_page_says():
     content, page = (DATA / "characters.npz").read_bytes(), (DATA / "README.md").read_text()
     assert hashlib.sha256(content).hexdigest() in page
@@ -90,23 +86,10 @@ def test_the_file_is_what_its_page_says():
     assert licence.startswith("MIT License\n\nCopyright (c) 2020 Michael Lutter\n")
 
 
-def test_every_file_of_others_is_described():
-    page = (DATA / "README.md").read_text()
-    for path in DATA.iterdir():
-        assert path.name in page or path.name == "README.md"
-
-
-# --- dynamics ---------------------------------------------------------------------------
-
-
 def test_both_dynamics_agree_with_the_file(characters):
     q, qd, qdd, tau = (characters[name] for name in ("q", "qd", "qdd", "tau"))
     np.testing.assert_allclose(ARM.inverse_dynamics(q, qd, qdd), tau, atol=1e-13)
     np.testing.assert_allclose(ARM.forward_dynamics(q, qd, tau), qdd, atol=1e-12)
-
-
-def test_the_parts_of_the_torque_agree_with_the_file(characters):
-    q, qd, qdd = (characters[name] for name in ("q", "qd", "qdd"))
     terms = ARM.torque_terms(q, qd, qdd)
     parts = {
         "inertial": terms["inertial"] + terms["coupling"],
@@ -118,16 +101,13 @@ def test_the_parts_of_the_torque_agree_with_the_file(characters):
     np.testing.assert_allclose(ARM.mass_matrix(q), characters["mass_matrix"], atol=1e-14)
 
 
-# --- identification ---------------------------------------------------------------------
-
-
 def test_the_file_gives_the_parameters_of_its_arm(characters):
     states = (characters[name] for name in ("q", "qd", "qdd", "tau"))
     found = least_squares(from_states(*states, RIGID + GRAVITY))
     np.testing.assert_allclose(found.values, TRUTH[:5], rtol=1e-12)
 
 
-@pytest.mark.parametrize("width", [0.48, 0.6, 1.2])
+@pytest.mark.parametrize("width", [0.48, 0.6])
 def test_positions_and_torques_at_25_hz_give_the_parameters(characters, width):
     """The file's derivatives are smoother than its positions, by less than 1 % of a parameter.
 
@@ -136,21 +116,11 @@ def test_positions_and_torques_at_25_hz_give_the_parameters(characters, width):
     parts = [by_modulation(r, RIGID + GRAVITY, width) for r in drawn(characters)]
     found = least_squares(joined(parts))
     np.testing.assert_allclose(found.values, TRUTH[:5], rtol=0.01)
-    # torques of exactly the motion that the positions show
-    parts = []
-    for r in drawn(characters):
-        motion = make_interp_spline(r.t, r.q, 7)
-        states = [motion(r.t), motion(r.t, 1), motion(r.t, 2)]
-        tau = ARM.inverse_dynamics(*states)
-        own = Recording(r.t, Trajectory(*states), states[0], tau, *states[:2], tau, control_step=0)
-        parts.append(by_modulation(own, RIGID + GRAVITY, width))
-    found = least_squares(joined(parts))
-    np.testing.assert_allclose(found.values, TRUTH[:5], rtol=1e-3)
 
 
-@pytest.mark.parametrize("control_step", [0.001, 0.005])
-@pytest.mark.parametrize("log_step", [0.005, 0.02])
-@pytest.mark.parametrize("duration", [2.5, 6.0])
+@pytest.mark.parametrize(
+    "duration, log_step, control_step", [(2.5, 0.005, 0.001), (6.0, 0.02, 0.005)]
+)
 def test_any_duration_and_rate_gives_the_parameters(duration, log_step, control_step):
     options = dict(duration=duration, log_step=log_step, control_step=control_step)
     sharp = REAL.without("encoder", "torque_sensor")
@@ -164,19 +134,13 @@ def test_any_duration_and_rate_gives_the_parameters(duration, log_step, control_
     assert share.mean() > 0.93 and share.min() > 0.8
 
 
-# --- networks and filters ---------------------------------------------------------------
-
-
-@pytest.mark.parametrize("duration, log_step", [(2.5, 0.005), (6.0, 0.02)])
-def test_the_way_to_the_filters_works_for_any_arm(duration, log_step, tmp_path):
+def test_the_way_to_the_filters_works_for_any_arm(tmp_path):
+    duration, log_step = 2.5, 0.005
     options = dict(duration=duration, control_step=0.001, log_step=log_step, seed=3)
     recording = record(ARM, LAW, TRAINING[:3], effects=REAL, **options)
     samples = round(duration / log_step)
     first = round(0.5 / log_step)
     assert recording.motion == slice(first, first + samples)
-    np.testing.assert_allclose(
-        recording.reference.q, pick_and_place(TRAINING[:3], recording.t, duration).q, atol=1e-15
-    )
     windows, torque = cases(recording, 11)
     assert windows.shape == (3 * samples, 2, 11) and torque.shape == (3 * samples, 2)
     np.testing.assert_array_equal(windows[samples, :, 5], recording.q[1, first])
@@ -195,5 +159,3 @@ def test_the_way_to_the_filters_works_for_any_arm(duration, log_step, tmp_path):
         predict(kept, other)
     parts = decompose(model.weights.hidden_weights)
     np.testing.assert_allclose(parts.sum(), model.weights.hidden_weights, atol=1e-12)
-    np.testing.assert_allclose(parts.odd, -parts.odd[..., ::-1], atol=1e-12)
-    np.testing.assert_allclose(parts.even, parts.even[..., ::-1], atol=1e-12)

@@ -153,10 +153,8 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
     arm : Arm
     model : callable
         ``model(q, qd, qdd) -> tau``, the box "inverse arm"; an `Arm` is accepted too.
-    kp, kd : array_like, shape (2,)
-        Feedback gains, N m/rad and N m s/rad.
-    viscous : array_like, shape (2,)
-        Viscous friction of the arm, N m s/rad.
+    kp, kd, viscous : array_like, shape (2,)
+        Feedback gains, N m/rad and N m s/rad, and the arm's viscous friction, N m s/rad.
 
     Returns
     -------
@@ -200,23 +198,10 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
 def run_system(
     system: control.InterconnectedSystem, reference: Trajectory, t, start=None
 ) -> Recording:
-    """Simulate a `feedforward_system` along a reference.
+    """Simulate a `feedforward_system` along a reference, with perfect sensors.
 
-    Parameters
-    ----------
-    system : control.InterconnectedSystem
-    reference : Trajectory
-        One run, arrays ``(time, 2)``, interpolated between samples.
-    t : array_like, shape (time,)
-        Times of the samples, s.
-    start : array_like, shape (2, 2), optional
-        Angles (rad) and velocities (rad/s) at the first sample; default: at rest at the
-        reference's first position.
-
-    Returns
-    -------
-    Recording
-        With perfect sensors: measured and true values are the same.
+    The reference is one run, ``(time, 2)``, interpolated between samples at `t` (s). The arm
+    starts with given angles (rad) and velocities (rad/s), or at rest at the first position.
     """
     t = shaped("t", t, "(time,)")
     reference = Trajectory(*(shaped("reference", x, (t.size, 2)) for x in reference))
@@ -242,11 +227,6 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
         Times, s; the motion lasts ``3 / speed``, before and after it the reference rests.
     speed : float
         The s of the formula: velocities grow by it, accelerations by its square.
-
-    Returns
-    -------
-    Trajectory
-        Arrays of shape ``(..., time, 2)``.
     """
     number("speed", speed, 0.0, open_low=True)
     size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2

@@ -22,39 +22,22 @@ def equal_steps(t) -> float:
 
 @dataclass(frozen=True, repr=False)
 class Recording:
-    """What the log holds. Leading axes, if any, are runs.
+    """What the log holds: arrays ``(..., time, joint)`` whose leading axes, if any, are runs.
 
-    Attributes
-    ----------
-    t : ndarray, shape (time,)
-        Times in s; the motion begins at 0.
-    reference : Trajectory
-        What the controller was asked for.
-    q, tau : ndarray, shape (..., time, joint)
-        Measured positions, rad, and torques, N m.
-    q_true, qd_true, tau_true : ndarray, shape (..., time, joint)
-        What a perfect sensor would have read; `tau_true` is the applied torque.
-    duration : float, optional
-        Length of the motion, which begins at 0 s. Default: the motion is the samples from the
-        first to the last at which the reference of any run has a velocity or an acceleration;
-        if none has, all from 0 s on.
-    control_step : float, optional
-        Period for which the controller held a torque, s; 0 for continuous control. Default:
-        not known.
-    computing_time : float
-        How much later than its reading a torque was applied, s.
+    Without a `duration` the motion is the samples from the first to the last at which the
+    reference of any run has a velocity or an acceleration; if none has, all from 0 s on.
     """
 
-    t: np.ndarray
-    reference: Trajectory
-    q: np.ndarray
-    tau: np.ndarray
-    q_true: np.ndarray
-    qd_true: np.ndarray
-    tau_true: np.ndarray
-    duration: float | None = None
-    control_step: float | None = None
-    computing_time: float = 0.0
+    t: np.ndarray  #: Times, s; the motion begins at 0.
+    reference: Trajectory  #: What the controller was asked for.
+    q: np.ndarray  #: Measured positions, rad.
+    tau: np.ndarray  #: Measured torques, N m.
+    q_true: np.ndarray  #: True positions, rad.
+    qd_true: np.ndarray  #: True velocities, rad/s.
+    tau_true: np.ndarray  #: Applied torques, N m.
+    duration: float | None = None  #: Length of the motion, s.
+    control_step: float | None = None  #: Period for which a torque was held, s; 0: continuous.
+    computing_time: float = 0.0  #: How much later than its reading a torque was applied, s.
 
     def __post_init__(self):
         if self.duration is not None:
@@ -120,13 +103,6 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     with the mean acceleration; the error of that is of second order in the period (for the
     rigid arm of this book on trajectory 6 below 2e-6 N m).
 
-    Parameters
-    ----------
-    arm : Arm
-        The rigid body.
-    recording : Recording
-        Logged at every control period (``log_every=1``).
-
     Returns
     -------
     ndarray, shape (..., time - 1, joint)
@@ -134,14 +110,9 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     """
     step, period = recording.step, recording.control_step
     if not period:
-        raise ValueError(
-            "recording must have a control_step above 0, for which its torque was held, "
-            f"got {period}"
-        )
+        raise ValueError(f"recording must have a control_step above 0, got {period}")
     if abs(step / period - 1) > 1e-6:
-        raise ValueError(
-            f"recording must be logged every {period:g} s, a control period, got {step:g} s"
-        )
+        raise ValueError(f"recording must be logged every {period:g} s, got {step:g} s")
     q, qd = recording.q_true, recording.qd_true
     middle = [(x[..., 1:, :] + x[..., :-1, :]) / 2 for x in (q, qd)]
     needed = arm.inverse_dynamics(*middle, np.diff(qd, axis=-2) / step)

@@ -66,17 +66,9 @@ def _held(plant: Plant, x, v, tau, seconds, parts):
 
 
 def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
-    """The arm left to itself, without torque: times, positions and velocities.
+    """The arm left to itself, without torque, from angles `q` (rad) and velocities `qd` (rad/s).
 
-    Parameters
-    ----------
-    arm : Arm
-    q, qd : array_like, shape (..., 2)
-        Initial angles (rad) and velocities (rad/s); motors behind a shaft have the same.
-    seconds, step : float
-        Duration and integration step, s; a whole number of steps.
-    effects : Effects
-        Those that act inside the plant: friction, motor, transmission.
+    Of the effects those act that are inside the plant: friction, motor, transmission.
 
     Returns
     -------
@@ -165,11 +157,6 @@ def follow(
     duration : float, optional
         Length of the motion, which begins at 0 s; default: where the reference moves, as
         `Recording` says.
-
-    Raises
-    ------
-    ValueError
-        If shapes or options do not fit, or the loop diverges.
     """
     _check_plant(arm, effects)
     t = shaped("t", t, "(time,)")

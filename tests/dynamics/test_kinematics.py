@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.dynamics import (
+    CMU_DD_ARM_II as ARM,
     ELBOWS,
     Unreachable,
     around,
