@@ -48,19 +48,19 @@ def _grid(members: int) -> list[dict]:
     for rate, widths in RATES.items():
         for width in widths:
             data = Windowed.of(rate, width)
-            found = [_cell(data, block, members) for block in range(BLOCKS)]
+            found = [_cell(data, fold, members) for fold in data.folds()]
             row = {name: np.stack([cell[name] for cell in found]) for name in found[0]}
             rows.append({"rate": rate, "width": width, **row})
     return rows
 
 
-def _cell(data: Windowed, block: int, members: int) -> dict:
+def _cell(data: Windowed, fold, members: int) -> dict:
     """Errors in one fold, means over the outputs: of networks ``(members,)``, of others one."""
-    training, test = data.fold(block)
-    flat, states, given = data.x.reshape(len(data.x), -1), data.states, data.current[training]
+    training, test = fold
+    flat, states, given = data.flat, data.states, data.current[training]
     plain = states.reshape(len(states), -1)
     model, *_ = trained(data.x[training], given, members, 0, data.width)
-    network = both(model, data, block)
+    network = both(model, data, fold)
     penalty = best_penalty(data, training)
     others = {
         "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
@@ -92,27 +92,27 @@ def _variants(members: int) -> dict:
         for side, error in zip(row, pair):
             row[side].append(np.mean(error, -1))
 
-    for block in range(BLOCKS):
-        training, _ = data.fold(block)
+    for fold in data.folds():
+        training, _ = fold
         x, y = data.x[training], data.current[training]
         last, kept, _ = trained(x, y, members, 0, data.width, COURSE, epochs=paper.EPOCHS)
         for epoch, model in {**kept, paper.EPOCHS: last}.items():
-            put(f"{epoch} epochs", both(model, data, block))
+            put(f"{epoch} epochs", both(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
-            put(f"{units} units", both(model, data, block))
+            put(f"{units} units", both(model, data, fold))
         start = Weights.random(members, data.width, HIDDEN, 6, 6)
         for decay in DECAYS:
-            each = [both(decayed(x, y, start[k], decay), data, block) for k in range(members)]
+            each = [both(decayed(x, y, start[k], decay), data, fold) for k in range(members)]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
         for decay in DECAYS[-2:]:
-            put(f"on the rest, decay {decay:g}", _structured(data, block, members, decay))
+            put(f"on the rest, decay {decay:g}", _structured(data, fold, members, decay))
     return {n: {side: np.array(v) for side, v in row.items()} for n, row in rows.items()}
 
 
-def _structured(data: Windowed, block: int, members: int, decay: float) -> list[np.ndarray]:
+def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.ndarray]:
     """Networks that learn what the identified model leaves over, and both together."""
-    training, _ = data.fold(block)
+    training, _ = fold
     states, given = data.states, data.current[training]
     known = known_structure(states[training], given, states)
     left = data.current - known
@@ -120,7 +120,7 @@ def _structured(data: Windowed, block: int, members: int, decay: float) -> list[
     models = [decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
     return [
         np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
-        for part in data.fold(block)
+        for part in fold
     ]
 
 
@@ -156,8 +156,7 @@ def _described(model: TorqueModel, data: Windowed, targets) -> dict:
 
 def _curved(model: TorqueModel, data: Windowed, known) -> np.ndarray:
     """Share of the hidden units' non-linear part that the known structure explains, by output."""
-    flat = data.x.reshape(len(data.x), -1)
-    flat = flat - flat.mean(0)
+    flat = data.flat - data.flat.mean(0)
     left, values, _ = np.linalg.svd(flat, full_matrices=False)
     axes = np.column_stack(
         [left[:, values > 1e-9 * values[0]], np.full(len(flat), len(flat) ** -0.5)]
@@ -187,7 +186,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
     untrained = TorqueModel(start, made.inputs, made.outputs)
     structure = identified(data.states, y)
     known = structure.friction, structure.rest
-    flat = data.x.reshape(len(data.x), -1)
+    flat = data.flat
     penalty = best_penalty(data, np.ones(len(flat), bool))
 
     fitted = Ridge(flat, y).filters(penalty).T.reshape(6, 6, width)
@@ -218,8 +217,7 @@ def _by_block() -> dict:
     """Inertia and friction from each part of the recording but one, and what friction is worth."""
     data, found = Windowed.of(*MAIN), []
     states = data.states
-    for block in range(BLOCKS):
-        training, _ = data.fold(block)
+    for training, _ in data.folds():
         made = identified(states[training], data.current[training])
         found.append((made.inertia, made.slope, made.viscous, made.coulomb))
     return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*found))))
@@ -228,9 +226,8 @@ def _by_block() -> dict:
 def _hidden_units(members: int) -> dict:
     """Errors of an output layer fitted anew, without hidden units ``(blocks,)`` and with them."""
     data, found = Windowed.of(*MAIN), {"training": [], "test": []}
-    flat = data.x.reshape(len(data.x), -1)
-    for block in range(BLOCKS):
-        cases = data.fold(block)
+    flat = data.flat
+    for cases in data.folds():
         training, given = cases[0], data.current[cases[0]]
         model, *_ = trained(data.x[training], given, members, 0, data.width)
         hidden = model.weights.activity(model.scaled(data.x))[0]
@@ -251,8 +248,7 @@ def _differences() -> dict:
         data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
         states = data.states
         plain = states.reshape(len(states), -1)
-        for block in range(BLOCKS):
-            training, test = data.fold(block)
+        for training, test in data.folds():
             given = data.current[training]
             linear = least_squares(plain[training], given, plain[test])
             known = known_structure(states[training], given, states[test])
@@ -266,8 +262,7 @@ def _processes(subset: int = 120) -> dict:
     """Errors of Gaussian processes by block: of windows, of states, beside known structure."""
     data, rows = Windowed.of(*MAIN), {"windows": [], "states": [], "on the rest": []}
     states = data.states
-    for block in range(BLOCKS):
-        training, test = data.fold(block)
+    for training, test in data.folds():
         known = known_structure(states[training], data.current[training], states)
         left = data.current - known
         for name, x, y, more in (

@@ -65,6 +65,15 @@ class Windowed:
         """Masks of the cases to learn from and of those to be tested on, without common samples."""
         return fold(len(self.x), block, self.gap)
 
+    def folds(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """The masks of each block."""
+        return [self.fold(block) for block in range(BLOCKS)]
+
+    @property
+    def flat(self) -> np.ndarray:
+        """Windows of all joints in a row, ``(cases, 6 * width)``."""
+        return self.x.reshape(len(self.x), -1)
+
     @property
     def gap(self) -> int:
         """Cases from one to the next whose windows have no sample in common."""
@@ -109,7 +118,7 @@ class Ridge:
 
 def best_penalty(data: Windowed, training) -> float:
     """The penalty of `RIDGES` with the least error on pieces left out of the training cases."""
-    x, total = data.x.reshape(len(data.x), -1), 0.0
+    x, total = data.flat, 0.0
     for piece in range(PIECES):
         kept, tried = fold(len(x), piece, data.gap, PIECES)
         kept, tried = kept & training, tried & training

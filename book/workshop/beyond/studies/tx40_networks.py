@@ -40,9 +40,9 @@ def wrong(predicted, data: Windowed, cases) -> np.ndarray:
     return (error**2).mean(-2) / data.current.var(0)
 
 
-def both(model: TorqueModel, data: Windowed, block: int) -> list[np.ndarray]:
+def both(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
     """Errors of a fold: on what was learnt, and on the block left out."""
-    return [wrong(model.torque(data.x[part]), data, part) for part in data.fold(block)]
+    return [wrong(model.torque(data.x[part]), data, part) for part in fold]
 
 
 def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:

@@ -114,15 +114,10 @@ def _sensors(seed: int = 3) -> dict:
     return rows
 
 
-def _law(rate: float = 3.0) -> SlotineLi:
-    """Slotine & Li's law for the rigid body alone, from half of its parameters."""
-    slope, _ = batch.gains(STATE_FEEDBACK)
-    return SlotineLi(KD, slope, rate * batch.SIZES[:3] ** 2, BEGIN * batch.TRUTH)
-
-
 def _lyapunov() -> dict:
     """The function that never rises: in continuous time, and sampled with several sensors."""
-    law, extents = _law(), APPENDIX_I[0]
+    extents, (slope, _) = APPENDIX_I[0], batch.gains(STATE_FEEDBACK)
+    law = SlotineLi(KD, slope, 3.0 * batch.SIZES[:3] ** 2, BEGIN * batch.TRUTH)
 
     def rates(t, y):
         wanted = Trajectory(*(x[0] for x in smooth_pick_and_place(extents, [t])))

@@ -165,6 +165,11 @@ class Sample:
     states: np.ndarray  # (cases, joint, 3): true ones at the centres
     runs: int  # motions; each has as many cases, one after the other
 
+    @property
+    def pair(self) -> tuple[np.ndarray, np.ndarray]:
+        """Windows and torque."""
+        return self.windows, self.torque
+
     def thinned(self, most: int) -> Sample:
         """At most so many cases: of every motion each k-th."""
         step = -(-len(self.torque) // most)

@@ -7,7 +7,7 @@ Recordings are those of `workshop.beyond.studies.loop.chain`. Every training set
 from __future__ import annotations
 
 import warnings
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -71,9 +71,8 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
 
 def sets(made: arms.Chain, motions: int, seed: int, **options) -> arms.Sample:
     """A training set of `CASES` windows from so many motions of an arm."""
-    return arms.recorded(made, arms.extents(made.joints, motions, seed), seed, **options).thinned(
-        CASES
-    )
+    drawn = arms.extents(made.joints, motions, seed)
+    return arms.recorded(made, drawn, seed, **options).thinned(CASES)
 
 
 def tested(made: arms.Chain, **options) -> arms.Sample:
@@ -119,6 +118,15 @@ def equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
     return np.concatenate([rigid, own * speed[..., None], own * sign[..., None]], -1)
 
 
+def _trained(training, test, hidden=paper.HIDDEN_UNITS, **options) -> dict:
+    """Last errors of networks, one for each training set; all are pairs of inputs and torques."""
+    found = [
+        solved(*pair, test, hidden, seed, **options).history
+        for seed, pair in enumerate(training, 1)
+    ]
+    return {side: [getattr(h, side)[-1, 0] for h in found] for side in ("training", "test")}
+
+
 # --- the parts of the study ---------------------------------------------------------------
 
 
@@ -133,9 +141,7 @@ def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
             row |= {"training": [], "test": [], "by joint": [], "linear": []}
             for seed in range(1, 1 + seeds):
                 training = sets(made, count_of, seed)
-                found = solved(
-                    training.windows, training.torque, (test.windows, test.torque), seed=seed
-                )
+                found = solved(*training.pair, test.pair, seed=seed)
                 answer = found.model[0].torque(test.windows)
                 row["training"].append(float(found.history.training[-1, 0]))
                 row["test"].append(float(found.history.test[-1, 0]))
@@ -161,40 +167,30 @@ def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> 
 def closed_loops(seeds: int = SEEDS) -> list[dict]:
     """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
     rows = []
-    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
+    for setup, motions in product((JOINT_DAMPING, STATE_FEEDBACK), (5, MAIN)):
         made = arms.chain(2, setup.name)
-        for motions in (5, MAIN):
-            drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
-            loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
-            for spacing in (arms.SPACING, 1) if motions == MAIN else (arms.SPACING,):
-                kinds = (
-                    ("closed loop", *arms.MOTIONS)
-                    if spacing > 1
-                    else ("closed loop", arms.MOTIONS[0])
-                )
-                for kind in kinds:
-                    if kind == "closed loop":
-                        parts = _cut(loop, spacing, motions)
-                    else:
-                        options = {"motion": kind, "spacing": spacing}
-                        parts = [tested(made, **options)]
-                        parts += [sets(made, motions, s, **options) for s in range(1, 1 + seeds)]
-                    test, *trained = parts
-                    errors = [
-                        solved(x.windows, x.torque, (test.windows, test.torque), seed=s).history
-                        for s, x in enumerate(trained, 1)
-                    ]
-                    rows.append(
-                        {
-                            "reading": setup.name,
-                            "motions": motions,
-                            "taps": 2 * arms.REACH // spacing + 1,
-                            "kind": kind,
-                            "deviation": test.torque.std(0),
-                            "training": [h.training[-1, 0] for h in errors],
-                            "test": [h.test[-1, 0] for h in errors],
-                        }
-                    )
+        drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
+        loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
+        plan = [(arms.SPACING, kind) for kind in ("closed loop", *arms.MOTIONS)]
+        if motions == MAIN:
+            plan += [(1, "closed loop"), (1, arms.MOTIONS[0])]
+        for spacing, kind in plan:
+            if kind == "closed loop":
+                test, *trained = _cut(loop, spacing, motions)
+            else:
+                options = {"motion": kind, "spacing": spacing}
+                test = tested(made, **options)
+                trained = [sets(made, motions, s, **options) for s in range(1, 1 + seeds)]
+            rows.append(
+                {
+                    "reading": setup.name,
+                    "motions": motions,
+                    "taps": 2 * arms.REACH // spacing + 1,
+                    "kind": kind,
+                    "deviation": test.torque.std(0),
+                    **_trained([sample.pair for sample in trained], test.pair),
+                }
+            )
     return rows
 
 
@@ -219,14 +215,9 @@ def units() -> list[dict]:
     rows = []
     for hidden in UNITS:
         for motions in (5, MAIN) if hidden < 40 else (MAIN,):
-            found = []
-            for seed in range(1, 1 + SEEDS):
-                x = sets(made, motions, seed)
-                asked = test.windows, test.torque
-                found.append(solved(x.windows, x.torque, asked, hidden, seed).history)
+            trained = [sets(made, motions, seed).pair for seed in range(1, 1 + SEEDS)]
             row = {"units": hidden, "motions": motions}
-            row |= {"training": [h.training[-1, 0] for h in found]}
-            rows.append(row | {"test": [h.test[-1, 0] for h in found]})
+            rows.append(row | _trained(trained, test.pair, hidden))
     return rows
 
 
@@ -239,20 +230,15 @@ def random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.nd
 
 def random_states() -> list[dict]:
     """Errors on random states by joints, samples and hidden units."""
-    rows = []
+    rows, options = [], {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
     for joints in MOTIONS_OF:
         test = random_cube(joints, STATE_TEST, TEST_SEED)
         plan = [(10, n) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
         plan += [(20, n) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
         for hidden, samples in plan:
-            found = []
-            for seed in range(1, 1 + SEEDS):
-                states, torque = random_cube(joints, samples, seed)
-                options = {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
-                found.append(solved(states, torque, test, hidden, seed, **options).history)
+            trained = [random_cube(joints, samples, seed) for seed in range(1, 1 + SEEDS)]
             row = {"joints": joints, "units": hidden, "samples": samples}
-            row |= {"training": [h.training[-1, 0] for h in found]}
-            rows.append(row | {"test": [h.test[-1, 0] for h in found]})
+            rows.append(row | _trained(trained, test, hidden, **options))
     return rows
 
 
@@ -270,19 +256,16 @@ def pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
         step = -(-len(whole.torque) // CASES)
         for kind, torque in torques.items():
             x, y = whole.windows[::step], torque.reshape(-1, joints)[::step]
-            model = solved(x, y, (test.windows, test.torque), seed=seed).model[0]
+            model = solved(x, y, test.pair, seed=seed).model[0]
             found[kind].append(gains(mean_gradient(model, test.windows), REST)[..., 2])
             used[kind].append(_shuffled(model.torque, test.windows, y.std(0), seed))
-
-    def exact(states):
-        return made.torque(states)
 
     return {
         "joints": joints,
         "inertia": inertia,
         "gains": found,
         "used": used,
-        "exact": _shuffled(exact, test.states, test.torque.std(0), 1),
+        "exact": _shuffled(made.torque, test.states, test.torque.std(0), 1),
         "deviation": test.torque.std(0),
         "acceleration": test.states[..., 2].std(0),
     }

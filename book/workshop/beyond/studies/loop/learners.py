@@ -1,7 +1,6 @@
 """What practises in the loop: draws of motions and networks, learners that outlive a run.
 
-Rates, penalties and the memory's settings were chosen on draws from `TUNED` on, which the study
-does not use.
+Rates, penalties and the memory's settings were chosen on draws from 1000 on.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ddlib.control import Feedforward
 from ddlib.dynamics import follow_hand
 from ddlib.effects import EncoderZero
 from ddlib.identification import RecursiveLeastSquares
@@ -27,7 +27,7 @@ from workshop.beyond.control.feedback_error import (
 from workshop.beyond.control.online import LastLayer, LinearFilter, OnlineDescent, OnlineFeedforward
 from workshop.report import results
 
-SEEDS, TUNED = 10, 1000  # draws; the first of those on which rates were chosen
+SEEDS = 10
 TRIALS = 10  # of one motion, or with one load
 WIDTH = 21
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
@@ -60,6 +60,7 @@ class Draw:
         zero = drawn(0.0, setup.effects.encoder[0].step, 2)
         encoder = (EncoderZero(zero), *setup.effects.encoder, EncoderZero(-zero))
         self.effects = replace(setup.effects, encoder=encoder)
+        self.plain = Feedforward(lambda q, qd, qdd: 0 * q, setup.controller)
         self.limit = setup.effects.actuator[0].limit
         trained = results.networks(WIDTH, setup.name)
         members = (first + np.arange(seeds)) % len(trained.weights)
@@ -152,7 +153,6 @@ class Windows:
 
     def keep(self, controller):
         """Nothing to do: the learner has learnt during the run."""
-        pass
 
 
 class Memory:

@@ -71,8 +71,7 @@ def _motion(draw: learners.Draw) -> dict:
     t, reference = asked["the same"]
     first = _practise(draw, pupils, reference, t)
     tests = {}
-    plain = [Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller),
-             Feedforward(draw.equations, draw.setup.controller)]  # fmt: skip
+    plain = [draw.plain, Feedforward(draw.equations, draw.setup.controller)]
     for name, (times, wanted) in asked.items():
         frozen = [learner.controller(False) for learner in pupils.values()]
         learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
@@ -101,13 +100,12 @@ def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
     loaded = with_load(draw.setup.arm, LOAD)
     tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in TESTS]
     practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
-    plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
     rows, size = [1 + len(TESTS)] + [1, len(TESTS)] * len(pupils), 1 + len(TESTS)
 
     def once(trial_number, arm, learning=True):
         every = _rows(pick_and_place(draw.family[:, trial_number], t), *tests)
         every = Trajectory(*(np.concatenate([x] * (1 + len(pupils))) for x in every))
-        controllers = [plain]
+        controllers = [draw.plain]
         for learner in pupils.values():
             controllers += [learner.controller(learning), learner.controller(False)]
         found = trial(draw, controllers, rows, every, t, arm)[0]

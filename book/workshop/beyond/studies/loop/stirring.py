@@ -73,8 +73,8 @@ def errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     return found
 
 
-def _fitted(rival: Rival, cases: Cases) -> Rival:
-    # it stops after its steps
+def fitted(rival: Rival, cases: Cases) -> Rival:
+    """The rival, trained for as many steps as it has."""
     with warnings.catch_warnings(action="ignore", category=NotConverged):
         return rival.fit(cases)
 
@@ -92,7 +92,7 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     for day, run in enumerate(runs):
         cases = motions.learnt(run, width)
         for (name, family), trained in rivals.items():
-            trained.append(_fitted(maker(setup, name, day), cases[family]))
+            trained.append(fitted(maker(setup, name, day), cases[family]))
             every = errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
                 found[name][family].setdefault(part, []).append(error)
@@ -132,6 +132,13 @@ def off(setup: Setup, log: Recording) -> np.ndarray:
     return 1000 * np.sqrt((error**2).sum(-1).mean(-1))
 
 
+def hands(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict[str, np.ndarray]:
+    """Errors of the hand (mm), shape (models, runs), by the name of the feedforward torques."""
+    every = np.stack([torque for several in torques.values() for torque in several])
+    ends = np.cumsum([len(several) for several in torques.values()])[:-1]
+    return dict(zip(torques, np.split(off(setup, through(setup, every, reference)), ends)))
+
+
 def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     """All that may stand in the box "inverse arm" of Figure 2-1, by name.
 
@@ -158,13 +165,11 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
         if name != "two units"
     }
     named = boxes(setup, models)
-    ends = np.cumsum([len(ms) for ms in named.values()])[:-1]
     found: dict = {name: {} for name in named}
     for motion, reference in references.items():
-        torques = np.stack([f(*reference) for ms in named.values() for f in ms])
-        parts = np.split(off(setup, through(today, torques, reference)), ends)
-        for name, errors_of in zip(named, parts):
-            found[name][motion] = errors_of
+        torques = {name: [f(*reference) for f in ms] for name, ms in named.items()}
+        for name, off_by in hands(today, torques, reference).items():
+            found[name][motion] = off_by
     return found
 
 
@@ -194,7 +199,7 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
             cases = Cases.windows(run[family], WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
-            null.append(_fitted(maker(setup, "network", day), replace(cases, torque=drawn)))
+            null.append(fitted(maker(setup, "network", day), replace(cases, torque=drawn)))
         found[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),

@@ -12,8 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib.control import Feedforward
-from ddlib.learning import NotConverged
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import (
@@ -63,10 +61,7 @@ def _cases(run, every: int) -> Cases:
 
 def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
     rival = BySolver(10, steps, decay=JOINT_DAMPING.decay, initial=INITIAL, seed=day)
-    # the number of steps is the setting
-    with warnings.catch_warnings(action="ignore", category=NotConverged):
-        rival.fit(cases)
-    return rival
+    return stirring.fitted(rival, cases)
 
 
 def _chosen_steps(run, day: int) -> int:
@@ -91,7 +86,9 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
         "pick and place": pick_and_place(random_members(MEMBERS, TEST), t),
     }
     steps, models = [], {"chosen": [], "60": [], "identified": []}
-    for day, run in zip(days, recorded_days(setup, [_five(t)] * len(days), days)):
+    for day, run in zip(
+        days, recorded_days(setup, [pick_and_place(APPENDIX_I[:5], t)] * len(days), days)
+    ):
         whole = _cases(run, 1)
         steps.append(_chosen_steps(run, day))
         models["60"].append(_fitted(STEPS[-1], whole, day))
@@ -109,10 +106,6 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
     return {"steps": steps, "hands": hands}
 
 
-def _five(t) -> Trajectory:
-    return pick_and_place(APPENDIX_I[:5], t)
-
-
 def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
     """Median over a family of the hand's error, one for each model of each name, mm."""
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
@@ -121,10 +114,8 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
             for name, several in models.items()
         }
     torques = {"none": [0 * reference.q], **torques}
-    every = np.stack([torque for several in torques.values() for torque in several])
-    middle = np.median(stirring.off(setup, stirring.through(setup, every, reference)), -1)
-    ends = np.cumsum([len(several) for several in torques.values()])[:-1]
-    return dict(zip(torques, np.split(middle, ends)))
+    hands = stirring.hands(setup, torques, reference)
+    return {name: np.median(errors, -1) for name, errors in hands.items()}
 
 
 def _windows(seeds: int) -> dict:
@@ -145,8 +136,7 @@ def _windows(seeds: int) -> dict:
 
 def _course(training: Sample, test: Sample, seed: int, **options) -> np.ndarray:
     """Errors on a test after each step of the solver."""
-    pair = (test.windows, test.torque)
-    return joints.solved(training.windows, training.torque, pair, seed=seed, **options).history.test
+    return joints.solved(*training.pair, test.pair, seed=seed, **options).history.test
 
 
 def _error(training: Sample, test: Sample, seed: int, **options) -> float:
@@ -211,8 +201,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
         speed = {"in 2/3 of the time": 1.5, "in half the time": 2.0}.get(motion, 1.0)
         scaled = copy.deepcopy(taught["memory"].memory)
         scaled.torque = scaled.torque * speed**2
-        plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
-        every = {"none": plain} | {k: x.controller(False) for k, x in taught.items()}
+        every = {"none": draw.plain} | {k: x.controller(False) for k, x in taught.items()}
         every["memory, scaled"] = scaled
         many = learning._repeated(wanted, len(every))
         errors, _ = learning.trial(draw, list(every.values()), [1] * len(every), many, times)
