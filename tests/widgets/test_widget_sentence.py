@@ -4,26 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from axe import violations_in
 from traitlets import TraitError
-from widget_pages import page_of
+from widget_pages import functions, page_of, phone
 
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.widgets import LoopSentence, TorqueSentence, module
-from ddlib.widgets.engine import loops, plain
+from ddlib.widgets import LoopSentence, TorqueSentence
+from ddlib.widgets.engine import loops
 
 SPACE = "\u00a0"
 ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
 
 
 @pytest.fixture(scope="module")
-def ends(browser):
-    """`ends(sentence, settings)`: what the page's function says at each of them."""
-    page = browser.new_page()
-    script = module("sentence.js").replace("export default", "window.shown =")
-    page.add_script_tag(content=plain.source() + module(loops.LOOPS) + script)
-    yield lambda sentence, settings: page.evaluate(ENDS, [sentence.spec, settings])
-    page.close()
+def evaluate(browser):
+    with functions(browser, loops.LOOPS, "sentence.js") as call:
+        yield call
 
 
 def drawn(sentence, n, seed):
@@ -42,12 +37,12 @@ def drawn(sentence, n, seed):
 
 @pytest.mark.browser
 @pytest.mark.parametrize("kind, n", [(TorqueSentence, 200), (LoopSentence, 60)])
-def test_the_page_says_what_ddlib_says(ends, kind, n):
+def test_the_page_says_what_ddlib_says(evaluate, kind, n):
     sentence = kind()
     settings = drawn(sentence, n, 3)
     if kind is LoopSentence:  # not where rounding decides
         settings = [s for s in settings if abs(sentence.growth(**s)) > 1e-6]
-    said = ends(sentence, settings)
+    said = evaluate(ENDS, [sentence.spec, settings])
     assert len({str(x) for x in said}) > n / 4
     for values, texts in zip(settings, said):
         known = sentence.results(**values)
@@ -75,11 +70,11 @@ def test_the_limit_of_a_spring_is_that_of_the_chapter():
     assert "stable, and what" in sentence.results(**sentence.values)["verdict"]
 
 
-@pytest.mark.parametrize("bad", [{"elbow": 181}, {"first": np.nan}, {"speed": 1}, {"first": "1"}])
-def test_bad_numbers_are_refused(bad):
+def test_bad_numbers_are_refused():
     sentence = TorqueSentence()
-    with pytest.raises((TraitError, ValueError, TypeError), match="must"):
-        sentence.values = bad
+    for bad in ({"elbow": 181}, {"first": np.nan}, {"speed": 1}, {"first": "1"}):
+        with pytest.raises((TraitError, ValueError, TypeError), match="must"):
+            sentence.values = bad
     assert sentence.values == {"elbow": 90, "first": 1, "second": 2}
 
 
@@ -106,8 +101,7 @@ def test_keys_and_pointer(tmp_path, visit):
     sentence.values = {"first": 0.1}
     assert end_of(page) == sentence.text() and number.get_attribute("aria-valuenow") == "0.1"
     number.press("End")
-    elbow = page.get_by_role("spinbutton", name="Elbow angle")
-    box = elbow.bounding_box()
+    box = page.get_by_role("spinbutton", name="Elbow angle").bounding_box()
     page.mouse.move(box["x"] + 5, box["y"] + 5)
     page.mouse.down()
     page.mouse.move(box["x"] - 55, box["y"] + 5, steps=3)  # ten steps of five degrees
@@ -115,8 +109,7 @@ def test_keys_and_pointer(tmp_path, visit):
     sentence.values = {"first": 4, "elbow": 40}
     assert end_of(page) == sentence.text()
     page.get_by_role("button", name="Reset").click()
-    assert end_of(page) == TorqueSentence().text()
-    assert not opened.problems + violations_in(page, "light", "dark")
+    assert end_of(page) == TorqueSentence().text() and not opened.problems
 
 
 BREAKS = """() => {
@@ -140,33 +133,25 @@ BREAKS = """() => {
 @pytest.mark.browser
 @pytest.mark.parametrize("kind", [TorqueSentence, LoopSentence])
 def test_sign_number_and_unit_stay_together(tmp_path, visit, kind):
-    """At any width lines end where there is a plain space, and the numbers hold by themselves."""
+    """At any width lines end where there is a plain space."""
     query = {TorqueSentence: "?torque-sentence=second:3.1", LoopSentence: "?loop-sentence=kd:3.5"}
     page = visit(f"{page_of(tmp_path / 'page.html', kind())}{query[kind]}").page
-    page.wait_for_selector(".sentence")
-    for width in range(300, 1301, 9):
+    for width in range(300, 1301, 36):
         page.set_viewport_size({"width": width, "height": 700})
         broken = [pair for pair in page.evaluate(BREAKS) if pair[1] != " "]
         assert not broken, (width, broken)
-    numbers = page.locator(".sentence :is(.number, output span)").all()
-    assert {x.evaluate("(el) => getComputedStyle(el).whiteSpace") for x in numbers} == {"nowrap"}
 
 
 @pytest.mark.browser
-def test_touch(tmp_path, browser):
-    """A number that is tapped shows a minus and a plus; dragged sideways it moves."""
-    context = browser.new_context(viewport={"width": 390, "height": 700}, has_touch=True)
-    page, sentence = context.new_page(), LoopSentence()
-    page.goto(page_of(tmp_path / "page.html", sentence))
-    page.wait_for_selector(".sentence")
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    number = page.get_by_role("spinbutton", name="Derivative gain")
-    plus = page.locator(".movable", has=number).locator("button").nth(1)
-    assert not plus.is_visible()
-    number.tap()
-    plus.tap()
-    plus.tap()
-    sentence.values = {"kd": 1.0}
-    assert end_of(page) == sentence.text()
-    assert page.evaluate("getComputedStyle(document.activeElement).touchAction") == "pan-y"
-    context.close()
+def test_a_number_that_is_tapped_shows_a_minus_and_a_plus(tmp_path, browser):
+    sentence = LoopSentence()
+    with phone(browser, page_of(tmp_path / "page.html", sentence)) as page:
+        number = page.get_by_role("spinbutton", name="Derivative gain")
+        plus = page.locator(".movable", has=number).locator("button").nth(1)
+        assert not plus.is_visible()
+        number.tap()
+        plus.tap()
+        plus.tap()
+        sentence.values = {"kd": 1.0}
+        assert end_of(page) == sentence.text()
+        assert page.evaluate("getComputedStyle(document.activeElement).touchAction") == "pan-y"
