@@ -1,6 +1,5 @@
 """The printed numbers, typed a second time from the report, and what the text says of them."""
 
-import numpy as np
 import pytest
 
 from ddlib import paper
@@ -14,16 +13,13 @@ def test_appendix_i_as_printed():
     assert paper.SAMPLES_PER_TRAJECTORY == 3 * 100  # three seconds, 100 samples per second
 
 
-def test_extents_lie_in_the_family():
-    extents = np.array(paper.APPENDIX_I_EXTENTS_DEG)
-    assert extents.shape == (6, 2) and (extents >= 0).all() and (extents <= 45).all()
-    numbers = {*paper.TRAINING_TRAJECTORIES, paper.TEST_TRAJECTORY}
-    assert numbers == set(range(1, len(extents) + 1))
-
-
-def test_table_4_1_as_printed():
+def test_tables_as_printed():
     printed = [(w, *paper.TABLE_4_1[w]) for w in sorted(paper.TABLE_4_1)]
     assert printed == [(11, 0.078, 0.22), (21, 0.027, 0.10), (41, 0.024, 0.13)]
+    printed = {"random set A": 0.068, "random set B": 0.083, "trajectory 6": 0.067}
+    assert dict(paper.TABLE_6_1) == printed
+    assert dict(paper.LARGEST_WEIGHT) == {11: 18.9, 21: 11.7, 41: 4.2}
+    assert paper.LARGEST_WEIGHT_SIMULATION == 9.63
 
 
 def test_table_4_1_says_what_the_text_says():
@@ -32,20 +28,6 @@ def test_table_4_1_says_what_the_text_says():
     assert rows[0].training > rows[1].training > rows[2].training
     assert min(paper.TABLE_4_1, key=lambda w: paper.TABLE_4_1[w].test) == 21
     assert all(row.test > row.training for row in rows)
-
-
-def test_table_6_1_as_printed():
-    assert dict(paper.TABLE_6_1) == {
-        "random set A": 0.068,
-        "random set B": 0.083,
-        "trajectory 6": 0.067,
-    }
-
-
-def test_largest_weights_as_printed():
-    assert dict(paper.LARGEST_WEIGHT) == {11: 18.9, 21: 11.7, 41: 4.2}
-    assert paper.LARGEST_WEIGHT_SIMULATION == 9.63
-    assert paper.LARGEST_WEIGHT.keys() == paper.TABLE_4_1.keys()
 
 
 def test_multiplications_fit_window_21_not_the_largest():
@@ -64,8 +46,5 @@ def test_multiplications_fit_window_21_not_the_largest():
 
 @pytest.mark.parametrize("table", [paper.TABLE_4_1, paper.TABLE_6_1, paper.LARGEST_WEIGHT])
 def test_printed_tables_cannot_be_changed(table):
-    key = next(iter(table))
     with pytest.raises(TypeError):
-        table[key] = 0.0
-    with pytest.raises((TypeError, AttributeError)):
-        paper.TABLE_4_1[11].test = 0.0
+        table[next(iter(table))] = 0.0

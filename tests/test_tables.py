@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from ddlib.tables import Table, number_beside, quote, scientific, significant, spread, typeset
 
@@ -19,24 +18,19 @@ from ddlib.tables import Table, number_beside, quote, scientific, significant, s
         (1.0, "1.00"),
         (0.078, "0.0780"),
         (-0.0271828, "-0.0272"),
-        (18.9, "18.9"),
         (123.4, "123"),
         (1234.5678, "1,235"),
         (786000.0, "786,000"),
-        (0.000683, "0.000683"),
         (0.0000683, "6.83 · 10⁻⁵"),
         (2.5e7, "2.50 · 10⁷"),
         (9.999, "10.0"),  # rounding adds a digit
         (0.09999, "0.100"),
         (999.9, "1,000"),
-        (np.float32(0.25), "0.250"),
         (np.array(0.25), "0.250"),
         (np.nan, "–"),
         (-np.inf, "–"),
         (20_000, "20,000"),  # counts keep all their digits
         (np.int64(1_234_567), "1,234,567"),
-        (0, "0"),
-        (-5, "-5"),
     ],
 )
 def test_three_significant_digits(value, text):
@@ -54,24 +48,14 @@ def test_a_number_can_be_read_back_to_its_digits(value, digits):
     read = float(text.replace(",", ""))
     assert read == pytest.approx(value, rel=0.500001 * 10.0 ** (1 - digits))
     mantissa = text.partition("e")[0].lstrip("-").replace(",", "").replace(".", "").lstrip("0")
-    if abs(value) < 10.0 ** (digits - 1):
-        assert len(mantissa) == digits
+    assert abs(value) >= 10.0 ** (digits - 1) or len(mantissa) == digits
     assert ("e" in text) == (not 1e-4 <= abs(float(f"{value:.{digits - 1}e}")) < 1e6)
 
 
-@pytest.mark.parametrize(
-    "value, digits, text",
-    [
-        (0.0, 1, "0"),
-        (3.6e-14, 1, "4 · 10⁻¹⁴"),
-        (1e-6, 1, "10⁻⁶"),
-        (-9.7e11, 1, "-10¹²"),
-        (-0.00123, 2, "-1.2 · 10⁻³"),
-        (1e-67, 2, "1.0 · 10⁻⁶⁷"),
-    ],
-)
-def test_powers_are_set_as_mathematics(value, digits, text):
-    assert scientific(value, digits) == text
+def test_powers_are_set_as_mathematics():
+    given = ((0.0, 1), (3.6e-14, 1), (1e-6, 1), (-9.7e11, 1), (-0.00123, 2))
+    texts = [scientific(*one) for one in given]
+    assert texts == ["0", "4 · 10⁻¹⁴", "10⁻⁶", "-10¹²", "-1.2 · 10⁻³"]
 
 
 @pytest.mark.parametrize(
@@ -113,36 +97,23 @@ def test_a_shown_value_is_on_its_own_side(value, edge):
     assert (shown > edge) == (value > edge) and (shown < edge) == (value < edge)
 
 
-def test_words_are_not_numbers():
-    with pytest.raises(ValueError):
-        significant("many")
-
-
 @pytest.mark.parametrize(
     "values, text",
     [
         ([0.1, 0.2, 0.6], "0.20 (0.10 to 0.60)"),
-        ([3.0, 1.0], "2.0 (1.0 to 3.0)"),
         ([0.1, np.nan, 0.2, 0.3, np.inf], "0.20 (0.10 to 0.30)"),
         (np.array([[0.5, 0.7], [0.6, 0.6]]), "0.60 (0.50 to 0.70)"),
         ([np.nan], "–"),
-        ([], "–"),
     ],
 )
 def test_spread_is_median_and_range(values, text):
     assert spread(values) == text
 
 
-def test_spread_with_more_digits():
-    assert spread([0.12345, 0.12355, 0.12349], 4) == "0.1235 (0.1235 to 0.1235)"
-    assert spread([12.0, 14.0, 13.0], 3) == "13.0 (12.0 to 14.0)"
-
-
 @pytest.mark.parametrize(
     "value, plain",
-    [(np.float64(0.25), 0.25), (np.array(1 / 3), 1 / 3), (1e-22, 1e-22), (np.int64(3), 3),
-     (1_500_000, 1_500_000), (np.float32(0.5), 0.5), (float("nan"), float("nan"))],
-)  # fmt: skip
+    [(np.float64(0.25), 0.25), (np.array(1 / 3), 1 / 3), (np.int64(3), 3), (1e-22, 1e-22)],
+)
 def test_quote_shows_what_glue_shows(monkeypatch, value, plain):
     import IPython.display
     import myst_nb.ext.glue as library
@@ -172,10 +143,6 @@ def test_markdown():
     )
 
 
-def test_a_negative_number_has_a_minus_sign():
-    assert Table(("a", "b"), [(-0.25, "a-1")])._repr_markdown_().endswith("| −0.250 | a-1 |")
-
-
 texts = st.text(st.characters(codec="ascii", categories=["L", "N", "P", "S"]), max_size=12).filter(
     lambda s: "\\" not in s
 )
@@ -195,19 +162,11 @@ def test_a_negative_number_has_a_minus_sign_and_a_text_stays():
     assert cells(line) == ["−0.500", "−2.00 · 10⁻⁷", "x-y"]
 
 
-def test_rows_may_come_once():
+def test_rows_may_come_once_and_have_the_length_of_the_header():
     table = Table(("a",), ((k,) for k in range(3)))
     assert table._repr_markdown_() == table._repr_markdown_()
-    assert len(table.rows) == 3
-
-
-@pytest.mark.parametrize("rows", [[(1,)], [(1, 2), (1, 2, 3)], [()]])
-def test_rows_have_the_length_of_the_header(rows):
-    with pytest.raises(ValueError, match="rows must have 2 cells like the header"):
-        Table(("a", "b"), rows)
-
-
-@pytest.mark.parametrize("header", [("a", ""), (" ", "b")])
-def test_every_column_has_a_name(header):
+    for rows in ([(1,)], [(1, 2), (1, 2, 3)], [()]):
+        with pytest.raises(ValueError, match="rows must have 2 cells like the header"):
+            Table(("a", "b"), rows)
     with pytest.raises(ValueError, match="header must name every column"):
-        Table(header, [(1, 2)])
+        Table((" ", "b"), [(1, 2)])
