@@ -6,7 +6,7 @@ import sys
 
 import pytest
 from book_pages import ROOT, WITH_WIDGETS
-from reactions import Handle, handles
+from reactions import FRAMES, PICTURE, Handle, handles
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
 import redraw
@@ -63,3 +63,18 @@ def test_the_benchmark_times_each_way_of_moving(site, visit):
         assert 0 < row["median, ms"] <= row["p95, ms"]
         assert row["ratio"] == pytest.approx(row["most, ms"] / row["p95, ms"])
     assert not opened.problems
+
+
+def test_the_arm_of_the_first_page_moves_by_itself(site, visit):
+    page = visit(f"{site}/{WITH_WIDGETS[0]}.html").page
+    widget = page.locator(".ddlib-widget").first
+    widget.scroll_into_view_if_needed()
+    run = widget.locator("button[data-runs]")
+    run.click()
+    if run.inner_text() == "Play":  # it was greeting the reader
+        run.click()
+    pictures = set()
+    for _ in range(10):
+        pictures.add(widget.evaluate(PICTURE))
+        page.evaluate(FRAMES)
+    assert len(pictures) > 5

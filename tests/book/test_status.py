@@ -1,4 +1,4 @@
-"""The page *Status*: what its tables say about times, ratios and targets."""
+"""The page *Status* and times that pages tell: what their tables say of ratios and targets."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from book_pages import CHAPTERS, PAGES, ROOT, source
-from bs4 import BeautifulSoup
 
 from workshop.chapters import status
 from workshop.report import results
@@ -45,18 +44,14 @@ def plain(rows) -> list[list[str]]:
     return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
 
 
-@pytest.mark.parametrize(
-    ("seconds", "shown"),
-    [
-        (120.0, "120 s"),
-        (1.0, "1.00 s"),
-        (0.0251, "25.1 ms"),
-        (2.5e-5, "25.0 µs"),
-        (3e-7, "0.300 µs"),
-    ],
-)
-def test_durations_have_the_unit_that_suits_them(seconds, shown):
-    assert status.duration(seconds).split() == shown.split()
+def test_durations_have_the_unit_that_suits_them():
+    shown = {120.0: "120 s", 1.0: "1.00 s", 0.0251: "25.1 ms", 2.5e-5: "25.0 µs", 3e-7: "0.300 µs"}
+    assert {s: " ".join(status.duration(s).split()) for s in shown} == shown
+    spoken = {0.4: "a second", 3.6: "4 seconds", 24.1: "25 seconds", 88: "90 seconds"}
+    spoken[130] = "2 minutes"
+    assert {s: dd_runtime.spoken_time(s) for s in spoken} == {
+        s: f"about {words}" for s, words in spoken.items()
+    }
 
 
 @pytest.mark.parametrize(
@@ -71,29 +66,23 @@ def test_durations_have_the_unit_that_suits_them(seconds, shown):
     ],
 )
 def test_a_missed_target_is_said_to_be_missed(row, shown):
-    assert status.outcome(row).replace("\N{NO-BREAK SPACE}", " ") == shown
-
-
-def test_pairs_have_both_times_and_what_is_not_measured_stays(folder):
-    folder("benchmarks", {"rows": [PAIR, MISSING]})
-    table = status.benchmarks()["Training"]
-    assert table.header == (
-        "what", "ensemble", "loop", "ratio", "share of the rate", "largest error, rad", "target",
-    )  # fmt: skip
-    assert plain(table.rows) == [
-        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "2.00 · 10⁻⁷", "≥ 8.0: met"],
-        ["MuJoCo", "–", "–", "–", "–", "–", "not measured: pip install .[bench]"],
-    ]
+    assert plain([[status.outcome(row)]]) == [[shown]]
 
 
 def test_every_group_has_its_table(folder):
+    """Pairs have both times; what is not measured stays."""
     made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}
     made |= {"python": "3.11", "versions": {"numpy": "2.4"}, "seconds": 9.0}
     folder("benchmarks", {"made by": made, "rows": [PAIR, LIMIT, MISSING]})
     assert "2026-01-31: X, 2 cores, Python 3.11, numpy 2.4; 9 s" in status.benchmark_machine()
     tables = status.benchmarks()
-    assert {group: len(table.rows) for group, table in tables.items()} == {"Training": 2, "Time": 1}
-    assert plain(tables["Time"].rows) == [["book", "130 s", "≤ 120: missed"]]
+    assert plain(tables.pop("Time").rows) == [["book", "130 s", "≤ 120: missed"]]
+    (table,) = tables.values()
+    assert plain([table.header, *table.rows]) == [
+        ["what", "ensemble", "loop", "ratio", "share of the rate", "largest error, rad", "target"],
+        ["window 21", "25.0 µs", "450 µs", "18.0 ×", "42%", "2.00 · 10⁻⁷", "≥ 8.0: met"],
+        ["MuJoCo", "–", "–", "–", "–", "–", "not measured: pip install .[bench]"],
+    ]
 
 
 @pytest.mark.parametrize(("seconds", "verdict"), [(1560.0, "met"), (1560.1, "missed")])
@@ -108,15 +97,15 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
         folder(name, {"made by": made})
     folder("verdicts", {})  # of other results
     rows = status.made_results().rows
-    names = ["loop-conditions", "rivals", "table-4-1"]
-    assert [row[0] for row in rows[:4]] == [*names, "sum"] and rows[3][1] == "1570 s"
-    assert [row[1] for row in rows[4:-1]] == [
+    assert [row[0] for row in rows[:4]] == ["loop-conditions", "rivals", "table-4-1", "sum"]
+    assert [row[1] for row in rows[3:]] == [
+        "1570 s",
         "50 s; target ≤ 900 s: met",
         "375 s; target ≤ 300 s: missed",
         "360 s; target ≤ 360 s: met",
+        f"{seconds:.0f} s; target ≤ 1560 s: {verdict}",
     ]
     assert rows[-1][0] == "make reproduce, 2 at a time, by the clock"
-    assert rows[-1][1] == f"{seconds:.0f} s; target ≤ 1560 s: {verdict}"
     folder("c", {"made by": {"code": "3", "seconds": 1.0}})
     told = status.made_results().rows[-1][1]
     assert told.endswith(verdict) and "before results were added" in told
@@ -124,81 +113,54 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
     assert not status.made_results().rows[-1][0].startswith("make reproduce")
 
 
-@pytest.mark.parametrize(
-    ("seconds", "shown"),
-    [
-        (0.4, "about a second"),
-        (3.6, "about 4 seconds"),
-        (24.1, "about 25 seconds"),
-        (88, "about 90 seconds"),
-        (130, "about 2 minutes"),
-    ],
-)
-def test_times_in_words(seconds, shown):
-    assert dd_runtime.spoken_time(seconds) == shown
-
-
-@pytest.mark.built
-@pytest.mark.parametrize("name", CHAPTERS)
-def test_a_chapter_tells_the_time_that_was_measured(name, built):
-    status = BeautifulSoup((built / "book" / "status.html").read_text("utf-8"), "html.parser")
-    rows = status.select("#chapters tr:has(td)")
-    times = {row.a["href"]: row.find_all("td")[1].get_text() for row in rows if row.a}
-    measured = float(times[f"{Path(name).name}.html"].split()[0])
-    page = BeautifulSoup((built / f"{name}.html").read_text("utf-8"), "html.parser").article
-    told = re.search(rf"Time to run\s+(.*?) {dd_runtime.MEASURED}", page.get_text())
-    assert told[1] == dd_runtime.spoken_time(measured)
-
-
-@pytest.mark.built
-@pytest.mark.parametrize("name", CHAPTERS)
-def test_a_chapter_tells_the_time_to_read_it(name, built):
-    page = BeautifulSoup((built / f"{name}.html").read_text("utf-8"), "html.parser").article
-    told = re.search(r"Time to read\s+(\d+) minutes, counted", page.get_text())
-    assert abs(int(told[1]) - dd_runtime.words(source(name)) / dd_runtime.WORDS_A_MINUTE) <= 5
-
-
-@pytest.mark.built
-def test_every_notebook_has_its_time_and_share(built):
-    page = BeautifulSoup(
-        (built / "book" / "status.html").read_text(encoding="utf-8"), "html.parser"
-    )
-    rows = [
-        [cell.get_text(strip=True) for cell in row.find_all("td")]
-        for row in page.find(id="chapters").find_all("tr")
-    ]
-    *chapters, total = [row for row in rows if row]
-    links = [a["href"].removesuffix(".html") for a in page.select("#chapters td a")]
-    own = {"#": "status"}  # the page is a notebook itself
-    notebooks = [p for p in PAGES if source(p).suffix == ".ipynb"]
-    assert [f"book/{own.get(link, link)}" for link in links] == notebooks
-    assert sum(float(row[1].split()[0]) for row in chapters) == pytest.approx(
-        float(total[1].split()[0]), abs=0.5 + 0.05 * len(chapters)
-    )
-    assert sum(int(row[2].rstrip("%")) for row in chapters) == pytest.approx(100, abs=len(chapters))
-
-
 def test_words_of_prose_are_counted(tmp_path):
-    cells = [("markdown", ["# One two\n", "three"]), ("code", ["four = 5"])]
-    cells = [{"cell_type": kind, "source": source} for kind, source in cells]
     path = tmp_path / "page.ipynb"
-    path.write_text(json.dumps({"cells": cells}))
+
+    def write(*cells):
+        made = [{"cell_type": kind, "source": source} for kind, source in cells]
+        path.write_text(json.dumps({"cells": made}))
+
+    write(("markdown", ["# One two\n", "three"]), ("code", ["four = 5"]))
     assert dd_runtime.words(path) == 3
     assert dd_runtime.minutes([path]) == "5 minutes"
-    words = [{"cell_type": "markdown", "source": ["word " * 12 * dd_runtime.WORDS_A_MINUTE]}]
-    path.write_text(json.dumps({"cells": words}))
+    write(("markdown", ["word " * 12 * dd_runtime.WORDS_A_MINUTE]))
     assert dd_runtime.minutes([path]) == "10 minutes"
 
 
+# --- on the built pages -------------------------------------------------------------------
+
+
 @pytest.mark.built
-def test_reading_times_on_the_first_page(built):
-    page = BeautifulSoup((built / "book" / "index.html").read_text(encoding="utf-8"), "html.parser")
-    told = [item.get_text() for item in page.select("#four-ways-in > ul > li")]
-    minutes = [int(re.search(r"(\d+) minutes", text)[1]) for text in told]
-    ways = [
-        [Path(a["href"]).stem for a in item.select("a[href]")]
-        for item in page.select("#four-ways-in > ul > li")
-    ]
-    for number, pages in zip(minutes, ways, strict=True):
-        total = sum(dd_runtime.words(ROOT / "book" / f"{name}.ipynb") for name in pages)
-        assert abs(number - total / dd_runtime.WORDS_A_MINUTE) <= 5
+def test_every_notebook_has_its_time_and_share(parsed):
+    """And every chapter tells the time that was measured."""
+    table = parsed("book/status").find(id="chapters")
+    rows = [row.find_all("td") for row in table.find_all("tr") if row.td]
+    cells = [[cell.get_text(strip=True) for cell in row] for row in rows]
+    links = [row[0].a["href"].removesuffix(".html") for row in rows[:-1]]
+    names = [f"book/{'status' if link == '#' else link}" for link in links]  # the page itself
+    assert names == [page for page in PAGES if source(page).suffix == ".ipynb"]
+    seconds = {name: float(row[1].split()[0]) for name, row in zip(names, cells)}
+    total = float(cells[-1][1].split()[0])
+    assert sum(seconds.values()) == pytest.approx(total, abs=0.5 + 0.05 * len(names))
+    shares = [int(row[2].rstrip("%")) for row in cells[:-1]]
+    assert sum(shares) == pytest.approx(100, abs=len(names))
+    pattern = re.compile(rf"Time to run\s+(.*?) {dd_runtime.MEASURED}")
+    told = {name: pattern.search(parsed(name).article.get_text())[1] for name in CHAPTERS}
+    assert told == {name: dd_runtime.spoken_time(seconds[name]) for name in CHAPTERS}
+
+
+@pytest.mark.built
+def test_pages_tell_the_time_to_read_them(parsed):
+    """Each chapter, and the four ways through them on the first page."""
+    told = []
+    for name in CHAPTERS:
+        text = parsed(name).article.get_text()
+        told.append((re.search(r"Time to read\s+(\d+) minutes, counted", text)[1], [source(name)]))
+    for way in parsed("book/index").select("#four-ways-in > ul > li"):
+        pages = [Path(a["href"]).stem for a in way.select("a[href]")]
+        minutes = re.search(r"(\d+) minutes", way.get_text())[1]
+        told.append((minutes, [ROOT / "book" / f"{name}.ipynb" for name in pages]))
+    assert len(told) >= len(CHAPTERS) + 4
+    for minutes, paths in told:
+        count = sum(map(dd_runtime.words, paths)) / dd_runtime.WORDS_A_MINUTE
+        assert abs(int(minutes) - count) <= 5, paths
