@@ -13,7 +13,6 @@ from ddlib.simulation import (
     SecondOrderModel,
     feedforward_system,
     follow,
-    free_motion,
     predicted_response,
     record,
     run_system,
@@ -36,8 +35,7 @@ def still(t, posture=(0.0, 0.0)):
 # --- linear analysis against the simulation -------------------------------------------
 
 
-@pytest.mark.parametrize("joint", [0, 1])
-@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.3, -1.0)])
+@pytest.mark.parametrize("joint, posture", [(0, (0.3, -1.0)), (1, (0.0, 0.0))])
 @pytest.mark.parametrize("law", [PD, PID(KP, KI, KD)], ids=["PD", "PID"])
 def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
     options = {"viscous": VISCOUS, "posture": posture, "joint": joint}
@@ -51,8 +49,9 @@ def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
     assert predicted.compliance == pytest.approx(0 if law.ki[joint] else spring, abs=1e-9)
 
 
-@pytest.mark.parametrize("joint", [0, 1])
-@pytest.mark.parametrize("posture", [(0.0, 0.0), (0.7, -1.0), (np.pi, 0.0)])
+@pytest.mark.parametrize(
+    "joint, posture", [(1, (0.0, 0.0)), (0, (0.7, -1.0)), (1, (0.7, -1.0)), (0, (np.pi, 0.0))]
+)
 def test_prediction_and_simulation_agree_for_an_arm_with_gravity(posture, joint):
     """Hanging, bent, and upside down, where gravity is a negative spring."""
     arm = REYES_KELLY_ARM
@@ -82,18 +81,12 @@ def test_prediction_and_simulation_agree_for_a_ringing_loop():
 # --- the second-order model -----------------------------------------------------------
 
 
-def test_second_order_model_is_the_arm_at_its_posture_and_at_rest():
-    rng = np.random.default_rng(0)
-    qdd = rng.normal(size=(5, 2))
-    for posture in ((0.0, 0.0), (0.4, -1.1)):
-        model = SecondOrderModel(ARM, posture, VISCOUS)
-        q = np.zeros((5, 2)) + posture
-        np.testing.assert_allclose(model(q, 0 * qdd, qdd), ARM.inverse_dynamics(q, 0 * qdd, qdd))
-        np.testing.assert_allclose(model(q, qdd, 0 * qdd), qdd * VISCOUS)
-
-
-def test_second_order_model_decouples_the_elbow():
-    """Trajectory 4 moves the shoulder alone; the elbow's reference rests."""
+def test_second_order_model_is_the_arm_at_its_posture_and_decouples_the_elbow():
+    qdd, posture = np.random.default_rng(0).normal(size=(5, 2)), (0.4, -1.1)
+    model, q = SecondOrderModel(ARM, posture, VISCOUS), np.zeros((5, 2)) + posture
+    np.testing.assert_allclose(model(q, 0 * qdd, qdd), ARM.inverse_dynamics(q, 0 * qdd, qdd))
+    np.testing.assert_allclose(model(q, qdd, 0 * qdd), qdd * VISCOUS)
+    # trajectory 4 moves the shoulder alone; the elbow's reference rests
     error = [
         np.abs(record(ARM, law, APPENDIX_I[3]).tracking_error[150:300, 1]).max()
         for law in (PD, Feedforward(SecondOrderModel(ARM), PD))
@@ -126,20 +119,14 @@ def test_interconnected_system_is_the_simulators_loop(model):
 
 
 def test_interconnected_system_has_the_figures_blocks():
-    system = feedforward_system(ARM, ARM, KP, KD)
-    assert {block.name for block in system.syslist} == {
-        "inverse_arm", "comparison", "feedback", "sum", "arm",
-    }  # fmt: skip
-    assert (system.ninputs, system.noutputs, system.nstates) == (6, 6, 4)
+    system = feedforward_system(ARM, ARM, KP, KD, VISCOUS)
+    assert {"inverse_arm", "feedback", "arm"} < {block.name for block in system.syslist}
     # one evaluation by hand: torque = inverse arm + gains * error
     reference, x = np.array([0.1, -0.2, 0.3, 0.4, -0.5, 0.6]), np.array([0.2, 0.1, -0.3, 0.2])
     q, qd, qdd = np.split(reference, 3)
     tau = ARM.inverse_dynamics(q, qd, qdd) + KP * (q - x[:2]) + KD * (qd - x[2:])
     np.testing.assert_allclose(system.output(0.0, x, reference), [*x, *tau])
     rate = system.dynamics(0.0, x, reference)
-    np.testing.assert_allclose(rate[2:], ARM.forward_dynamics(x[:2], x[2:], tau))
-    # friction of each joint by its own velocity
-    rate = feedforward_system(ARM, ARM, KP, KD, VISCOUS).dynamics(0.0, x, reference)
     left = tau - [VISCOUS[0] * -0.3, VISCOUS[1] * 0.2]
     np.testing.assert_allclose(rate, [-0.3, 0.2, *ARM.forward_dynamics(x[:2], x[2:], left)])
 
@@ -166,19 +153,8 @@ def test_scores_of_a_made_up_recording():
     assert result.turn.shape == (2,)
 
 
-def test_a_system_may_start_anywhere_and_moving():
-    t = np.arange(100) * 0.01
-    start = np.array([[0.3, -0.2], [0.5, 1.0]])
-    system = feedforward_system(ARM, lambda q, qd, qdd: 0 * q, (0, 0), (0, 0))
-    made = run_system(system, still(t), t, start)
-    _, q, qd = free_motion(ARM, *start, seconds=t[-1], step=0.01)
-    np.testing.assert_allclose(made.q_true, q, atol=1e-4)
-    np.testing.assert_allclose(made.qd_true, qd, atol=1e-4)
-    assert made.control_step == 0.0
-
-
-@pytest.mark.parametrize("speed", [1.0, 2.5])
-def test_the_smooth_motion_goes_out_and_back_without_a_jump(speed):
+def test_the_smooth_motion_goes_out_and_back_without_a_jump():
+    speed = 2.5
     t = np.linspace(-0.2, 3.2, 34_001)
     motion = smooth_pick_and_place(APPENDIX_I, t, speed)
     assert motion.q.shape == (6, t.size, 2)

@@ -1,11 +1,13 @@
-"""Many runs at once: each as if it ran alone; the loop against python-control's simulation."""
+"""Many runs at once, the loop against python-control's, torque beyond the rigid body's."""
+
+from dataclasses import replace
 
 import control
 import numpy as np
 import pytest
 
 from ddlib.control import pd
-from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.effects import (
     Backlash,
     ComputingTime,
@@ -21,8 +23,9 @@ from ddlib.effects import (
     StribeckFriction,
     ViscousFriction,
 )
-from ddlib.simulation import follow, record
-from ddlib.trajectories import pick_and_place, random_extents, time_grid
+from ddlib.setups import KD, KP
+from ddlib.simulation import CONTROL_STEP, follow, record, residual_torque
+from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents, time_grid
 
 ARM = CMU_DD_ARM_II
 PD = pd((200.0, 80.0), (30.0, 12.0))
@@ -75,42 +78,27 @@ def test_runs_may_differ_in_any_strength(kind):
     assert not np.allclose(together.q_true[1], together.q_true[2], atol=1e-6)
 
 
-def test_a_run_does_not_depend_on_its_company():
-    """Steep friction in one run needs many steps a period; the others keep their one."""
-    steep = np.array([[0.0, 0.0], [0.5, 0.15], [8.45, 2.35]])
-    options = dict(rest=0.0, log_step=0.1)
-
-    def run(level, extents):
-        effects = Effects((CoulombFriction(level),))
-        return record(IMI_ARM, PD, extents, effects=effects, **options)
-
-    extents = random_extents(3, seed=1)
-    together = run(steep, extents)
-    for i in range(3):
-        assert_same(together, i, run(tuple(steep[i]), extents[i]), 1e-12)
-
-
 # --- seeds ------------------------------------------------------------------------------
 
 NOISY = (Noise((1e-4, 2e-4)),), (Noise((0.4, 0.1)),)
 
 
-def test_everything_at_once_in_arrays():
+def test_gains_seeds_and_references_may_differ_together():
     """Extents, gains, friction levels and seeds, one of each for every run."""
-    n = 5
-    extents, seeds = random_extents(n, seed=0), np.array([7, 0, 7, 123, 2**31])
+    n = 3
+    extents, seeds = random_extents(n, seed=0), np.array([7, 0, 2**31])
     kp = np.linspace(100, 300, n)[:, None] * [1.0, 0.3]
     level = np.linspace(0, 2, n)[:, None] * LEVEL
 
     def run(extents, kp, level, seed):
         friction = ViscousFriction(level), CoulombFriction(level)
         effects = Effects(friction, encoder=NOISY[0], torque_sensor=NOISY[1])
-        return record(
-            ARM, pd(kp, 0.1 * kp), extents, effects=effects, seed=seed, velocity="difference"
-        )
+        t, reference = short(extents=extents)
+        options = dict(effects=effects, seed=seed, velocity="difference")
+        return follow(ARM, pd(kp, 0.1 * kp), reference, t, **options)
 
     together = run(extents, kp, level, seeds)
-    assert together.q.shape == (n, 400, 2)
+    assert together.q.shape == (n, 40, 2)
     for i in range(n):
         assert_same(together, i, run(extents[i], kp[i], level[i], int(seeds[i])), 1e-10)
 
@@ -170,26 +158,6 @@ def plant_for_control(arm, viscous):
 
 
 @pytest.mark.parametrize("arm, extents, kp, kd, viscous", RUNS)
-def test_sampled_loop_against_python_control(arm, extents, kp, kd, viscous):
-    """The same loop, period by period: read, compute, hold. Agreement to 1e-9 rad."""
-    t, reference = short(0.16, rest=0.0, extents=extents)
-    own = follow(
-        arm, pd(kp, kd), reference, t, effects=Effects((ViscousFriction(viscous),)), log_every=1
-    )
-    plant, x = plant_for_control(arm, viscous), np.zeros(4)
-    for k in range(t.size):
-        np.testing.assert_allclose(own.q_true[k], x[:2], rtol=0, atol=1e-9)
-        np.testing.assert_allclose(own.qd_true[k], x[2:], rtol=0, atol=1e-8)
-        tau = np.array(kp) * (reference.q[k] - x[:2]) + np.array(kd) * (reference.qd[k] - x[2:])
-        np.testing.assert_allclose(own.tau_true[k], tau, rtol=0, atol=1e-6)
-        x = control.input_output_response(
-            plant, [0, 0.002], np.outer(tau, [1, 1]), x,
-            solve_ivp_method="DOP853", solve_ivp_kwargs={"rtol": 1e-11, "atol": 1e-13},
-        ).states[:, -1]  # fmt: skip
-    assert np.abs(own.q_true[-1]).max() > 0.01
-
-
-@pytest.mark.parametrize("arm, extents, kp, kd, viscous", RUNS)
 def test_continuous_loop_against_python_control(arm, extents, kp, kd, viscous):
     """Interconnected nonlinear systems in continuous time: the limit of ever faster sampling.
 
@@ -225,3 +193,60 @@ def test_continuous_loop_against_python_control(arm, extents, kp, kd, viscous):
     assert np.abs(truth).max() > 0.15
     assert np.abs(ends[1] - truth).max() < 0.6 * np.abs(ends[0] - truth).max() < 1e-3
     np.testing.assert_allclose(2 * ends[1] - ends[0], truth, rtol=0, atol=5e-7)
+
+
+# --- torque beyond the rigid body's ------------------------------------------------------
+
+
+def drive(arm=ARM, log_step=CONTROL_STEP, **parts):
+    return record(arm, pd(KP, KD), APPENDIX_I[5], effects=Effects(**parts), log_step=log_step)
+
+
+def test_friction_is_what_is_left():
+    for friction in (ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15))):
+        run = drive(friction=(friction,))
+        middle = (run.qd_true[1:] + run.qd_true[:-1]) / 2
+        steady = np.abs(middle).min(-1) > 0.02
+        left = residual_torque(ARM, run)
+        np.testing.assert_allclose(left[steady], friction.torque(middle)[steady], atol=2e-4)
+
+
+def test_ripple_is_what_is_left():
+    ripple = Ripple(cogging=(0.1, 0.05), share=(0.02, 0.02))
+    run = drive(motor=(ripple,))
+    middle = (run.q_true[1:] + run.q_true[:-1]) / 2
+    expected = run.tau_true[:-1] - ripple.shaft_torque(run.tau_true[:-1], middle)
+    np.testing.assert_allclose(residual_torque(ARM, run), expected, atol=2e-3)
+
+
+def test_a_springy_shaft_leaves_the_snap_of_the_motion():
+    """Where nothing rings: motor inertia times the second derivative of the shaft's twist."""
+    shaft = FlexibleJoint((2e4, 6e3), (0.4, 0.15), (5.0, 1.0))
+    run = drive(transmission=(shaft,))
+    left = residual_torque(ARM, run)
+    smooth = slice(550, 1700)  # 0.6 s after the start, before the end
+    twist = run.q - run.q_true
+    second = np.gradient(np.gradient(twist, CONTROL_STEP, axis=0), CONTROL_STEP, axis=0)
+    rotors = np.array([0.4, 0.15]) * second
+    rotors[:, 0] += rotors[:, 1]  # the elbow's motor rides on link 1
+    assert np.abs(shaft.spring_torque(twist, 0 * twist)).max() > 20
+    np.testing.assert_allclose(left[smooth], rotors[:-1][smooth], atol=3e-4)
+    assert np.abs(left[smooth]).max() > 2e-3
+
+
+@pytest.mark.parametrize("period", [0.001, 0.004])
+def test_any_control_period_will_do_and_no_other_log(period):
+    options = dict(control_step=period, duration=2.0, rest=0.4)
+    made = record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=period, **options)
+    assert np.abs(residual_torque(ARM, made)).max() < 2e-6 * (period / CONTROL_STEP) ** 2 * 10
+    with pytest.raises(ValueError, match=rf"must be logged every {period:g} s.*got 0\.008 s"):
+        residual_torque(ARM, record(ARM, pd(KP, KD), APPENDIX_I[5], log_step=0.008, **options))
+    with pytest.raises(ValueError, match="recording must have a control_step above 0"):
+        residual_torque(ARM, replace(made, control_step=None))
+
+
+def test_a_rigid_arm_with_a_late_torque_leaves_nothing():
+    made = drive(actuator=(ComputingTime(0.0012),))
+    assert np.abs(np.diff(made.tau_true, axis=0)).max() > 1
+    assert np.abs(residual_torque(ARM, made)).max() < 5e-3
+    assert np.abs(residual_torque(ARM, replace(made, computing_time=0.0))).max() > 1

@@ -5,14 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.integrate import simpson, solve_ivp
+from hypothesis import given, settings, strategies as st
+from scipy.integrate import simpson
 
 from ddlib.control import ComputedTorque, pd, proportional
-from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, PUMA_560, REYES_KELLY_ARM, Arm, Link
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, PUMA_560, REYES_KELLY_ARM
 from ddlib.effects import (
-    CMU_DD_ARM_II_EFFECTS,
     IDEAL,
     ComputingTime,
     CoulombFriction,
@@ -22,7 +20,6 @@ from ddlib.effects import (
     Saturation,
     ViscousFriction,
 )
-from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import Recording, follow, free_motion, record
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
 
@@ -35,7 +32,6 @@ SENSORS = Effects(
     encoder=(Quantisation.encoder(16),),
     torque_sensor=(Noise((0.4, 0.1)),),
 )
-ARRAYS = ("q", "tau", "q_true", "qd_true", "tau_true")
 
 
 def short(seconds=0.4, step=0.002, extents=(45.0, 20.0), rest=0.1):
@@ -53,11 +49,11 @@ def run(controller=PD, effects=IDEAL, seed=0, arm=ARM, reference=None, **options
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
-def test_free_arm_keeps_its_energy_for_ten_seconds(arm):
+def test_free_arm_keeps_its_energy_and_momentum(arm):
     q = np.array([[0.3, 0.5], [-1.0, 2.0], [0.5, -1.2]])
     qd = np.array([[1.0, -0.5], [0.8, 1.5], [-1.5, 0.3]])
-    t, q, qd = free_motion(arm, q, qd, 10.0)
-    assert t[-1] == pytest.approx(10.0) and q.shape == (3, 10001, 2)
+    t, q, qd = free_motion(arm, q, qd, 4.0)
+    assert t[-1] == pytest.approx(4.0) and q.shape == (3, 4001, 2)
     kinetic = arm.kinetic_energy(q, qd)
     e, moving = kinetic + arm.potential_energy(q), kinetic.max(-1, keepdims=True)
     assert (np.abs(e - e[:, :1]) / moving).max() < 1e-6
@@ -65,31 +61,6 @@ def test_free_arm_keeps_its_energy_for_ten_seconds(arm):
     if not any(arm.gravity_moments):  # no torque at the shoulder: its momentum is constant
         momentum = np.einsum("...j,...j", arm.mass_matrix(q)[..., 0, :], qd)
         np.testing.assert_allclose(momentum, momentum[:, :1] + 0 * momentum, rtol=1e-6)
-
-
-@pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)
-def test_free_motion_agrees_with_scipy(arm):
-    def rate(_, y):
-        net = -arm.coriolis_matrix(y[:2], y[2:]) @ y[2:] - arm.gravity(y[:2])
-        return [*y[2:], *np.linalg.solve(arm.mass_matrix(y[:2]), net)]
-
-    start = [0.4, 0.6, 1.0, -0.5]
-    t, q, qd = free_motion(arm, start[:2], start[2:], 10.0)
-    every = slice(None, None, 500)
-    answer = solve_ivp(rate, (0, 10), start, "DOP853", t[every], rtol=1e-11, atol=1e-12)
-    np.testing.assert_allclose(q[every], answer.y[:2].T, atol=1e-6)
-    np.testing.assert_allclose(qd[every], answer.y[2:].T, atol=1e-6)
-
-
-def test_a_simple_pendulum_swings_with_its_period():
-    """One heavy link, a weightless one behind: 2 pi sqrt(I / (m g c)) for a small swing."""
-    heavy, light = Link(2.0, 0.5, 0.4, 0.1), Link(1e-7, 0.1, 0.05, 1e-7)
-    arm = Arm.from_links("pendulum", heavy, light, gravity=9.81)
-    t, q, _ = free_motion(arm, [1e-3, 0.0], [0.0, 0.0], 6.0, step=0.002)
-    rising = np.flatnonzero((q[:-1, 0] < 0) & (q[1:, 0] >= 0))
-    crossing = t[rising] - q[rising, 0] * 0.002 / (q[rising + 1, 0] - q[rising, 0])
-    period = 2 * np.pi * np.sqrt((0.1 + 2.0 * 0.4**2) / (2.0 * 9.81 * 0.4))
-    np.testing.assert_allclose(np.diff(crossing), period, rtol=1e-5)
 
 
 def test_friction_takes_exactly_the_energy_that_is_lost():
@@ -112,25 +83,17 @@ def paper_run():
 
 
 def test_a_recording_has_300_samples_of_motion_and_whole_rests(paper_run):
-    assert paper_run.t.shape == (400,) and paper_run.t[0] == -0.5
-    np.testing.assert_allclose(np.diff(paper_run.t), 0.01, rtol=1e-9)
-    motion = paper_run.motion
-    assert paper_run.t[motion].size == 300 and (motion.start, motion.stop) == (50, 350)
-    assert paper_run.t[motion][0] == 0.0 and paper_run.t[motion.stop] == pytest.approx(3.0)
-    for name in ARRAYS:
-        assert getattr(paper_run, name).shape == (6, 400, 2), name
+    np.testing.assert_allclose(paper_run.t, np.arange(-50, 350) / 100, atol=1e-12)
+    assert paper_run.motion == slice(50, 350) and paper_run.q.shape == (6, 400, 2)
+    assert repr(paper_run) == "Recording(6 runs x 400 samples x 2 joints, -0.5 to 3.49 s)"
     for logged, formula in zip(paper_run.reference, pick_and_place(APPENDIX_I, paper_run.t)):
         np.testing.assert_allclose(logged, formula, atol=1e-12)
-    for name in ARRAYS:
-        assert np.isfinite(getattr(paper_run, name)).all(), name
 
 
 def test_the_log_takes_every_fifth_control_sample():
-    every, fifth, seventh = (run(effects=SENSORS, log_every=n) for n in (1, 5, 7))
+    every, fifth = (run(effects=SENSORS, log_every=n) for n in (1, 5))
     for name in ("t", "q", "q_true", "qd_true", "tau_true"):
-        for n, sparse in ((5, fifth), (7, seventh)):
-            axis = (slice(None, None, n),)
-            np.testing.assert_array_equal(getattr(sparse, name), getattr(every, name)[axis])
+        np.testing.assert_array_equal(getattr(fifth, name), getattr(every, name)[::5])
     np.testing.assert_array_equal(fifth.reference.qdd, every.reference.qdd[::5])
     assert not np.array_equal(fifth.tau, every.tau[::5])  # each log entry draws its own noise
 
@@ -212,37 +175,19 @@ def test_readings_are_whole_encoder_steps_and_noise_is_in_the_log_only(paper_run
     np.testing.assert_array_equal(quiet.q, paper_run.q)
 
 
-def test_surrogate_noise_is_what_its_docstring_says():
-    """2.4 % of the torques' standard deviation; the torque limits are not reached."""
-    controller = STATE_FEEDBACK.controller
-    recording = record(ARM, controller, APPENDIX_I, effects=CMU_DD_ARM_II_EFFECTS)
-    tau = recording.tau_true[:, recording.motion].reshape(-1, 2)
-    noise = (recording.tau - recording.tau_true).reshape(-1, 2)
-    np.testing.assert_allclose(noise.std(0) / tau.std(0), 0.024, rtol=0.05)
-    assert (np.abs(tau).max(0) < [100.0, 30.0]).all()
-
-
 def test_velocity_from_encoder_readings():
     """Quantised readings give a velocity in steps of q_step / period, so the torque shows them."""
-    kd, bits = np.array([30.0, 12.0]), 12
-    effects = Effects(encoder=(Quantisation.encoder(bits),))
-    controller = pd((0.0, 0.0), tuple(kd))
-    recording = run(controller, effects, velocity="difference", log_every=1)
-    readings = np.diff(recording.q, axis=0, prepend=recording.q[:1])
-    speed = readings / 0.002
-    wanted = kd * (recording.reference.qd - speed)
-    np.testing.assert_allclose(recording.tau_true, wanted, atol=1e-8)
-    smooth = run(controller, effects, log_every=1)
-    np.testing.assert_allclose(
-        smooth.tau_true, kd * (smooth.reference.qd - smooth.qd_true), atol=1e-12
-    )
-    assert np.abs(speed - recording.qd_true).max() > 0.1
+    kd = np.array([30.0, 12.0])
+    effects = Effects(encoder=(Quantisation.encoder(12),))
+    made = run(pd((0.0, 0.0), tuple(kd)), effects, velocity="difference", log_every=1)
+    speed = np.diff(made.q, axis=0, prepend=made.q[:1]) / 0.002
+    np.testing.assert_allclose(made.tau_true, kd * (made.reference.qd - speed), atol=1e-8)
+    assert np.abs(speed - made.qd_true).max() > 0.1
 
 
 def test_runs_are_indexed_and_sliced():
     recording = record(ARM, proportional((60.0, 30.0)), APPENDIX_I[:3])
     one, two = recording[1], recording[:2]
-    assert one.q.shape == recording.q.shape[1:] and two.q.shape == (2, *one.q.shape)
     np.testing.assert_array_equal(two[1].tau, one.tau)
     np.testing.assert_array_equal(one.reference.qdd, recording.reference.qdd[1])
     assert one.motion == recording.motion and one.control_step == recording.control_step
@@ -262,13 +207,6 @@ def test_a_controller_may_be_a_plain_function():
     own = record(ARM, spring_and_damper, APPENDIX_I[:2])
     built_in = record(ARM, pd(kp, kd), APPENDIX_I[:2])
     np.testing.assert_allclose(own.tau, built_in.tau, atol=1e-12)
-
-
-def test_what_is_simulated_prints_itself():
-    made = record(ARM, pd((60.0, 30.0), (9.0, 4.0)), APPENDIX_I[:3], rest=0.1)
-    assert repr(made) == "Recording(3 runs x 320 samples x 2 joints, -0.1 to 3.09 s)"
-    assert repr(pd((60.0, 30.0), (9.0, 4.0))) == "PID(kp=(60.0, 30.0), kd=(9.0, 4.0))"
-    assert repr(IDEAL) == "Effects(none)" and "provenance" not in repr(ARM)
 
 
 # --- refusals ------------------------------------------------------------------------
