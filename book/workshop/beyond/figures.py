@@ -2,59 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from ddlib._check import shaped
-from ddlib.figures.maps import COLOUR_MAP
-from ddlib.figures.style import COLOURS, Illustration, illustrate, plain_ticks
+from ddlib._check import positive, shaped
+from ddlib.figures import COLOUR_MAP, COLOURS, Illustration, illustrate, plain_ticks
 
 
 def maps(
     edge,
-    errors: Mapping[str, np.ndarray],
+    errors: dict[str, np.ndarray],
     labels: tuple[str, str, str],
     alt: str,
     *,
-    mark=None,
-    columns: int = 2,
+    mark=None,  # a place to mark
 ) -> Illustration:
     """The same square once for each rival, with one scale of colours.
 
-    Parameters
-    ----------
-    edge : array_like, shape (n,)
-        Places along both axes, equally spaced.
-    errors : mapping
-        ``{title: values (n, n)}``, all above 0; the first axis goes to the right.
-    labels : tuple of str
-        Of the x axes, the y axes and the colours.
-    alt : str
-        Alternative text.
-    mark : pair of float, optional
-        A place to mark.
-    columns : int
-        Panels in a row.
-
-    Raises
-    ------
-    ValueError
-        If there is no panel, shapes do not fit or a value is not above 0.
+    `edge` holds places along both axes, equally spaced; the first axis of the errors, all above 0,
+    goes to the right. The labels are those of the x axes, the y axes and the colours.
     """
     edge = shaped("edge", edge, "(places,)")
     if not errors:
         raise ValueError("errors must hold a panel or more, got none")
     for title, values in errors.items():
-        if not (shaped(f"errors of {title!r}", values, (edge.size,) * 2) > 0).all():
-            raise ValueError(f"errors of {title!r} must be above 0, got {np.min(values):g}")
-    rows = -(-len(errors) // columns)
+        positive(f"errors of {title!r}", values, (edge.size,) * 2)
+    rows = -(-len(errors) // 2)
 
     def draw(figure: Figure):
-        axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
         together = np.concatenate([np.ravel(v) for v in errors.values()])
         norm = LogNorm(together.min(), together.max())
         for axis, (title, values) in zip(axes.ravel(), errors.items()):
@@ -65,13 +43,13 @@ def maps(
             axis.set_title(title)
             axis.set_aspect("equal")
             axis.grid(False)
-        for axis in axes.ravel()[len(errors) :]:
-            axis.remove()
         for axis in axes[-1]:
             axis.set_xlabel(labels[0])
         for axis in axes[:, 0]:
             axis.set_ylabel(labels[1])
-        bar = figure.colorbar(mesh, ax=axes, label=labels[2])
+        for axis in axes.ravel()[len(errors) :]:
+            axis.remove()
+        bar = figure.colorbar(mesh, ax=figure.axes, label=labels[2])
         plain_ticks(bar.ax.yaxis)
         bar.ax.yaxis.set_minor_locator(NullLocator())
         bar.outline.set_visible(False)

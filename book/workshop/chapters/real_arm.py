@@ -1,8 +1,6 @@
-"""Figures of the chapter on a real arm: friction joint by joint, gains beside their nulls."""
+"""Figures of *A real arm*: friction joint by joint, gains beside their nulls."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,44 +8,18 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from ddlib._check import shaped
-from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, check_label, illustrate
-
-JOINTS = 6
-"""Number of joints."""
+from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate
 
 
-def friction_by_joint(
-    panels: Mapping[str, tuple], labels: tuple[str, str], alt: str
-) -> Illustration:
+def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: str) -> Illustration:
     """Current that friction takes over the speed, one panel a joint: as found and as identified.
 
-    Parameters
-    ----------
-    panels : mapping
-        ``{title: (speed, current, middle, median, line)}``: a cloud of cases, shape (cases,), the
-        medians of groups of them, shape (groups,), and the slope and the jump at rest of the
-        identified friction.
-    labels : tuple of str
-        Of the horizontal and the vertical axis.
-    alt : str
-        Alternative text.
-
-    Raises
-    ------
-    ValueError
-        If there is no panel, or shapes do not fit.
+    A panel has the speed and the current of all cases, both in the middle of groups of them, and
+    the slope and the jump at rest of the identified friction.
     """
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for title, (speed, current, middle, median, _) in panels.items():
-        for first, second, length in ((speed, current, "cases"), (middle, median, "groups")):
-            first = shaped(f"speed of {title!r}", first, f"({length},)")
-            shaped(f"current of {title!r}", second, first.shape)
-    columns = min(2, len(panels))
 
     def draw(figure: Figure):
-        axes = figure.subplots(-(-len(panels) // columns), columns, squeeze=False).ravel()
+        axes = figure.subplots(-(-len(panels) // 2), 2, squeeze=False).ravel()
         for axis, (title, (speed, current, middle, median, line)) in zip(axes, panels.items()):
             _dots(axis, speed, current, 42, ec=FAINT, lw=1.6, alpha=0.5)
             for side in (-1, 1):
@@ -61,7 +33,7 @@ def friction_by_joint(
         figure.supxlabel(check_label(labels[0]), fontsize=9.5)
         figure.supylabel(check_label(labels[1]), fontsize=9.5)
 
-    return illustrate(draw, alt, 5.4, 1.75 * -(-len(panels) // columns) + 0.3)
+    return illustrate(draw, alt, 5.4, 1.75 * -(-len(panels) // 2) + 0.3)
 
 
 def _dots(axis: Axes, x, y, cells: int, **look) -> None:
@@ -77,41 +49,23 @@ def _dots(axis: Axes, x, y, cells: int, **look) -> None:
     axis.autoscale_view()
 
 
-def gains_by_joint(panels: Mapping[str, tuple], label: str, alt: str) -> Illustration:
+def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustration:
     """Gains of networks over the arm's, joint by joint, beside those on unrelated currents.
 
-    Parameters
-    ----------
-    panels : mapping
-        ``{title: (real, null)}``, both of shape (networks, 6), as multiples of the identified
-        value: 1 is right. Every network on the real currents is a dot; a bar holds the middle
-        nine tenths of the others.
-    label : str
-        Of the vertical axes.
-    alt : str
-        Alternative text.
-
-    Raises
-    ------
-    ValueError
-        If there is no panel, or values are not finite or of another shape.
+    Of ``{title: (real, unrelated)}``, shape (networks, joint), as multiples of the identified
+    value, every real one is a dot; a bar holds the middle nine tenths of the others.
     """
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for title, pair in panels.items():
-        for values in pair:
-            shaped(f"gains of {title!r}", values, f"(networks, {JOINTS})")
 
     def draw(figure: Figure):
         axes = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
-        place = np.arange(1, JOINTS + 1)
-        for axis, (title, (real, null)) in zip(axes, panels.items()):
-            low, high = np.percentile(null, (5, 95), axis=0)
+        for axis, (title, (real, unrelated)) in zip(axes, panels.items()):
+            place = np.arange(1, np.shape(real)[1] + 1)
+            low, high = np.percentile(unrelated, (5, 95), axis=0)
             axis.bar(
                 place, high - low, 0.55, low, color=FAINT, alpha=0.4, label="unrelated currents"
             )
             axis.axhline(1, color=INK, ls="--", lw=1, label="as identified")
-            for k, gains in enumerate(np.asarray(real)):
+            for k, gains in enumerate(real):
                 x = place + 0.3 * (k / max(len(real) - 1, 1) - 0.5)
                 name = "real currents" if k == 0 else None
                 axis.plot(x, gains, "o", color=COLOURS[0], ms=3.5, mew=0, alpha=0.8, label=name)

@@ -1,0 +1,97 @@
+"""Figures of *Learning in the loop*: errors trial by trial, and motion by motion."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from ddlib.figures import (
+    COLOURS,
+    FAINT,
+    INK,
+    Illustration,
+    check_label,
+    illustrate,
+    legend_above,
+)
+
+_MARKERS = "os^DvPX"
+_PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
+
+
+def by_trial(
+    panels: dict[str, dict[str, tuple]],
+    labels: tuple[str, str],
+    alt: str,
+    *,
+    change: tuple[float, str] | None = None,  # where a dotted line stands, and what is said there
+    x_log: bool = False,
+) -> Illustration:
+    """Errors over trials, or over a rate, logarithmic: medians, and the middle half of the seeds.
+
+    Of ``{title: {learner: (x, errors)}}``, errors of shape (points, seeds), the first learner of
+    each panel is in the page's ink: what the others are compared with.
+    """
+    first = {next(iter(learners)) for learners in panels.values()}
+    names = dict.fromkeys(n for each in panels.values() for n in each if n not in first)
+    looks = dict(zip(names, zip(COLOURS, _MARKERS)))
+
+    def draw(figure: Figure):
+        axes = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+        for axis, (title, learners) in zip(axes, panels.items()):
+            axis.set(yscale="log", xscale="log" if x_log else "linear")
+            axis.set_title(title, loc="left")
+            for name, (x, errors) in learners.items():
+                colour, marker = looks.get(name, (INK, None))
+                low, middle, high = np.percentile(errors, (25, 50, 75), axis=1)
+                axis.fill_between(x, low, high, color=colour, alpha=0.15, lw=0)
+                look = {"marker": marker, "ms": 4} if marker else {"ls": "--"}
+                axis.plot(x, middle, color=colour, lw=1.6, label=name, **look)
+            if change:
+                axis.axvline(change[0], color=FAINT, ls=":", lw=1.2)
+                axis.annotate(
+                    change[1], (change[0], 0.97), xycoords=("data", "axes fraction"), fontsize=8,
+                    xytext=(3, 0), textcoords="offset points", va="top", color=FAINT,
+                )  # fmt: skip
+            axis.legend(
+                loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, labelcolor="linecolor"
+            )
+            axis.set_ylabel(check_label(labels[1]))
+            axis.yaxis.set_major_formatter(_PLAIN)
+        axes[-1].xaxis.set_major_formatter(_PLAIN)
+        if not x_log:
+            axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
+        axes[-1].set_xlabel(check_label(labels[0]))
+
+    return illustrate(draw, alt, 6.4, 2.5 * len(panels) + 0.4)
+
+
+def by_motion(motions: dict[str, dict[str, np.ndarray]], label: str, alt: str) -> Illustration:
+    """Errors of learners, over that of the feedback alone: a row for each motion.
+
+    Of ``{motion: {learner: (seeds,)}}`` a mark is the median, a bar reaches over all seeds.
+    """
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        learners = list(next(iter(motions.values())))
+        for row, ratios in enumerate(motions.values()):
+            for k, name in enumerate(learners):
+                colour, values = COLOURS[k % len(COLOURS)], ratios[name]
+                place = row + 0.13 * (k - len(learners) / 2 + 0.5)
+                ends = [np.min(values), np.max(values)]
+                axis.plot(ends, [place] * 2, color=colour, lw=1.2, alpha=0.6)
+                axis.plot(
+                    np.median(values), place, _MARKERS[k % len(_MARKERS)], color=colour, ms=4.5,
+                    label=None if row else name,
+                )  # fmt: skip
+        axis.axvline(1.0, color=INK, ls="--", lw=1.0)
+        axis.set(xscale="log", xlabel=check_label(label))
+        axis.xaxis.set_major_formatter(_PLAIN)
+        axis.set_yticks(range(len(motions)), motions)
+        axis.set_ylim(len(motions) - 0.5, -0.5)
+        axis.grid(visible=False, axis="y")
+        legend_above(figure, *axis.get_legend_handles_labels())
+
+    return illustrate(draw, alt, 6.0, 0.75 * len(motions) + 1.1)

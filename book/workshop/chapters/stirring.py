@@ -1,0 +1,101 @@
+"""Figures of *Stirring*: two families' states, errors traded, paths of the hand."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+
+from ddlib.figures import (
+    COLOURS,
+    FAINT,
+    INK,
+    Illustration,
+    check_label,
+    illustrate,
+    legend_above,
+    plain_ticks,
+)
+
+_MARKERS = "os^Dv"
+_PLANES = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
+
+
+def traded(
+    points: dict[str, tuple], nothing: tuple[float, float], labels: tuple[str, str], alt: str
+) -> Illustration:
+    """Errors on one family against errors on another, both logarithmic: a dot for each network.
+
+    `nothing` are both errors without any of them: two lines, beyond which they do harm.
+    """
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        axis.set(xscale="log", yscale="log")
+        axis.axvline(nothing[0], color=FAINT, ls="--", lw=1)
+        axis.axhline(nothing[1], color=FAINT, ls="--", lw=1)
+        for k, (name, pair) in enumerate(points.items()):
+            look = {"color": COLOURS[k % len(COLOURS)], "ls": "", "ms": 6, "mew": 0, "alpha": 0.85}
+            axis.plot(*pair, _MARKERS[k % len(_MARKERS)], label=name, **look)
+        axis.set(xlabel=check_label(labels[0]), ylabel=check_label(labels[1]))
+        low = min(np.min(pair) for pair in points.values()) / 1.3
+        high = max(max(np.max(p) for p in points.values()), *nothing) * 1.4
+        axis.set(xlim=(low, high), ylim=(low, high), aspect="equal")
+        axis.text(nothing[0] * 1.05, low * 1.1, "none", color=FAINT, fontsize=8)
+        axis.text(low * 1.05, nothing[1] * 1.05, "none", color=FAINT, fontsize=8)
+        plain_ticks(axis.xaxis)
+        plain_ticks(axis.yaxis)
+        legend_above(figure, *axis.get_legend_handles_labels())
+
+    return illustrate(draw, alt, 5.2, 5.2)
+
+
+def paths(wanted, panels: dict[str, np.ndarray], factor: float, alt: str) -> Illustration:
+    """Paths of the hand ``(time, 2)``, errors exaggerated, each over the path that was wanted."""
+    rows = -(-len(panels) // 3)
+
+    def draw(figure: Figure):
+        axes = figure.subplots(rows, 3, sharex=True, sharey=True, squeeze=False)
+        for axis, (title, path) in zip(axes.ravel(), panels.items()):
+            path = wanted + factor * (path - wanted)
+            axis.plot(*wanted.T, color=INK, lw=0.9, label="wanted")
+            axis.plot(*path.T, color=COLOURS[1], lw=1.8, label=f"error × {factor:g}")
+            axis.plot(*path[0], "o", color=COLOURS[1], ms=4)
+            axis.set_title(title)
+            axis.set_aspect("equal")
+        for axis in axes.ravel()[len(panels) :]:
+            axis.remove()
+        figure.supxlabel("x, m", fontsize=9.5)
+        figure.supylabel("y, m", fontsize=9.5)
+        legend_above(figure, *axes[0, 0].get_legend_handles_labels())
+
+    return illustrate(draw, alt, 6.6, 1.7 * rows + 0.7)
+
+
+def two_families(states: dict[str, np.ndarray], alt: str) -> Illustration:
+    """States ``(n, 6)`` of families of motions, shoulder against elbow."""
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, 3)
+        for k, (axis, (title, unit)) in enumerate(zip(axes, _PLANES.items())):
+            for name, x, colour in zip(states, states.values(), COLOURS):
+                dots = _dots(x[:, [k, k + 3]], colour)
+                axis.add_patch(dots)
+                dots.set_label(name)
+            axis.autoscale_view()
+            axis.set(title=title, xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
+        look = {"marker": "o", "ls": "", "ms": 4.8, "mew": 0}
+        handles = [Line2D([], [], color=c, label=name, **look) for name, c in zip(states, COLOURS)]
+        figure.legend(handles=handles, loc="outside upper left", ncols=3)
+
+    return illustrate(draw, alt, 7.0, 2.9)
+
+
+def _dots(places: np.ndarray, colour: str) -> PathPatch:
+    """Small dots as one shape, as thousands of markers would be as many elements of the page."""
+    path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
+    path.should_simplify = False
+    look = {"facecolor": "none", "edgecolor": colour, "lw": 1.8, "alpha": 0.8}
+    return PathPatch(path, capstyle="round", **look)
