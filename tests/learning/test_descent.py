@@ -1,11 +1,20 @@
-"""Products with inputs that stay the same, and descent with them against plain sums."""
+"""Descent with momentum: products, steps and blocks against plain sums in double precision."""
 
 import numpy as np
 import pytest
 import torch
+from small_networks import WIDTH, close, parts
 
-from ddlib.learning import Weights, descent
-from ddlib.learning.network import FIELDS
+from ddlib.learning import (
+    TrainingSet,
+    Weights,
+    WindowNetwork,
+    default_rate,
+    descent,
+    train,
+    train_ensemble,
+)
+from ddlib.learning.training import check_points
 
 
 @pytest.mark.parametrize("onednn", sorted({False, descent.ONEDNN}))
@@ -38,13 +47,16 @@ def test_a_large_product_goes_through_onednn_where_it_can(monkeypatch):
     assert len(asked) == 1
 
 
-def by_hand(network, x, y, epochs, eps, alpha):
-    """The same rule in double precision, for one network: its weights after some epochs."""
-    w = [np.array(getattr(network, name), dtype=float) for name in FIELDS]
+def by_hand(network, x, y, momenta, eps):
+    """Weights of one network after a step for each momentum, in double precision.
+
+    ``dw(t) = -eps dE/dw + alpha dw(t-1)``, the rule of 1988.
+    """
+    w = [np.array(part, dtype=float) for part in parts(network)]
     flat = x.reshape(len(x), -1)
     w[0], w[3] = w[0].reshape(len(w[0]), -1), w[3].reshape(len(w[3]), -1)
     steps = [np.zeros_like(part) for part in w]
-    for _ in range(epochs):
+    for alpha in momenta:
         h = 1 / (1 + np.exp(-(flat @ w[0].T + w[1])))
         o = 1 / (1 + np.exp(-(h @ w[2].T + flat @ w[3].T + w[4])))
         delta = (o - y) * o * (1 - o)
@@ -52,22 +64,74 @@ def by_hand(network, x, y, epochs, eps, alpha):
         slopes = [back.T @ flat, back.sum(0), delta.T @ h, delta.T @ flat, delta.sum(0)]
         steps = [alpha * s - eps * g for s, g in zip(steps, slopes)]
         w = [part + s for part, s in zip(w, steps)]
-    return w
+    return [part.reshape(own.shape) for part, own in zip(w, parts(network))]
 
 
 @pytest.mark.parametrize("cases", [40, 1500])
-def test_many_networks_step_as_each_alone_in_double_precision(cases):
-    """Small and large products; every member has a momentum of its own."""
+@pytest.mark.parametrize("warm_up", [0, 3])
+def test_every_network_steps_by_the_rule_of_1988(cases, warm_up):
+    """Small and large products; the warm-up limits the momentum of the first steps to 0.5."""
     rng = np.random.default_rng(2)
-    x, y = rng.uniform(size=(cases, 2, 21)), rng.uniform(0.2, 0.8, size=(cases, 2))
-    weights, alpha = Weights.random(3, 21, initial=0.3), np.array([0.0, 0.5, 0.9])
-    many = descent.Descent(weights, x, y, 1 / cases, alpha)
-    for _ in range(25):
-        many.epoch()
-    after = many.weights()
-    for k in range(3):
-        wanted = by_hand(weights[k], x, y, 25, 1 / cases, alpha[k])
-        for name, array in zip(FIELDS, wanted):
-            own = getattr(after, name)[k].reshape(array.shape)
-            np.testing.assert_allclose(own, array, atol=2e-5)
-    assert np.abs(after.hidden_weights - weights.hidden_weights).max() > 1e-3
+    windows, torque = rng.uniform(size=(cases, 2, 21)), rng.normal(size=(cases, 2))
+    data = TrainingSet.from_arrays(windows, torque)
+    start, momenta = Weights.random(3, 21, initial=0.5, seed=7), [0.9, 0.3, 0.0]
+    before, options = [p.copy() for p in parts(start)], dict(rate=4.0, epochs=12, progress=False)
+    model, *_ = train_ensemble(start, data, momentum=momenta, warm_up=warm_up, **options)
+    network = WindowNetwork(21, initial=0.5, seed=7)
+    train(network, data.x, data.y, momentum=0.9, **options)
+    for k, momentum in enumerate(momenta):
+        course = [min(momentum, 0.5)] * warm_up + [momentum] * (12 - warm_up)
+        wanted = by_hand(start[k], data.x, data.y, course, 4.0 / cases)
+        moved = max(np.abs(a - b).max() for a, b in zip(wanted, parts(start[k])))
+        assert moved > 0.05
+        close(model.weights[k], wanted, rtol=0, atol=1e-4 * moved)
+        if k == 0 and not warm_up:
+            close(network.weights(), wanted, rtol=0, atol=1e-4 * moved)
+    close(start, before, rtol=0)  # initial weights are not touched
+
+
+LONG = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
+
+
+@pytest.fixture(scope="module")
+def reference(data):
+    """Three members trained one by one, by autograd."""
+    trained = {}
+    for k in (0, 2, 4):
+        network = WindowNetwork(WIDTH, seed=20 + k)
+        train(network, data.x, data.y, **LONG)
+        trained[k] = parts(network.weights())
+    return trained
+
+
+@pytest.mark.parametrize("workers, block", [(1, 8), (2, 1), (5, 8)])
+def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers, block):
+    """200 epochs, five members in one to five blocks, against autograd member by member."""
+    monkeypatch.setattr(descent, "WORKERS", workers)
+    monkeypatch.setattr(descent, "BLOCK", block)
+    model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
+    assert history.training.shape == (len(check_points(200)), 5)
+    for k, wanted in reference.items():
+        largest = max(np.abs(p).max() for p in wanted)
+        close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
+
+
+def test_members_may_have_their_own_rate_momentum_and_targets(data, other):
+    """Together as alone; the errors are relative to the spread of the shared targets."""
+    start, rates, momenta = Weights.random(4, WIDTH), [1.0, 2.0, 4.0, 3.0], [0.0, 0.5, 0.9, 0.95]
+    noise = np.random.default_rng(3).normal(size=(4, *data.y.shape))
+    targets = data.y + np.array([0.0, 0.01, 0.02, 0.05])[:, None, None] * noise
+    options = dict(epochs=30, test=other, progress=False)
+    together, errors, _ = train_ensemble(
+        start, data, rate=rates, momentum=momenta, targets=targets, **options
+    )
+    for k in range(4):
+        own = TrainingSet(data.x, targets[k], data.inputs, data.outputs)
+        alone, history, _ = train_ensemble(
+            start[k : k + 1], own, rate=rates[k], momentum=momenta[k], **options
+        )
+        close(together.weights[k], [p[0] for p in parts(alone.weights)], rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(errors.test[:, k], history.test[:, 0], rtol=1e-5)
+        out = together.weights[k].activity(data.x)[1]
+        wanted = np.sqrt((((out - targets[k]) / data.y.std(0)) ** 2).mean())
+        assert errors.training[-1, k] == pytest.approx(wanted, rel=1e-5)

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 import torch
 from hypothesis import given, strategies as st
-from test_training import parts, smooth_cases
+from small_networks import WIDTH, parts
 
 from ddlib.learning import (
     Directions,
     Lazy,
-    TrainingSet,
     Weights,
     WindowNetwork,
-    WorseThanMean,
     effective_steps,
     jacobian,
     moved,
@@ -23,20 +21,13 @@ from ddlib.learning import (
     with_ones,
 )
 
-WIDTH = 7
 INPUTS = 2 * WIDTH + 1
 
 
 @pytest.fixture(scope="module")
-def data():
-    return TrainingSet.from_arrays(*smooth_cases())
-
-
-@pytest.fixture(scope="module")
-def few():
+def few(data):
     """Six cases, fewer than inputs: their span leaves most directions out."""
-    x, y = smooth_cases()
-    return TrainingSet.from_arrays(x[::13][:6], y[::13][:6])
+    return replace(data, x=data.x[::13][:6], y=data.y[::13][:6])
 
 
 def start(seed=3, hidden=4):
@@ -208,7 +199,6 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     np.testing.assert_allclose(turned.error, own.error)
 
 
-@pytest.mark.filterwarnings(f"ignore::{WorseThanMean.__module__}.WorseThanMean")
 def test_short_training_follows_the_prediction(data):
     """`train_ensemble`: the shorter the steps, the better its tangent tells where it goes."""
     begun, along, missed = Weights.random(2, WIDTH, 4, seed=5), Directions.of(data), []
