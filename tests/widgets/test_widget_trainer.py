@@ -7,14 +7,12 @@ import re
 import numpy as np
 import pytest
 import torch
-from axe import violations_in
-from reactions import first_answers
-from widget_pages import NEXT_FRAME, page_of
+from widget_pages import CALM, NEXT_FRAME, alerts, copied, cut, functions, page_of
 
 from ddlib.analysis import CLASSES, classify
-from ddlib.learning import Descent, default_rate, prepare
+from ddlib.learning import Descent, default_rate
 from ddlib.metrics import rmss
-from ddlib.widgets import NetworkTrainer, module
+from ddlib.widgets import NetworkTrainer
 from ddlib.widgets.engine import plain, trainer
 from workshop.report import results
 from workshop.report.studies.page import training as study
@@ -24,36 +22,27 @@ SCHOOL = """([spec, positions, torques, choice, epochs]) => {
   for (let k = 0; k < epochs; k++) school.advance();
   const { outputs, error } = school.judge();
   return {
-    all: [...school.net.all], error, outputs: outputs.map((y) => [...y]), events: school.events,
-    training: [...school.training].filter((x) => x === x), names: school.names,
-    epoch: school.epoch,
+    all: [...school.net.all], error, events: school.events, names: school.names,
+    training: [...school.training].filter((x) => x === x),
   };
 }"""
 STATE = """() => {
   const { school } = document.querySelector(".ddlib-trainer");
   return { epoch: school.epoch, weight: school.net.all[0], events: school.events };
 }"""
-NAMED = """() => {
-  const { direct, hidden } = document.querySelector(".ddlib-trainer").school.names;
-  return [direct, hidden].map((names) => names.filter((k) => k < 6).length);
-}"""
-PRESS = """(names) => names.forEach((name) =>
-  [...document.querySelectorAll("button")].find((b) => b.innerText.trim() === name).click())"""
-CALM = {"reduced_motion": "reduce"}
+REACHED = "document.querySelector('.ddlib-trainer').school.epoch >= %d"
+CODE = "{scaling} {shifted} {seed} {rate} {momentum} {epochs}"
 
 
 @pytest.fixture(scope="module")
 def widget():
-    return NetworkTrainer()
+    return NetworkTrainer(code=CODE)
 
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    page = browser.new_page()
-    script = plain.source() + module("elements.js", "trainer.js")
-    page.add_script_tag(content=script.replace("export default", "void"))
-    yield page.evaluate
-    page.close()
+    with functions(browser, "elements.js", "trainer.js") as call:
+        yield call
 
 
 def taught(evaluate, widget, epochs, seed=1, inputs="centred", shift=None, step=1.0, momentum=0.98):
@@ -68,6 +57,12 @@ def flat(weights):
 
 
 # The training
+
+
+def test_the_chapter_passes_what_its_study_has():
+    assert (trainer.WIDTH, trainer.EVERY) == (study.WIDTH, study.EVERY)
+    with pytest.raises(ValueError, match="momentum must be one of"):
+        NetworkTrainer(momentum=0.97)
 
 
 @pytest.mark.browser
@@ -93,7 +88,7 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     monkeypatch.setattr("ddlib.learning.descent.ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
-    data, test = trainer.training_set(inputs, shift)
+    data, test = study.page_set(trainer.SCALINGS[inputs], shift)
     start = trainer.first_weights(seed)
     descent = Descent(start, data.x, data.y, default_rate(21) / len(data.x), momentum)
     for matrix in ("back", "delta"):
@@ -110,10 +105,9 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     np.testing.assert_allclose(page["training"], errors, atol=1e-6)
     output = weights.activity(test[0])[1]
     assert page["error"] == pytest.approx(rmss(output, test[1]), abs=1e-6)
-    names = {"direct": weights.direct_weights, "hidden": weights.hidden_weights}
-    for layer, f in names.items():
-        wanted = [CLASSES.index(name) for name in classify(f).ravel()]
-        assert page["names"][layer] == wanted
+    for layer in ("direct", "hidden"):
+        f = getattr(weights, f"{layer}_weights")
+        assert page["names"][layer] == [CLASSES.index(name) for name in classify(f).ravel()]
 
 
 @pytest.mark.browser
@@ -131,49 +125,12 @@ def test_names_follow_the_rule(evaluate, widget):
     assert got == wanted and len(set(wanted)) >= 6
 
 
-def test_the_study_is_what_the_page_does():
-    """Events in the page's terms, for weights that are reckoned by hand."""
-    weights = trainer.first_weights(3)
-    assert study.events(weights, np.array([0.3])).tolist() == [[False, False, False]]
-    weights.hidden_weights[0, 4, 1] = np.arange(21.0)
-    weights.direct_weights[0, 1, 0] = np.arange(-10, 11.0) ** 2
-    assert study.events(weights, np.array([0.1])).tolist() == [[True, True, True]]
-    data, test = study.page_set()
-    assert len(data.x) * study.EVERY == 5 * len(test[0]) == 1500
-    assert data.x.min() >= -1 and data.x.max() <= 1 and data.step == pytest.approx(0.01)
-    seen = study.watched(weights, data, test, epochs=10)
-    assert seen["direct"][0] == seen["hidden"][0] == 0 and np.isnan(seen["error"][0])
-    for what, (x, y) in {"training": (data.x, data.y), "test": test}.items():
-        moved = Descent(weights, data.x, data.y, default_rate(21) / len(data.x), study.MOMENTUM)
-        for _ in range(10):
-            moved.epoch()
-        square = moved.mean_square(*prepare(x, y))
-        assert seen[what] == pytest.approx(np.sqrt((square / y.var(0)).mean(-1)), rel=1e-4)
-
-
-def test_what_was_committed_is_such_a_study():
-    kept = results.read("page-training")
-    assert kept["epochs"] == study.EPOCHS and kept["level"] == study.LEVEL
-    for row in kept["rows"].values():
-        assert len(row["training"]) == kept["members"] == 25
-        for event in study.EVENTS:
-            found = [x for x in row[event] if x is not None]
-            assert all(0 <= x <= study.EPOCHS and x % study.CHECK == 0 for x in found)
-
-
-def test_the_whole_figure_is_small(widget):
-    assert len(widget._esm.encode()) < 62_000
-    assert len(widget.positions) + len(widget.torques) < 23_000
-    assert widget.still and "trajectory 6" in widget.still_alt
-    assert all(line.count("`") % 2 == 0 for line in module("trainer.js").splitlines())
-
-
 # In a page without a kernel
 
 
 def opened(tmp_path, visit, widget, query="", **options):
-    url = page_of(tmp_path / "page.html", widget)
-    here = visit(f"{url}{query}", **options)
+    url = page_of(tmp_path / "page.html", widget, **options)
+    here = visit(f"{url}{query}", **CALM)
     here.page.evaluate(NEXT_FRAME)
     return here
 
@@ -187,7 +144,7 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     page.wait_for_timeout(300)
     assert page.evaluate(STATE)["epoch"] == 0
     page.get_by_role("button", name="Direct weights measure").click()
-    page.wait_for_function("document.querySelector('.ddlib-trainer').school.epoch > 3")
+    page.wait_for_function(REACHED % 4)
     page.get_by_role("button", name="Pause").click()
     paused = page.evaluate(STATE)
     page.wait_for_timeout(200)
@@ -198,24 +155,17 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     page.get_by_label("Torques").select_option("shifted")
     assert page.evaluate(STATE)["epoch"] == 0
     assert page.get_by_role("button", name="Train", exact=True).is_disabled()
-    assert not here.problems + violations_in(page, "light", "dark")
+    assert not here.problems
 
 
 @pytest.mark.browser
-def test_the_end_of_a_run_answers_the_guess(tmp_path, visit, widget):
-    """Of a short run, begun by a link close to its end."""
-
-    def shortened(entry):
-        spec = entry["state"]["spec"]
-        spec["epochs"] = 90
-        spec["panels"][0]["x"] = spec["panels"][0]["x"][: 90 // study.CHECK + 1]
-
-    url = page_of(tmp_path / "page.html", widget, change=shortened)
-    here = visit(f"{url}?trainer=guess:1,epoch:70", **CALM)
-    page, wait = here.page, "document.querySelector('.ddlib-trainer').school.epoch >= %d"
-    page.wait_for_function(wait % 70)
+def test_the_end_of_a_run_answers_the_guess(tmp_path, visit):
+    """A short run, begun by a link close to its end."""
+    short = NetworkTrainer(epochs=90)
+    here = opened(tmp_path, visit, short, "?trainer=guess:1,epoch:70")
+    page = here.page
+    page.wait_for_function(REACHED % 70)
     page.get_by_role("button", name="Train", exact=True).click()
-    page.wait_for_function(wait % 90)
     page.wait_for_selector(".runs table")
     state = page.evaluate(STATE)
     first = min(e for e in state["events"] if e is not None)
@@ -224,93 +174,41 @@ def test_the_end_of_a_run_answers_the_guess(tmp_path, visit, widget):
     assert f"at epoch {first}" in verdict
     assert page.locator(".runs tbody tr").count() == 1
     assert "Training is over, 90 epochs" in page.locator(".status").inner_text()
-    assert page.evaluate(NAMED) == [
-        int(n) if n != "None" else 0 for n in re.findall(r"(\d+|None) of the (?:4|20)", verdict)
-    ]
+    named = page.evaluate("""() => {
+      const { direct, hidden } = document.querySelector(".ddlib-trainer").school.names;
+      return [direct, hidden].map((names) => String(names.filter((k) => k < 6).length));
+    }""")
+    told = re.findall(r"(\d+|None) of the (?:4|20)", verdict)
+    assert [n.replace("None", "0") for n in told] == named
     ends = page.locator(".events dd").all_inner_texts()
     assert ends == ["never" if e is None else f"epoch {e}" for e in state["events"]]
-    assert not here.problems + violations_in(page, "light", "dark")
     step = page.get_by_role("button", name="Step")
     assert step.get_attribute("aria-disabled") == "true"
-    step.click(force=True)
-    assert page.evaluate(STATE)["epoch"] == 90
     page.get_by_role("button", name="Begin anew").click()
     page.wait_for_function("document.querySelector('.ddlib-trainer').school.epoch < 90")
-    assert not page.locator(".verdict").inner_text()
-    assert step.get_attribute("aria-disabled") == "false"
+    assert not page.locator(".verdict").inner_text() and not here.problems
 
 
 @pytest.mark.browser
 def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
-    page = opened(tmp_path, visit, widget).page
-    page.get_by_role("button", name="New weights").click()
-    page.get_by_label("Inputs").select_option("printed")
-    page.get_by_label("Momentum").select_option("0.9")
-    # both at once: the training would soon be over
-    page.evaluate(PRESS, ["A hidden filter has a name", "Pause"])
-    for _ in range(3):
-        page.get_by_role("button", name="Step").click()
+    query = "?trainer=seed:2,inputs:printed,momentum:0.9,guess:2,epoch:40"
+    page = opened(tmp_path, visit, widget, query).page
+    page.wait_for_function(REACHED % 40)
+    page.get_by_role("button", name="Step").click()
     wanted = page.evaluate(STATE)
-    page.wait_for_function(f"location.search.includes('epoch:{wanted['epoch']}')")
-    query = page.evaluate("location.search")
-    again = opened(tmp_path, visit, widget, query).page
-    goal = f"document.querySelector('.ddlib-trainer').school.epoch >= {wanted['epoch']}"
-    again.wait_for_function(goal)
+    page.wait_for_function("location.search.includes('epoch:41')")
+    again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
+    again.wait_for_function(REACHED % 41)
     assert again.evaluate(STATE) == wanted
     assert again.get_by_label("Inputs").input_value() == "printed"
+    rate = f"{trainer.default_rate(21):.12g}"
+    assert copied(again) == f"(0, 1) None 2 {rate} 0.9 41"
     again.get_by_role("button", name="Reset").click()
-    fresh = again.evaluate(STATE)
-    assert (
-        fresh["epoch"] == 0
-        and fresh["weight"] == trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
-    )
-
-
-@pytest.mark.browser
-def test_copied_code_trains_the_same_network(tmp_path, visit, widget, capsys):
-    query = "?trainer=seed:5,guess:0,torques:shifted,epoch:40"
-    page = opened(tmp_path, visit, widget, query).page
-    page.wait_for_function("document.querySelector('.ddlib-trainer').school.epoch >= 40")
-    page.evaluate("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
-    page.get_by_role("button", name="Code").click()
-    page.wait_for_function("window.copied")
-    exec(page.evaluate("window.copied"), {})
-    training, test = map(float, capsys.readouterr().out.split())
-    school = "(() => { const { school } = document.querySelector('.ddlib-trainer'); return %s; })()"
-    assert page.evaluate(school % "school.training[8]") == pytest.approx(training, rel=1e-3)
-    assert page.evaluate(school % "school.test[8]") == pytest.approx(test, rel=1e-3)
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("width, height", [(1280, 800), (390, 844)])
-def test_button_weights_and_error_are_seen_together(tmp_path, browser, widget, width, height):
-    context = browser.new_context(viewport={"width": width, "height": height})
-    page = context.new_page()
-    page.goto(page_of(tmp_path / "page.html", widget))
-    page.wait_for_selector(".ddlib-trainer .chart")
-    page.evaluate(NEXT_FRAME)
-    boxes = [
-        page.locator(f".ddlib-trainer {place}").first.bounding_box()
-        for place in (".buttons", "canvas", ".chart > svg")
-    ]
-    assert max(b["y"] + b["height"] for b in boxes) - min(b["y"] for b in boxes) < height - 60
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
-    context.close()
+    first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
+    assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}
 
 
 @pytest.mark.browser
 def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    def shorter(entry):
-        entry["buffers"][0]["data"] = entry["buffers"][0]["data"][:80]
-
-    page = visit(page_of(tmp_path / "page.html", widget, damages=[shorter])).page
-    assert "positions and" in page.get_by_role("alert").inner_text()
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("touch", [False, True])
-def test_its_first_handle_answers(tmp_path, visit, widget, touch):
-    options = {"width": 400, "has_touch": True, "is_mobile": True} if touch else {}
-    here = opened(tmp_path, visit, widget, **options)
-    first_answers(here.page.locator(".ddlib-trainer"), touch)
-    assert not here.problems
+    (said,) = alerts(tmp_path, visit, widget, cut("positions", 80))
+    assert "positions and" in said
