@@ -8,13 +8,10 @@ from ddlib.effects import IDEAL
 from ddlib.setups import JOINT_DAMPING, KD, STATE_FEEDBACK
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, pick_and_place
-from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
+from workshop.beyond.control.adaptive.regressor import mixed_regressor
 from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
-from workshop.beyond.studies.loop import adaptive as study
 from workshop.beyond.studies.loop.runs import adaptive as runs
-from workshop.report import results
-from workshop.report.code_hash import definitions
 
 HALF = 0.5 * runs.TRUTH
 
@@ -96,32 +93,3 @@ def test_readings_are_rounded_by_a_step_of_each_run():
     rounded = runs.Rounded(np.array([[0.1], [0.0]]), np.array([[0.02, 0.0], [0.0, 0.0]]))
     found = rounded.apply(np.array([[0.24, 0.26], [0.24, 0.26]]))
     np.testing.assert_allclose(found, [[0.28, 0.3], [0.24, 0.26]])
-
-
-def test_names_are_in_the_order_of_the_friction_truth():
-    assert runs.FULL == (*PARAMETERS[:3], "F_v1", "F_v2", "F_c1", "F_c2")
-    np.testing.assert_allclose(study.FRICTION_TRUTH[3:], [5.3, 1.1, 1.5, 0.45])
-
-
-def test_the_laws_behind_the_result_are_part_of_its_hash():
-    found = {module for module, _ in definitions("adaptive")}
-    for name in ("slotine_li", "craig", "model_reference", "regressor", "running"):
-        assert any(module.endswith(f"adaptive.{name}") for module in found)
-
-
-def test_what_was_kept_is_whole():
-    kept = results.read("adaptive")
-    for setup in ("joint damping", "state feedback"):
-        errors = np.array(kept["course"][setup]["settled"]["with friction"], float)
-        assert errors.shape == (2 * study.TRIALS, study.SEEDS) and study.SEEDS >= 10
-    assert {row["load"] for row in kept["loads"]["joint damping"]["rows"]} == set(study.LOADS)
-    assert set(kept["bed"]) == set(study.BED)
-
-
-def test_one_part_of_the_result_again():
-    """The index in continuous time and sampled is deterministic to rounding."""
-    kept, found = results.read("adaptive")["lyapunov"], study._lyapunov()
-    assert found["continuous"]["left"] == pytest.approx(kept["continuous"]["left"], rel=1e-4)
-    for name in ("smooth, perfect", "family, perfect"):
-        for new, old in zip(found[name], kept[name]):
-            assert new["largest"] == pytest.approx(old["largest"], rel=1e-2)

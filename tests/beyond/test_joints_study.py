@@ -6,42 +6,35 @@ from scipy.integrate import solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.learning import sliding_windows
-from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from workshop.beyond.studies.loop import joints as study
 from workshop.beyond.studies.loop.chain import REACH, chain, extents, moved, recorded
 
-READINGS = JOINT_DAMPING, STATE_FEEDBACK
 
-
-@pytest.mark.parametrize("setup", READINGS, ids=lambda setup: setup.name)
+@pytest.mark.parametrize("setup", (JOINT_DAMPING, STATE_FEEDBACK), ids=lambda setup: setup.name)
 def test_each_joint_answers_as_its_own_loop(setup):
     """The oscillator, integrated by another method; the reference jumps where it does."""
-    made = chain(2, setup.name)
-    answer = made.answer(360, 20)
-    omega = np.pi / 3
-    gains = setup.controller.kp, getattr(setup.controller, "kd", None)
-    kp, kd = (np.zeros(2) if g is None else np.array(g) for g in gains)
+    answer, omega = chain(2, setup.name).answer(360, 20), np.pi / 3
+    kp, kd = np.array(setup.controller.kp), np.array(getattr(setup.controller, "kd", (0.0, 0.0)))
     inertia = np.diag(CMU_DD_ARM_II.mass_matrix(np.zeros(2)))
     viscous = np.array(setup.effects.friction[0].coefficient)
-    for j in range(2):
 
-        def rate(t, x, j=j):
-            moving = 0 <= t < 3
-            r, v = -np.sin(omega * t) * moving, -omega * np.cos(omega * t) * moving
-            return [
-                x[1],
-                (kp[j] * (r - x[0]) + kd[j] * (v - x[1]) - viscous[j] * x[1]) / inertia[j],
-            ]
+    def rate(t, x):
+        q, qd = x.reshape(2, 2)
+        moving = 0 <= t < 3
+        off = -np.sin(omega * t) * moving - q, -omega * np.cos(omega * t) * moving - qd
+        return np.concatenate([qd, (kp * off[0] + kd * off[1] - viscous * qd) / inertia])
 
-        options = {"rtol": 1e-10, "atol": 1e-12, "max_step": 0.01}
-        first = solve_ivp(rate, (0, 3 - 1e-12), [0, 0], t_eval=LOG_STEP * np.arange(300), **options)
-        np.testing.assert_allclose(answer[20:320, j, :2], first.y.T, atol=1e-6)
-        last = solve_ivp(
-            rate, (3, 3.39), answer[320, j, :2], t_eval=3 + LOG_STEP * np.arange(39), **options
+    options = {"rtol": 1e-10, "atol": 1e-12, "max_step": 0.01}
+    start, t = np.zeros(4), LOG_STEP * np.arange(339)
+    for first, last, end in ((0, 300, 3 - 1e-12), (300, 339, 3.39)):
+        found = solve_ivp(rate, (t[first], end), start, t_eval=t[first:last], **options)
+        wanted = np.moveaxis(found.y.reshape(2, 2, -1), -1, 0)  # (time, derivative, joint)
+        np.testing.assert_allclose(
+            answer[20 + first : 20 + last, :, :2].swapaxes(1, 2), wanted, atol=1e-6
         )
-        np.testing.assert_allclose(answer[320:359, j, :2], last.y.T, atol=1e-6)
+        start = np.concatenate([answer[320, :, 0], answer[320, :, 1]])
     assert not answer[:20].any()
 
 
@@ -51,12 +44,6 @@ def test_velocity_and_acceleration_are_derivatives():
     np.testing.assert_allclose(
         rate, states[:, 1:-1, :, 1:], atol=0.05 * np.abs(states[..., 2]).max()
     )
-
-
-def test_the_sine_is_the_reports():
-    states = moved(chain(2), [[45.0, 30.0]], "sine")[0]
-    t = LOG_STEP * (np.arange(len(states)) - REACH)
-    np.testing.assert_allclose(states[:, 1, 0], -np.deg2rad(30) * np.sin(np.pi * t / 3), atol=1e-14)
 
 
 def test_torque_is_the_books_with_friction():
@@ -97,48 +84,21 @@ def test_known_structure_knows_the_arm():
     made = chain(4)
     made = type(made)(**{**vars(made), "encoder": 1e-12, "noise": np.zeros(4), "smoothing": 1e-9})
     training, test = study.sets(made, 20, 1), study.tested(made)
-    _, error = study.identified(made, training, test)
+    _, error = study._identified(made, training, test)
     assert error < 0.12, "what is left is the windows' own error"
-    noisy = study.identified(chain(4), study.sets(chain(4), 20, 1), study.tested(chain(4)))[1]
+    noisy = study._identified(chain(4), study.sets(chain(4), 20, 1), study.tested(chain(4)))[1]
     assert error <= noisy * 1.05
 
 
-def test_interactions_of_two_joints_by_hand():
-    made = chain(2)
-    states = study.tested(made).states
-    whole = made.torque(states)
-    only = states.copy()
-    only[:, 1] = 0
-    left = whole[:, 0] - made.torque(only)[:, 0]
-    found = study.interactions()["2"]
-    assert found[0] == pytest.approx(left.std() / whole[:, 0].std())
-
-
 def test_costs_of_two_joints_are_the_reports():
-    first = study.costs()[0]
-    assert first["network"] == 524
-    assert first["Newton-Euler, this arm"] < first["Newton-Euler, general"]
-
-
-def test_shuffling_finds_what_is_used():
-    x = np.random.default_rng(0).normal(size=(4000, 2, 3))
-
-    def first_only(x):
-        return np.stack([x[:, 0, 0], 0 * x[:, 0, 0] + x[:, 1, 2]], -1)
-
-    found = study._shuffled(first_only, x, np.ones(2), 1)
-    np.testing.assert_allclose(found, np.sqrt(2) * np.eye(2), atol=0.06)
+    assert study._costs()[0]["network"] == 524
 
 
 def test_the_study_cut_short(monkeypatch):
     for name, value in {"STEPS": 2, "SEEDS": 2, "CASES": 60}.items():
         monkeypatch.setattr(study, name, value)
-    rows = study.by_motions("joint damping", {2: (5, 10)}, 2)
+    rows = study._by_motions("joint damping", {2: (5, 10)}, 2)
     assert [r["motions"] for r in rows] == [5, 10] and len(rows[0]["test"]) == 2
-    found = study.pairs(seeds=1)
+    found = study._pairs(seeds=1)
     assert np.shape(found["gains"]["real"]) == (1, 4, 4) == np.shape(found["used"]["unrelated"])
-    loops = study.closed_loops(2)
-    assert {r["taps"] for r in loops} == {5, 21}
-    states, torque = study.random_cube(3, 50, 1)
-    assert np.abs(states).max() <= np.pi
-    assert float(rmss(chain(3).arm.inverse_dynamics(*np.moveaxis(states, -1, 0)), torque)) == 0
+    assert {r["taps"] for r in study._closed_loops(2)} == {5, 21}

@@ -5,11 +5,10 @@ import pytest
 
 from ddlib.control import Feedforward
 from ddlib.dynamics import end_point_error
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
 from workshop.beyond.studies.loop import learners, learning
-from workshop.report import results
 
 
 @pytest.fixture(scope="module")
@@ -55,28 +54,3 @@ def test_errors_of_a_trial_are_those_of_the_hand_during_the_motion(draw):
     off = end_point_error(draw.setup.arm, run.reference.q, run.q_true)[..., run.motion, :]
     np.testing.assert_allclose(errors, 1e3 * np.sqrt((off**2).sum(-1).mean(-1)), rtol=1e-9)
     assert errors.max() < 2.0
-
-
-def test_the_study_holds_every_learner_and_seed():
-    study = results.read("learning-in-the-loop")
-    assert set(study["setups"]) == {JOINT_DAMPING.name, STATE_FEEDBACK.name}
-    for parts in study["setups"].values():
-        for errors in (
-            *parts["motion"]["practice"].values(),
-            *parts["motion"]["forgetting"].values(),
-        ):
-            assert np.shape(errors) == (study["trials"], learners.SEEDS)
-        for errors in (*parts["family"]["tests"].values(), *parts["family"]["practice"].values()):
-            assert np.shape(errors) == (2 * study["trials"], learners.SEEDS)
-            assert np.min(errors) > 0
-        for rates in parts["rates"].values():
-            assert np.shape(rates["error"]) == (len(study["rates"]), learners.SEEDS)
-
-
-def test_no_learner_means_the_same_error_in_every_trial_of_a_load():
-    study = results.read("learning-in-the-loop")
-    for parts in study["setups"].values():
-        plain = np.array(parts["family"]["tests"]["no feedforward"])
-        trials = study["trials"]
-        assert np.ptp(plain[:trials], axis=0).max() == np.ptp(plain[trials:], axis=0).max() == 0
-        assert (plain[-1] > plain[0]).all()

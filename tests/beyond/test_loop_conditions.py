@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib.setups import JOINT_DAMPING
-from workshop.beyond.studies.loop import joints, learners
+from workshop.beyond.studies.loop import learners
 from workshop.beyond.studies.loop.chain import chain, extents, recorded
 from workshop.beyond.studies.loop.runs import conditions as study
 
@@ -18,12 +18,6 @@ def test_equations_need_the_copy_and_not_the_plan():
     found = study._copies(JOINT_DAMPING, range(1))
     error = {name: float(value[0]) for name, value in found.items()}
     assert error["0.1"] < 0.1 * error["0"] < error["none"]
-
-
-def test_a_part_of_a_sample_has_whole_motions(five):
-    part = study._part(five, np.arange(30, 90))
-    assert part.runs == 2 and len(part.torque) == len(part.windows) == len(part.states) == 60
-    np.testing.assert_array_equal(part.torque, five.torque[30:90])
 
 
 def test_the_choice_is_the_least_error_of_motions_left_out(five, monkeypatch):
@@ -50,10 +44,3 @@ def test_the_elbow_goes_later_and_both_come_back():
     np.testing.assert_allclose(q[0, [0, -1]], 0, atol=1e-9)
     lowest = np.rad2deg(-q[0].min(0))
     np.testing.assert_allclose(lowest, draw.learnt[0], rtol=1e-3)
-
-
-def test_errors_are_those_of_the_solver(five):
-    course = study._course(five, five, 0, steps=3)
-    found = joints.solved(five.windows, five.torque, (five.windows, five.torque), seed=0, steps=3)
-    np.testing.assert_array_equal(course, found.history.test)
-    assert study._error(five, five, 0, steps=3) == course[-1, 0]

@@ -48,37 +48,26 @@ def test_what_is_learnt_and_asked(recorded):
 
 
 def test_floors_are_below_what_is_measured(recorded):
-    floors = rivals.floors(recorded[0]["positions"])
+    floors = rivals._floors(recorded[0]["positions"])
     for part in ("training", "trajectory 6", "inside", "outside"):
         assert 0 < floors["exact states"][part] < floors["positions"][part] < 0.05
 
 
 def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
-    lines = {
-        "nearest": lineup.Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1),
-        "filter": lineup.Line(
-            lambda width, _: Linear(width=width, ridge=0.0), (5, 21), "samples", "filters"
-        ),
-    }
-    monkeypatch.setattr(rivals, "LINES", lines)
+    nearest = lineup.Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
+    filters = lineup.Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
+    monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "DAYS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
-    found = rivals.rivals()
-    rows = {(r["rival"], r["inputs"], r["size"]): r for r in found["rows"]}
-    assert set(rows) == {
-        ("nearest", "positions", 1),
-        ("nearest", "exact states", 1),
-        ("filter", "positions", 5),
-        ("filter", "positions", 21),
-    }
+    rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
+    names = [("nearest", inputs, 1) for inputs in rivals.INPUTS]
+    assert set(rows) == {*names, ("filter", "positions", 5), ("filter", "positions", 21)}
     assert len(rows["nearest", "positions", 1]["seconds"]) == 1
     wide = rows["filter", "positions", 21]
     assert len(wide["errors"]["outside"]) == 2 and wide["count"] == 86
     assert wide["errors"]["trajectory 6"][0] != wide["errors"]["trajectory 6"][1]  # other noise
     with np.load(tmp_path / "torques.npz") as kept:
         assert kept["names"].tolist() == ["measured", "nearest", "filter"]
-        assert kept["torque"].shape == (3, rivals.GRID**2, 30, 2)
         _, asked = rivals.recorded(1)
         wanted = asked.torque.reshape(rivals.GRID**2, 30, 2)
         np.testing.assert_allclose(kept["torque"][0], wanted, rtol=1e-3, atol=1e-3)
-    results.write_json(tmp_path / "rivals.json", found)

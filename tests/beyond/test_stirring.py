@@ -5,15 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.dynamics import Unreachable
-from ddlib.learning import TorqueModel, Weights
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, Unreachable
+from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.setups import JOINT_DAMPING
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
-from workshop.beyond.rivals.protocol import Cases
+from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from workshop.beyond.studies.loop import motions, stirring
 from workshop.beyond.studies.loop.runs import days
-from workshop.report import results
 
 T = motions.times()
 INSIDE = (T >= 0) & (T < MOTION_SECONDS)
@@ -28,18 +25,15 @@ def hand_of(q):
 class TestCircles:
     def test_members_are_drawn_from_their_ranges(self):
         drawn = motions.random_circles(4000, 3)
-        ranges = {
-            "radius": motions.RADIUS, "period": motions.PERIOD,
-            "distance": motions.DISTANCE, "bearing_deg": motions.BEARING,
-        }  # fmt: skip
-        for name, (low, high) in ranges.items():
+        ranges = motions.RADIUS, motions.PERIOD, motions.DISTANCE, motions.BEARING
+        names = "radius", "period", "distance", "bearing_deg"
+        for name, (low, high) in zip(names, ranges):
             values = getattr(drawn, name)
             assert low <= values.min() < values.max() <= high
             assert values.mean() == pytest.approx((low + high) / 2, abs=0.02 * (high - low))
         assert drawn.clockwise.mean() == pytest.approx(0.5, abs=0.03)
         again = motions.random_circles(4000, 3)
         np.testing.assert_array_equal(again.radius, drawn.radius)
-        assert (motions.random_circles(4000, 4).radius != drawn.radius).all()
 
     @pytest.mark.parametrize("elbow", ["negative", "positive"])
     @pytest.mark.parametrize("start", ["jump", "smooth"])
@@ -58,19 +52,6 @@ class TestCircles:
         np.testing.assert_allclose(turns, wanted, rtol=1e-9)
         farthest = np.linalg.norm(hand_of(q[:, 0]), axis=-1)  # where it begins
         np.testing.assert_allclose(farthest, circles.distance + circles.radius)
-
-    def test_both_elbows_put_the_hand_at_the_same_place(self):
-        circles = motions.random_circles(20, 2)
-        one, other = (motions.stirred(ARM, circles, T, e).q for e in ("negative", "positive"))
-        np.testing.assert_allclose(hand_of(one), hand_of(other), atol=1e-12)
-        np.testing.assert_allclose(one[..., 1], -other[..., 1], atol=1e-12)
-
-    def test_a_whole_turn_closes(self):
-        ones = np.ones(3)
-        circles = motions.Circles(0.1 * ones, np.array([1.5, 3, 1]), 0.6 * ones, 0 * ones,
-                                  np.array([True, False, False]))  # fmt: skip
-        q = motions.stirred(ARM, circles, T).q
-        np.testing.assert_allclose(q[:, -1], q[:, 0], atol=1e-9)
 
     @pytest.mark.parametrize("start", ["jump", "smooth"])
     def test_derivatives_are_those_of_finite_differences(self, start):
@@ -95,12 +76,12 @@ class TestCircles:
             motions.Circles(-one, one, one, one, np.array([True]))
 
     def test_small_ones_stay_within_the_angles_of_pick_and_place(self):
-        q = motions.stirred(ARM, motions.small_circles(200, 0), T).q
+        q = motions.stirred(ARM, motions._small_circles(200, 0), T).q
         assert -np.pi / 4 < q.min() and q.max() < 0
 
 
 class TestViaPoints:
-    @pytest.mark.parametrize("count", [1, 3, 6])
+    @pytest.mark.parametrize("count", [1, 6])
     def test_they_pass_all_points_at_equal_times(self, count):
         points = motions.random_points(5, count, 0)
         assert (points <= 0).all() and (points >= -np.pi / 4).all()
@@ -115,21 +96,15 @@ class TestViaPoints:
             numeric = np.gradient(x, T, axis=1)[:, inner]
             np.testing.assert_allclose(rate[:, inner], numeric, atol=3e-3 * np.abs(rate).max())
 
-    def test_one_point_is_a_polynomial_out_and_back(self):
-        """By symmetry the speed is zero at the via point, the acceleration symmetric about it."""
-        reference = motions.via_points([[[-0.5, -0.3]]], [0.7, 1.5, 2.3])
-        np.testing.assert_allclose(reference.qd[0, 1], 0, atol=1e-12)
-        np.testing.assert_allclose(reference.q[0, 0], reference.q[0, 2], atol=1e-12)
-
 
 def test_pace_is_time_with_its_derivatives():
-    np.testing.assert_array_equal(motions.pace(T)[0], np.clip(T, 0, 3))
-    gone, rate, change = motions.pace(T, "smooth")
+    np.testing.assert_array_equal(motions._pace(T)[0], np.clip(T, 0, 3))
+    gone, rate, change = motions._pace(T, "smooth")
     assert gone[-1] == pytest.approx(3 - motions.RAMP) and rate.max() == 1
     np.testing.assert_allclose(np.gradient(gone, T), rate, atol=3e-5)
     np.testing.assert_allclose(np.gradient(rate, T), change, atol=0.03)
     with pytest.raises(ValueError, match="start must be one of"):
-        motions.pace(T, "slow")
+        motions._pace(T, "slow")
 
 
 def test_as_many_cases_of_each_family():
@@ -140,10 +115,6 @@ def test_as_many_cases_of_each_family():
     both = found["both"].x
     np.testing.assert_array_equal(both[:750], found["pick and place"].x[::2])
     np.testing.assert_array_equal(both[750:], found["circles"].x[::2])
-    np.testing.assert_allclose(
-        runs["pick and place"].reference.q[0, 200],
-        pick_and_place(APPENDIX_I[0], runs["pick and place"].t).q[200],
-    )
 
 
 def test_coverage_tells_a_family_from_its_like():
@@ -158,21 +129,6 @@ def test_coverage_tells_a_family_from_its_like():
     assert found == {"shared": 1.0, "distance": 0.0}
 
 
-def test_exact_equations_behind_a_window_are_the_equations_where_motion_is_smooth():
-    reference = motions.stirred(ARM, motions.random_circles(2, 0), T, start="smooth")
-    named = stirring.boxes(JOINT_DAMPING, {})
-    exact, window, none = (
-        named[n][0](*reference) for n in ("exact equations", "exact behind a window", "none")
-    )
-    middle = slice(700, 1300)
-    np.testing.assert_allclose(
-        window[:, middle], exact[:, middle], atol=0.03 * np.abs(exact[:, middle]).max()
-    )
-    wanted = ARM.inverse_dynamics(*reference) + JOINT_DAMPING.effects.friction_torque(reference.qd)
-    np.testing.assert_allclose(exact, wanted)
-    assert not none.any()
-
-
 def test_errors_of_the_hand_are_distances_in_millimetres():
     reference = motions.stirred(ARM, motions.random_circles(2, 0), T)
     torques = np.stack([0 * reference.q, stirring.needed(JOINT_DAMPING, *reference)])
@@ -185,18 +141,13 @@ def test_errors_of_the_hand_are_distances_in_millimetres():
     np.testing.assert_allclose(log.q_true[0], alone.q_true, atol=1e-9)  # no torque, no change
 
 
-def test_errors_are_told_by_test_and_joint():
-    cases = Cases(np.zeros((4, 2, 3)), np.array([[1.0, 2], [-1, -2], [1, 2], [-1, -2]]),
-                  "windows", 0.01)  # fmt: skip
-    found = stirring.errors(lambda x: np.zeros((len(x), 2)), {"a": cases})
-    np.testing.assert_allclose(found["a"], [1.0, 1.0, 2.0])
-
-
 def test_the_pickers_file_marks_what_cannot_be_reached(tmp_path, monkeypatch):
     monkeypatch.setattr(stirring, "PICKER", tmp_path / "picker.npz")
     places = {"distance": (0.6, 0.85), "bearing": (-60,), "radius": (0.04, 0.1),
               "period": (2.0,), "elbow": ("negative",)}  # fmt: skip
-    model = TorqueModel(*_scaled(), JOINT_DAMPING_STEP)
+    scalers = Scaler(-np.ones(2), np.ones(2)), Scaler(-np.ones(2), np.ones(2), (0.2, 0.8))
+    weights = Weights.random(1, stirring.WIDTH, initial=0.1)[0]
+    model = TorqueModel(weights, *scalers, 0.01)
     stirring._picker(JOINT_DAMPING, {"one": model, "two": model}, places)
     with np.load(stirring.PICKER) as kept:
         assert kept["names"].tolist() == ["none", "exact behind a window", "one", "two"]
@@ -206,42 +157,13 @@ def test_the_pickers_file_marks_what_cannot_be_reached(tmp_path, monkeypatch):
         np.testing.assert_array_equal(kept["torque"][1], kept["torque"][2])
 
 
-JOINT_DAMPING_STEP = 0.01
-
-
-def _scaled():
-    from ddlib.learning import Scaler
-
-    q, tau = Scaler(-np.ones(2), np.ones(2)), Scaler(-np.ones(2), np.ones(2), (0.2, 0.8))
-    return Weights.random(1, stirring.WIDTH, initial=0.1)[0], q, tau
-
-
-def test_what_was_committed_is_whole():
-    study = results.read("stirring")
-    errors = study["setups"][JOINT_DAMPING.name]["errors"]
-    assert list(errors) == list(stirring.NAMES)
-    for name, family in ((n, f) for n in stirring.NAMES for f in motions.FAMILIES):
-        assert np.shape(errors[name][family]["circles"]) == (study["days"], 3)
-    for family in motions.FAMILIES[:3]:
-        kept = TorqueModel.load(stirring.network_path(family))
-        assert kept.weights.width == stirring.WIDTH and kept.weights.hidden_bias.shape == (10,)
-    with np.load(stirring.PICKER) as kept:
-        shape = tuple(map(len, stirring.PLACES.values()))
-        assert kept["reached"].shape == shape and kept["torque"].shape[1:6] == shape
-
-
 def test_recordings_of_days_do_not_depend_on_one_another():
     three = days.training(JOINT_DAMPING, [4, 0, 7])
-    alone = days.training(JOINT_DAMPING, [0])[0]
-    for name, run in alone.items():
+    for name, run in days.training(JOINT_DAMPING, [0])[0].items():
         np.testing.assert_array_equal(three[1][name].q, run.q)
         np.testing.assert_array_equal(three[1][name].tau, run.tau)
-        assert len(run.q) == days.TRAINED
     one, other = three[0]["pick and place"], three[2]["pick and place"]
-    np.testing.assert_array_equal(one.reference.q, other.reference.q)
     assert (one.tau != other.tau).mean() > 0.9 and (one.q != other.q).any()
-    apart = (one.tau - one.tau_true) - (other.tau - other.tau_true)
-    assert abs(np.corrcoef((one.tau - one.tau_true).ravel(), apart.ravel())[0, 1]) < 0.8
 
 
 def test_a_day_is_recorded_as_alone():
@@ -250,9 +172,3 @@ def test_a_day_is_recorded_as_alone():
     single = today.record(APPENDIX_I[:5])
     np.testing.assert_array_equal(batch.q_true, single.q_true)
     np.testing.assert_array_equal(batch.q, single.q)
-
-
-def test_days_need_a_reference_each():
-    t = motions.times()
-    with pytest.raises(ValueError, match="days"):
-        days.recorded(JOINT_DAMPING, [pick_and_place(APPENDIX_I[:5], t)], [1, 2])

@@ -38,7 +38,7 @@ MARKS = (50, 100, 200, 500, 1000, 1500)  # epochs of tests; the public code take
 STARTS = 200  # initial weights asked whether all of the mass matrix can be learnt
 
 
-class Entry(NamedTuple):
+class _Entry(NamedTuple):
     """How a rival is made from a seed, and whether the seed matters."""
 
     make: Callable[[int], Rival]
@@ -47,19 +47,19 @@ class Entry(NamedTuple):
 
 # Rivals with settings near those that their modules give; none was fitted to the test.
 ENTRIES = {
-    "equations, identified": Entry(lambda _: Identified(RIGID + GRAVITY)),
-    "Lagrangian network": Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
-    "Gaussian process": Entry(lambda k: GaussianProcess("states", restarts=0, seed=k), True),
-    "random features": Entry(lambda k: RandomFeatures("states", seed=k), True),
-    "network, by solver": Entry(lambda k: BySolver(kind="states", steps=40, seed=k), True),
-    "network, by Adam": Entry(lambda k: ByAdam(kind="states", epochs=1000, seed=k), True),
-    "polynomial": Entry(lambda _: Polynomial(4, ridge=1e-6)),
-    "Fourier series": Entry(lambda _: Fourier(3, ridge=1e-6)),
-    "CMAC": Entry(lambda _: CMAC(beyond="edge")),
-    "table of states": Entry(lambda _: CellTable(beyond="edge")),
-    "table of configurations": Entry(lambda _: CellTable(over="configurations", beyond="edge")),
-    "nearest case": Entry(lambda _: Nearest(beyond="edge")),
-    "linear": Entry(lambda _: Linear("states")),
+    "equations, identified": _Entry(lambda _: Identified(RIGID + GRAVITY)),
+    "Lagrangian network": _Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
+    "Gaussian process": _Entry(lambda k: GaussianProcess("states", restarts=0, seed=k), True),
+    "random features": _Entry(lambda k: RandomFeatures("states", seed=k), True),
+    "network, by solver": _Entry(lambda k: BySolver(kind="states", steps=40, seed=k), True),
+    "network, by Adam": _Entry(lambda k: ByAdam(kind="states", epochs=1000, seed=k), True),
+    "polynomial": _Entry(lambda _: Polynomial(4, ridge=1e-6)),
+    "Fourier series": _Entry(lambda _: Fourier(3, ridge=1e-6)),
+    "CMAC": _Entry(lambda _: CMAC(beyond="edge")),
+    "table of states": _Entry(lambda _: CellTable(beyond="edge")),
+    "table of configurations": _Entry(lambda _: CellTable(over="configurations", beyond="edge")),
+    "nearest case": _Entry(lambda _: Nearest(beyond="edge")),
+    "linear": _Entry(lambda _: Linear("states")),
 }
 
 
@@ -69,7 +69,7 @@ def states(drawn: Characters) -> Cases:
     return Cases(np.stack([q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
 
 
-def parts(torque: Callable, x) -> dict[str, np.ndarray]:
+def _parts(torque: Callable, x) -> dict[str, np.ndarray]:
     """Parts of the torques (N m) that a predictor gives for states ``(cases, joint, 3)``.
 
     Also its mass matrix, ``(cases, joint, joint)``, kg m^2; the rest is ``(cases, joint)``.
@@ -91,7 +91,7 @@ def parts(torque: Callable, x) -> dict[str, np.ndarray]:
     }
 
 
-def errors(found: dict, drawn: Characters) -> dict[str, float]:
+def _errors(found: dict, drawn: Characters) -> dict[str, float]:
     """Errors as in the public code; that of the mass matrix is relative (root mean square)."""
     truth = {"torque": drawn.tau, "mass_matrix": drawn.mass_matrix}
     result = {}
@@ -108,7 +108,7 @@ def _exact(x) -> np.ndarray:
     return ARM.inverse_dynamics(*np.moveaxis(x, -1, 0))
 
 
-def hurried(torque: Callable, x) -> float:
+def _hurried(torque: Callable, x) -> float:
     """RMS error of both joints at twice the speed, over the deviation of these torques."""
     fast = x * [1.0, 2.0, 4.0]
     truth = _exact(fast)
@@ -117,10 +117,10 @@ def hurried(torque: Callable, x) -> float:
 
 def _tested(torque: Callable, drawn: Characters) -> dict:
     x = states(drawn).x
-    return {**errors(parts(torque, x), drawn), "hurried": hurried(torque, x)}
+    return {**_errors(_parts(torque, x), drawn), "hurried": _hurried(torque, x)}
 
 
-def _entry(entry: Entry, split) -> dict:
+def _entry(entry: _Entry, split) -> dict:
     training, test = data().split(split)
     row: dict = {"test": [], "training": [], "seconds": []}
     for seed in range(SEEDS if entry.random else 1):
@@ -158,7 +158,7 @@ def _as_published() -> dict:
 
         def watch(epoch, rival, row=row):
             if epoch in MARKS:
-                row["course"].append(errors(parts(rival._torque, asked), test))
+                row["course"].append(_errors(_parts(rival._torque, asked), test))
 
         rival = LagrangianNetwork(**AS_PUBLISHED, epochs=MARKS[-1], seed=seed, watch=watch)
         began = time.process_time()

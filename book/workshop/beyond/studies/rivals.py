@@ -62,7 +62,7 @@ def _seen(line, inputs: str, size, seed: int):
     return None if inputs == "exact states" and rival.kind == "windows" else rival
 
 
-def floors(sets: dict) -> dict:
+def _floors(sets: dict) -> dict:
     """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `INPUTS`."""
     (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
     bits = float(np.log2(2 * np.pi / encoder.step))
@@ -85,7 +85,7 @@ def rivals() -> dict:
     rows, torques, floor = {}, {}, None
     for day in range(1, DAYS + 1):
         sets, asked = recorded(day)
-        floor = floor or floors(sets["positions"])
+        floor = floor or _floors(sets["positions"])
         for name, line in LINES.items():
             for inputs, size in product(INPUTS, line.sizes if day <= line.days else ()):
                 rival = _seen(line, inputs, size, day)

@@ -50,7 +50,7 @@ def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
     today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
-    inside = inside_hull(square_extents())
+    inside = inside_hull(_square_extents())
     return {
         "training": _cases(today, recording[:5], kind),
         "again": _cases(later, _recorded(day + LATER, "six")[:5], kind),
@@ -357,10 +357,10 @@ def _left_out(make, highest: int, training: Cases) -> dict:
 
 def practised_distance() -> np.ndarray:
     """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `square`."""
-    return np.abs(square_extents() - PRACTISED).max(1)
+    return np.abs(_square_extents() - PRACTISED).max(1)
 
 
-def square_extents() -> np.ndarray:
+def _square_extents() -> np.ndarray:
     """Extents of the trajectories of the square, degrees, ``(runs, 2)``, in its order."""
     edge = MAX_EXTENT_DEG * np.arange(1, POINTS + 1) / POINTS
     return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)

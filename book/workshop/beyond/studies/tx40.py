@@ -25,7 +25,7 @@ DEGREE = 3  # of the polynomial whose derivatives are a window's states
 
 
 @cache
-def recorded(rate: int) -> RealArm:
+def _recorded(rate: int) -> RealArm:
     """The recording at so many samples a second."""
     return staubli().at(rate)
 
@@ -42,7 +42,7 @@ class Windowed:
     @classmethod
     def of(cls, rate: int, width: int) -> Windowed:
         """The cases of 100, 200 or 500 samples a second and of a window size."""
-        found, many = recorded(rate), rate // 100
+        found, many = _recorded(rate), rate // 100
         integer("width", width, 3, 81 * many)
         centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
         around = np.arange(width) - width // 2

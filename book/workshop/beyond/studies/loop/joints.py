@@ -87,14 +87,14 @@ def linear(training: arms.Sample, test: arms.Sample) -> float:
     return float(rmss(rival._torque(test.windows), test.torque))
 
 
-def identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> tuple[float, float]:
+def _identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> tuple[float, float]:
     """Errors (training, test) of the equations with friction, by least squares.
 
     States come from a polynomial through each window, of the degree, 3 or 4, that fits better.
     """
     scale, found = training.torque.std(0), []
     for degree in (3, 4):
-        first = equations(made, training.windows, degree)
+        first = _equations(made, training.windows, degree)
         matrix = (first / scale[:, None]).reshape(-1, first.shape[-1])
         size = np.sqrt((matrix**2).mean(0))
         size[size < 1e-9] = 1.0
@@ -102,11 +102,11 @@ def identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> tu
         values = np.linalg.lstsq(matrix / size, wanted, rcond=1e-6)[0] / size
         found.append((float(rmss(first @ values, training.torque)), degree, values))
     error, degree, values = min(found, key=lambda each: each[0])
-    answer = equations(made, test.windows, degree) @ values
+    answer = _equations(made, test.windows, degree) @ values
     return error, float(rmss(answer, test.torque))
 
 
-def equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
+def _equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
     """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
 
     Its states are those of polynomials of this degree through the windows.
@@ -130,7 +130,7 @@ def _trained(training, test, hidden=paper.HIDDEN_UNITS, **options) -> dict:
 # --- the parts of the study ---------------------------------------------------------------
 
 
-def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
+def _by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     """Errors of networks and of a linear filter, by joints and their numbers of motions."""
     rows = []
     for joints, motions in ladder.items():
@@ -151,20 +151,20 @@ def by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     return rows
 
 
-def known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> list[dict]:
+def _known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> list[dict]:
     """Errors of the identified equations, by joints and motions, one for each of the seeds."""
     rows = []
     for n in joints:
         made = arms.chain(n)
         test = tested(made)
         for m in motions:
-            each = [identified(made, sets(made, m, s), test) for s in range(1, 1 + seeds)]
+            each = [_identified(made, sets(made, m, s), test) for s in range(1, 1 + seeds)]
             training, errors = zip(*each)
             rows.append({"joints": n, "motions": m, "training": training, "test": errors})
     return rows
 
 
-def closed_loops(seeds: int = SEEDS) -> list[dict]:
+def _closed_loops(seeds: int = SEEDS) -> list[dict]:
     """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
     rows = []
     for setup, motions in product((JOINT_DAMPING, STATE_FEEDBACK), (5, MAIN)):
@@ -208,7 +208,7 @@ def _cut(loop, spacing: int, motions: int) -> list[arms.Sample]:
     return made
 
 
-def units() -> list[dict]:
+def _units() -> list[dict]:
     """Four joints with other numbers of hidden units."""
     made = arms.chain(4)
     test = tested(made)
@@ -221,28 +221,28 @@ def units() -> list[dict]:
     return rows
 
 
-def random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+def _random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Random states of section 6 for more joints, and the rigid body's torque, N m."""
     rng = np.random.default_rng((seed, joints))
     states = rng.uniform(-np.pi, np.pi, (samples, joints, 3))
     return states, arms.chain(joints).arm.inverse_dynamics(*np.moveaxis(states, -1, 0))
 
 
-def random_states() -> list[dict]:
+def _random_states() -> list[dict]:
     """Errors on random states by joints, samples and hidden units."""
     rows, options = [], {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
     for joints in MOTIONS_OF:
-        test = random_cube(joints, STATE_TEST, TEST_SEED)
+        test = _random_cube(joints, STATE_TEST, TEST_SEED)
         plan = [(10, n) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
         plan += [(20, n) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
         for hidden, samples in plan:
-            trained = [random_cube(joints, samples, seed) for seed in range(1, 1 + SEEDS)]
+            trained = [_random_cube(joints, samples, seed) for seed in range(1, 1 + SEEDS)]
             row = {"joints": joints, "units": hidden, "samples": samples}
             rows.append(row | _trained(trained, test, hidden, **options))
     return rows
 
 
-def pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
+def _pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
     """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia."""
     made = arms.chain(joints)
     test = tested(made)
@@ -282,7 +282,7 @@ def _shuffled(predict, x, scale, seed: int) -> np.ndarray:
     return np.stack(changes, -1)  # (torque, window)
 
 
-def interactions() -> dict:
+def _interactions() -> dict:
     """How much of each torque is owed to the other joints: RMS without them, over the deviation."""
     found = {}
     for joints in (2, 3, 4, 5, 7):
@@ -298,7 +298,7 @@ def interactions() -> dict:
     return found
 
 
-def costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
+def _costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
     """Multiplications of the network, and of two formulations counted by running them."""
     rows = []
     for n in range(2, DD_ARM_II_IN_SPACE.joints + 1):
@@ -324,13 +324,13 @@ def joints() -> dict:
         "steps": STEPS,
         "seeds": SEEDS,
         "test motions": TEST_MOTIONS,
-        "windows": by_motions(JOINT_DAMPING.name, MOTIONS_OF, SEEDS),
-        "windows, state feedback": by_motions(STATE_FEEDBACK.name, second, SEEDS),
-        "known structure": known_structure(),
-        "closed loops": closed_loops(),
-        "units": units(),
-        "random states": random_states(),
-        "pairs": pairs(),
-        "interactions": interactions(),
-        "costs": costs(),
+        "windows": _by_motions(JOINT_DAMPING.name, MOTIONS_OF, SEEDS),
+        "windows, state feedback": _by_motions(STATE_FEEDBACK.name, second, SEEDS),
+        "known structure": _known_structure(),
+        "closed loops": _closed_loops(),
+        "units": _units(),
+        "random states": _random_states(),
+        "pairs": _pairs(),
+        "interactions": _interactions(),
+        "costs": _costs(),
     }

@@ -106,7 +106,7 @@ def random_circles(runs: int, seed: int) -> Circles:
     return Circles(*(draw.uniform(*r, shape) for r in ranges), draw.random(shape) < 0.5)
 
 
-def pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray:
+def _pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray:
     """Time as a motion sees it, with its two derivatives, shape (3, time).
 
     "jump": full speed from the first moment to the last, as in Appendix I; "smooth": speed rises
@@ -150,7 +150,7 @@ def stirred(
     """
     one_of("elbow", elbow, ELBOWS)
     turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period
-    angle, rate, change = turning[:, None] * pace(t, start)[:, None]
+    angle, rate, change = turning[:, None] * _pace(t, start)[:, None]
     first = np.deg2rad(circles.bearing_deg)[:, None]
     return around(arm, circles.centre, circles.radius, (first + angle, rate, change), elbow)
 
@@ -207,7 +207,7 @@ def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
     return {name: found[name] for name in FAMILIES}
 
 
-def small_circles(runs: int, seed: int) -> Circles:
+def _small_circles(runs: int, seed: int) -> Circles:
     """Members with the ranges of `SMALL` in place of the family's."""
     whole, draw = random_circles(runs, seed), np.random.default_rng((seed, 1))
     return replace(whole, **{name: draw.uniform(*r, runs) for name, r in SMALL.items()})
@@ -224,7 +224,7 @@ def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]
         "circles": stirred(arm, circles, t),
         "circles, smooth start": stirred(arm, circles, t, start="smooth"),
         "circles, other elbow": stirred(arm, circles, t, "positive"),
-        "small circles": stirred(arm, small_circles(members, TEST_DAY), t),
+        "small circles": stirred(arm, _small_circles(members, TEST_DAY), t),
     }
     found = {
         "pick and place": today.record(random_extents(members, TEST_DAY)),

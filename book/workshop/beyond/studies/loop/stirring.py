@@ -52,7 +52,7 @@ PLACES = {
 SHOWN = 5  # of the samples, every so many are kept for the picker
 
 
-def maker(setup: Setup, name: str, seed: int) -> Rival:
+def _maker(setup: Setup, name: str, seed: int) -> Rival:
     """One of `NAMES` that has learnt nothing."""
     if name == "identified":
         return Estimating(Identified())
@@ -62,7 +62,7 @@ def maker(setup: Setup, name: str, seed: int) -> Rival:
     return BySolver(hidden, setup.steps, decay=setup.decay, initial=INITIAL, seed=seed)
 
 
-def errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
+def _errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     """RMSS by the test's own deviation, and RMS errors of both joints (N m), of each test."""
     found = {}
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
@@ -92,8 +92,8 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     for day, run in enumerate(runs):
         cases = motions.learnt(run, width)
         for (name, family), trained in rivals.items():
-            trained.append(fitted(maker(setup, name, day), cases[family]))
-            every = errors(trained[-1].torque, {"training": cases[family], **answers})
+            trained.append(fitted(_maker(setup, name, day), cases[family]))
+            every = _errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
                 found[name][family].setdefault(part, []).append(error)
     return rivals, found
@@ -106,7 +106,7 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
         answers, table = _answers(tests, width), results.networks(width, setup.name)
         mine: dict = {}
         for k in range(len(runs)):
-            for part, error in errors(table[k].torque, answers).items():
+            for part, error in _errors(table[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
         other = _transfer(setup, NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
         found[str(width)] = {"pick and place": mine, **other["network"]}
@@ -199,7 +199,7 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
             cases = Cases.windows(run[family], WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
-            null.append(fitted(maker(setup, "network", day), replace(cases, torque=drawn)))
+            null.append(fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
         found[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),

@@ -63,7 +63,7 @@ class _Kept:
         return self._law.weights[..., -1, :]
 
 
-def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Errors (mm) and estimates of all learners, without friction and with it, at all rates.
 
     Errors have shape (friction, rate, motions), estimates (friction, rate, motions + 1,
@@ -85,9 +85,9 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         LEARNERS[0]: make("with friction", setup, factor=0.0),
         LEARNERS[1]: make("with friction", setup, factor=factor),
         LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        LEARNERS[3]: Behind(_FeedbackError(start(), factor), SMOOTH),
+        LEARNERS[3]: Behind(_FeedbackError(_start(), factor), SMOOTH),
     }
-    begin = start()
+    begin = _start()
     errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(FULL)))]
     for extents in drawn(1, MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
@@ -104,7 +104,7 @@ def learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     }
 
 
-def start() -> np.ndarray:
+def _start() -> np.ndarray:
     """What all learners begin with: the arm without a load, and no friction."""
     return make("with friction", JOINT_DAMPING).estimate
 
@@ -116,7 +116,7 @@ def loop_learner() -> dict:
         "loads": {
             str(load): {
                 name: {"errors": errors, "estimates": estimates}
-                for name, (errors, estimates) in learned(load).items()
+                for name, (errors, estimates) in _learned(load).items()
             }
             for load in LOADS
         }

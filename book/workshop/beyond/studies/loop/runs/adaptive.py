@@ -44,7 +44,7 @@ RATES = {
 
 
 @dataclass(frozen=True)
-class Beside:
+class _Beside:
     """Controllers side by side: the first axis of the runs says whose they are."""
 
     controllers: tuple[Controller, ...]
@@ -92,19 +92,19 @@ POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the lar
 SMOOTH = ModelReference((POLE**2,) * 2, (2 * POLE,) * 2, (POLE,) * 2, np.zeros(8), np.zeros(8))
 
 
-def taught(controller: Controller, estimate) -> Controller:
+def _taught(controller: Controller, estimate) -> Controller:
     """The controller with other estimates to begin with; others than adaptive ones as they are."""
     if not hasattr(controller, "estimate"):
         return controller
     if isinstance(controller, Behind):
-        return replace(controller, controller=taught(controller.controller, estimate))
+        return replace(controller, controller=_taught(controller.controller, estimate))
     return replace(controller, estimate=estimate)
 
 
 LIMITS = np.array(CMU_DD_ARM_II_EFFECTS.actuator[0].limit)  # N m, of the motors
 
 
-class Able:
+class _Able:
     """Mixed into a law: it learns nothing while it asks for more torque than the motors have."""
 
     def advance(self, law, estimate, wanted, q, qd):
@@ -114,15 +114,15 @@ class Able:
         return torque, np.where(able, after, estimate)
 
 
-class AbleSlotineLi(Able, SlotineLi):
+class _AbleSlotineLi(_Able, SlotineLi):
     """`SlotineLi` that learns while the motors are able."""
 
 
-class AbleCraig(Able, CraigHsuSastry):
+class _AbleCraig(_Able, CraigHsuSastry):
     """`CraigHsuSastry` that learns while the motors are able."""
 
 
-class AbleModelReference(Able, ModelReference):
+class _AbleModelReference(_Able, ModelReference):
     """`ModelReference` that learns while the motors are able."""
 
 
@@ -167,14 +167,16 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     if law == "joint models":
         own = np.stack([start[..., 0] + 2 * start[..., 1], start[..., 2]], -1)
         each = np.stack([own, a0 * own, a1 * own, 0 * own], -1)
-        return AbleModelReference(a0, a1, a1 / 2, rate, each.reshape(*own.shape[:-1], 8), **options)
+        return _AbleModelReference(
+            a0, a1, a1 / 2, rate, each.reshape(*own.shape[:-1], 8), **options
+        )
     names = RIGID if law == "rigid body" else FULL
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
-        made = AbleCraig(a0, a1, a1 / 2, rate, first, *BOX, names, **options)
+        made = _AbleCraig(a0, a1, a1 / 2, rate, first, *BOX, names, **options)
     else:
-        kind = SlotineLi if jumps else AbleSlotineLi
+        kind = SlotineLi if jumps else _AbleSlotineLi
         made = kind(KD, slope, rate, first, names, **options)
     return made if jumps else Behind(made, SMOOTH)
 
@@ -210,7 +212,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
             kept.append(super().start(reference, step))
             return kept[0]
 
-    guard = _Kept(Beside(tuple(laws.values())))
+    guard = _Kept(_Beside(tuple(laws.values())))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
     hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
     off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
@@ -223,7 +225,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
         return np.where(stops.stopped, np.inf, np.sqrt((x**2).mean(-1)))
 
     after = {
-        name: taught(law, getattr(own, "estimate", None))
+        name: _taught(law, getattr(own, "estimate", None))
         for (name, law), own in zip(laws.items(), kept[0].inner.laws)
     }
     return Trial(rms(off), rms(off[..., third:]), stops, after)
