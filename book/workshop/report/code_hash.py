@@ -19,17 +19,17 @@ import ddlib
 from ddlib._check import one_of
 from workshop import BOOK
 
+# Folders of the packages whose code is followed
 ROOTS = {"ddlib": Path(ddlib.__file__).parent, "workshop": BOOK / "workshop"}
-"""Folders of the packages whose code is followed."""
 
+# Module of functions ``check(name, value, ...)`` that hand a value on or refuse it
 CHECKS = "_check"
-"""Module of functions ``check(name, value, ...)`` that hand a value on or refuse it."""
 
+# Last names of modules that decide no number: what is used of them counts by its name alone
 ASIDE = (CHECKS, "workshop", "results", "sweeps", "code_hash")
-"""Last names of modules that decide no number: what is used of them counts by its name alone."""
 
+# Fields of a syntax tree that mean nothing here, or differ between versions of Python
 SILENT = {"annotation", "returns", "ctx", "kind", "type_params", "type_comment", "simple"}
-"""Fields of a syntax tree that mean nothing here, or differ between versions of Python."""
 
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 SCOPES = (ast.FunctionDef, ast.Lambda, *COMPREHENSIONS)
@@ -42,18 +42,7 @@ def study(function):
 
 
 def code_hash(result: str) -> str:
-    """Hash of the code that makes a result.
-
-    Parameters
-    ----------
-    result : str
-        Name of the result, like "table-4-1".
-
-    Raises
-    ------
-    ValueError
-        If no study makes it.
-    """
+    """Hash of the code that makes a result."""
     return _hashes(result)[places()[result]][:16]
 
 

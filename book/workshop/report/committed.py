@@ -33,11 +33,7 @@ def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
 
 @cache
 def untrained(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
-    """The same networks before training: their initial weights, their scaling.
-
-    The null of what training is said to make. It is not a fair null of smooth filters, which
-    any smooth target gives.
-    """
+    """The same networks before training: their initial weights, their scaling."""
     trained = networks(width, setup)
     start = Weights.random(len(trained.weights), width, initial=SETUPS[setup].initial)
     return TorqueModel(start, trained.inputs, trained.outputs)
@@ -46,18 +42,6 @@ def untrained(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
 def filters(
     width: int, layer: str, model: Callable = networks, setup: str = STATE_FEEDBACK.name
 ) -> np.ndarray:
-    """Weights along the window of all units, shape ``(networks, filters, width)``.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    layer : {"hidden", "direct"}
-        To the hidden units, or directly to the outputs.
-    model : callable
-        `networks` or `untrained`.
-    setup : str
-        Which reading of the controller.
-    """
+    """Weights along the window of all units, shape ``(networks, filters, width)``."""
     weights = getattr(model(width, setup).weights, f"{layer}_weights")
     return weights.reshape(len(weights), -1, width)

@@ -12,43 +12,20 @@ from ddlib._check import integer, number, shaped
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
+# Half the edge of the hypercube that is sampled: rad, rad/s and rad/s^2 alike (section 6)
 RADIUS = np.pi
-"""Half the edge of the hypercube that is sampled: rad, rad/s and rad/s^2 alike (section 6)."""
 
-SAMPLES = 298
-"""Number of states of each set (section 6)."""
+SAMPLES = 298  # Number of states of each set (section 6)
 
-EPOCHS = 12_000
-"""Passes through the training set "until it reached an asymptote" (section 6)."""
+EPOCHS = 12_000  # Passes through the training set "until it reached an asymptote" (section 6)
 
+# Step size per case, acceleration, epochs with a momentum of 0.5, range of the initial weights.
+# Assumed: the paper prints none of them. The book shows what other choices give.
 RATE, MOMENTUM, WARM_UP, INITIAL = 4.0, 0.99, 500, 0.5
-"""Step size per case, acceleration, epochs with a momentum of 0.5, range of the initial weights.
-Assumed: the paper prints none of them. The book shows what other choices give."""
 
 
 def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS) -> np.ndarray:
-    """States drawn uniformly from the hypercube.
-
-    Parameters
-    ----------
-    samples : int
-        How many.
-    seed : int
-        Seed of the draw.
-    radius : float
-        Half the edge of the cube, for positions (rad), velocities (rad/s) and accelerations
-        (rad/s^2) alike.
-
-    Returns
-    -------
-    ndarray, shape (samples, joint, 3)
-        Position, velocity and acceleration of each joint.
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range.
-    """
+    """States drawn uniformly from the hypercube, shape (samples, joint, 3)."""
     size = (integer("samples", samples, 1), 2, 3)
     number("radius", radius, 0.0, open_low=True)
     return np.random.default_rng(integer("seed", seed, 0)).uniform(-radius, radius, size)
@@ -57,34 +34,14 @@ def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS)
 def states_along(
     extents_deg, samples: int = SAMPLES, duration: float = MOTION_SECONDS
 ) -> np.ndarray:
-    """States of a member of the pick-and-place family, equally spaced in time.
-
-    Parameters
-    ----------
-    extents_deg : array_like, shape (2,)
-        Extents of shoulder and elbow, degrees.
-    samples : int
-        How many.
-    duration : float
-        Length of the motion, s.
-
-    Returns
-    -------
-    ndarray, shape (samples, joint, 3)
+    """States of a member of the pick-and-place family, equally spaced in time, shape (samples,
+    joint, 3).
     """
     step = number("duration", duration, 0.0, open_low=True) / integer("samples", samples, 2)
     return np.stack(pick_and_place(extents_deg, np.arange(samples) * step, duration), -1)
 
 
 def torque(states, arm: Arm = CMU_DD_ARM_II) -> np.ndarray:
-    """Torque that the analytic model gives for states, shape ``(samples, joint)``, N m.
-
-    Parameters
-    ----------
-    states : array_like, shape (samples, joint, 3)
-        From `random_states` or `states_along`.
-    arm : Arm
-        Whose dynamics.
-    """
+    """Torque that the analytic model gives for states, shape ``(samples, joint)``, N m."""
     states = shaped("states", states, "(samples, 2, 3)")
     return arm.inverse_dynamics(*np.moveaxis(states, -1, 0))

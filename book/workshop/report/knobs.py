@@ -60,6 +60,8 @@ class Knob:
         return 2 * (np.asarray(value) - self.low) / (self.high - self.low) - 1
 
 
+# Knobs of the recording. The damping is a factor of `JOINT_DAMPING`'s, which is the IMI arm's;
+# friction, gain and noise are factors of the default ones; the start is in s.
 RECORDING = {
     "joint damping": Knob(0.35, 2.0),
     "Coulomb friction": Knob(0.5, 6.0),
@@ -68,9 +70,9 @@ RECORDING = {
     "torque noise": Knob(0.25, 4.0),
     "start left out": Knob(0.0, 0.3, logarithmic=False),
 }
-"""Knobs of the recording. The damping is a factor of `JOINT_DAMPING`'s, which is the IMI arm's;
-friction, gain and noise are factors of the default ones; the start is in s."""
 
+# Knobs of the learning, by method. The momentum is ``1 / (1 - momentum)``: how many steps go on
+# together; the step is the rate times the width of the window.
 METHODS = {
     "descent": {
         "lowest input": Knob(-1.0, 0.0, logarithmic=False),
@@ -84,8 +86,6 @@ METHODS = {
         "steps": Knob(15.0, 60.0),
     },
 }
-"""Knobs of the learning, by method. The momentum is ``1 / (1 - momentum)``: how many steps go on
-together; the step is the rate times the width of the window."""
 
 
 def knobs_of(method: str) -> dict[str, Knob]:
@@ -108,19 +108,7 @@ def screening() -> np.ndarray:
 
 
 def setup(values: Mapping[str, float], method: str) -> Setup:
-    """The experiment with every knob of a method at some value.
-
-    Parameters
-    ----------
-    values : mapping
-        A value for each of `knobs_of`; the start is left out by `without_start`.
-    method : {"descent", "solver"}
-
-    Raises
-    ------
-    ValueError
-        If a name is missing, or a value is out of the knob's range.
-    """
+    """The experiment with every knob of a method at some value."""
     for name, knob in knobs_of(method).items():
         if name not in values:
             raise ValueError(f"values must have one for {name!r}, got {sorted(values)}")
@@ -168,27 +156,19 @@ def without_start(recording: Recording, seconds: float) -> Recording:
 
 
 def terms(places) -> np.ndarray:
-    """Terms of the regression: 1, every knob, squares less their mean, products.
-
-    Parameters
-    ----------
-    places : array_like, shape (points, knobs)
-        Coded.
-
-    Returns
-    -------
-    ndarray, shape (points, 1 + 2 knobs + knobs (knobs - 1) / 2)
+    """Terms of the regression: 1, every knob, squares less their mean, products, shape (points, 1 +
+    2 knobs + knobs (knobs - 1).
     """
     x = np.atleast_2d(finite_array("places", places))
     pairs = [x[:, i] * x[:, j] for i, j in combinations(range(x.shape[1]), 2)]
     return np.column_stack([np.ones(len(x)), x, x**2 - 1 / 3, *pairs])
 
 
+# Standard deviations tried for the coefficients of first and of second order
 MAIN, SECOND = (0.1, 0.2, 0.4, 0.8, 1.6), (0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
-"""Standard deviations tried for the coefficients of first and of second order."""
 
+# Standard deviations tried for what a polynomial of second order misses
 MISFIT = (0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.7)
-"""Standard deviations tried for what a polynomial of second order misses."""
 
 
 @dataclass(frozen=True)
@@ -215,19 +195,7 @@ class Emulator:
 
     @classmethod
     def fit(cls, places, values, variance: float, widths=None) -> Emulator:
-        """Fit to the values of a response.
-
-        Parameters
-        ----------
-        places : array_like, shape (runs, knobs)
-            Coded.
-        values : array_like, shape (runs,)
-        variance : float
-            Of a value around what its knobs decide.
-        widths : three of float, optional
-            Standard deviations of the coefficients of first and second order, and of the misfit;
-            default: those from `MAIN`, `SECOND` and `MISFIT` that make the values likeliest.
-        """
+        """Fit to the values of a response."""
         design, values = terms(places), finite_array("values", values)
         number("variance", variance, 0.0, open_low=True)
         main, second, misfit = widths or likeliest(places, values, variance)
@@ -291,21 +259,11 @@ def left_out(places, values, variance: float) -> np.ndarray:
 
 
 def shares(coefficients, count: int) -> np.ndarray:
-    """Share of a response's variance that each knob makes, when all are drawn evenly.
+    """Share of a response's variance that each knob makes, when all are drawn evenly, shape (...,
+    2, count).
 
-    Sobol indices of a polynomial in `terms`: by itself (main), and with all products it takes
-    part in (total).
-
-    Parameters
-    ----------
-    coefficients : array_like, shape (..., terms)
-    count : int
-        Number of knobs.
-
-    Returns
-    -------
-    ndarray, shape (..., 2, count)
-        Main and total.
+    Sobol indices of a polynomial in `terms`: by itself (main), and with all products it takes part
+    in (total).
     """
     coefficients = np.asarray(coefficients, dtype=float)
     linear, square = coefficients[..., 1 : 1 + count], coefficients[..., 1 + count : 1 + 2 * count]
@@ -320,32 +278,13 @@ def shares(coefficients, count: int) -> np.ndarray:
 
 
 def spread_evenly(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
-    """Coded places that fill the cube evenly (Sobol's sequence, scrambled by `seed`).
-
-    An array of shape ``(count, dimensions)``.
-    """
+    """Coded places that fill the cube evenly (Sobol's sequence, scrambled by `seed`)."""
     points = qmc.Sobol(dimensions, rng=integer("seed", seed, 0)).random(integer("count", count, 1))
     return 2 * points - 1
 
 
 def weigh(means, variances, covariance, observed) -> tuple[np.ndarray, float]:
-    """Posterior weights of places, from what was observed once.
-
-    Parameters
-    ----------
-    means, variances : array_like, shape (places, responses)
-        What an emulator predicts at each place, and how unsure it is.
-    covariance : array_like, shape (responses, responses)
-        Of one observation around its mean.
-    observed : array_like, shape (responses,)
-
-    Returns
-    -------
-    weights : ndarray, shape (places,)
-        They sum to 1.
-    evidence : float
-        Logarithm of the mean likelihood over all places.
-    """
+    """Posterior weights of places, from what was observed once, shape (places,)."""
     means, variances = finite_array("means", means), finite_array("variances", variances)
     total = np.asarray(covariance) + variances[:, :, None] * np.eye(means.shape[1])
     miss = np.asarray(observed) - means
@@ -362,22 +301,8 @@ def moments(places, weights) -> tuple[np.ndarray, np.ndarray]:
 
 
 def would_tell(places, weights, means, variance, draws: int = 300, seed: int = 0) -> np.ndarray:
-    """How much narrower each knob would be if one more number were known, on average.
-
-    Parameters
-    ----------
-    places : ndarray, shape (places, knobs)
-    weights : ndarray, shape (places,)
-        What is known so far.
-    means, variance : ndarray, shape (places,)
-        The number that each place predicts, and the variance around it.
-    draws, seed : int
-        Numbers drawn from what is known so far.
-
-    Returns
-    -------
-    ndarray, shape (knobs,)
-        Standard deviation afterwards (root of the mean variance) over that before.
+    """How much narrower each knob would be if one more number were known, on average, shape
+    (knobs,).
     """
     rng = np.random.default_rng(seed)
     picked = rng.choice(len(weights), size=draws, p=weights)

@@ -17,11 +17,10 @@ from ddlib.learning.descent import Descent
 from ddlib.learning.network import Weights
 from ddlib.learning.training import TARGET_RANGE
 
-MOST_BITS = 16
-"""Most bits for which all inputs are listed."""
+MOST_BITS = 16  # Most bits for which all inputs are listed
 
+# Ways to write an input for a polynomial: 0 and 1, or 1 and -1 (-1 for a bit that is on)
 CODINGS = ("bits", "signs")
-"""Ways to write an input for a polynomial: 0 and 1, or 1 and -1 (-1 for a bit that is on)."""
 
 
 def patterns(bits: int) -> np.ndarray:
@@ -31,22 +30,7 @@ def patterns(bits: int) -> np.ndarray:
 
 
 def parity(x) -> np.ndarray:
-    """1 where an even number of bits is on, else 0.
-
-    Parameters
-    ----------
-    x : array_like, shape (..., bits)
-        Zeros and ones.
-
-    Returns
-    -------
-    ndarray of int, shape (...)
-
-    Raises
-    ------
-    ValueError
-        If `x` holds anything else.
-    """
+    """1 where an even number of bits is on, else 0, shape (...)."""
     x = finite_array("x", x)
     if x.ndim == 0 or not np.isin(x, (0, 1)).all():
         raise ValueError("x must hold zeros and ones only, along its last axis")
@@ -54,30 +38,13 @@ def parity(x) -> np.ndarray:
 
 
 def monomials(values, coding: str = "bits") -> np.ndarray:
-    """Coefficients of the polynomial that equals a function of bits on all its inputs.
+    """Coefficients of the polynomial that equals a function of bits on all its inputs, shape
+    (2**bits,).
 
     No variable appears squared in it, since a bit (or a sign) squared is nothing new; so the
-    polynomial is unique. Its coefficients come from the Möbius transform for bits and from
-    the Walsh-Hadamard transform for signs, and are exact: whole numbers for bits, whole
-    numbers over ``2**bits`` for signs.
-
-    Parameters
-    ----------
-    values : array_like of int, shape (2**bits,)
-        The function's values in the order of `patterns`.
-    coding : {"bits", "signs"}
-        What stands in the products: 0 and 1, or 1 and -1 for a bit that is off and on.
-
-    Returns
-    -------
-    ndarray, shape (2**bits,)
-        Entry i belongs to the product of the variables whose binary digits in i are 1; entry
-        0 is the constant.
-
-    Raises
-    ------
-    ValueError
-        If the number of values is no power of two, or the coding is unknown.
+    polynomial is unique. Its coefficients come from the Möbius transform for bits and from the
+    Walsh-Hadamard transform for signs, and are exact: whole numbers for bits, whole numbers over
+    ``2**bits`` for signs.
     """
     values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
     bits = values.size.bit_length() - 1
@@ -150,19 +117,7 @@ class UnitNetwork:
         return int(depth[-1])
 
     def activity(self, x, gain: float = np.inf) -> np.ndarray:
-        """Activities of all units.
-
-        Parameters
-        ----------
-        x : array_like, shape (..., inputs)
-        gain : float
-            Factor of all weights and biases of sigmoid units; infinite: units that are on
-            exactly where their net input is positive.
-
-        Returns
-        -------
-        ndarray, shape (..., units)
-        """
+        """Activities of all units, shape (..., units)."""
         x = finite_array("x", x, self.inputs)
         if gain != np.inf:
             number("gain", gain, 0.0, open_low=True)
@@ -187,21 +142,14 @@ def _build(inputs: int, rows) -> UnitNetwork:
 
 
 def one_layer(bits: int) -> UnitNetwork:
-    """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986).
-
-    The output sees the hidden units with weights -1, +1, -1, ...; about ``bits**2`` weights.
-    """
+    """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986)."""
     bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - k) for k in range(1, bits + 1)]
     return _build(bits, [*hidden, ({bits + k: -((-1) ** k) for k in range(bits)}, 0.5)])
 
 
 def direct(bits: int) -> UnitNetwork:
-    """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999).
-
-    Hidden unit k is on if 2k bits or more are on, and takes away two from the number of bits
-    that the output sees directly; about ``bits**2 / 2`` weights.
-    """
+    """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999)."""
     bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
     above = dict.fromkeys(range(bits, bits + len(hidden)), 2)
@@ -242,25 +190,17 @@ def tree(bits: int) -> UnitNetwork:
     return _build(bits, rows)
 
 
+# Networks that compute parity, by name: functions of the number of bits
 NETWORKS = {
     "one hidden layer": one_layer,
     "with direct weights": direct,
     "binary counter": counter,
     "tree of pairs": tree,
 }
-"""Networks that compute parity, by name: functions of the number of bits."""
 
 
 def parity_cases(bits: int, coding: str = "bits") -> tuple[np.ndarray, np.ndarray]:
-    """All inputs and their parity as cases for training.
-
-    Returns
-    -------
-    x : ndarray, shape (2**bits, 1, bits)
-        Windows of one joint, in the given `coding`.
-    y : ndarray, shape (2**bits, 1)
-        Targets in `ddlib.learning.training.TARGET_RANGE`.
-    """
+    """All inputs and their parity as cases for training."""
     bit, coding = patterns(bits), one_of("coding", coding, CODINGS)
     low, high = TARGET_RANGE
     x = bit if coding == "bits" else 1 - 2 * bit
@@ -268,15 +208,7 @@ def parity_cases(bits: int, coding: str = "bits") -> tuple[np.ndarray, np.ndarra
 
 
 def right(weights: Weights, x, y) -> np.ndarray:
-    """Share of the cases on whose side of the targets' middle the output lies, shape (...).
-
-    Parameters
-    ----------
-    weights : Weights
-        Networks with one output.
-    x, y : array_like, shapes (cases, 1, bits) and (cases, 1)
-        Inputs and targets in `ddlib.learning.training.TARGET_RANGE`.
-    """
+    """Share of the cases on whose side of the targets' middle the output lies, shape (...)."""
     middle = sum(TARGET_RANGE) / 2
     output = weights.activity(x)[1]
     return ((output > middle) == (finite_array("y", y, 1) > middle)).mean((-2, -1))
@@ -298,28 +230,6 @@ def learn(
     """Train networks on parity by batch descent with acceleration.
 
     They have one hidden layer and direct weights, like the paper's.
-
-    Parameters
-    ----------
-    bits, hidden : int
-        Number of inputs and of hidden units.
-    members, seed : int
-        Number of networks, seed of the first one's weights.
-    initial : float
-        Initial weights are uniform in plus or minus this.
-    rate, momentum : float
-        Step size per case; share of the last step that is added to the next.
-    epochs, every : int
-        How long to train, how often to look.
-    coding : {"bits", "signs"}
-        How an input is written.
-
-    Returns
-    -------
-    weights : Weights
-        The trained networks.
-    epochs : ndarray, shape (members,)
-        When each was first seen to have every input on the right side; infinite if never.
     """
     number("rate", rate, 0.0, open_low=True)
     number("momentum", momentum, 0.0, 0.999)

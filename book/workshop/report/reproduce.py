@@ -14,8 +14,8 @@ import sys
 
 from workshop.report.code_hash import code_hash, places, run
 
+# Whether studies are forked from a process that has imported everything
 FORKED = sys.platform == "linux"
-"""Whether studies are forked from a process that has imported everything."""
 
 PROCESSES = multiprocessing.get_context("forkserver" if FORKED else "spawn")
 if FORKED:
@@ -58,11 +58,7 @@ def picture() -> None:
 
 
 def make(name: str, code: str) -> None:
-    """Run one study and write its result with the hash `code` of what made it.
-
-    The time beside it is the processor's: what else a machine does must not decide the order
-    in which studies start the next time.
-    """
+    """Run one study and write its result with the hash `code` of what made it."""
     started = time.process_time()
     content = run(name)
     made_by = {"code": code, **results.stamp(time.process_time() - started)}
@@ -73,13 +69,6 @@ def make_apart(name: str, code: str, do=make) -> str:
     """`make` in a process of its own with one thread; what went wrong, or nothing.
 
     On Linux it is forked from a process that has imported everything, which saves four seconds.
-
-    Parameters
-    ----------
-    name, code : str
-        As of `make`.
-    do : callable
-        What is called with them there.
     """
     told, tell = PROCESSES.Pipe(duplex=False)
     process = PROCESSES.Process(target=_quietly, args=(tell, do, name, code))
@@ -110,13 +99,6 @@ def side_by_side(codes: dict[str, str], jobs: int) -> None:
     """Make results in as many processes as cores: no thread waits for another.
 
     The longest come first. What is finished is kept when another one fails.
-
-    Parameters
-    ----------
-    codes : dict
-        Hash of what makes it, by name.
-    jobs : int
-        Processes at a time.
     """
     os.environ["OMP_NUM_THREADS"] = "1"
     last = {name: _seconds(name) for name in codes}

@@ -25,8 +25,7 @@ from ddlib.learning import TorqueModel
 from ddlib.setups import COURSE, STATE_FEEDBACK
 from workshop import BOOK
 
-FOLDER = BOOK / "results"
-"""Where `make reproduce` writes and the chapters read."""
+FOLDER = BOOK / "results"  # Where `make reproduce` writes and the chapters read
 
 
 def stamp(seconds: float) -> dict:
@@ -68,26 +67,12 @@ def _plain(value):
 
 
 def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
-    """The trained networks of a cell of Table 4-1.
-
-    Parameters
-    ----------
-    width : int
-        Window size, one of `ddlib.setups.WINDOWS`.
-    setup : str
-        Name of one of `ddlib.setups.SETUPS`.
-    """
+    """The trained networks of a cell of Table 4-1."""
     return TorqueModel.load(networks_path(setup, width))
 
 
 def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
-    """The trained network of a cell of Table 4-1 whose test error is the median.
-
-    Parameters
-    ----------
-    width, setup
-        As in `networks`.
-    """
+    """The trained network of a cell of Table 4-1 whose test error is the median."""
     errors = read("table-4-1")["setups"][setup][str(width)]["errors"]["test"]
     return networks(width, setup)[int(np.argsort(errors)[len(errors) // 2])]
 
@@ -103,24 +88,8 @@ def course_path(width: int) -> Path:
 
 
 def course(width: int) -> tuple[np.ndarray, TorqueModel]:
-    """The first two networks (state feedback) of a window size, all along their training.
-
-    Parameters
-    ----------
-    width : int
-        Window size, among those of Table 4-1.
-
-    Returns
-    -------
-    epochs : ndarray, shape (epochs,)
-        `ddlib.setups.COURSE`: 0 stands for the initial weights.
-    model : TorqueModel
-        Weights with leading axes ``(epochs, 2)``.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such result.
+    """The first two networks (state feedback) of a window size, all along their training, shape
+    (epochs,).
     """
     return np.array(COURSE), TorqueModel.load(course_path(width))
 
@@ -129,20 +98,7 @@ _parsed = lru_cache(maxsize=8)(json.loads)  # a chapter asks for a large one hun
 
 
 def read(name: str) -> dict:
-    """The committed result `name`; all who read it share what comes back, so leave it as it is.
-
-    Parameters
-    ----------
-    name : str
-        Name of a file in `FOLDER`, without its ending.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such result; says how to make it.
-    ValueError
-        If the file is damaged.
-    """
+    """The committed result `name`; all who read it share what comes back, so leave it as it is."""
     path = FOLDER / f"{name}.json"
     try:
         text = path.read_text(encoding="utf-8")

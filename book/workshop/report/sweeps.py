@@ -13,11 +13,9 @@ from tqdm.auto import tqdm
 from ddlib._check import integer, one_of
 from workshop import BOOK
 
-FOLDER = BOOK.parent / ".cache" / "sweeps"
-"""Where finished settings are kept. It may be deleted."""
+FOLDER = BOOK.parent / ".cache" / "sweeps"  # Where finished settings are kept. It may be deleted.
 
-BACKENDS = ("loky", "threading", "sequential", "dask")
-"""Backends of joblib that a sweep runs on."""
+BACKENDS = ("loky", "threading", "sequential", "dask")  # Backends of joblib that a sweep runs on
 
 
 class SweepFailed(RuntimeError):
@@ -47,34 +45,7 @@ def sweep(
     label: str = "sweep",
     folder: str | Path = FOLDER,
 ) -> list:
-    """``experiment(**setting)`` for every setting, in their order.
-
-    Parameters
-    ----------
-    experiment : callable
-        A function. Its random numbers come from a seed that is an argument.
-    settings : iterable of mapping
-        The arguments of each call.
-    code : str
-        Hash of the code of the experiment (`workshop.report.code_hash`): only what
-        the same code made is read back.
-    backend : {"loky", "threading", "sequential", "dask"}
-        joblib's backend. "loky": processes with one thread each. "dask": the cluster of the
-        ``dask.distributed.Client`` that is open; its workers need not see `folder`.
-    jobs : int, optional
-        Calls at a time, default one for each core. A Dask cluster decides by itself.
-    label : str
-        What the progress bar says.
-    folder : path
-        Where finished settings are kept.
-
-    Raises
-    ------
-    SweepFailed
-        When some settings failed, after all others are finished; or when a worker died.
-    TypeError, ValueError
-        If an argument is of the wrong kind, before anything is computed.
-    """
+    """``experiment(**setting)`` for every setting, in their order."""
     one_of("backend", backend, BACKENDS)
     jobs = joblib.cpu_count() if jobs is None else integer("jobs", jobs, 1)
     settings = list(settings)

@@ -35,29 +35,10 @@ NEUTRAL = (-0.35, -0.55)
 
 
 def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
-    """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``.
+    """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``, shape (..., time, 2).
 
-    They rest at zero before 0 s and from 3 s on, like the paper's family, which they are for
-    ``rho = 0``.
-
-    Parameters
-    ----------
-    extents_deg, second_deg : array_like, shape (..., 2)
-        Amplitudes theta and rho of shoulder and elbow in degrees.
-    t : array_like, shape (time,)
-        Times, s.
-    order : int
-        2 or more.
-
-    Returns
-    -------
-    Trajectory
-        Arrays of shape ``(..., time, 2)``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If an argument is not numeric, not finite or of the wrong shape.
+    They rest at zero before 0 s and from 3 s on, like the paper's family, which they are for ``rho
+    = 0``.
     """
     first = pick_and_place(extents_deg, t)
     rho = np.deg2rad(shaped("second_deg", second_deg, np.shape(extents_deg)))
@@ -70,16 +51,7 @@ def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
 
 
 def second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
-    """Amplitudes of the second sine for the six runs, degrees, shape (6, 2).
-
-    Uniform, of either sign, up to the amplitude whose acceleration is `SHARE` times that of the
-    first sine at 45 degrees.
-
-    Parameters
-    ----------
-    order, seed : int
-        As in `two_harmonics`; seed of the draw.
-    """
+    """Amplitudes of the second sine for the six runs, degrees, shape (6, 2)."""
     most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
     draw = np.random.default_rng(integer("seed", seed, 0))
     return draw.uniform(-most, most, APPENDIX_I.shape)
@@ -88,15 +60,7 @@ def second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
 def record_two_harmonics(
     setup: Setup = STATE_FEEDBACK, order: int = ORDER, seed: int = 0
 ) -> Recording:
-    """The six runs of Appendix I with a second sine on top, recorded as the paper's are.
-
-    Parameters
-    ----------
-    setup : Setup
-        Arm, effects, controller and the seed of the noise.
-    order, seed : int
-        As in `second_amplitudes`.
-    """
+    """The six runs of Appendix I with a second sine on top, recorded as the paper's are."""
     t = time_grid(CONTROL_STEP, REST)
     reference = two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order)
     return follow(
@@ -112,15 +76,7 @@ def record_two_harmonics(
 
 
 def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
-    """Both joints out and back by polynomials of degree five, at rest at either end of each.
-
-    Parameters
-    ----------
-    setup : Setup
-        Arm, effects and controller.
-    degrees : float
-        How far out.
-    """
+    """Both joints out and back by polynomials of degree five, at rest at either end of each."""
     t = time_grid(CONTROL_STEP, REST)
     half = MOTION_SECONDS / 2
     away = np.clip(np.where(t < half, t, MOTION_SECONDS - t) / half, 0, 1)
@@ -129,17 +85,7 @@ def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Rec
 
 
 def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
-    """The hand goes round a circle about where `NEUTRAL` puts it.
-
-    Parameters
-    ----------
-    setup : Setup
-        Arm, effects and controller.
-    radius : float
-        In m.
-    turns : int
-        In the time of a motion.
-    """
+    """The hand goes round a circle about where `NEUTRAL` puts it."""
     t = time_grid(CONTROL_STEP, REST)
     angle = 2 * np.pi * turns * np.clip(t, 0, MOTION_SECONDS) / MOTION_SECONDS
     first, second = setup.arm.lengths

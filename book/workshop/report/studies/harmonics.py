@@ -11,11 +11,10 @@ from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import ORDER, record_two_harmonics
 
-NAME = "two harmonics"
-"""Name of the setup, under which its networks are kept."""
+NAME = "two harmonics"  # Name of the setup, under which its networks are kept
 
+# Orders of the second sine and seeds of its amplitudes that are tried besides
 VARIED = ((ORDER, 1), (3, 0))
-"""Orders of the second sine and seeds of its amplitudes that are tried besides."""
 
 
 def _cell(order, seed, width, members):

@@ -12,14 +12,13 @@ from ddlib.simulation import LOG_STEP, Recording
 from workshop.report import parity_networks
 from workshop.report.code_hash import study
 
-RACED = 0.9
-"""Acceleration in a race at one step size: the share of the last step that is repeated."""
+RACED = 0.9  # Acceleration in a race at one step size: the share of the last step that is repeated
 
+# Epochs of the race by acceleration; on parity it may take twice as many
 LENGTHS = {0.0: 2200, RACED: 500}
-"""Epochs of the race by acceleration; on parity it may take twice as many."""
 
+# Step sizes to choose from, as multiples of the usual one: twice it derails
 STEPS = (0.5, 1.0, 1.5)
-"""Step sizes to choose from, as multiples of the usual one: twice it derails."""
 
 
 def _states(recording: Recording, kind: str) -> np.ndarray:

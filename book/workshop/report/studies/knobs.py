@@ -7,8 +7,8 @@ from workshop.report.code_hash import code_hash, study
 from workshop.report.knobs import METHODS, knobs_of, screening, setup, without_start
 from workshop.report.sweeps import sweep
 
+# Initial weights tried for a network at most: one that derails is begun anew, as anyone would
 TRIES = 3
-"""Initial weights tried for a network at most: one that derails is begun anew, as anyone would."""
 
 
 def _run(method: str, places: list, seeds: list) -> dict:

@@ -41,24 +41,22 @@ from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
 
-EPOCHS = 4000
-"""Epochs of the trial, for real and surrogate torques alike."""
+EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
 
-LONGER = 50_000
-"""Epochs of the row that asks what the rest of the training adds."""
+LONGER = 50_000  # Epochs of the row that asks what the rest of the training adds
 
+# How the trial descends, with centred inputs, which gets far in few epochs
 DESCENT = {
     "scaling": (-1.0, 1.0), "rate": 66.0, "momentum": 0.995, "warm_up": 1000, "steps": 0,
     "decay": 0.0, "epochs": EPOCHS,
 }  # fmt: skip
-"""How the trial descends, with centred inputs, which gets far in few epochs."""
 
+# Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques do
+# best, so that the comparison favours them
 RIDGE = 1e-2
-"""Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques
-do best, so that the comparison favours them."""
 
+# The recording of the third set-up, with this descent in place of its solver
 TRIAL = replace(JOINT_DAMPING, **DESCENT)
-"""The recording of the third set-up, with this descent in place of its solver."""
 
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
@@ -262,18 +260,7 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
 
 @study
 def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
-    """Filters of networks trained on real torques beside those of networks trained on surrogates.
-
-    For each window size `members` networks on the recorded torques, as many untrained, `draws`
-    draws of each matched surrogate with `each` networks, and some on shuffled torques, all of
-    `TRIAL` and trained alike. The draw is what a p-value counts, hence many draws of few
-    networks. Nulls are means by draw.
-
-    Parameters
-    ----------
-    members, draws, each : int
-        Networks on the real torques, draws of each surrogate, networks of a draw.
-    """
+    """Filters of networks trained on real torques beside those trained on surrogates."""
     recording = TRIAL.record()
     windows = {str(w): _row(TRIAL, recording, w, members, draws, each, more=True) for w in WINDOWS}
     return {"members": members, "draws": draws, "each": each, "epochs": EPOCHS, "windows": windows}
@@ -285,17 +272,10 @@ def filter_trial_elsewhere(
 ) -> dict:
     """The trial of the filters with one thing changed at a time, smaller.
 
-    Other noise and another zero of the encoders, two sines in place of one, a window between
-    those of Table 4-1, state feedback with its own descent on inputs of 0 to 1; shifted and
+    Other noise and another zero of the encoders, two sines in place of one, a window between those
+    of Table 4-1, state feedback with its own descent on inputs of 0 to 1; shifted and
     phase-randomised torques. Then `LONGER` epochs, and the third set-up with its own solver in
     place of descent: half as many networks, phase-randomised torques only.
-
-    Parameters
-    ----------
-    members, draws, each : int
-        Networks on the real torques, draws of each surrogate, networks of a draw.
-    width : int
-        Window size of all rows but one.
     """
     kinds = ("shifted", "phases")
     other = TRIAL.repeated(1)
@@ -319,19 +299,10 @@ def null_controls(
 ) -> dict:
     """Networks of window 21 that started elsewhere, or went on to an optimum.
 
-    The starts are other initial weights, descended for `EPOCHS`. The optima are those of the
-    error with a penalty on the squared weights ("weight decay"), reached by Levenberg-Marquardt:
-    the gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended.
-    The error alone has no end within reach: its row is what `few` steps give.
-
-    Parameters
-    ----------
-    members : int
-        Networks of each row.
-    steps, few : int
-        Most steps of the solver with a penalty, and without.
-    tolerance : float
-        As of `ddlib.learning.solve`.
+    The starts are other initial weights, descended for `EPOCHS`. The optima are those of the error
+    with a penalty on the squared weights ("weight decay"), reached by Levenberg-Marquardt: the
+    gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended. The
+    error alone has no end within reach: its row is what `few` steps give.
     """
     trial = _Trial(TRIAL, TRIAL.record(), 21)
     targets = np.repeat(trial.torques[None], members, 0)

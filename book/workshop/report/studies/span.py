@@ -12,20 +12,19 @@ from ddlib.paper import EPOCHS
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, split, train_windows
 from workshop.report.code_hash import study
 
+# Epochs of the learning curves: 4 in each decade
 COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
-"""Epochs of the learning curves: 4 in each decade."""
 
+# State feedback with inputs around zero, against the printed "0.0 to 1.0"
 CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
-"""State feedback with inputs around zero, against the printed "0.0 to 1.0"."""
 
+# The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
+# the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors.
 DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
-"""The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
-the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors."""
 
 READINGS = (STATE_FEEDBACK, CENTRED, DAMPED)
 
-SHOWN = 12
-"""Directions whose curves are kept, the steepest first."""
+SHOWN = 12  # Directions whose curves are kept, the steepest first
 
 
 def _rmss(error, y) -> np.ndarray:

@@ -18,26 +18,23 @@ from workshop.report.exact_states import (
     torque,
 )
 
+# Size and seed of the random set on which every error is measured
 TEST_SAMPLES, TEST_SEED = 5000, 1000
-"""Size and seed of the random set on which every error is measured."""
 
-STEPS = 80
-"""Steps of Levenberg-Marquardt: the same for all sizes; most of the way, not to the end."""
+STEPS = 80  # Steps of Levenberg-Marquardt: the same for all sizes; most of the way, not to the end
 
+# Samples of a training set, and draws of it that are solved (one network each)
 DRAWS = {100: 8, SAMPLES: 8, 1000: 6, 3000: 6, 10_000: 4, 30_000: 3, 100_000: 2}
-"""Samples of a training set, and draws of it that are solved (one network each)."""
 
+# The same for momentum descent, with `DESCENT_MEMBERS` networks each
 DESCENT_DRAWS = {100: 2, SAMPLES: 2, 1000: 2, 3000: 1}
-"""The same for momentum descent, with `DESCENT_MEMBERS` networks each."""
 
-DESCENT_MEMBERS = 4
-"""Networks that descend together on one draw."""
+DESCENT_MEMBERS = 4  # Networks that descend together on one draw
 
-UNITS = (5, 10, 20, 40, 80)
-"""Hidden units of the networks that descend on set A."""
+UNITS = (5, 10, 20, 40, 80)  # Hidden units of the networks that descend on set A
 
+# Hidden units that are solved, samples of their training sets, draws of each
 SOLVED_UNITS, SOLVED_SAMPLES, SOLVED_DRAWS = (5, 10, 20, 40), 1000, 3
-"""Hidden units that are solved, samples of their training sets, draws of each."""
 
 
 def _data(samples, seed):

@@ -12,8 +12,8 @@ from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
 from ddlib.simulation import LOG_STEP
 from workshop.report.code_hash import study
 
+# Window sizes from the smallest that can see an acceleration up to 0.8 s
 SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
-"""Window sizes from the smallest that can see an acceleration up to 0.8 s."""
 
 
 def _cell(model, history, recording):
@@ -66,11 +66,10 @@ def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     return {"members": members, "width": width, "rows": rows}
 
 
+# Steps of Levenberg-Marquardt on shuffled torques: not enough to converge, and said so
 MEMORY_STEPS = 40
-"""Steps of Levenberg-Marquardt on shuffled torques: not enough to converge, and said so."""
 
-MEMORY_DECAY = 1e-3
-"""Weight decay with which weights stay about as large as the printed ones."""
+MEMORY_DECAY = 1e-3  # Weight decay with which weights stay about as large as the printed ones
 
 
 @study

@@ -19,42 +19,27 @@ from ddlib.learning import (
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from workshop.report.code_hash import study
 
-WIDTH = 21
-"""Window of the networks."""
+WIDTH = 21  # Window of the networks
 
-EVERY = 5
-"""Of the training windows the page shows every fifth; of trajectory 6 all."""
+EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 6 all
 
-EPOCHS = 2000
-"""Epochs of a run in the page."""
+EPOCHS = 2000  # Epochs of a run in the page
 
-CHECK = 5
-"""Epochs between two looks at errors and shapes."""
+CHECK = 5  # Epochs between two looks at errors and shapes
 
-LEVEL = 0.2
-"""RMSS in training below which the error counts as gone."""
+LEVEL = 0.2  # RMSS in training below which the error counts as gone
 
-MOMENTUM = 0.98
-"""Acceleration of the page's descent at its start; its step is `default_rate`."""
+MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is `default_rate`
 
+# What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
+# the first hidden filter with any name
 EVENTS = ("error", "direct", "hidden")
-"""What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
-the first hidden filter with any name."""
 
-SHIFTS = 5
-"""Draws of torques shifted in time."""
+SHIFTS = 5  # Draws of torques shifted in time
 
 
 def page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
-    """Training set of the page, and scaled windows and torques of trajectory 6.
-
-    Parameters
-    ----------
-    scaling : tuple of float
-        Range of the inputs.
-    shifted : int, optional
-        Seed of a draw that shifts each training run's torques in time; default: not shifted.
-    """
+    """Training set of the page, and scaled windows and torques of trajectory 6."""
     training, test = split(JOINT_DAMPING.record())
     torque = training.tau[:, training.motion]
     if shifted is not None:
@@ -68,15 +53,7 @@ def page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingS
 
 
 def events(weights: Weights, training: np.ndarray) -> np.ndarray:
-    """Which of `EVENTS` hold for each network, shape (members, 3).
-
-    Parameters
-    ----------
-    weights : Weights
-        With a leading axis of members.
-    training : ndarray, shape (members,)
-        Their RMSS in training.
-    """
+    """Which of `EVENTS` hold for each network, shape (members, 3)."""
     direct = classify(weights.direct_weights) == "acceleration"
     hidden = classify(weights.hidden_weights) != "not analysable"
     shapes = [x.reshape(len(weights), -1).any(-1) for x in (direct, hidden)]
@@ -84,24 +61,7 @@ def events(weights: Weights, training: np.ndarray) -> np.ndarray:
 
 
 def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
-    """Train, looking every `CHECK` epochs; what was seen of each network.
-
-    Parameters
-    ----------
-    weights : Weights
-        Initial weights with a leading axis of members.
-    data, test
-        As from `page_set`.
-    epochs : int
-        As many are trained.
-
-    Returns
-    -------
-    dict
-        For each of `EVENTS` the epoch at which it was first seen (None: not within the run);
-        ``training`` and ``test``, RMSS at the end; ``named``, share of the hidden filters that
-        then have a name.
-    """
+    """Train, looking every `CHECK` epochs; what was seen of each network."""
     rate = default_rate(WIDTH) / len(data.x)
     descent = Descent(weights, data.x, data.y, rate, MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
@@ -127,13 +87,7 @@ def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOC
 
 @study
 def page_training(members: int = 25) -> dict:
-    """Networks of window 21 trained as the page trains them, on torques real and shifted.
-
-    Parameters
-    ----------
-    members : int
-        Networks on the real torques, and on all shifted ones together.
-    """
+    """Networks of window 21 trained as the page trains them, on torques real and shifted."""
     rows = {}
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
         start = Weights.random(members, WIDTH, initial=INITIAL)
