@@ -68,31 +68,27 @@ def runs(root) -> int:
     return len((root / "book" / "runs").read_text())
 
 
-@pytest.mark.parametrize(
-    ("inputs", "path", "changes"),
-    [
-        (CELL_INPUTS, "ddlib/dynamics/arm.py", True),
-        (CELL_INPUTS, "ddlib/new.py", True),
-        (CELL_INPUTS, "ddlib/__pycache__/arm.pyc", False),
-        (CELL_INPUTS, "book/results/numbers.json", True),
-        (CELL_INPUTS, "book/claims.yml", True),
-        (CELL_INPUTS, "requirements.txt", True),
-        (CELL_INPUTS, "book/index.ipynb", False),
-        (PAGE_INPUTS, "book/index.ipynb", True),
-        (PAGE_INPUTS, "book/_static/book.css", True),
-        (PAGE_INPUTS, "_config.yml", True),
-        (PAGE_INPUTS, "book/.ipynb_checkpoints/index.ipynb", False),
-    ],
-)
-def test_digest_sees_what_matters(tiny, inputs, path, changes):
-    before = digest(tiny, inputs)
-    target = tiny / path
-    target.parent.mkdir(exist_ok=True)
-    target.write_text(target.read_text() + "\n# more" if target.exists() else "more")
-    assert (digest(tiny, inputs) != before) is changes
+MATTERS = [
+    (CELL_INPUTS, "ddlib/dynamics/arm.py", True),
+    (CELL_INPUTS, "ddlib/new.py", True),
+    (CELL_INPUTS, "ddlib/__pycache__/arm.pyc", False),
+    (CELL_INPUTS, "book/results/numbers.json", True),
+    (CELL_INPUTS, "book/claims.yml", True),
+    (CELL_INPUTS, "requirements.txt", True),
+    (CELL_INPUTS, "book/index.ipynb", False),
+    (PAGE_INPUTS, "book/index.ipynb", True),
+    (PAGE_INPUTS, "book/_static/book.css", True),
+    (PAGE_INPUTS, "_config.yml", True),
+    (PAGE_INPUTS, "book/.ipynb_checkpoints/index.ipynb", False),
+]
 
 
-def test_digest_sees_a_renamed_file(tiny):
+def test_digest_sees_what_matters(tiny):
+    for inputs, path, changes in MATTERS:
+        before, target = digest(tiny, inputs), tiny / path
+        target.parent.mkdir(exist_ok=True)
+        target.write_text(target.read_text() + "\n# more" if target.exists() else "more")
+        assert (digest(tiny, inputs) != before) is changes, path
     before = digest(tiny, CELL_INPUTS)
     (tiny / "ddlib" / "arm.py").rename(tiny / "ddlib" / "leg.py")
     assert digest(tiny, CELL_INPUTS) != before
@@ -198,7 +194,8 @@ def test_forked_kernels_are_like_others(tmp_path):
     """Fresh, in their folder, with the given surroundings; one that ends takes nothing with it."""
     tell = "import os, sys; print(os.getcwd(), os.environ['TOLD'], __name__, 'book' in dir());"
     tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0));"
-    tell += "from workshop.report.evidence import claims; print('held', claims._parsed.cache_info().currsize)"
+    tell += "from workshop.report.evidence import claims;"
+    tell += "print('held', claims._parsed.cache_info().currsize)"
     sources = [(tell, "book = 1"), (tell,), ("import os; os._exit(1)",), ("1 / 0",)]
     for k, cells in enumerate(sources):
         (tmp_path / "book").mkdir(exist_ok=True)
@@ -232,6 +229,7 @@ def test_forked_kernels_are_like_others(tmp_path):
     assert said.count("held 1") == 2  # claims are read before the fork: see `warm`
 
 
+@pytest.mark.slow
 def test_jupyter_book_ends_if_nobody_waits_for_it(tmp_path):
     """An interrupted build leaves no process behind that writes pages."""
     command = [sys.executable, str(ROOT / "book" / "_ext" / "pages.py"), "build", str(tmp_path)]
@@ -287,15 +285,12 @@ AssertionError: too
 """
 
 
-def test_the_failing_cell_is_found():
+def test_the_failing_cell_is_found_and_its_exception():
     cells = ["x = 0", 'x = 1\nassert x > 1, "too\n  small"', "y"]
     assert failing_cell(CAUGHT, cells) == (2, cells[1])
     assert failing_cell(CAUGHT, ["y"])[0] == failing_cell("", cells)[0] == 0
     long = "-------------------\nx = 0\n...\nz\n-------------------\n"
     assert failing_cell(long, cells) == (1, "x = 0")
-
-
-def test_the_last_line_names_the_exception():
     assert last_line(CAUGHT) == "AssertionError: too"
     late = f"nbclient.exceptions.CellTimeoutError: A cell timed out\n{'-' * 19}\nx\n{'-' * 19}\n"
     assert last_line(late) == "CellTimeoutError: A cell timed out"

@@ -11,14 +11,16 @@ def needed(cells: list[str]) -> list[int]:
 
     By names alone: a cell counts that gives, or gives something in, a name that is needed further
     down. A cell whose only effect is inside what another one has made does not.
-
-    Parameters
-    ----------
-    cells : list of str
-        Sources of the code cells, in order.
     """
     trees = [ast.parse(re.sub(r"^\s*[%!].*$", "pass", source, flags=re.M)) for source in cells]
-    makers = set().union(*map(widgets_named, trees))
+    makers = {
+        alias.asname or alias.name
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        and re.match(r"(ddlib|workshop\.beyond)\.widgets\b", node.module or "")
+        for alias in node.names
+    }
     found, wanted = [], set()
     for place in reversed(range(len(cells))):
         gives, uses = names(trees[place])
@@ -28,24 +30,10 @@ def needed(cells: list[str]) -> list[int]:
     return found[::-1]
 
 
-def widgets_named(tree: ast.AST) -> set[str]:
-    """What is imported from the package of widgets."""
-    return {
-        alias.asname or alias.name
-        for node in ast.walk(tree)
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("ddlib.widgets")
-        for alias in node.names
-    }
-
-
 def makes(tree: ast.AST, makers: set[str]) -> bool:
-    """Whether one of those is called."""
-    calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
-    return any(
-        (isinstance(f, ast.Name) and f.id in makers)
-        or (isinstance(f, ast.Attribute) and getattr(f.value, "id", "") == "widgets")
-        for f in calls
-    )
+    """Whether one of the makers is called."""
+    calls = [ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return any(call in makers or call.startswith("widgets.") for call in calls)
 
 
 def names(tree: ast.AST) -> tuple[set[str], set[str]]:
@@ -59,8 +47,5 @@ def names(tree: ast.AST) -> tuple[set[str], set[str]]:
         elif isinstance(node, ast.Import | ast.ImportFrom):
             gives |= {(alias.asname or alias.name).partition(".")[0] for alias in node.names}
         elif isinstance(node, ast.Subscript | ast.Attribute) and isinstance(node.ctx, ast.Store):
-            inner = node
-            while isinstance(inner, ast.Subscript | ast.Attribute):
-                inner = inner.value
-            gives |= {inner.id} if isinstance(inner, ast.Name) else set()
+            gives.add(re.match(r"\w*", ast.unparse(node))[0])
     return gives, uses
