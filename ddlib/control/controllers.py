@@ -48,7 +48,6 @@ def as_controller(controller: Controller | Callable) -> Controller:
         A function ``f(wanted, q, qd) -> tau`` gets the sample of the reference (a `Trajectory`
         of position, velocity and acceleration) and the measured state, each of shape (..., 2)
         in rad and rad/s, and returns torques in N m.
-
     """
     if callable(getattr(controller, "start", None)):
         return controller

@@ -20,7 +20,7 @@ from ddlib.dynamics.serial import PUMA_560, SerialArm
 KNOWLEDGE = ("nothing", "zeros", "arm")
 
 
-class Published(NamedTuple):
+class _Published(NamedTuple):
     """A count in the literature, as polynomials in the number of joints, highest power first."""
 
     multiplications: tuple[float, ...]
@@ -32,13 +32,13 @@ class Published(NamedTuple):
 # For arms of `n` general revolute joints. The first polynomial for multiplications gives 67,143 for
 # six joints where the same table prints 66,271; the others agree.
 PUBLISHED = {
-    "Lagrange-Euler": Published(
+    "Lagrange-Euler": _Published(
         (32 + 1 / 2, 86 + 5 / 12, 171 + 1 / 4, 53 + 1 / 3, -128),
         (25, 66 + 1 / 3, 129 + 1 / 2, 42 + 1 / 3, -96),
         Operations(66271, 51548),
         "Hollerbach 1980, read in Corke 2002, Table 1",
     ),
-    "Newton-Euler": Published(
+    "Newton-Euler": _Published(
         (150, -48), (131, -48), Operations(852, 738), "Hollerbach 1980, read in Corke 2002, Table 1"
     ),
 }

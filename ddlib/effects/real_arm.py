@@ -119,30 +119,17 @@ _METHODS = {
 class Effects:
     """Everything between the rigid-body equations and what is written to the log.
 
-    Each part is a tuple of effects, in the order in which a signal meets them.
-
-    Parameters
-    ----------
-    friction : tuple of effects with ``torque(qd)``
-        Opposes the motion, inside the plant.
-    actuator : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
-        Between commanded and applied torque.
-    encoder : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
-        Between true and measured position; the controller sees the measured one.
-    torque_sensor : tuple of effects with ``apply(x, rng)`` or ``start(initial)``
-        Between applied and logged torque.
-    motor : tuple of effects with ``shaft_torque(tau, q)``
-        Between applied torque, which is a current, and torque on the shaft, inside the plant.
-    transmission : tuple of one `FlexibleJoint`, or empty
-        Between motor and link, inside the plant.
+    Each part is a tuple of effects, in the order in which a signal meets them: frictions with
+    ``torque(qd)``, motors with ``shaft_torque(tau, q)``, others with ``apply(x, rng)`` or, if they
+    have a memory, ``start(initial)``.
     """
 
-    friction: tuple = ()
-    actuator: tuple = ()
-    encoder: tuple = ()
-    torque_sensor: tuple = ()
-    motor: tuple = ()
-    transmission: tuple = ()
+    friction: tuple = ()  #: Opposes the motion, inside the plant.
+    actuator: tuple = ()  #: Between commanded and applied torque.
+    encoder: tuple = ()  #: Between true and measured position, which the controller sees.
+    torque_sensor: tuple = ()  #: Between applied and logged torque.
+    motor: tuple = ()  #: Between applied torque, which is a current, and torque on the shaft.
+    transmission: tuple = ()  #: One `FlexibleJoint` between motor and link, or none.
 
     def __repr__(self):
         parts = [f"{name}={part}" for name, part in vars(self).items() if part]
@@ -184,12 +171,7 @@ def _fits(effect, part: str) -> bool:
 def started(effects: tuple, initial) -> Callable:
     """A signal path for one run (or a batch): a function ``path(x, rng)``, once a sample.
 
-    Parameters
-    ----------
-    effects : tuple
-        Effects with ``apply(x, rng)`` or, if they have a memory, ``start(initial)``.
-    initial : ndarray, shape (..., 2)
-        What the memories hold at first.
+    Memories hold `initial` at first, shape (..., 2).
     """
     steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
 
