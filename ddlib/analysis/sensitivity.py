@@ -76,23 +76,10 @@ def responses(model: TorqueModel, values, centre=None) -> np.ndarray:
 def shuffled(
     predict: Callable[[np.ndarray], np.ndarray], states, scale, seed: int = 0
 ) -> np.ndarray:
-    """How much the torque changes when one input is shuffled among the states.
+    """RMSS by which torques change when one input is shuffled among the states; 0 if it is ignored.
 
-    Parameters
-    ----------
-    predict : callable
-        States ``(cases, joint, width)`` to torques ``(..., cases, joint)``, N m: a network's
-        ``torque``, or the analytic model.
-    states : array_like, shape (cases, joint, width)
-    scale : array_like, shape (joint,)
-        Standard deviations by which the change is divided, N m.
-    seed : int
-        Seed of the shuffling.
-
-    Returns
-    -------
-    ndarray, shape (joint, width, ...)
-        RMSS of the change for each input; 0 if it is ignored.
+    `predict` makes torques ``(..., cases, joint)`` of states ``(cases, joint, width)``; `scale`
+    are their deviations. Shape ``(joint, width, ...)``.
     """
     states = shaped("states", states, "(cases, joint, width)")
     before = predict(states)

@@ -24,19 +24,7 @@ from ddlib.learning.training import (
 
 
 class WindowNetwork(nn.Module):
-    """One window network as a PyTorch module (Figure 3-1).
-
-    Parameters
-    ----------
-    width : int
-        Window size in samples.
-    hidden, joints, outputs : int
-        Number of hidden units, of joints in the window and of output units.
-    initial : float
-        Weights and biases are drawn uniformly from [-initial, initial].
-    seed : int
-        Seed of that draw.
-    """
+    """One window network as a PyTorch module (Figure 3-1), drawn as by `Weights.random`."""
 
     def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=0.3, seed=0):
         super().__init__()
@@ -79,18 +67,12 @@ def train(
     Returns
     -------
     History
-        Training errors before the step of each noted epoch, since they cost nothing
-        there; `train_ensemble` takes them after it.
+        Training errors before the step of each noted epoch, since they cost nothing there.
 
     Raises
     ------
     TrainingDiverged
-        If the error is no longer finite.
-
-    Warns
-    -----
-    WorseThanMean
-        If training ends with an RMSS above 1.
+        If the error is no longer finite; if it is, but ends above 1: a `WorseThanMean` warning.
     """
     check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)

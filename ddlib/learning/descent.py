@@ -71,12 +71,10 @@ def train_ensemble(
     test : tuple of ndarray, optional
         Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
     targets : array_like, shape (members, cases, output), optional
-        Scaled targets of each member in place of ``data.y``, for instance with noise of
-        different levels. Errors are relative to the spread of ``data.y`` all the same.
-    rate : float or array_like, shape (members,), optional
-        Step size per case, one for all or one per member; default `default_rate`.
-    momentum : float or array_like, shape (members,)
-        The factor alpha of the previous step, 0 to 0.999.
+        Scaled targets of each member in place of ``data.y``, to whose spread errors are
+        relative all the same.
+    rate, momentum : float or array_like, shape (members,)
+        As in `train`; the default rate is `default_rate`.
     epochs : int
         As in `train`.
     warm_up : int
@@ -94,20 +92,11 @@ def train_ensemble(
     model : TorqueModel
         The trained ensemble.
     history : History
-        Errors of every member; `History.derailed` marks those that went astray. They
-        do not disturb the others.
+        Errors of every member. Those that went astray (`History.derailed`) do not disturb the
+        others: only if no error is finite, this is a `TrainingDiverged` error, and if all of
+        several end above 1, a `WorseThanMean` warning.
     snapshots : dict
         Weights by epoch.
-
-    Raises
-    ------
-    TrainingDiverged
-        If no member's error is finite any more.
-
-    Warns
-    -----
-    WorseThanMean
-        If all of several members end with an RMSS above 1, and no `targets` are given.
     """
     members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
@@ -207,18 +196,8 @@ class Descent:
     All members see the same inputs, so one matrix product serves them all; the rest is done
     in place, on as few members as fit into a core's cache. The input-to-hidden and direct
     weights of all members are the rows of one matrix: member by member the hidden units, then
-    the outputs; its last column holds the biases.
-
-    Parameters
-    ----------
-    weights : Weights
-        Initial weights with one leading axis of members.
-    x : ndarray, shape (cases, joint, width)
-        Scaled windows.
-    y : ndarray, shape (cases, output) or (members, cases, output)
-        Scaled targets, shared or one set per member.
-    eps, momentum : float or ndarray, shape (members,)
-        Step size of the summed gradient, and the factor of the previous step.
+    the outputs; its last column holds the biases. Targets `y` are shared, or one set per member;
+    `eps` is the step size of the summed gradient.
     """
 
     def __init__(self, weights: Weights, x, y, eps, momentum):

@@ -68,16 +68,9 @@ class Weights:
 
     @classmethod
     def random(cls, members, width, hidden=10, joints=2, outputs=2, initial=0.3, seed=0):
-        """Uniform random weights of `members` networks; member k depends on `seed + k` only.
+        """Weights and biases of `members` networks, drawn uniformly from [-initial, initial].
 
-        Parameters
-        ----------
-        members, width, hidden, joints, outputs : int
-            Number of networks, of samples per joint, and of units.
-        initial : float
-            Weights and biases are drawn from [-initial, initial].
-        seed : int
-            Seed of the first member.
+        `width` is the window size in samples; member k depends on `seed + k` only.
         """
         for name, value in (("members", members), ("width", width), ("hidden", hidden)):
             integer(name, value, 1)

@@ -56,31 +56,16 @@ def rows(weights: Weights) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Directions:
-    """Singular directions of the windows of a training set, the steepest first.
+    """Singular directions of the windows of a training set, the steepest first."""
 
-    Attributes
-    ----------
-    values : ndarray, shape (directions,)
-        Singular values s_k.
-    axes : ndarray, shape (directions, joint * width + 1)
-        Unit vectors v_k: the windows of all joints, oldest sample first, then the bias.
-    cases : ndarray, shape (cases, directions)
-        Unit vectors u_k as columns: how far each case lies along a direction, over s_k.
-    joints : int
-        Number of joints in a window.
-    """
-
-    values: np.ndarray
-    axes: np.ndarray
-    cases: np.ndarray
-    joints: int
+    values: np.ndarray  # singular values s_k
+    axes: np.ndarray  # unit vectors v_k as rows: each joint's window, then the bias
+    cases: np.ndarray  # unit vectors u_k as columns: how far cases lie along v_k, over s_k
+    joints: int  # in a window
 
     @classmethod
     def of(cls, data: TrainingSet) -> Directions:
-        """The directions of a training set's windows, with a column of ones for the bias.
-
-        Each is turned so that the last sample of its main joint is positive.
-        """
+        """Directions with the sign that makes the last sample of their main joint positive."""
         cases, values, axes = np.linalg.svd(with_ones(data.x), full_matrices=False)
         filters = axes[:, :-1].reshape(len(axes), *data.x.shape[1:])
         main = (filters**2).sum(-1).argmax(-1)
@@ -195,17 +180,8 @@ class Course(NamedTuple):
 class Lazy:
     """A network replaced by its tangent at the initial weights: its training in closed form.
 
-    Parameters
-    ----------
-    weights : Weights
-        The initial weights of one network.
-    data : TrainingSet
-        Cases.
-
-    Attributes
-    ----------
-    curvatures : ndarray, shape (parameters,)
-        Eigenvalues of J'J, falling: those of the neural tangent kernel JJ', and zeros.
+    `curvatures` are the eigenvalues of J'J, falling: those of the neural tangent kernel JJ' and
+    zeros.
     """
 
     def __init__(self, weights: Weights, data: TrainingSet):

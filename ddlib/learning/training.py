@@ -66,21 +66,7 @@ class TrainingSet:
 
 
 def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Windows and torques of the motions of a recording, unscaled.
-
-    Parameters
-    ----------
-    recording : Recording
-    width : int
-        Window size in samples.
-
-    Returns
-    -------
-    windows : ndarray, shape (cases, joint, width)
-        Measured positions, rad.
-    torque : ndarray, shape (cases, joint)
-        Measured torques, N m.
-    """
+    """Windows, rad, and torques, N m, of a recording's motions, ``cases`` being the first axis."""
     windows = sliding_windows(recording.q, width, recording.motion)
     torque = recording.tau[..., recording.motion, :]
     return windows.reshape(-1, *windows.shape[-2:]), torque.reshape(-1, torque.shape[-1])
@@ -134,8 +120,8 @@ class History:
     def slope(self) -> np.ndarray:
         """``d ln(error) / d ln(epoch)`` at the end of the run, per member.
 
-        Taken between the last point and the one nearest to half its epoch. The paper
-        trains "to the point where the derivative of the error was nearly zero".
+        Taken from the point nearest to half its epochs on: the paper trains "to the point where
+        the derivative of the error was nearly zero".
         """
         if len(self.epochs) < 2:
             raise ValueError(f"history must hold two points or more, got {len(self.epochs)}")
@@ -180,10 +166,8 @@ def warn_if_worse_than_mean(history: History, rate: float) -> None:
 def default_rate(width: int) -> float:
     """Step size per case for a window of `width` samples: 33 / width.
 
-    Larger windows mean more inputs that rise and fall together, hence a steeper error
-    surface; a step in inverse proportion to the fan-in keeps descent stable for most
-    initial weights, and a few networks still saturate early (`History.derailed`). It is
-    this book's choice: the paper does not print its rates.
+    More inputs that rise and fall together mean a steeper error surface: this keeps descent
+    stable for most initial weights. It is this book's choice: the paper prints no rates.
     """
     return 33.0 / integer("width", width, 1)
 
