@@ -9,7 +9,7 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup, square
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import Trajectory, pick_and_place
 from workshop.beyond.studies.loop import run_time_parts as parts
@@ -88,6 +88,10 @@ def test_the_error_along_the_path_and_across_it():
     turned = parts.score(ARM, reach)
     gap = 1e3 * 2 * 0.4 * np.sin(0.01)
     assert turned.whole == pytest.approx(gap, rel=1e-9)
+
+
+def test_the_square_is_in_the_order_of_its_recording():
+    np.testing.assert_allclose(parts.square_extents(3), square(STATE_FEEDBACK, 3).extents_deg)
 
 
 def test_rounded_corners_keep_the_motion_and_its_derivatives():

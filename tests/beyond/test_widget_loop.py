@@ -43,7 +43,7 @@ def test_it_shows_the_committed_result(widget):
 
 
 def test_errors_of_many_runs_are_those_of_one_run_alone():
-    errors, estimates = learner._learned(5)["Slotine & Li"]
+    errors, estimates = learner._learned(5)["Slotine & Li"].values()
     friction, rate = 1, list(learner.SPEEDS).index("as in the chapter")
     arm = with_load(CMU_DD_ARM_II, 5)
     effects = Effects(

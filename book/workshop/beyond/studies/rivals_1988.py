@@ -11,12 +11,13 @@ import numpy as np
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, square, true_states
 from ddlib.simulation import Recording
-from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning, random_extents
+from ddlib.trajectories import OutsideFamilyWarning, random_extents
 from workshop.beyond.rivals.bases import Fourier, Polynomial
 from workshop.beyond.rivals.cmac import CMAC, Diverged
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Rival
 from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
+from workshop.beyond.studies.loop.run_time_parts import exact as equations, square_extents
 from workshop.report.code_hash import study
 
 DAYS = (1, 2, 3, 4, 5)
@@ -50,7 +51,7 @@ def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
     today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
-    inside = inside_hull(_square_extents())
+    inside = inside_hull(square_extents(POINTS))
     return {
         "training": _cases(today, recording[:5], kind),
         "again": _cases(later, _recorded(day + LATER, "six")[:5], kind),
@@ -117,7 +118,22 @@ def rivals_tables(days=DAYS) -> dict:
         "floor": [_floor(day) for day in days],
         "rows": rows,
         "around": {kind: _around(kind, days) for kind in KINDS},
-        **_full(),
+        "full": _full(),
+    }
+
+
+def _families() -> dict[str, list[Rival]]:
+    """Who learns one trajectory, by name: some of each that differ in cells."""
+    return {
+        "nearest": [_table("nearest", 0)],
+        **{
+            over: [_table(over, cells) for cells in CELLS[over]]
+            for over in ("states", "motions", "configurations")
+        },
+        "one cell": [_table("configurations", 1)],
+        "plane": [Polynomial(1)],
+        "plane, penalty": [Polynomial(1, ridge=PENALTY)],
+        "structure": [Identified()],
     }
 
 
@@ -128,18 +144,7 @@ def _around(kind: str, days) -> dict:
     number of cells is the one that does best on the same trajectory on a day of its own. "Varied":
     the same tables from as many different trajectories, drawn at random.
     """
-    families: dict[str, list[Callable[[], Rival]]] = {
-        "nearest": [lambda: Nearest(beyond="edge")],
-        **{
-            over: [lambda o=over, n=n: CellTable(n, o, beyond="edge") for n in CELLS[over]]
-            for over in ("states", "motions", "configurations")
-        },
-        "one cell": [lambda: CellTable(1, "configurations", beyond="edge")],
-        "plane": [lambda: Polynomial(1)],
-        "plane, penalty": [lambda: Polynomial(1, ridge=PENALTY)],
-        "structure": [Identified],
-    }
-    names = (*families, *(f"{name}, varied" for name in VARIED))
+    names = (*_families(), *(f"{name}, varied" for name in VARIED))
     found, floor = {name: [] for name in names}, []
     for day in days:
         numbers = [1000 * day + k for k in range(PRACTICE + 2)]
@@ -158,8 +163,8 @@ def _around(kind: str, days) -> dict:
         scale = by_amount[-1].torque.std(0)
         noise = (recording.tau - recording.tau_true)[practised][0, recording.motion] / scale
         floor.append(float(np.sqrt(np.mean(noise**2))))
-        for name, some in families.items():
-            fitted = [make().fit(by_amount[-1]) for make in some]
+        for name, some in _families().items():
+            fitted = [rival.fit(by_amount[-1]) for rival in some]
             best = min(fitted, key=lambda rival: _errors(rival, {"choice": choice})["choice"])
             errors = _map(best, everywhere, scale)
             there = [
@@ -193,27 +198,20 @@ def _full() -> dict:
     limits = np.stack([both.min(0), both.max(0)])
 
     def torque(x):
-        return setup.arm.inverse_dynamics(*np.moveaxis(x, -1, 0)) + setup.effects.friction_torque(
-            x[..., 1]
-        )
+        return equations(setup)(*np.moveaxis(x, -1, 0))
 
     exact, reached = torque(states), []
     for cells in FULL:
         table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
         reached.append(1 - float(table.empty(states).mean()))
-    return {
-        "full": {
-            "cells": list(FULL),
-            **{
-                name: [
-                    float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
-                    for n in FULL
-                ]
-                for name, smooth in (("constant", False), ("multilinear", True))
-            },
-            "reached": reached,
-        }
+    errors = {
+        name: [
+            float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
+            for n in FULL
+        ]
+        for name, smooth in (("constant", False), ("multilinear", True))
     }
+    return {"cells": list(FULL), **errors, "reached": reached}
 
 
 # CMAC
@@ -301,9 +299,9 @@ RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 
 # Families of functions and their highest degree or order.
 BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
-    "chebyshev": (lambda order: Polynomial(order), 6),
+    "chebyshev": (Polynomial, 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
-    "fourier": (lambda order: Fourier(order), 3),
+    "fourier": (Fourier, 3),
 }
 
 
@@ -357,10 +355,4 @@ def _left_out(make, highest: int, training: Cases) -> dict:
 
 def practised_distance() -> np.ndarray:
     """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `square`."""
-    return np.abs(_square_extents() - PRACTISED).max(1)
-
-
-def _square_extents() -> np.ndarray:
-    """Extents of the trajectories of the square, degrees, ``(runs, 2)``, in its order."""
-    edge = MAX_EXTENT_DEG * np.arange(1, POINTS + 1) / POINTS
-    return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
+    return np.abs(square_extents(POINTS) - PRACTISED).max(1)

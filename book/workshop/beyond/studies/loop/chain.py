@@ -17,16 +17,8 @@ from scipy.linalg import expm
 
 from ddlib._check import integer, one_of, shaped
 from ddlib.dynamics import DD_ARM_II_IN_SPACE, SerialArm, locked, mass_matrix
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, EncoderZero, Quantisation
-from ddlib.setups import (
-    JOINT_DAMPING,
-    JOINT_DAMPING_COULOMB,
-    JOINT_DAMPING_KP,
-    JOINT_DAMPING_VISCOUS,
-    KD,
-    KP,
-    STATE_FEEDBACK,
-)
+from ddlib.effects import EncoderZero, Quantisation
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
 
@@ -104,15 +96,10 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     integer("joints", joints, 1, MOST)
     one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))
     inertia = np.diag(mass_matrix(DD_ARM_II_IN_SPACE, np.zeros(MOST)))
-    effects = {"joint damping": JOINT_DAMPING, "state feedback": STATE_FEEDBACK}[reading].effects
-    (encoder,) = effects.encoder
-    if reading == JOINT_DAMPING.name:
-        kp, kd = np.array(JOINT_DAMPING_KP), np.zeros(2)
-        viscous, coulomb = np.array(JOINT_DAMPING_VISCOUS), np.array(JOINT_DAMPING_COULOMB)
-    else:
-        kp, kd = np.array(KP), np.array(KD)
-        parts = CMU_DD_ARM_II_EFFECTS.friction
-        viscous, coulomb = np.array(parts[0].coefficient), np.array(parts[1].level)
+    setup = {setup.name: setup for setup in (JOINT_DAMPING, STATE_FEEDBACK)}[reading]
+    kp, kd = np.array(setup.controller.kp), np.zeros(2) + setup.controller.kd
+    rubbing, (encoder,) = setup.effects.friction, setup.effects.encoder
+    viscous, coulomb = np.array(rubbing[0].coefficient), np.array(rubbing[1].level)
     frequency = np.sqrt(kp / inertia[:2])
     damping = (kd + viscous) / (2 * inertia[:2] * frequency)
     frequency = np.append(frequency, frequency[1] * np.array(RATIOS))
@@ -120,7 +107,7 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     viscous = np.append(viscous, viscous[1] * share * RATIOS)
     coulomb = np.append(coulomb, coulomb[1] * share)
     lead = kd / (kd + viscous[:2])
-    (noise,) = effects.torque_sensor
+    (noise,) = setup.effects.torque_sensor
     made = Chain(
         locked(DD_ARM_II_IN_SPACE, joints),
         frequency[:joints],
@@ -128,7 +115,7 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
         np.append(lead, [lead[1]] * 5)[:joints],
         viscous[:joints],
         coulomb[:joints],
-        effects.friction[1].smoothing,
+        rubbing[1].smoothing,
         encoder.step,
         np.append(noise.std, np.zeros(5))[:joints],
     )

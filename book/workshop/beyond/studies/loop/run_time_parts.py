@@ -22,9 +22,16 @@ from workshop.report import results
 
 WIDTH = 21  # samples of a window: the paper's best
 POINTS = 7  # trajectories in a row of the square of extents
-EDGE = MAX_EXTENT_DEG * np.arange(1, POINTS + 1) / POINTS
-# Of the square, degrees; the elbow's change fastest.
-EXTENTS = np.stack(np.meshgrid(EDGE, EDGE, indexing="ij"), -1).reshape(-1, 2)
+
+
+def square_extents(points: int) -> np.ndarray:
+    """Extents of a square, degrees, shape (runs, 2); the elbow's change fastest."""
+    edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
+    return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
+
+
+EXTENTS = square_extents(POINTS)
+EDGE = EXTENTS[:POINTS, 1]
 INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
 FEWER = EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
 T = time_grid(CONTROL_STEP, REST)  # control samples, s

@@ -63,7 +63,7 @@ class _Kept:
         return self._law.weights[..., -1, :]
 
 
-def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
     """Errors (mm) and estimates of all learners, without friction and with it, at all rates.
 
     Errors have shape (friction, rate, motions), estimates (friction, rate, motions + 1,
@@ -81,13 +81,13 @@ def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         encoder=setup.effects.encoder,
     )  # fmt: skip
     arm = with_load(setup.arm, load)
+    begin = make("with friction", setup).estimate  # the arm without a load, and no friction
     laws = {
         LEARNERS[0]: make("with friction", setup, factor=0.0),
         LEARNERS[1]: make("with friction", setup, factor=factor),
         LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        LEARNERS[3]: Behind(_FeedbackError(_start(), factor), SMOOTH),
+        LEARNERS[3]: Behind(_FeedbackError(begin, factor), SMOOTH),
     }
-    begin = _start()
     errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(FULL)))]
     for extents in drawn(1, MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
@@ -99,25 +99,15 @@ def _learned(load: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     errors, estimates = np.stack(errors, -1), np.stack(estimates, -2)
     shape = (2, len(speeds))
     return {
-        name: (errors[k].reshape(*shape, -1), estimates[k].reshape(*shape, MOTIONS + 1, -1))
+        name: {
+            "errors": errors[k].reshape(*shape, -1),
+            "estimates": estimates[k].reshape(*shape, MOTIONS + 1, -1),
+        }
         for k, name in enumerate(LEARNERS)
     }
 
 
-def _start() -> np.ndarray:
-    """What all learners begin with: the arm without a load, and no friction."""
-    return make("with friction", JOINT_DAMPING).estimate
-
-
 @study
 def loop_learner() -> dict:
-    """`learned` of each of the `LOADS`: errors (mm) and estimates by load and learner."""
-    return {
-        "loads": {
-            str(load): {
-                name: {"errors": errors, "estimates": estimates}
-                for name, (errors, estimates) in _learned(load).items()
-            }
-            for load in LOADS
-        }
-    }
+    """Errors (mm) and estimates of all learners, by load."""
+    return {"loads": {str(load): _learned(load) for load in LOADS}}

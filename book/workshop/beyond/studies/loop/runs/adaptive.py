@@ -17,6 +17,7 @@ from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_
 from workshop.beyond.control.adaptive.craig import CraigHsuSastry
 from workshop.beyond.control.adaptive.model_reference import ModelReference
 from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
+from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.control.guarded import Guarded
 
@@ -205,18 +206,11 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
     t = steps * CONTROL_STEP
     reference = pick_and_place(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
-    kept = []
-
-    class _Kept(Guarded):
-        def start(self, reference, step):
-            kept.append(super().start(reference, step))
-            return kept[0]
-
-    guard = _Kept(_Beside(tuple(laws.values())))
+    guard = Watched(Guarded(_Beside(tuple(laws.values()))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
     hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
     off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
-    stops = kept[0].stops
+    stops = guard.law.stops
     running = stops.running(log.t)
     off = np.where(running, off, np.nan)[..., log.motion]
     third = off.shape[-1] // 3
@@ -226,7 +220,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
 
     after = {
         name: _taught(law, getattr(own, "estimate", None))
-        for (name, law), own in zip(laws.items(), kept[0].inner.laws)
+        for (name, law), own in zip(laws.items(), guard.law.inner.laws)
     }
     return Trial(rms(off), rms(off[..., third:]), stops, after)
 
@@ -281,15 +275,8 @@ def excitation(extents) -> np.ndarray:
 
 def sampled_lyapunov(law: SlotineLi, reference, t, effects: Effects) -> np.ndarray:
     """The Lyapunov function at each control sample of runs without friction, (..., time)."""
-    kept = []
-
-    class _Kept:
-        def start(self, reference, step):
-            kept.append(law.start(reference, step))
-            return kept[0]
-
-    log = follow(CMU_DD_ARM_II, _Kept(), reference, t, effects=effects, log_every=1)
-    estimates = np.broadcast_to(
-        kept[0].estimates[..., :-1, :], (*log.q_true.shape[:-1], len(law.names))
-    )
+    watched = Watched(law)
+    log = follow(CMU_DD_ARM_II, watched, reference, t, effects=effects, log_every=1)
+    estimates = watched.law.estimates[..., :-1, :]
+    estimates = np.broadcast_to(estimates, (*log.q_true.shape[:-1], len(law.names)))
     return law.lyapunov(CMU_DD_ARM_II, TRUTH, estimates, log.reference, log.q_true, log.qd_true)
