@@ -89,7 +89,7 @@ foreign-ci: $(READY)
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
 # All tests with one of these marks are here: tests/house/test_suite.py.
-PAGE_TESTS = tests/book tests/widgets tests/figures
+PAGE_TESTS = tests/book tests/widgets tests/figures tests/beyond
 
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict

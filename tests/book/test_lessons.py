@@ -1,47 +1,50 @@
-"""Lessons: every chapter has exercises of each kind, every widget has its place in a lesson."""
+"""Lessons: exercises of each kind, a place for every widget, and a recipe of forty lines."""
 
 import json
 import re
 import sys
-from pathlib import Path
 
-import pytest
+from book_pages import BACK_MATTER, ROOT, source
 
-ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_lessons  # noqa: E402
+import dd_lessons
 
-CHAPTERS = [path for path in dd_lessons.chapters(ROOT) if dd_lessons.exercises(path)]
-
-
-@pytest.mark.parametrize("path", CHAPTERS, ids=lambda path: path.stem)
-def test_a_chapter_asks_for_a_derivation_a_design_and_a_prediction(path):
-    found = dd_lessons.exercises(path)
-    assert [each.number for each in found] == list(range(1, 1 + len(found)))
-    assert {each.kind for each in found} <= set(dd_lessons.KINDS), "an exercise without its kind"
-    assert {each.kind for each in found} >= {"derivation", "design", "prediction"}
+RECIPE = "book/use-it-on-your-arm"
+LINES = 40  # of code that a reader sees, imports included
 
 
-def test_all_chapters_are_seen():
-    assert len(CHAPTERS) >= 20
+def test_chapters_ask_for_a_derivation_a_design_and_a_prediction():
+    asked = {path.stem: dd_lessons.exercises(path) for path in dd_lessons.chapters(ROOT)}
+    asked = {name: exercises for name, exercises in asked.items() if exercises}
+    assert len(asked) >= 20
+    wrong = {}
+    for name, exercises in asked.items():
+        kinds = {each.kind for each in exercises}
+        in_order = [each.number for each in exercises] == list(range(1, 1 + len(exercises)))
+        if not in_order or not {"derivation", "design", "prediction"} <= kinds:
+            wrong[name] = exercises
+        elif not kinds <= set(dd_lessons.KINDS):
+            wrong[name] = kinds
+    assert not wrong
 
 
 def test_every_widget_has_its_place_in_the_lessons():
-    code = "\n".join(p.read_text(encoding="utf-8") for p in (ROOT / "ddlib/widgets").rglob("*.py"))
+    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
+    code = "\n".join(p.read_text(encoding="utf-8") for home in homes for p in home.rglob("*.py"))
     classes = set(re.findall(r"^class (\w+)\([\w.]*Widget\)", code, re.MULTILINE))
     made = re.compile(rf"\b({'|'.join(name for name in classes if name[-6:] != 'Widget')})\(")
     page = (ROOT / "book" / "lessons.md").read_text(encoding="utf-8")
-    asked, found = set(re.findall(r"{section}`([^`]+)`", page)), set()
+    asked, found = set(re.findall(r"{section}`([^`]+)`", page)), {}
     for path in dd_lessons.chapters(ROOT):
         place = None
         for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
             text = "".join(cell["source"])
             if cell["cell_type"] == "markdown":
                 place = (re.findall(r"^#+ (.+)$", text, re.MULTILINE) or [place])[-1]
-            elif names := made.findall(text):
-                found.update(names)
-                assert f"{path.stem}: {place}" in asked, names
+            else:
+                found |= {name: f"{path.stem}: {place}" for name in made.findall(text)}
     assert len(found) >= 10
+    assert not {name: place for name, place in found.items() if place not in asked}
 
 
 def test_exercises_are_read_with_their_kind(tmp_path):
@@ -54,3 +57,14 @@ def test_exercises_are_read_with_their_kind(tmp_path):
     (tmp_path / "page.ipynb").write_text(text, encoding="utf-8")
     found = dd_lessons.exercises(tmp_path / "page.ipynb")
     assert [(e.number, e.kind) for e in found] == [(1, "derivation"), (2, ""), (3, "experiment")]
+
+
+def test_the_recipe_is_short_and_needs_nothing_of_the_book():
+    cells = json.loads(source(RECIPE).read_text(encoding="utf-8"))["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    shown = [c for c in code if "remove-cell" not in c["metadata"].get("tags", ())]
+    lines = "\n".join("".join(cell["source"]) for cell in shown).splitlines()
+    assert RECIPE in BACK_MATTER and 20 < len([line for line in lines if line.strip()]) <= LINES
+    packages = set(re.findall(r"from (?:ddlib\.)?(\w+)", "\n".join(lines)))
+    assert {"dynamics", "simulation", "identification", "learning", "analysis"} <= packages
+    assert not packages & {"paper", "workshop", "widgets"}

@@ -36,21 +36,28 @@ def test_icon_fonts_go_and_leave_no_boxes():
     assert slim.slim_css(rules + fonts + icons, str) == left
 
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        f'"data:image/svg+xml,{SVG}"',
-        '"data:image/svg+xml,%3csvg xmlns=%27http://www.w3.org/2000/svg%27/%3e"',
-        "data:image/svg+xml;base64," + base64.b64encode(SVG.encode()).decode(),
-    ],
+ADDRESSES = (
+    f'"data:image/svg+xml,{SVG}"',
+    '"data:image/svg+xml,%3csvg xmlns=%27http://www.w3.org/2000/svg%27/%3e"',
+    "data:image/svg+xml;base64," + base64.b64encode(SVG.encode()).decode(),
 )
-def test_data_in_styles_becomes_a_file(address, tmp_path):
-    def store(data):
-        return slim.keep(tmp_path / "_images", "../", data)
 
-    made = slim.slim_css(f"p {{ background: url({address}) }}", store)
-    name = re.fullmatch(r'p \{ background: url\("\.\./_images/(\w+\.svg)"\) \}', made)[1]
-    assert (tmp_path / "_images" / name).read_text().lower() == SVG.lower()
+
+def test_data_in_styles_becomes_a_file_and_no_other_address_is_opened(tmp_path):
+    folder = tmp_path / "_images"
+
+    def store(data):
+        return slim.keep(folder, "../", data)
+
+    for address in ADDRESSES:
+        made = slim.slim_css(f"p {{ background: url({address}) }}", store)
+        name = re.fullmatch(r'p \{ background: url\("\.\./_images/(\w+\.svg)"\) \}', made)[1]
+        assert (folder / name).read_text().lower() == SVG.lower()
+    before = list(folder.iterdir())
+    for address in ("http://localhost/x.svg", "file:///etc/hostname", "x.svg"):
+        with pytest.raises(ValueError, match=r"^address must begin with data:"):
+            store(address)
+    assert list(folder.iterdir()) == before
 
 
 def test_icons_are_drawn_in_the_page():
@@ -65,24 +72,25 @@ def test_icons_are_drawn_in_the_page():
     assert slim.ICON.sub(icons.inline, unknown) == unknown
 
 
-@pytest.mark.parametrize(
-    ("script", "body", "stays"),
-    [
-        ("scripts/fontawesome.js?digest=1", 'class="highlight"', False),
-        ("searchtools.js", "", False),
-        ("searchtools.js", '<div id="search-results">', True),
-        ("../searchindex.js", "", False),
-        ("copybutton.js?v=1", "", True),
-        ("doctools.js", "", True),
-        ("mathjax/tex-svg-full.js", "", False),
-        ("mathjax/tex-svg-full.js", '<p class="maths">a</p>', False),
-        ("mathjax/tex-svg-full.js", '<span class="math notranslate">x</span>', True),
-        ("mathjax/tex-svg-full.js", '<div id="e" class="math notranslate">x</div>', True),
-        ("mathjax/tex-svg-full.js", '<div class="output text_latex math">x</div>', True),
-    ],
-)
-def test_a_page_loads_the_scripts_it_uses(script, body, stays):
-    assert ("<script" in page(f'<script defer src="_static/{script}"></script>{body}')) is stays
+SCRIPTS = [
+    ("scripts/fontawesome.js?digest=1", 'class="highlight"', False),
+    ("searchtools.js", "", False),
+    ("searchtools.js", '<div id="search-results">', True),
+    ("../searchindex.js", "", False),
+    ("copybutton.js?v=1", "", True),
+    ("doctools.js", "", True),
+    ("mathjax/tex-svg-full.js", "", False),
+    ("mathjax/tex-svg-full.js", '<p class="maths">a</p>', False),
+    ("mathjax/tex-svg-full.js", '<span class="math notranslate">x</span>', True),
+    ("mathjax/tex-svg-full.js", '<div id="e" class="math notranslate">x</div>', True),
+    ("mathjax/tex-svg-full.js", '<div class="output text_latex math">x</div>', True),
+]
+
+
+def test_a_page_loads_the_scripts_it_uses():
+    for script, body, stays in SCRIPTS:
+        made = page(f'<script defer src="_static/{script}"></script>{body}')
+        assert ("<script" in made) is stays, (script, body)
 
 
 def test_the_page_that_leads_on_has_a_head():
@@ -117,16 +125,4 @@ def test_stills_become_files_for_pages_without_script():
     left = json.loads(slim.STATE.search(made)[0])["state"]
     assert "still" not in left["a"]["state"]
     assert left["a"]["state"]["words"] == "</script>" and left["b"] == state["b"]
-
-
-@pytest.mark.parametrize("address", ["http://localhost/x.svg", "file:///etc/hostname", "x.svg"])
-def test_a_build_opens_no_address_but_data(address, tmp_path):
-    with pytest.raises(ValueError, match=r"^address must begin with data:"):
-        slim.keep(tmp_path, "", address)
-    assert not list(tmp_path.iterdir())
-    assert slim.keep(tmp_path, "../", "data:image/svg+xml,%3Csvg/%3E").startswith("../")
-    assert [p.read_text() for p in tmp_path.iterdir()] == ["<svg/>"]
-
-
-def test_a_page_without_widgets_has_no_stills():
     assert slim.separate_stills("<p>text</p>", str) == "<p>text</p>"

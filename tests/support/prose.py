@@ -149,7 +149,16 @@ def strings(source: str) -> list[str]:
         for node in ast.walk(tree)
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inside
     ]
-    return [text for text in found if len(text.split()) > 5]
+    return [text for text in found if len(text.split()) > 5 and not _is_code(text)]
+
+
+def _is_code(text: str) -> bool:
+    """Whether a string is a program that readers can copy."""
+    try:
+        ast.parse(text.replace("{…}", "x"))
+    except SyntaxError:
+        return False
+    return True
 
 
 def sentences(path: Path) -> Iterator[Sentence]:
