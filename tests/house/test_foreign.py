@@ -11,7 +11,7 @@ import nbformat
 import pytest
 from book_pages import PAGES, source
 
-from ddlib.learning.descent import ONEDNN
+from ddlib.learning.descent import _ONEDNN
 
 DRAWS = """
 import numpy as np
@@ -61,7 +61,7 @@ def test_other_libraries_take_another_core(tmp_path):
     assert "Core: Nehalem" in ask("import numpy", env)
 
 
-@pytest.mark.skipif(not ONEDNN, reason="products do not go through oneDNN here")
+@pytest.mark.skipif(not _ONEDNN, reason="products do not go through oneDNN here")
 @pytest.mark.parametrize("name", ["plain-kernels", "other-libraries"])
 def test_products_of_descent_take_older_instructions(name, tmp_path):
     code = (
