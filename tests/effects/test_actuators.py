@@ -3,8 +3,7 @@
 import control
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm
 from ddlib.effects import ComputingTime, DeadZone, FlexibleJoint, Ripple, Saturation

@@ -146,17 +146,6 @@ RUNS = [
 ]
 
 
-def plant_for_control(arm, viscous):
-    """The arm for python-control, through its matrices: not the code that `follow` runs."""
-
-    def update(t, x, u, params):
-        q, qd = x[:2], x[2:]
-        net = u - arm.coriolis_matrix(q, qd) @ qd - arm.gravity(q) - np.array(viscous) * qd
-        return np.concatenate([qd, np.linalg.solve(arm.mass_matrix(q), net)])
-
-    return control.nlsys(update, None, inputs=["u0", "u1"], states=4, outputs=4, name="arm")
-
-
 @pytest.mark.parametrize("arm, extents, kp, kd, viscous", RUNS)
 def test_continuous_loop_against_python_control(arm, extents, kp, kd, viscous):
     """Interconnected nonlinear systems in continuous time: the limit of ever faster sampling.
@@ -170,12 +159,14 @@ def test_continuous_loop_against_python_control(arm, extents, kp, kd, viscous):
         r = pick_and_place(extents, np.array([t]))
         return np.array(kp) * (r.q[0] - u[:2]) + np.array(kd) * (r.qd[0] - u[2:])
 
-    names = [f"y{k}" for k in range(4)]
-    plant = control.nlsys(
-        plant_for_control(arm, viscous).updfcn, None,
-        inputs=["u0", "u1"], states=4, outputs=names, name="arm",
-    )  # fmt: skip
-    feedback = control.nlsys(None, law, inputs=names, outputs=["u0", "u1"], name="PD")
+    def rate(t, x, u, params):  # through the arm's matrices: not the code that `follow` runs
+        q, qd = x[:2], x[2:]
+        net = u - arm.coriolis_matrix(q, qd) @ qd - arm.gravity(q) - np.array(viscous) * qd
+        return np.concatenate([qd, np.linalg.solve(arm.mass_matrix(q), net)])
+
+    names, torques = [f"y{k}" for k in range(4)], ["u0", "u1"]
+    plant = control.nlsys(rate, None, inputs=torques, states=4, outputs=names, name="arm")
+    feedback = control.nlsys(None, law, inputs=names, outputs=torques, name="PD")
     loop = control.interconnect([plant, feedback], outputs=names, inputs=None)
     answer = control.input_output_response(
         loop, grid, 0, np.zeros(4), solve_ivp_method="DOP853",
