@@ -117,8 +117,8 @@ NAMED_CLASSES = (
     "velocity + acceleration",
     "acceleration + jerk",
 )
-OTHER_MIX, NOT_ANALYSABLE = "other mix", "not analysable"
-CLASSES = (*NAMED_CLASSES, OTHER_MIX, NOT_ANALYSABLE)
+_OTHER_MIX, _NOT_ANALYSABLE = "other mix", "not analysable"
+CLASSES = (*NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
 """Names that `classify` gives."""
 
 
@@ -150,7 +150,7 @@ def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
     varying = 1 - share[..., 0]
     rough = (share[..., 4] > (1 - smooth) * varying) | (varying < 1e-12)
     conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
-    return np.select(conditions, [NOT_ANALYSABLE, *NAMED_CLASSES], OTHER_MIX)
+    return np.select(conditions, [_NOT_ANALYSABLE, *NAMED_CLASSES], _OTHER_MIX)
 
 
 def purest(f, name: str) -> np.ndarray:

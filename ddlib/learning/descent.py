@@ -25,11 +25,11 @@ from ddlib.learning.training import (
 )
 
 WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
-BLOCK = 8  # most members that a thread trains side by side: what fits into a core's cache
+_BLOCK = 8  # most members that a thread trains side by side: what fits into a core's cache
 
 # Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
 # uses: its kernels take the widest registers of any processor, those of MKL of Intel's alone.
-ONEDNN = (
+_ONEDNN = (
     torch.backends.mkldnn.is_available()
     and platform.machine().lower() in {"x86_64", "amd64"}
     and all(
@@ -110,7 +110,7 @@ def train_ensemble(
         targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
-    count = WORKERS * math.ceil(members / (WORKERS * BLOCK))
+    count = WORKERS * math.ceil(members / (WORKERS * _BLOCK))
     blocks = np.array_split(np.arange(members), min(count, members))
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
 
@@ -288,7 +288,7 @@ class Descent:
 
 def times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
     """Products of left-hand matrices of some `rows` with one that stays the same, packed once."""
-    if not ONEDNN or rows * matrix.numel() < _LEAST:
+    if not _ONEDNN or rows * matrix.numel() < _LEAST:
         return lambda left: torch.mm(left, matrix)
     packed = torch.ops.mkldnn._reorder_linear_weight(matrix.t().contiguous(), rows)
     linear = torch.ops.mkldnn._linear_pointwise

@@ -11,7 +11,6 @@ where residuals remain, ``J'J`` alone converges slowly. The parameters are those
 
 from __future__ import annotations
 
-import threading
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
@@ -102,26 +101,24 @@ def solve(
         If some member met neither the tolerance nor the target.
     """
     _check(weights, data, test)
-    options = (
-        integer("steps", steps, 1),
-        number("tolerance", tolerance, 0.0, 1.0),
-        None if target_rmss is None else number("target_rmss", target_rmss, 0.0),
-    )
+    integer("steps", steps, 1)
+    number("tolerance", tolerance, 0.0, 1.0)
     number("decay", decay, 0.0)
+    if target_rmss is not None:
+        number("target_rmss", target_rmss, 0.0)
     single = weights.hidden_bias.ndim == 1
     members = [weights] if single else [weights[k] for k in range(len(weights))]
-    lock = threading.Lock()
     bar = tqdm(total=steps * len(members), desc=label, disable=not progress, mininterval=0.5)
 
     def tell(count: int, error: float) -> None:
-        with lock:
+        with bar.get_lock():
             bar.set_postfix(rmss=f"{error:.3f}", refresh=False)
             bar.update(count)
 
     def work(member: Weights):
         torch.set_num_threads(1)  # of this thread: one core for each member
         objective = Objective(member, data, decay, test)
-        end = _descend(objective, objective.pack(member), *options, tell)
+        end = _descend(objective, objective.pack(member), steps, tolerance, target_rmss, tell)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end
 

@@ -170,7 +170,7 @@ def moved(weights: Weights, change) -> Weights:
     )
 
 
-class Course(NamedTuple):
+class _Course(NamedTuple):
     """What a network does along its training; a leading axis are the epochs."""
 
     weights: Weights
@@ -196,7 +196,7 @@ class Lazy:
 
     def predict(
         self, rate: float, epochs, momentum: float = 0.0, warm_up: int = 0, targets=None
-    ) -> Course:
+    ) -> _Course:
         """Weights and errors after some epochs of batch descent with momentum.
 
         `rate` is the step size per case, as in `ddlib.learning.train`; `epochs`, `momentum` and
@@ -208,4 +208,4 @@ class Lazy:
         steps = effective_steps(eps * self.curvatures, epochs, momentum, warm_up)
         change = -eps * (steps * gradient) @ self._axes.T
         left = error.ravel() + change @ self._slopes.T
-        return Course(moved(self._start, change), left.reshape(-1, *error.shape))
+        return _Course(moved(self._start, change), left.reshape(-1, *error.shape))

@@ -23,8 +23,8 @@ from ddlib._check import finite_array, integer, number, one_of
 MATCHED = ("shifted", "other run", "phases")
 """Kinds of surrogates that are as smooth as the torques."""
 
-KINDS = (*MATCHED, "shuffled")
-LEAST_SHIFT = 0.1  # as a share of a run: 0.3 s of the paper's 3 s, in either direction
+_KINDS = (*MATCHED, "shuffled")
+_LEAST_SHIFT = 0.1  # as a share of a run: 0.3 s of the paper's 3 s, in either direction
 
 
 def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
@@ -33,7 +33,7 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
     Parameters
     ----------
     kind : str
-        One of `KINDS`.
+        One of `MATCHED`, or "shuffled".
     torque : array_like, shape (runs, time, joint)
         Torques of the motion, run by run; any unit.
     seed : int
@@ -43,7 +43,7 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
     -------
     ndarray, shape (runs, time, joint)
     """
-    one_of("kind", kind, KINDS)
+    one_of("kind", kind, _KINDS)
     torque = finite_array("torque", torque)
     if torque.ndim != 3 or torque.shape[1] < 4:
         raise ValueError(
@@ -108,7 +108,7 @@ def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
 
 def _shifted(torque, rng):
     time = torque.shape[1]
-    least = int(np.ceil(LEAST_SHIFT * time))
+    least = int(np.ceil(_LEAST_SHIFT * time))
     by = rng.integers(least, time - least + 1, len(torque))
     return np.stack([np.roll(run, k, 0) for run, k in zip(torque, by)])
 

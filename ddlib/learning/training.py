@@ -21,7 +21,7 @@ TARGET_RANGE = (0.2, 0.8)
 WARM_UP_MOMENTUM = 0.5
 """Momentum of the first epochs; Lang (1988) began with it."""
 
-MAX_RATE = 1e38  # step size that single precision can hold
+_MAX_RATE = 1e38  # step size that single precision can hold
 
 
 @dataclass(frozen=True)
@@ -179,6 +179,6 @@ def check_points(epochs: int, points: int = 60) -> np.ndarray:
 
 def check_descent(rate: float, momentum: float, epochs: int) -> None:
     """Refuse options of descent that are out of range."""
-    number("rate", rate, 0.0, MAX_RATE, open_low=True)
+    number("rate", rate, 0.0, _MAX_RATE, open_low=True)
     number("momentum", momentum, 0.0, 0.999)
     integer("epochs", epochs, 1)

@@ -186,7 +186,7 @@ ROWS = [
     ("decay", lambda x: solve(decay=x), [0.0, 0.5], [JUST_BELOW]),
     ("radius", lambda x: exact_states.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
     ("steepest", COURSE.settled, [0.0, 0.5], [JUST_BELOW]),
-    ("rate", lambda x: train(rate=x), [1e-6, training.MAX_RATE], [0.0, training.MAX_RATE * OVER]),
+    ("rate", lambda x: train(rate=x), [1e-6, training._MAX_RATE], [0.0, training._MAX_RATE * OVER]),
     ("momentum", lambda x: train(momentum=x), [0.0, 0.999], [JUST_BELOW, 0.999 * OVER]),
     ("epochs", lambda x: train(epochs=x), [1, 2], [0, 1.0]),
     ("width", training.default_rate, [1, 2], [0, 1.0]),

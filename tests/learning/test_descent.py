@@ -17,10 +17,10 @@ from ddlib.learning import (
 from ddlib.learning.training import check_points
 
 
-@pytest.mark.parametrize("onednn", sorted({False, descent.ONEDNN}))
+@pytest.mark.parametrize("onednn", sorted({False, descent._ONEDNN}))
 @pytest.mark.parametrize("shape", [(96, 43, 1500), (12, 83, 1500), (84, 1500, 23), (3, 5, 7)])
 def test_products_are_those_of_plain_matrices(shape, onednn, monkeypatch):
-    monkeypatch.setattr(descent, "ONEDNN", onednn)
+    monkeypatch.setattr(descent, "_ONEDNN", onednn)
     rows, inner, columns = shape
     torch.manual_seed(1)
     matrix = torch.randn(inner, columns)
@@ -36,7 +36,7 @@ def test_products_are_those_of_plain_matrices(shape, onednn, monkeypatch):
 
 
 def test_a_large_product_goes_through_onednn_where_it_can(monkeypatch):
-    if not descent.ONEDNN:
+    if not descent._ONEDNN:
         pytest.skip("oneDNN is not here")
     asked = []
     plain = torch.mm
@@ -108,7 +108,7 @@ def reference(data):
 def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers, block):
     """200 epochs, five members in one to five blocks, against autograd member by member."""
     monkeypatch.setattr(descent, "WORKERS", workers)
-    monkeypatch.setattr(descent, "BLOCK", block)
+    monkeypatch.setattr(descent, "_BLOCK", block)
     model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
     assert history.training.shape == (len(check_points(200)), 5)
     for k, wanted in reference.items():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib.learning import MATCHED, p_value, related, sliding_windows, surrogate, surrogates
-from ddlib.learning.surrogates import KINDS, LEAST_SHIFT
+from ddlib.learning.surrogates import _KINDS, _LEAST_SHIFT
 
 
 def smooth(runs=4, time=300, seed=0):
@@ -45,7 +45,7 @@ def test_shifts_go_around_each_run_by_itself():
             shifts += fits
     assert len(set(shifts[:4])) > 1
     least = min(min(k, 300 - k) for k in shifts)
-    assert LEAST_SHIFT * 300 <= least <= LEAST_SHIFT * 300 + 5
+    assert _LEAST_SHIFT * 300 <= least <= _LEAST_SHIFT * 300 + 5
 
 
 def test_other_runs_are_others_each_once():
@@ -70,7 +70,7 @@ def test_shuffled_torques_are_white_and_the_same_samples():
     assert lagged[0] > 0.95 and abs(lagged[1]) < 0.15
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", _KINDS)
 def test_seeds_decide_and_the_relation_to_the_cause_is_gone(kind):
     """White inputs make the torques; over draws the mean correlation with them vanishes."""
     one, again, other = (surrogate(kind, TORQUE, s) for s in (4, 4, 5))
@@ -83,7 +83,7 @@ def test_seeds_decide_and_the_relation_to_the_cause_is_gone(kind):
         np.corrcoef(cause.ravel(), x[..., 0].ravel())[0, 1] for x in surrogates(kind, torque, 40)
     ]
     assert abs(np.mean(correlations)) < 0.03 and np.std(correlations) < 0.05
-    assert set(MATCHED) < set(KINDS)
+    assert set(MATCHED) < set(_KINDS)
 
 
 def test_related_is_the_share_that_a_filter_explains():

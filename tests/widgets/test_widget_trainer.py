@@ -85,7 +85,7 @@ def test_first_weights_are_the_pages(evaluate, widget):
 def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, momentum):
     """Weights, errors, names and events of the first epochs, in double precision."""
     monkeypatch.setattr("ddlib.learning.descent._tensor", torch.tensor)
-    monkeypatch.setattr("ddlib.learning.descent.ONEDNN", False)  # single precision alone
+    monkeypatch.setattr("ddlib.learning.descent._ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
     data, test = study.page_set(trainer.SCALINGS[inputs], shift)
