@@ -1,9 +1,8 @@
-"""The book's figures: data in, `Illustration` out. No plot detail lives in a chapter.
+"""The house style, and the kinds of figure that chapters share: data in, `Illustration` out.
 
 - ``style``: the figure style: colours, fonts, light and dark, SVG with an alternative text
-- ``lines``, ``maps``: curves over one axis, of one network or many; values over a plane
+- ``lines``, ``maps``: curves and points over one axis; values over a plane
 - ``weights``: networks, Hinton diagrams, filters taken apart
-- ``dynamics``, ``effects``, ``control``, ``recording``, ``states``: figures of one chapter each
 """
 
 import lazy_loader

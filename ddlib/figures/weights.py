@@ -7,10 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-from ddlib._check import finite_array
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     COLOURS,
@@ -18,9 +16,7 @@ from ddlib.figures.style import (
     INK,
     JOINTS,
     Illustration,
-    check_label,
     illustrate,
-    legend_above,
 )
 from ddlib.learning import Weights
 
@@ -190,72 +186,3 @@ def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustrat
         functions
     )
     return illustrate(draw, alt, 7.0, 2.3 * rows + 0.3)
-
-
-def against_nulls(
-    panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str, columns=3
-) -> Illustration:
-    """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw.
-
-    Parameters
-    ----------
-    panels : mapping
-        ``{title: {class: {ensemble: values}}}``; the first ensemble of a class holds networks on
-        the real torques and is drawn as a bar at its mean, the others hold draws of a null.
-    label : str
-        Of the horizontal axes.
-    alt : str
-        Alternative text.
-    columns : int
-        Panels in a row.
-
-    Raises
-    ------
-    ValueError
-        If there is no panel, or values are not finite or not of shape (draws,).
-    """
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for groups in panels.values():
-        for name, sets in groups.items():
-            for values in sets.values():
-                shape = finite_array(f"values of {name!r}", values).shape
-                if len(shape) != 1:
-                    raise ValueError(f"values of {name!r} must have shape (draws,), got {shape}")
-    classes = list(next(iter(panels.values())))
-    rows = -(-len(panels) // columns)
-
-    def draw(figure: Figure):
-        axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
-        for axis, (title, groups) in zip(axes.ravel(), panels.items()):
-            for row, sets in enumerate(groups.values()):
-                (real, values), *nulls = sets.items()
-                axis.barh(row, np.mean(values), 0.86, color=FAINT, alpha=0.35, label=real, lw=0)
-                axis.plot([np.mean(values)] * 2, [row - 0.43, row + 0.43], color=INK, lw=2.0)
-                for k, (name, draws) in enumerate(nulls):
-                    height = row + (k - (len(nulls) - 1) / 2) * 0.26
-                    _dots(axis, draws, height, k, name)
-            axis.set(title=title, xlim=(-0.03, 1.03), ylim=(len(groups) - 0.5, -0.5))
-            axis.grid(visible=False, axis="y")
-        for axis in axes[:, 0]:
-            axis.set_yticks(range(len(classes)), classes)
-        for axis in axes[-1]:
-            axis.set_xlabel(check_label(label))
-        handles, names = axes[0, 0].get_legend_handles_labels()
-        first = {name: handle for handle, name in zip(handles[::-1], names[::-1])}
-        order = list(next(iter(next(iter(panels.values())).values())))
-        for k, name in enumerate(order[1:]):
-            first[name] = Line2D([], [], ls="", marker="os|"[k % 3], ms=4, color=COLOURS[k])
-        legend_above(figure, [first[name] for name in order], order)
-
-    return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))
-
-
-def _dots(axis: Axes, values, height: float, k: int, name: str):
-    """One mark for each value, all in one path, since hundreds of markers are heavy."""
-    at = np.unique(np.asarray(values, dtype=float))
-    long = 0.09 if k % 3 == 2 else 1e-3  # discs, squares and strokes
-    x, y = np.repeat(at, 3), np.tile([height - long, height + long, np.nan], at.size)
-    cap = ("round", "projecting", "butt")[k % 3]
-    axis.plot(x, y, color=COLOURS[k % len(COLOURS)], lw=1.5 if k % 3 == 2 else 3.4, alpha=0.7,
-              solid_capstyle=cap, label=name)  # fmt: skip

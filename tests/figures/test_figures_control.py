@@ -9,7 +9,8 @@ import pytest
 from pictures import words
 
 from ddlib.control import loop_gain
-from ddlib.figures import feedforward_loop, nyquist, root_loci
+from workshop.chapters.feedback import nyquist, root_loci
+from workshop.chapters.feedforward import feedforward_loop
 
 GAINS = np.geomspace(1e-4, 5, 50)
 LOOPS = {"P": loop_gain(4.0, 0.0, 100.0), "PD": loop_gain(4.0, 0.0, 100.0, 0.0, 24.0)}

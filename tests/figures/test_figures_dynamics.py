@@ -9,9 +9,9 @@ from pictures import check_sound, curves, drawn, figures_in, words
 
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import COLOURS
-from ddlib.figures import dynamics as figures_dynamics
 from ddlib.identification import Equations, least_squares
 from ddlib.trajectories import APPENDIX_I, pick_and_place
+from workshop.chapters import dynamics as figures_dynamics
 
 NAMES = ("x", "y")
 COUNTS = {

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pictures import check_sound, curves, drawn, on_paper, words
 
-from ddlib.figures import COLOURS
-from ddlib.figures import effects as figures_effects
+from ddlib.figures import COLOURS, by_case
+from workshop.chapters import what_lagrange_euler_leaves_out as figures_effects
 
 X = np.linspace(1.0, 10.0, 5)
 PANELS = {
@@ -16,7 +16,7 @@ PANELS = {
 SIZES = {"small": [0.02, 0.01], "large": [8.0, 2.0], "middle": [0.5, 0.9]}
 CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
 EXAMPLES = {
-    "cases": lambda: figures_effects.by_case(X, CASES, "time, s", "error, °", "three swings"),
+    "cases": lambda: by_case(X, CASES, "time, s", "error, °", "three swings"),
     "panels": lambda: figures_effects.side_by_side(PANELS, "three panels"),
     "logarithmic": lambda: figures_effects.side_by_side(PANELS, "the same", log=True),
     "ranking": lambda: figures_effects.ranking(SIZES),
@@ -71,7 +71,7 @@ def test_each_case_has_a_title_and_the_quantity_on_its_axis(made):
 )
 def test_cases_without_a_quantity_are_refused(cases, label, word):
     with pytest.raises(ValueError, match=word):
-        figures_effects.by_case(X, cases, "time, s", label, "no figure")
+        by_case(X, cases, "time, s", label, "no figure")
 
 
 def test_bars_stand_in_order_and_are_as_long_as_their_logarithms(made):

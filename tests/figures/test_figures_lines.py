@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from pictures import drawn
 
-from ddlib.figures import COLOURS, Illustration, clusters, families, predicted_curves
+from ddlib.figures import COLOURS, Illustration, families
+from workshop.chapters.convolution_filters import clusters
+from workshop.chapters.why_smooth_filters import predicted_curves
 
 X = np.linspace(1.0, 10.0, 6)
 FAN = X[:, None] * [1.0, 2.0, 6.0]

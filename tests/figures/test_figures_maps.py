@@ -8,7 +8,8 @@ from matplotlib.contour import ContourSet
 from pictures import drawn, words
 
 from ddlib import paper
-from ddlib.figures import COLOURS, INK, intervals, plane, rmss_by_window
+from ddlib.figures import COLOURS, INK, rmss_by_window
+from workshop.chapters.window_networks import intervals, plane
 
 X, Y = np.linspace(0, 45, 4), np.linspace(0, 45, 3)
 VALUES = np.outer([1.0, 2.0, 4.0], [0.1, 0.2, 0.5, 1.0])

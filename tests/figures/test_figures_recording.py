@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.figures import reached, rounding, tied
+from workshop.chapters.trajectories_and_recording import reached, rounding, tied
 
 
 def test_the_text_names_the_largest_values():

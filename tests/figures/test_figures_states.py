@@ -7,8 +7,8 @@ import pytest
 from pictures import boxes, check_sound, curves, drawn, figures_in, on_paper
 
 from ddlib.figures import COLOURS, INK
-from ddlib.figures import states as figures_states
 from ddlib.learning import Weights
+from workshop.chapters import whole_state_space as figures_states
 
 RNG = np.random.default_rng(0)
 T = np.linspace(0.0, 3.0, 50)

@@ -6,8 +6,8 @@ from ddlib.tables import Table, significant
 from workshop.report import results
 from workshop.report.code_hash import places
 
+# Targets for the parts of `make reproduce` on two cores, s; for all of it, their sum
 REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
-"""Targets for the parts of `make reproduce` on two cores, s; for all of it, their sum."""
 
 GAP = "\N{NO-BREAK SPACE}"
 

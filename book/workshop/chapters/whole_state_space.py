@@ -1,4 +1,4 @@
-"""Figures of the chapter on the whole state space."""
+"""Figures of the chapter *The whole state space*."""
 
 from __future__ import annotations
 
@@ -23,34 +23,27 @@ from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import Weights
 from ddlib.tables import significant
 
+# The six inputs in their order, as labels
 SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")
-"""The six inputs in their order, as labels."""
 
-UNITS = ("rad", "rad/s", "rad/s²") * 2
-"""Their units."""
+
+UNITS = ("rad", "rad/s", "rad/s²") * 2  # Their units
+
 
 MARKERS = "osD^v"
+
+
 _WIDTH, _BLOB = 12.0, "#8c8c8c"
 
 
 def hinton_states(weights: Weights) -> Illustration:
     """Figure 6-1: all weights of a network of states, one row of six for each unit.
 
-    Every grey blob is a unit: the outputs on top (shoulder left, elbow right), the hidden
-    units below. The bottom row of a blob holds the weights from position, velocity and
-    acceleration of the shoulder, then of the elbow. The bias is at the upper left; the two
-    dots at the upper right of a hidden unit, and the middle row of an output unit, are the
-    weights between them. A row of more than ten is squeezed.
-
-    Parameters
-    ----------
-    weights : Weights
-        One network with two joints and three numbers each.
-
-    Raises
-    ------
-    ValueError
-        If it is not one such network, or its weights are not finite or all zero.
+    Every grey blob is a unit: the outputs on top (shoulder left, elbow right), the hidden units
+    below. The bottom row of a blob holds the weights from position, velocity and acceleration of
+    the shoulder, then of the elbow. The bias is at the upper left; the two dots at the upper right
+    of a hidden unit, and the middle row of an output unit, are the weights between them. A row of
+    more than ten is squeezed.
     """
     if weights.hidden_bias.ndim != 1 or weights.hidden_weights.shape[-2:] != (2, 3):
         raise ValueError(
@@ -105,20 +98,9 @@ def hinton_states(weights: Weights) -> Illustration:
 def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
     """Figure 6-2: the exact torque (fine) and networks' torque (bold) along a trajectory.
 
-    The bold line is the network whose root mean square error, each joint in units of its
-    torque's standard deviation, is the median; the shade holds the middle `share` of all
-    networks at each time.
-
-    Parameters
-    ----------
-    t : array_like, shape (time,)
-        Times, s.
-    exact : array_like, shape (time, joint)
-        Torque of the analytic model, N m.
-    predicted : array_like, shape (networks, time, joint)
-        Torque of each network, N m.
-    share : float
-        Part of the networks inside the shade, above 0, up to 1.
+    The bold line is the network whose root mean square error, each joint in units of its torque's
+    standard deviation, is the median; the shade holds the middle `share` of all networks at each
+    time.
     """
     t = shaped("t", t, "(time,)")
     exact = shaped("exact", exact, f"({t.size}, joint)")
@@ -152,14 +134,7 @@ def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
 
 
 def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) -> Illustration:
-    """Error against a size: every network as a point, the medians joined; log-log.
-
-    Parameters
-    ----------
-    panels : mapping
-        ``{x label: {curve name: {size: errors (networks,)}}}``. A curve of the same name looks
-        the same in every panel.
-    """
+    """Error against a size: every network as a point, the medians joined; log-log."""
     names = list(dict.fromkeys(name for named in panels.values() for name in named))
     look = {name: k for k, name in enumerate(names)}
 
@@ -196,15 +171,7 @@ def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) 
 
 
 def responses(values, activity) -> Illustration:
-    """Activity of every hidden unit while one of the six inputs moves, one panel each.
-
-    Parameters
-    ----------
-    values : array_like, shape (points,)
-        What the input passes through.
-    activity : array_like, shape (2, 3, points, hidden)
-        From `ddlib.analysis.sensitivity.responses`, of one network.
-    """
+    """Activity of every hidden unit while one of the six inputs moves, one panel each."""
     values = shaped("values", values, "(points,)")
     activity = shaped("activity", activity, f"(2, 3, {values.size}, hidden)")
     swing = np.ptp(activity, axis=2).mean(-1).ravel()

@@ -1,6 +1,5 @@
 """Every figure of the book: sound, accessible, small, and showing what it was given."""
 
-import inspect
 import re
 import warnings
 import xml.etree.ElementTree as ET
@@ -8,15 +7,18 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from pictures import SVG, drawn, on_paper, words
-from pictures import boxes as rectangles
-from pictures import curves as curves_of
+from pictures import SVG, boxes as rectangles, curves as curves_of, drawn, on_paper, words
 
 from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.figures import COLOURS, INK, Illustration, control, lines, weights
+from ddlib.figures import COLOURS, INK, Illustration
 from ddlib.learning import Weights
 from ddlib.trajectories import APPENDIX_I, random_extents
+from workshop.chapters.convolution_filters import against_nulls
+from workshop.chapters.dynamics import arm_sketch
+from workshop.chapters.feedforward import feedforward_loop
+from workshop.chapters.trajectories_and_recording import extents_square
+from workshop.chapters.window_networks import overlay
 
 NAMES = tuple(field.name for field in fields(Weights))
 T = np.linspace(0, 3, 300)
@@ -42,22 +44,20 @@ EXAMPLES = {
         "Two joints over time, and an error.",
         y_log=False,
     ),
-    "arm_sketch": lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.6, 0.9]),
-    "extents_square": lambda: figures.extents_square(
-        APPENDIX_I[:5], APPENDIX_I[5], random_extents(200, 0)
-    ),
+    "arm_sketch": lambda: arm_sketch(CMU_DD_ARM_II, [0.6, 0.9]),
+    "extents_square": lambda: extents_square(APPENDIX_I[:5], APPENDIX_I[5], random_extents(200, 0)),
     "network_diagram": lambda: figures.network_diagram(Weights.random(1, 21)[0]),
-    "overlay": lambda: figures.overlay(
+    "overlay": lambda: overlay(
         T, np.sin(T), {"window 11": np.cos(T), "window 41": 0.9 * np.sin(T)}
     ),
     "hinton": lambda: figures.hinton(Weights.random(1, 41)[0]),
     "decomposition": lambda: figures.decomposition(
         {f"unit {k}": FILTERS[k] for k in range(3)}, 0.01
     ),
-    "against_nulls": lambda: figures.against_nulls(
+    "against_nulls": lambda: against_nulls(
         NULLS, "share of the filters", "Bars of shares, dots of draws."
     ),
-    "feedforward_loop": figures.feedforward_loop,
+    "feedforward_loop": feedforward_loop,
 }
 
 
@@ -73,20 +73,6 @@ def ids(svg):
 
 
 each = pytest.mark.parametrize("name", EXAMPLES)
-
-
-def test_every_figure_has_an_example():
-    public = {
-        name
-        for module in (lines, weights, control)
-        for name, f in inspect.getmembers(module, inspect.isfunction)
-        if f.__module__ == module.__name__ and not name.startswith("_")
-    }
-    elsewhere = {"arm_sketch", "extents_square"}  # in `dynamics` and `recording`
-    others = {"families", "clusters", "predicted_curves", "root_loci"}  # with tests of their own
-    others.add("nyquist")
-    others |= {"dots", "largest_weight"}  # parts of figures
-    assert public - others == set(EXAMPLES) - elsewhere
 
 
 @each
@@ -162,7 +148,7 @@ def test_alt_texts_say_the_numbers(made):
 
 
 def test_one_panel_is_enough():
-    one = figures.overlay(T, np.sin(T), {"window 21": np.cos(T)})
+    one = overlay(T, np.sin(T), {"window 21": np.cos(T)})
     assert words(one).count("window 21") == 1
     assert "only" in figures.decomposition({"only": FILTERS[0]}, 0.01).alt
 
@@ -170,12 +156,12 @@ def test_one_panel_is_enough():
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.1, np.nan]), "q must be finite"),
-        (lambda: figures.arm_sketch(CMU_DD_ARM_II, [0.1]), "q must have"),
-        (lambda: figures.extents_square(APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
+        (lambda: arm_sketch(CMU_DD_ARM_II, [0.1, np.nan]), "q must be finite"),
+        (lambda: arm_sketch(CMU_DD_ARM_II, [0.1]), "q must have"),
+        (lambda: extents_square(APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
         (lambda: figures.decomposition({"a": np.ones(10)}, 0.01), "f must have an odd"),
-        (lambda: figures.against_nulls({}, "share", "Bars."), "panels must hold"),
-        (lambda: figures.against_nulls({"a": {"b": {"c": [[1.0]]}}}, "share", "Bars."), "of 'b'"),
+        (lambda: against_nulls({}, "share", "Bars."), "panels must hold"),
+        (lambda: against_nulls({"a": {"b": {"c": [[1.0]]}}}, "share", "Bars."), "of 'b'"),
         (lambda: figures.curves(T, {"y": {"a": T}}, "x", " "), "alt must describe"),
         (lambda: figures.hinton(Weights.random(3, 11)), "weights must be of one network"),
         (lambda: figures.hinton(scaled(0.0)), "weights must be finite and not all zero"),
@@ -194,9 +180,7 @@ def test_refusals(make, message):
 
 def test_bars_end_at_the_mean_and_every_draw_has_a_dot():
     _, figure = drawn(
-        lambda: figures.against_nulls(
-            NULLS, "share of the filters", "Bars of shares, dots of draws."
-        )
+        lambda: against_nulls(NULLS, "share of the filters", "Bars of shares, dots of draws.")
     )
     left, right, *_ = (axis for axis in figure.axes if axis.lines)
     assert [axis.get_title(loc="left") for axis in (left, right)] == ["hidden", "direct"]

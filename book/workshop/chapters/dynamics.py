@@ -1,4 +1,4 @@
-"""Figures of the dynamics chapter: paths of the hand, cost of computing, confidence."""
+"""Figures of the chapter *Dynamics*."""
 
 from __future__ import annotations
 
@@ -15,19 +15,13 @@ from ddlib.identification import Estimate
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
 MARKERS = "os^DvPX"
+
+
 CENTRED = dict(ha="center", va="center")
 
 
 def hand_paths(arm: Arm, extents_deg) -> Illustration:
-    """Paths of the hand on pick-and-place trajectories, with the arm where each turns back.
-
-    Parameters
-    ----------
-    arm : Arm
-        The arm, seen from above, at rest along the x axis.
-    extents_deg : array_like, shape (trajectories, 2)
-        Extents of shoulder and elbow, degrees; numbered from 1.
-    """
+    """Paths of the hand on pick-and-place trajectories, with the arm where each turns back."""
     extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
     t = np.linspace(0.0, MOTION_SECONDS / 2, 60)
     points = arm.forward_kinematics(pick_and_place(extents, t).q)  # (runs, time, point, xy)
@@ -72,17 +66,7 @@ def operations(
     published: Mapping[str, tuple[int, int]],
     band: tuple[float, float],
 ) -> Illustration:
-    """Multiplications of each formulation by number of joints.
-
-    Parameters
-    ----------
-    counts : mapping
-        ``{formulation: {joints: operations}}``, from `ddlib.dynamics.costs.table`.
-    published : mapping
-        ``{source: (joints, multiplications)}``: counts from the literature.
-    band : tuple of float
-        Range to shade: what "several hundred" may mean.
-    """
+    """Multiplications of each formulation by number of joints."""
 
     def draw(figure: Figure):
         axis = figure.subplots()
@@ -111,20 +95,9 @@ def estimates(
 ) -> Illustration:
     """Estimated parameters and their stated confidence, as errors in percent.
 
-    A thick bar holds the middle 95 % of repeated estimates, a dot their median. The thin line
-    is as wide as the confidence interval that is stated on average. A number at the right says
-    how often the interval held the truth. What lies beyond the axis is marked by an arrow.
-
-    Parameters
-    ----------
-    found : mapping
-        ``{label: estimate}``, one row each; with or without repetitions.
-    truth : array_like, shape (parameters,)
-        The true values of the estimates' parameters.
-    names : sequence of str
-        Parameters to show, a panel each.
-    limit : float
-        Largest error on the axis, percent.
+    A thick bar holds the middle 95 % of repeated estimates, a dot their median. The thin line is as
+    wide as the confidence interval that is stated on average. A number at the right says how often
+    the interval held the truth. What lies beyond the axis is marked by an arrow.
     """
     number("limit", limit, 0.0, open_low=True)
     rows = list(found.items())

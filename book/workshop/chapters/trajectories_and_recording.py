@@ -1,4 +1,4 @@
-"""Figures of the chapter on trajectories and recording."""
+"""Figures of the chapter *Trajectories and recording*."""
 
 from __future__ import annotations
 
@@ -13,16 +13,7 @@ from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate, l
 
 
 def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
-    """Where recordings lie in the cube of states: shoulder against elbow, three planes.
-
-    Parameters
-    ----------
-    states : mapping
-        ``{name: states (runs, time, 6)}``: positions (rad) of shoulder and elbow, then their
-        velocities (rad/s) and accelerations (rad/s^2). Later ones are drawn on top.
-    radius : float
-        Half the edge of the cube.
-    """
+    """Where recordings lie in the cube of states: shoulder against elbow, three planes."""
     number("radius", radius, 0.0, open_low=True)
     checked = {n: shaped(f"states[{n!r}]", x, "(runs, time, 6)") for n, x in states.items()}
     if not checked:
@@ -60,17 +51,7 @@ def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
 
 
 def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
-    """Readings of an encoder sample by sample, and accelerations computed from them.
-
-    Parameters
-    ----------
-    t : array_like, shape (time,)
-        Times of the samples, s.
-    steps : array_like, shape (time,)
-        Readings, in steps of the encoder.
-    estimates : mapping
-        ``{name: acceleration (time,)}``, rad/s^2; the first one as dots, the others as curves.
-    """
+    """Readings of an encoder sample by sample, and accelerations computed from them."""
     t = shaped("t", t, "(time,)")
     steps = shaped("steps", steps, t.shape)
     drawn = {name: shaped(f"estimates[{name!r}]", x, t.shape) for name, x in estimates.items()}
@@ -97,15 +78,7 @@ def rounding(t, steps, estimates: Mapping[str, np.ndarray]) -> Illustration:
 
 
 def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
-    """Acceleration against position: a line where one follows from the other, a cloud where not.
-
-    Parameters
-    ----------
-    panels : mapping
-        ``{panel title: {name: points (runs, samples, 2)}}``, position (rad) and acceleration
-        (rad/s^2) along the last axis. The first of each panel is drawn as lines, run by run, the
-        others as dots. A name looks the same in every panel.
-    """
+    """Acceleration against position: a line where one follows from the other, a cloud where not."""
     checked = {
         title: {n: shaped(f"points of {n!r}", x, "(runs, samples, 2)") for n, x in named.items()}
         for title, named in panels.items()
@@ -144,15 +117,7 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
 
 
 def extents_square(training, test, extra=None) -> Illustration:
-    """The square of extents with the training and test trajectories and their hull.
-
-    Parameters
-    ----------
-    training, test : array_like, shapes (runs, 2) and (2,)
-        Extents of shoulder and elbow, degrees.
-    extra : array_like, shape (n, 2), optional
-        Further members of the family.
-    """
+    """The square of extents with the training and test trajectories and their hull."""
     from scipy.spatial import ConvexHull
 
     training, test = finite_array("training", training, 2), finite_array("test", test, 2)

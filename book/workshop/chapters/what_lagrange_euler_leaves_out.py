@@ -1,4 +1,4 @@
-"""Figures of the chapter on unmodelled effects: laws side by side, cases, torques in order."""
+"""Figures of the chapter *What Lagrange-Euler leaves out*."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from ddlib.figures.style import (
     INK,
     NARROW,
     Illustration,
-    check_label,
     illustrate,
 )
 from ddlib.tables import significant
@@ -29,20 +28,7 @@ def side_by_side(
     *,
     log: bool = False,
 ) -> Illustration:
-    """Panels in one row, each with axes of its own.
-
-    Parameters
-    ----------
-    panels : mapping
-        ``{(x label, y label): {curve name: (x, y)}}``. A curve of the same name looks the
-        same in every panel; a panel with one curve has no legend.
-    alt : str
-        Alternative text.
-    height : float
-        Inches.
-    log : bool
-        Logarithmic axes, the same in all panels.
-    """
+    """Panels in one row, each with axes of its own."""
     shown = [name for panel in panels.values() if len(panel) > 1 for name in panel]
     look = {name: k for k, name in enumerate(dict.fromkeys(shown))}
 
@@ -68,55 +54,8 @@ def side_by_side(
     return illustrate(draw, alt, 7.0, height)
 
 
-def by_case(
-    x, cases: Mapping[str, np.ndarray], x_label: str, y_label: str, alt: str, height: float = 1.3
-) -> Illustration:
-    """One quantity in several cases: a panel each, the case as its title, one below the other.
-
-    Parameters
-    ----------
-    x : array_like, shape (points,)
-        The common axis.
-    cases : mapping
-        ``{case: values (points,)}``.
-    x_label, y_label, alt : str
-        Labels of the axes, each a quantity with its unit; alternative text.
-    height : float
-        Height of a panel, inches.
-
-    Raises
-    ------
-    ValueError
-        If a label names no quantity, or there is no case.
-    """
-    if not cases:
-        raise ValueError("cases must hold one case or more, got none")
-
-    def draw(figure: Figure):
-        axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]
-        for axis, (case, values) in zip(axes, cases.items()):
-            axis.plot(x, values, color=COLOURS[0])
-            axis.set(title=case, ylabel=check_label(y_label))
-        axes[-1].set_xlabel(check_label(x_label))
-
-    return illustrate(draw, alt, 7.0, height * len(cases) + 0.4)
-
-
 def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Illustration:
-    """Torques as bars on a logarithmic axis, largest first, one bar for each joint.
-
-    Parameters
-    ----------
-    sizes : mapping
-        ``{name: torque (joint,)}``, N m, positive.
-    joints : sequence of str
-        Names of the joints.
-
-    Raises
-    ------
-    ValueError
-        If a torque is not positive.
-    """
+    """Torques as bars on a logarithmic axis, largest first, one bar for each joint."""
     for name, size in sizes.items():
         if (finite_array(f"sizes[{name!r}]", size, len(joints)) <= 0).any():
             raise ValueError(f"sizes must be positive, got {size} for {name!r}")
