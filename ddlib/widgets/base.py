@@ -45,7 +45,20 @@ class _Checked(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
-class CurveWidget(anywidget.AnyWidget):
+class PageWidget(anywidget.AnyWidget):
+    """What every widget has: a description for the page, and a picture for pages without script."""
+
+    spec = t.Dict(help="everything that stays as it is", read_only=True).tag(sync=True)
+    still = Still(help="the starting state as a picture", read_only=True).tag(sync=True)
+    still_alt = t.Unicode(read_only=True).tag(sync=True)
+
+    def _keep(self, **values):
+        """Set traits that are read-only for others."""
+        for name, value in values.items():
+            self.set_trait(name, value)
+
+
+class CurveWidget(PageWidget):
     """Curves of a function of a few parameters, with a control for each.
 
     Every parameter is a trait of its own name, to set, observe and link. With a kernel the
@@ -96,14 +109,11 @@ class CurveWidget(anywidget.AnyWidget):
     _esm = module(*SCRIPT)
     _css = module(*STYLE)
 
-    spec = t.Dict(help="everything that stays as it is", read_only=True).tag(sync=True)
     baked = t.Bytes(help="the table of `Baked`", read_only=True).tag(sync=True)
     request = t.Int(0, help="counts the page's requests for exact curves").tag(sync=True)
     exact = t.Bytes(b"", help="the function's curves as float32", read_only=True).tag(sync=True)
     answer = t.Dict(help="request and values that `exact` belongs to", read_only=True)
     answer.tag(sync=True)
-    still = Still(help="the starting state as a picture", read_only=True).tag(sync=True)
-    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(
         self,
@@ -145,10 +155,12 @@ class CurveWidget(anywidget.AnyWidget):
         start = evaluate(function, {p.name: p.value for p in parameters})
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
         told = {"title": title, "note": note, "presets_title": presets_title}
-        self.set_trait("spec", self._spec(told, scalars, error))
-        self.set_trait("baked", self._baked.tobytes())
-        self.set_trait("still", still_picture(start, panels, self._parameters, pad, alt))
-        self.set_trait("still_alt", alt)
+        self._keep(
+            spec=self._spec(told, scalars, error),
+            baked=self._baked.tobytes(),
+            still=still_picture(start, panels, self._parameters, pad, alt),
+            still_alt=alt,
+        )
         super().__init__()
         self._compute()
         self.observe(self._on_change, [*self._parameters, "request"])
@@ -246,5 +258,4 @@ class CurveWidget(anywidget.AnyWidget):
         except Exception as error:  # shown in the figure: a comm's handler has no other reader
             answer["error"] = f"{type(error).__name__}: {error}"
         with self.hold_sync():
-            self.set_trait("exact", exact)
-            self.set_trait("answer", answer)
+            self._keep(exact=exact, answer=answer)

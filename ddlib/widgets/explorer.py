@@ -24,11 +24,13 @@ from ddlib.learning import TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
 from ddlib.widgets.hinton import (
+    CENTRE,
     EXACT,
     JOINTS,
     HintonWidget,
     check_models,
     diagram,
+    share_panel,
     unit_names,
     weight_functions,
     width_choice,
@@ -55,15 +57,6 @@ class FilterExplorer(HintonWidget):
         Which networks of each ensemble can be chosen, by their seed; two or more.
     **options
         Passed on to `CurveWidget`.
-
-    Attributes
-    ----------
-    width, seed : int
-        Window size and network.
-    unit, joint : str
-        The unit ("shoulder torque", "hidden 3", ...) and whose window ("shoulder", "elbow").
-    filter : ndarray, shape (width,)
-        The chosen weight function, oldest sample first.
     """
 
     _esm = module(*SCRIPT, "hinton.js", "explorer.js")
@@ -81,13 +74,11 @@ class FilterExplorer(HintonWidget):
         some = next(iter(self._weights.values()))
         self._reach = reach = max(self._weights) // 2
         time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
-        centre, window = "time from the centre, ms", ("first", "last")
         parts = {name: name for name in ("constant", "even", "odd")}
-        gains = {
-            "gain": "whole",
-            "gain, varying": "without its constant",
-            "gain, ideal": "ideal derivative",
-        }
+        energy = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
+        gains = {"gain": "whole", "gain, varying": "without its constant"}
+        gains |= {"gain, ideal": "ideal derivative"}
+        window = {"cursor": ("first", "last"), "y_fit": True}
         super().__init__(
             some[0],
             reach,
@@ -99,17 +90,9 @@ class FilterExplorer(HintonWidget):
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
             ],
             [
-                Panel("Weights", "weights", centre, time, kind="stems", cursor=window, y_fit=True),
-                Panel("Parts of the weights", parts, centre, time, cursor=window, y_fit=True),
-                Panel(
-                    "Share of the energy",
-                    "shares",
-                    "responds to",
-                    np.arange(5),
-                    kind="bars",
-                    ticks=list(enumerate(("pos.", "vel.", "acc.", "jerk", "rest"))),
-                    y_range=(0.0, 1.0),
-                ),
+                Panel("Weights", "weights", CENTRE, time, kind="stems", **window),
+                Panel("Parts of the weights", parts, CENTRE, time, **window),
+                share_panel("Share of the energy", "responds to", energy),
                 Panel(
                     "Gain",
                     gains,
@@ -128,7 +111,7 @@ class FilterExplorer(HintonWidget):
             ),
             depends={
                 "weights of all units": ("width", "seed"),
-                **dict.fromkeys(window, ("width",)),
+                **dict.fromkeys(("first", "last"), ("width",)),
             },
             note=(
                 "Both axes of the gain are logarithmic: a derivative is a straight line. From 1 to "
@@ -141,31 +124,24 @@ class FilterExplorer(HintonWidget):
             **{"tolerance": EXACT, **options},
         )
 
-    @property
-    def filter(self) -> np.ndarray:
-        """The chosen weight function."""
-        return self._filter(self.width, self.seed, self.unit, self.joint)
-
     def _filter(self, width, seed, unit, joint):
         weights = self._weights[width][seed]
         return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
 
     def _curves(self, width, seed, unit, joint) -> dict:
-        reach = self._reach
         f = self._filter(width, seed, unit, joint)
         parts = decompose(f)
         half = (width // 2 + 0.5) * LOG_STEP * 1e3
+        constant = np.broadcast_to(parts.constant, f.shape)
+        filters = {"weights": f, "constant": constant, "even": parts.even, "odd": parts.odd}
         return {
-            "weights": zero_padded(f, reach),
-            "constant": zero_padded(np.broadcast_to(parts.constant, f.shape), reach),
-            "even": zero_padded(parts.even, reach),
-            "odd": zero_padded(parts.odd, reach),
+            **{name: zero_padded(part, self._reach) for name, part in filters.items()},
             "shares": shares(f),
             **_gains(f),
             "class": CLASSES.index(classify(f)),
             "first": -half,
             "last": half,
-            "weights of all units": diagram(self._weights[width][seed], reach),
+            "weights of all units": diagram(self._weights[width][seed], self._reach),
         }
 
 

@@ -11,9 +11,13 @@ from ddlib._check import one_of
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 
 EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold, and little else
+
+
+CENTRE = "time from the centre, ms"
 
 
 def unit_names(weights: Weights) -> tuple[str, ...]:
@@ -61,6 +65,12 @@ def width_choice(sizes) -> Choice:
     sizes = sorted(sizes)
     labels = {width: f"{width} samples" for width in sizes}
     return Choice("width", "Window size", labels, sizes[len(sizes) // 2])
+
+
+def share_panel(title: str, x_label: str, parts: Mapping[float, str]) -> Panel:
+    """Bars of the function's "shares" of a whole."""
+    ticks, ends = list(parts.items()), (0.0, 1.0)
+    return Panel(title, "shares", x_label, list(parts), kind="bars", ticks=ticks, y_range=ends)
 
 
 def diagram(weights: Weights, reach: int) -> np.ndarray:

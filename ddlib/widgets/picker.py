@@ -152,14 +152,15 @@ class TrajectoryPicker(LiveWidget):
         errors = {name: self.numbers[f"RMSS, {name}"] for name in models}
         # in hundredths, the shoulder's extents fastest
         errors = {name: "".join(map(_digits, 100 * x.T.ravel())) for name, x in errors.items()}
-        self.set_trait("map", {"side": AXIS.size, "step": STEP, "errors": errors})
-        angles = [f"{joint} angle" for joint in JOINTS]
-        lengths = list(setup.arm.lengths)
-        self.set_trait("arm", {"lengths": lengths, "angles": angles, "times": TIMES.tolist()})
+        angles, lengths = [f"{joint} angle" for joint in JOINTS], list(setup.arm.lengths)
         layouts, weights = networks(models.values())
         told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
-        self.set_trait("loop", {**curves.plain(), "models": told})
-        self.set_trait("weights", weights)
+        self._keep(
+            map={"side": AXIS.size, "step": STEP, "errors": errors},
+            arm={"lengths": lengths, "angles": angles, "times": TIMES.tolist()},
+            loop={**curves.plain(), "models": told},
+            weights=weights,
+        )
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
         self.on_msg(self._on_message)
@@ -176,10 +177,10 @@ class TrajectoryPicker(LiveWidget):
         self._say(f"Recorded {angles}: now in the widget's recording.")
         return self.recording
 
-    def _from_parameters(self, change):
+    def _from_parameters(self, _):
         self.extents_deg = (self.shoulder_deg, self.elbow_deg)
 
-    def _to_parameters(self, change):
+    def _to_parameters(self, _):
         with self.hold_trait_notifications():
             self.shoulder_deg, self.elbow_deg = self.extents_deg
 
@@ -199,8 +200,7 @@ class TrajectoryPicker(LiveWidget):
 
 def _digits(value: float) -> str:
     """A number from 0 to 1295, rounded, as two digits to the base of 36."""
-    rounded = min(max(round(value), 0), 36**2 - 1)
-    return "".join("0123456789abcdefghijklmnopqrstuvwxyz"[k] for k in divmod(rounded, 36))
+    return np.base_repr(min(max(round(value), 0), 36**2 - 1), 36).lower().zfill(2)
 
 
 def _parameters() -> list[Parameter]:

@@ -11,6 +11,7 @@ from ddlib.setups import errors
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
+    CENTRE,
     EXACT,
     JOINTS,
     HintonWidget,
@@ -43,13 +44,6 @@ class TrainingPlayer(HintonWidget):
         Which network.
     **options
         Passed on to `CurveWidget`.
-
-    Attributes
-    ----------
-    epoch : int
-        One of the recorded epochs.
-    unit : str
-        "shoulder torque", "hidden 3", ...
     """
 
     _esm = module(*SCRIPT, "hinton.js", "player.js")
@@ -100,7 +94,7 @@ class TrainingPlayer(HintonWidget):
                 Panel(
                     "Weights of the unit",
                     {f"{joint} weights": f"from the {joint}'s window" for joint in JOINTS},
-                    "time from the centre, ms",
+                    CENTRE,
                     np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3,
                     y_range=("lowest", "highest"),
                 ),

@@ -11,12 +11,12 @@ from ddlib.analysis import content
 from ddlib.learning import Directions
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, Panel, Scalar, module
-from ddlib.widgets.hinton import EXACT, JOINTS, width_choice, zero_padded
+from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.parameters import Choice
 
 WHO = ("measured", "predicted")
 FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
-SHARES = ("bias", "position", "velocity", "acceleration", "jerk", "rest")
+SHARES = dict(enumerate(("bias", "pos.", "vel.", "acc.", "jerk", "rest")))
 
 
 class SpectrumExplorer(CurveWidget):
@@ -33,17 +33,6 @@ class SpectrumExplorer(CurveWidget):
         Of the training set of each cell of the study, in their order.
     **options
         Passed on to `CurveWidget`.
-
-    Attributes
-    ----------
-    case : int
-        Which recording and scaling of inputs, in the order of the study.
-    width : int
-        Window size.
-    direction : int
-        1 for the direction in which the windows vary most.
-    epoch : int
-        One of the recorded epochs, from 1.
     """
 
     _esm = module(*SCRIPT, "player.js", "spectrum.js")
@@ -91,21 +80,13 @@ class SpectrumExplorer(CurveWidget):
                 Panel(
                     "The direction as a filter",
                     dict(zip(shape, JOINTS)),
-                    "time from the centre, ms",
+                    CENTRE,
                     time,
                     kind="stems",
                     cursor=("first", "last"),
                     y_fit=True,
                 ),
-                Panel(
-                    "What it responds to, share",
-                    "shares",
-                    "part of the window",
-                    np.arange(len(SHARES)),
-                    kind="bars",
-                    ticks=list(enumerate(("bias", "pos.", "vel.", "acc.", "jerk", "rest"))),
-                    y_range=(0.0, 1.0),
-                ),
+                share_panel("What it responds to, share", "part of the window", SHARES),
                 Panel(
                     "Change over the start, times",
                     {f"change {who}": who for who in WHO},

@@ -31,13 +31,6 @@ class SlidingWindow(LiveWidget):
         One run, with rests long enough for the largest window.
     **options
         Passed on to `LiveWidget`.
-
-    Attributes
-    ----------
-    width : int
-        Window size.
-    sample : int
-        The window's centre, counted from the beginning of the motion.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "window.js"))
@@ -121,11 +114,10 @@ class SlidingWindow(LiveWidget):
             **options,
         )
         layouts, weights = networks(models.values())
-        self.set_trait("layouts", layouts)
-        self.set_trait("weights", weights)
         whole = slice(recording.motion.start - reach, recording.motion.stop + reach)
         parts = recording.q[whole].T.ravel(), self._measured.T.ravel()
-        self.set_trait("recorded", np.concatenate(parts).astype("<f8").tobytes())
+        recorded = np.concatenate(parts).astype("<f8").tobytes()
+        self._keep(layouts=layouts, weights=weights, recorded=recorded)
 
     def _ranges(self) -> dict:
         """Lowest and highest value of the curves over all widths and samples."""

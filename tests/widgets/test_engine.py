@@ -27,7 +27,7 @@ from ddlib.setups import JOINT_DAMPING, KP, SETUPS, STATE_FEEDBACK, split
 from ddlib.simulation import follow
 from ddlib.simulation.plant import substeps
 from ddlib.trajectories import pick_and_place, time_grid
-from ddlib.widgets.engine import physics, plain
+from ddlib.widgets.engine import plain
 from workshop.report import results
 
 STEP = 0.002
@@ -40,10 +40,6 @@ BOOK_ARMS = pytest.mark.parametrize(
 def engine(browser):
     with functions(browser) as call:
         yield call
-
-
-def test_the_equations_are_what_the_sources_say():
-    assert physics.FILE.read_text(encoding="utf-8") == physics.physics()
 
 
 # Equations

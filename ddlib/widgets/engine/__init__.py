@@ -1,7 +1,5 @@
-"""Widgets that compute in the page: the live engine, and what is built on it.
+"""Widgets that compute in the page, and the live engine that they share.
 
-- ``physics``: writes the engine's equations (``static/physics.js``) from the derivation and the
-  friction laws; run as a module it writes the file anew
 - ``plain``: arm, effects, controller and network as the plain data that the engine takes
 - ``live``: `CurveWidget` without a table: its script computes the curves
 - ``loops``: PID loops with a late torque: runs that are stopped, growth and margins
@@ -10,6 +8,6 @@
 - ``builder``: a window whose weights the reader draws, to measure acceleration
 - ``trainer``: a network that the reader trains from random weights
 
-The rest of the engine is ``static/engine.js``, the loop and the network, and
-``static/descent.js``, training.
+The engine is ``static/physics.js``, its equations, ``static/engine.js``, the loop and the network,
+and ``static/descent.js``, training.
 """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import anywidget
 import numpy as np
 import traitlets as t
 
@@ -14,8 +13,8 @@ from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.baking.still import Still, still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
 from ddlib.widgets.engine.plain import lean
 from ddlib.widgets.parts.panels import Panel
 
@@ -103,7 +102,7 @@ def _textbook(width: int, derivative: int = 2) -> np.ndarray:
     return np.pad(f, (WIDTH - width) // 2)
 
 
-class FilterBuilder(anywidget.AnyWidget):
+class FilterBuilder(PageWidget):
     """Draw 21 weights that measure acceleration; see output, error and gain at once.
 
     Everything is computed in the page, with a kernel and without. Least squares and a trained
@@ -121,11 +120,8 @@ class FilterBuilder(anywidget.AnyWidget):
     )
     _css = module(*STYLE, "builder.css")
 
-    spec = t.Dict(help="starting points, rivals, charts", read_only=True).tag(sync=True)
     motion = t.Bytes(help="true positions, then accelerations, as float64", read_only=True)
     motion.tag(sync=True)
-    still = Still(help="a textbook filter as a picture", read_only=True).tag(sync=True)
-    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(self, unit):
         unit = shaped("unit", unit, (WIDTH,))
@@ -143,34 +139,30 @@ class FilterBuilder(anywidget.AnyWidget):
             Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
             Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=GAINS),
         ]
-        self.set_trait(
-            "spec",
-            {
-                "title": "Be the network: measure acceleration",
-                "hint": HINT,
-                "width": WIDTH,
-                "samples": len(q),
-                "period": LOG_STEP,
-                "step": step,
-                "zeros": zeros().tolist(),
-                "levels": LEVELS,
-                "starts": [[name, f.tolist()] for name, f in starts().items()],
-                "rivals": [
-                    ["unit", "A trained unit", unit.tolist()],
-                    ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
-                    ["least", "Least squares on this recording", least_squares().tolist()],
-                ],
-                "panels": [panel.description() for panel in panels],
-                "curves": [
-                    *({"name": name, "low": -most, "high": most} for name in output),
-                    *({"name": name, "low": GAINS[0], "high": GAINS[1]} for name in gain),
-                ],
-            },
-        )
-        self.set_trait("motion", np.concatenate([q, truth]).astype("<f8").tobytes())
-        picture, alt = _still(time, truth)
-        self.set_trait("still", picture)
-        self.set_trait("still_alt", alt)
+        spec = {
+            "title": "Be the network: measure acceleration",
+            "hint": HINT,
+            "width": WIDTH,
+            "samples": len(q),
+            "period": LOG_STEP,
+            "step": step,
+            "zeros": zeros().tolist(),
+            "levels": LEVELS,
+            "starts": [[name, f.tolist()] for name, f in starts().items()],
+            "rivals": [
+                ["unit", "A trained unit", unit.tolist()],
+                ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
+                ["least", "Least squares on this recording", least_squares().tolist()],
+            ],
+            "panels": [panel.description() for panel in panels],
+            "curves": [
+                *({"name": name, "low": -most, "high": most} for name in output),
+                *({"name": name, "low": GAINS[0], "high": GAINS[1]} for name in gain),
+            ],
+        }
+        motion = np.concatenate([q, truth]).astype("<f8").tobytes()
+        still, alt = _still(time, truth)
+        self._keep(spec=spec, motion=motion, still=still, still_alt=alt)
         super().__init__()
 
 

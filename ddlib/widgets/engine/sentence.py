@@ -5,7 +5,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 
-import anywidget
 import numpy as np
 import traitlets as t
 
@@ -15,43 +14,29 @@ from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
-from ddlib.widgets.baking.still import START, Still, encoded
-from ddlib.widgets.base import FRAME, STYLE, module
+from ddlib.widgets.baking.still import START, encoded
+from ddlib.widgets.base import FRAME, STYLE, PageWidget, module
 from ddlib.widgets.engine.loops import LOOPS, linear, modes
 from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 
-SHARE = np.array([1.0, KP[1] / KP[0]])
-"""Friction of shoulder and elbow relative to the shoulder's, as the gains."""
+SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains
 
 
-class LiveSentence(anywidget.AnyWidget):
+class LiveSentence(PageWidget):
     """A sentence with numbers to drag or to step, and the consequence in the same sentence.
 
-    Parameters
-    ----------
-    parts : sequence of str
-        The sentence in pieces: plain text, a name of a parameter in braces, and once or more a
-        name of a result in angle brackets.
-    parameters : sequence of Parameter
-        The numbers.
-    steps : mapping
-        Name -> how far an arrow key or six pixels move it.
-    data : mapping
-        What the script's function needs (static/sentence.js), with the name of it in ``kind``.
-    code : str
-        Python code with the same result; names of numbers in braces stand for their values.
+    `parts` are its pieces: plain text, a name of a number in braces, and once or more a name of a
+    result in angle brackets. `steps` says how far an arrow key or six pixels move a number; `data`
+    is what the script's function (static/sentence.js) needs, with the name of it in ``kind``; in
+    the Python `code` names of numbers in braces stand for their values.
     """
 
     _esm = lean(module(*FRAME, *ENGINE, LOOPS, "sentence.js"))
     _css = module(*STYLE, "sentence.css")
 
-    spec = t.Dict(help="the sentence, its numbers and what computes its end", read_only=True)
-    spec.tag(sync=True)
     values = t.Dict(help="the numbers by name").tag(sync=True)
-    still = Still(help="the sentence as it begins", read_only=True).tag(sync=True)
-    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(
         self,
@@ -67,8 +52,7 @@ class LiveSentence(anywidget.AnyWidget):
         self.set_trait("spec", {**told, **data})
         super().__init__(values={p.name: p.value for p in parameters})
         text = self.text()
-        self.set_trait("still", _picture(text))
-        self.set_trait("still_alt", text)
+        self._keep(still=_picture(text), still_alt=text)
 
     @t.validate("values")
     def _checked(self, proposal):
@@ -133,8 +117,7 @@ class LoopSentence(LiveSentence):
     are the shoulder's, the elbow's in the ratio of the book's.
     """
 
-    FRICTION = 0.5
-    """Viscous friction of the shoulder at which the modes are given, N m s/rad."""
+    FRICTION = 0.5  # of the shoulder at which the modes are given, N m s/rad
 
     def __init__(self):
         super().__init__(

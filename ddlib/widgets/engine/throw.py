@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import anywidget
 import numpy as np
 import traitlets as t
 
@@ -13,8 +12,8 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
-from ddlib.widgets.baking.still import Still, still_picture
-from ddlib.widgets.base import STYLE, module
+from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets.base import STYLE, PageWidget, module
 from ddlib.widgets.engine.plain import ENGINE, gains, lean, network, plant, weight_bytes
 from ddlib.widgets.parts.panels import Panel
 
@@ -31,7 +30,7 @@ HINT = (
 )
 
 
-class ThrownArm(anywidget.AnyWidget):
+class ThrownArm(PageWidget):
     """Throw a simulated arm; a window network tells the torque from positions alone.
 
     Everything is computed in the page by the live engine (``static/engine.js``), with a kernel
@@ -55,11 +54,7 @@ class ThrownArm(anywidget.AnyWidget):
     )
     _css = module(*STYLE, "throw.css")
 
-    spec = t.Dict(help="arm, controller, layout of the network, motions", read_only=True)
-    spec.tag(sync=True)
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
-    still = Still(help="a played motion as a picture", read_only=True).tag(sync=True)
-    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(self, model: TorqueModel, setup: Setup = JOINT_DAMPING, *, code: str = ""):
         layout = network(model)
@@ -69,31 +64,26 @@ class ThrownArm(anywidget.AnyWidget):
             )
         order = [TEST_TRAJECTORY, *(k for k in range(1, 7) if k != TEST_TRAJECTORY)]
         span = np.maximum(-model.outputs.low, model.outputs.high)
-        self.set_trait(
-            "spec",
-            {
-                "title": "Throw the arm: a network tells its torque",
-                "hint": HINT,
-                "code": code,
-                "plant": plant(setup.arm, setup.effects),
-                "gains": gains(setup.controller),
-                "network": layout,
-                "step": CONTROL_STEP,
-                "every": round(LOG_STEP / CONTROL_STEP),
-                "motion": MOTION_SECONDS,
-                "rest": REST,
-                "force": FORCE,
-                "spring": SPRING,
-                "toss": {"rate": TOSS_RATE, "seconds": TOSS_SECONDS},
-                "torques": (0.5 * span).tolist(),
-                "trajectories": [_trajectory(k) for k in order],
-                "units": _units(model),
-            },
-        )
-        self.set_trait("weights", weight_bytes(model))
-        picture, alt = _still(model, setup)
-        self.set_trait("still", picture)
-        self.set_trait("still_alt", alt)
+        still, alt = _still(model, setup)
+        spec = {
+            "title": "Throw the arm: a network tells its torque",
+            "hint": HINT,
+            "code": code,
+            "plant": plant(setup.arm, setup.effects),
+            "gains": gains(setup.controller),
+            "network": layout,
+            "step": CONTROL_STEP,
+            "every": round(LOG_STEP / CONTROL_STEP),
+            "motion": MOTION_SECONDS,
+            "rest": REST,
+            "force": FORCE,
+            "spring": SPRING,
+            "toss": {"rate": TOSS_RATE, "seconds": TOSS_SECONDS},
+            "torques": (0.5 * span).tolist(),
+            "trajectories": [_trajectory(k) for k in order],
+            "units": _units(model),
+        }
+        self._keep(spec=spec, weights=weight_bytes(model), still=still, still_alt=alt)
         super().__init__()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import anywidget
 import numpy as np
 import traitlets as t
 
@@ -13,8 +12,8 @@ from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rat
 from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.baking.still import Still, still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, module
+from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
 from ddlib.widgets.engine.plain import ENGINE, FIELDS, TRAINING, lean
 from ddlib.widgets.parts.panels import Panel
 
@@ -67,7 +66,7 @@ def _mixed(state: int) -> int:
     return x ^ x >> 14
 
 
-class NetworkTrainer(anywidget.AnyWidget):
+class NetworkTrainer(PageWidget):
     """Train a window network in the page: errors, torques and the filters of all units.
 
     Everything is computed in the page, with a kernel and without.
@@ -93,13 +92,10 @@ class NetworkTrainer(anywidget.AnyWidget):
     )
     _css = module(*STYLE, "trainer.css")
 
-    spec = t.Dict(help="layout, scaling, choices", read_only=True).tag(sync=True)
     positions = t.Bytes(help="the runs' encoder readings, steps as int16", read_only=True)
     positions.tag(sync=True)
     torques = t.Bytes(help="the runs' measured torques, N m as float32", read_only=True)
     torques.tag(sync=True)
-    still = Still(help="the torque to be learnt as a picture", read_only=True).tag(sync=True)
-    still_alt = t.Unicode(read_only=True).tag(sync=True)
 
     def __init__(
         self,
@@ -124,54 +120,54 @@ class NetworkTrainer(anywidget.AnyWidget):
         plain = TrainingSet.from_recording(training, WIDTH, scaling=SCALINGS["printed"])
         looks = np.maximum(1, np.arange(0, epochs + 1, check))
         panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
-        self.set_trait(
-            "spec",
-            {
-                "title": "Train a network",
-                "hint": HINT,
-                "code": code,
-                "layout": {
-                    "hidden": HIDDEN_UNITS,
-                    "outputs": len(JOINTS),
-                    "joints": len(JOINTS),
-                    "width": WIDTH,
-                },
-                "runs": len(recording.q),
-                "samples": samples,
-                "every": EVERY,
-                "encoder": encoder.step,
-                "inputs": {
-                    "low": plain.inputs.low.tolist(),
-                    "gain": plain.inputs.gain.tolist(),
-                    "ranges": {name: list(pair) for name, pair in SCALINGS.items()},
-                },
-                "outputs": {
-                    "low": plain.outputs.low.tolist(),
-                    "gain": plain.outputs.gain.tolist(),
-                    "first": float(plain.outputs.target[0]),
-                },
-                "shifts": [shift.tolist() for shift in shifted],
-                "initial": INITIAL,
-                "rate": default_rate(WIDTH),
-                "steps": list(STEPS),
-                "momenta": list(MOMENTA),
-                "momentum": momentum,
-                "epochs": epochs,
-                "check": check,
-                "level": level,
-                "basis": basis(WIDTH).tolist(),
-                "classes": list(CLASSES),
-                "panels": [panel.description() for panel in panels],
-                "curves": [
-                    {"name": name, "low": low, "high": high} for name, (low, high) in ranges.items()
-                ],
+        spec = {
+            "title": "Train a network",
+            "hint": HINT,
+            "code": code,
+            "layout": {
+                "hidden": HIDDEN_UNITS,
+                "outputs": len(JOINTS),
+                "joints": len(JOINTS),
+                "width": WIDTH,
             },
+            "runs": len(recording.q),
+            "samples": samples,
+            "every": EVERY,
+            "encoder": encoder.step,
+            "inputs": {
+                "low": plain.inputs.low.tolist(),
+                "gain": plain.inputs.gain.tolist(),
+                "ranges": {name: list(pair) for name, pair in SCALINGS.items()},
+            },
+            "outputs": {
+                "low": plain.outputs.low.tolist(),
+                "gain": plain.outputs.gain.tolist(),
+                "first": float(plain.outputs.target[0]),
+            },
+            "shifts": [shift.tolist() for shift in shifted],
+            "initial": INITIAL,
+            "rate": default_rate(WIDTH),
+            "steps": list(STEPS),
+            "momenta": list(MOMENTA),
+            "momentum": momentum,
+            "epochs": epochs,
+            "check": check,
+            "level": level,
+            "basis": basis(WIDTH).tolist(),
+            "classes": list(CLASSES),
+            "panels": [panel.description() for panel in panels],
+            "curves": [
+                {"name": name, "low": low, "high": high} for name, (low, high) in ranges.items()
+            ],
+        }
+        still, alt = _still(panels[1:], training, test)
+        self._keep(
+            spec=spec,
+            positions=np.round(seen / encoder.step).astype("<i2").tobytes(),
+            torques=torque.astype("<f4").tobytes(),
+            still=still,
+            still_alt=alt,
         )
-        self.set_trait("positions", np.round(seen / encoder.step).astype("<i2").tobytes())
-        self.set_trait("torques", torque.astype("<f4").tobytes())
-        picture, alt = _still(panels[1:], training, test)
-        self.set_trait("still", picture)
-        self.set_trait("still_alt", alt)
         super().__init__()
 
 
