@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev, polynomial
 
-from workshop.beyond.rivals.bases import Fourier, Polynomial, Solution, exponents, wave_numbers
+from workshop.beyond.rivals.bases import Fourier, Polynomial, Solution
 from workshop.beyond.rivals.protocol import Cases, NotFitted
 
 RNG = np.random.default_rng(3)
@@ -22,20 +22,16 @@ def cases(x, torque):
     return Cases(x, torque, "states", 0.01)
 
 
-@pytest.mark.parametrize("variables, degree", [(1, 4), (2, 3), (6, 3), (3, 0)])
-def test_exponents_are_all_of_a_total_degree_once(variables, degree):
-    found = exponents(variables, degree)
-    assert len(found) == comb(variables + degree, degree) == len({tuple(row) for row in found})
-    assert found.sum(1).max() == degree and (np.diff(found.sum(1)) >= 0).all()
-
-
-def test_waves_are_one_of_each_opposite_pair():
-    found = {tuple(row) for row in wave_numbers(3, 2)}
-    every = [
-        k for k in np.ndindex(5, 5, 5) if 0 < np.abs(np.subtract(k, 2)).sum() <= 2
-    ]  # shifted by 2
-    assert len(found) == len(every) / 2
-    assert not found & {tuple(-x for x in k) for k in found}
+def test_terms_are_all_of_a_total_degree_and_waves_one_of_each_opposite_pair():
+    data = cases(states(100), states(100)[..., 0])
+    for degree in (0, 3):
+        powers = Polynomial(degree).fit(data).exponents
+        assert len(powers) == comb(6 + degree, degree) == len({tuple(row) for row in powers})
+        assert powers.sum(1).max() == degree and (np.diff(powers.sum(1)) >= 0).all()
+    waves = {tuple(row) for row in Fourier(2).fit(data).waves}
+    every = [k for k in np.ndindex((5,) * 6) if 0 < np.abs(np.subtract(k, 2)).sum() <= 2]
+    assert len(waves) == len(every) / 2
+    assert not waves & {tuple(-x for x in wave) for wave in waves}
 
 
 @pytest.mark.parametrize(
@@ -49,9 +45,8 @@ def test_terms_are_numpys(kind, vander, value):
     torque = np.stack([value(x[:, 0, 0], x[:, 1, 0], coefficients), x[:, 0, 0]], -1)
     rival = Polynomial(3, kind).fit(cases(x, torque))
     np.testing.assert_allclose(rival.torque(x), torque, atol=1e-9)
-    ours = rival.design(x)
     wanted = vander(x[:, 0, 0], x[:, 1, 0], (3, 3))
-    for column, power in zip(ours.T, rival.exponents):
+    for column, power in zip(rival.design(x).T, rival.exponents):
         if not power[[1, 2, 4, 5]].any():
             np.testing.assert_allclose(column, wanted[:, 4 * power[0] + power[3]], atol=1e-12)
 
@@ -59,23 +54,19 @@ def test_terms_are_numpys(kind, vander, value):
 @pytest.mark.parametrize("kind", ["monomials", "chebyshev"])
 def test_a_cubic_of_six_variables_is_recovered_by_any_degree_above(kind):
     x, asked = states(), states(50, seed=5) * 0.99
-    power = exponents(6, 3)
+    power = Polynomial(3).fit(cases(x, x[..., 0])).exponents
     true = RNG.normal(size=(len(power), 2))
 
     def torque(at):
         flat = at.reshape(len(at), 6)
         return np.stack([np.prod(flat**p, 1) for p in power], -1) @ true
 
-    for degree in (3, 4):
-        found = Polynomial(degree, kind).fit(cases(x, torque(x))).torque(asked)
-        np.testing.assert_allclose(found, torque(asked), atol=1e-8)
-    low = Polynomial(2, kind).fit(cases(x, torque(x)))
+    low, exact, high = (Polynomial(n, kind).fit(cases(x, torque(x))) for n in (2, 3, 4))
+    for rival in (exact, high):
+        np.testing.assert_allclose(rival.torque(asked), torque(asked), atol=1e-8)
     assert np.abs(low.torque(asked) - torque(asked)).max() > 0.1
-    if kind == "monomials":
-        exact = Polynomial(3, kind).fit(cases(x, torque(x)))
-        np.testing.assert_allclose(
-            exact.coefficients[1:] + 0.0, true[1:], atol=1e-8
-        )  # the constant is shared with the mean
+    if kind == "monomials":  # the constant is shared with the mean
+        np.testing.assert_allclose(exact.coefficients[1:], true[1:], atol=1e-8)
         np.testing.assert_allclose(exact.coefficients[0] + exact.mean, true[0], atol=1e-8)
 
 
@@ -110,37 +101,27 @@ def test_ridge_is_the_closed_form_and_one_fit_serves_all():
         closed = np.linalg.solve(
             design.T @ design / 100 + ridge * np.eye(28), design.T @ centred / 100
         )
-        np.testing.assert_allclose(rival.with_ridge(ridge).coefficients, closed, atol=1e-10)
         again = Polynomial(2, ridge=ridge).fit(cases(x, torque))
-        np.testing.assert_allclose(again.coefficients, closed, atol=1e-10)
+        for each in (again, rival.with_ridge(ridge)):
+            np.testing.assert_allclose(each.coefficients, closed, atol=1e-10)
     assert rival.ridge == 0.0  # the first one is as it was
-
-
-def test_without_ridge_and_with_too_few_cases_it_is_the_shortest():
     design, target = RNG.normal(size=(5, 9)), RNG.normal(size=(5, 2))
     design[:, 3] = design[:, 4]  # two functions that the cases cannot tell apart
-    np.testing.assert_allclose(
-        Solution.of(design, target).coefficients(),
-        np.linalg.lstsq(design, target, rcond=None)[0],
-        atol=1e-10,
-    )
+    shortest = np.linalg.lstsq(design, target, rcond=None)[0]
+    np.testing.assert_allclose(Solution.of(design, target).coefficients(), shortest, atol=1e-10)
 
 
 def test_runges_function_is_the_textbooks():
     """Through equally spaced points a high degree swings out near the ends; Chebyshev's do not."""
 
     def swing(points, degree):
-        x = np.zeros((len(points), 2, 3))
-        x[:, 0, 0] = points
-        asked = np.zeros((400, 2, 3))
-        asked[:, 0, 0] = np.linspace(-1, 1, 400)
+        x, asked = np.zeros((len(points), 2, 3)), np.zeros((400, 2, 3))
+        x[:, 0, 0], asked[:, 0, 0] = points, np.linspace(-1, 1, 400)
         runge = [np.tile(1 / (1 + 25 * s[:, 0, :1] ** 2), 2) for s in (x, asked)]
-        # one variable alone: the functions of the others are constant there
         fit = np.polynomial.chebyshev.Chebyshev.fit(points, runge[0][:, 0], degree, domain=[-1, 1])
-        rival = Polynomial(degree).fit(cases(x, runge[0]))
-        found = rival.torque(asked)[:, 0]
-        np.testing.assert_allclose(found, fit(asked[:, 0, 0]), atol=1e-6)
-        return np.abs(found - runge[1][:, 0]).max()
+        predicted = Polynomial(degree).fit(cases(x, runge[0])).torque(asked)[:, 0]
+        np.testing.assert_allclose(predicted, fit(asked[:, 0, 0]), atol=1e-6)
+        return np.abs(predicted - runge[1][:, 0]).max()
 
     even = np.linspace(-1, 1, 9)
     assert swing(even, 8) > 1.0 > swing(even, 4)
@@ -148,28 +129,27 @@ def test_runges_function_is_the_textbooks():
 
 
 def test_operations_are_counted_by_hand():
-    x = states(100)
-    torque = x[..., 0]
+    data = cases(states(100), states(100)[..., 0])
     # scaling 6, squares 6, products of two variables 15, two torques for 28 terms
-    assert Polynomial(2, "monomials").fit(cases(x, torque)).operations() == (
-        6 + 6 + 15 + 56, 6 + 56, 0, 0
-    )  # fmt: skip
-    assert Polynomial(2).fit(cases(x, torque)).operations()[:2] == (12 + 6 + 15 + 56, 6 + 6 + 56)
+    plain = Polynomial(2, "monomials").fit(data).operations()
+    assert plain == (6 + 6 + 15 + 56, 6 + 56, 0, 0)
+    assert Polynomial(2).fit(data).operations()[:2] == (12 + 6 + 15 + 56, 6 + 6 + 56)
     # six waves along an axis; 13 functions for two torques
-    assert Fourier(1).fit(cases(x, torque)).operations() == (6 + 26, 6 + 26, 0, 12)
-    assert Polynomial(2).fit(cases(x, torque)).count() == 56 + 2 + 12
+    assert Fourier(1).fit(data).operations() == (6 + 26, 6 + 26, 0, 12)
+    assert Polynomial(2).fit(data).count() == 56 + 2 + 12
 
 
-def test_what_makes_no_sense_is_refused():
-    with pytest.raises(ValueError, match="kind must be one of"):
-        Polynomial(2, "legendre")
-    with pytest.raises(ValueError, match="at most 5000 functions, got 5005"):
-        Polynomial(9).fit(cases(states(), states()[..., 0]))
-    with pytest.raises(ValueError, match="at most 5000 functions"):
-        Fourier(6).fit(cases(states(), states()[..., 0]))
-    with pytest.raises(ValueError, match="period"):
-        Fourier(2, period=0.5)
-    with pytest.raises(ValueError, match="ridge"):
-        Polynomial(2, ridge=-1.0)
-    with pytest.raises(NotFitted, match=r"Polynomial.* has learnt nothing"):
-        Polynomial(2).with_ridge(1.0)
+@pytest.mark.parametrize(
+    "make, error, message",
+    [
+        (lambda: Polynomial(2, "legendre"), ValueError, "kind must be one of"),
+        (lambda: Polynomial(9).fit(cases(states(), states()[..., 0])), ValueError, "5000 .* 5005"),
+        (lambda: Fourier(6).fit(cases(states(), states()[..., 0])), ValueError, "at most 5000"),
+        (lambda: Fourier(2, period=0.5), ValueError, "period"),
+        (lambda: Polynomial(2, ridge=-1.0), ValueError, "ridge"),
+        (lambda: Polynomial(2).with_ridge(1.0), NotFitted, r"Polynomial.* has learnt nothing"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(make, error, message):
+    with pytest.raises(error, match=message):
+        make()

@@ -34,9 +34,8 @@ def test_without_delay_it_is_the_sampled_loop(kd):
 
 @pytest.mark.parametrize("periods", [1, 2, 5])
 def test_whole_periods_are_delays_in_python_control(periods):
-    held = control.sample_system(JOINTS, CONTROL_STEP, "zoh")
+    chain = control.sample_system(JOINTS, CONTROL_STEP, "zoh")
     late = control.ss(np.zeros((2, 2)), np.eye(2), np.eye(2), np.zeros((2, 2)), CONTROL_STEP)
-    chain = held
     for _ in range(periods):
         chain = chain * late
     known = control.feedback(chain, control.ss([], [], [], PD, CONTROL_STEP)).poles()

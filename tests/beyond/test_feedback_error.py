@@ -40,9 +40,6 @@ def test_it_is_slotine_and_li_at_the_desired_state_with_another_gain():
     assert np.abs(weights[..., -1, :]).max() > 0.1
     np.testing.assert_allclose(weights, estimates, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(runs[0].tau_true, runs[1].tau_true, rtol=1e-12, atol=1e-11)
-
-
-def test_at_the_measured_state_it_is_not():
     _, weights, estimates = both((40.0, 30.0), at="measured")
     assert np.abs(weights - estimates).max() > 1e-3
 

@@ -8,7 +8,7 @@ from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
-from workshop.beyond.control.guarded import REASONS, Guarded, Stops
+from workshop.beyond.control.guarded import REASONS, Guarded
 
 STABLE, WILD = (300.0, 90.0), (8e5, 2e5)
 DAMPING = (35.0, 10.0)
@@ -49,6 +49,7 @@ def test_the_first_limit_that_is_passed_is_the_reason_with_its_time():
     late = np.abs(log.q_true[:, 0]) > 0.5
     assert stops.time == pytest.approx(log.t[late][0] - log.t[0], abs=0.011)
     assert not stops.running(log.t)[late].any()
+    assert stops.running(log.t)[: late.argmax() - 1].all()
 
 
 def test_a_learner_has_nothing_to_learn_from_after_a_stop():
@@ -74,8 +75,3 @@ def test_a_speed_that_is_no_number_stops():
 def test_limits_must_be_positive(name):
     with pytest.raises(ValueError, match=name):
         Guarded(proportional(STABLE), **{name: (0.0, 1.0)})
-
-
-def test_stops_of_a_single_run():
-    stops = Stops(np.array(0.5), np.array(2))
-    np.testing.assert_array_equal(stops.running([-1.0, -0.6, -0.5, 0.0]), [1, 1, 0, 0])

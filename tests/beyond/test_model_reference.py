@@ -165,7 +165,9 @@ def test_an_estimated_mass_matrix_stays_invertible_outside_the_reach_of_the_box(
     watched = Watched(craig(rate=(50.0, 900.0, 50.0)))
     record(ARM, watched, (40.0, 30.0), velocity="difference", rest=0.1, duration=1.0,
            effects=CMU_DD_ARM_II_EFFECTS)  # fmt: skip
-    a, b, d = np.moveaxis(watched.law.estimates[1:], -1, 0)
+    course = watched.law.estimates
+    assert (course >= (2.6, 0.0, 0.3)).all() and (course <= (14.0, 4.0, 2.5)).all()
+    a, b, d = np.moveaxis(course[1:], -1, 0)
     for cosine in (-1, 0, 1):
         m11, m12 = a + 2 * b * cosine, d + b * cosine
         assert (m11 * d - m12**2 > 0).all() and (m11 > 0).all()
@@ -191,5 +193,4 @@ def test_an_exact_acceleration_is_that_of_the_plant():
     run = record(ARM, adaptive, (40.0, 30.0), effects=Effects(friction=(friction,)),
                  rest=0.1, log_step=0.002)  # fmt: skip
     found = np.gradient(run.qd_true, 0.002, axis=0)
-    late = slice(200, 1400)
-    np.testing.assert_allclose(np.array(seen)[late], found[late], atol=0.02)
+    np.testing.assert_allclose(np.array(seen)[200:1400], found[200:1400], atol=0.02)

@@ -36,22 +36,12 @@ def windows(seed=1, cases=6):
     return np.random.default_rng(seed).uniform(-0.8, 0.2, (cases, 2, WIDTH))
 
 
-def least_squares(weights):
-    return RecursiveLeastSquares(weights, penalty=0.1, forgetting=0.98)
-
-
 def test_it_is_the_network_of_the_learning_package():
-    networks = model()
-    np.testing.assert_allclose(
-        OnlineNetwork(networks).torque(windows()), networks.torque(windows()), rtol=1e-12
-    )
-
-
-def test_every_run_may_have_windows_of_its_own():
     networks, each = model(), np.stack([windows(k) for k in range(3)])
-    found = OnlineNetwork(networks).torque(each)
-    for k in range(3):
-        np.testing.assert_allclose(found[k], networks[k].torque(each[k]), rtol=1e-12)
+    online = OnlineNetwork(networks)
+    np.testing.assert_allclose(online.torque(windows()), networks.torque(windows()), rtol=1e-12)
+    for k, torque in enumerate(online.torque(each)):  # windows of its own for every run
+        np.testing.assert_allclose(torque, networks[k].torque(each[k]), rtol=1e-12)
 
 
 @pytest.mark.parametrize("part", ["hidden", "output"])
@@ -135,9 +125,8 @@ def test_a_linear_filter_learns_what_is_linear():
     rng = np.random.default_rng(0)
     truth, each = rng.normal(size=(2, 2 * WIDTH)), rng.uniform(-0.8, 0.2, (200, 2, WIDTH))
     torque = each.reshape(200, -1) @ truth.T + [1.0, -2.0]
-    learner = LinearFilter(
-        INPUTS, np.zeros((2, 2 * WIDTH + 1)), lambda w: RecursiveLeastSquares(w, 1e-6)
-    )
+    nothing = np.zeros((2, 2 * WIDTH + 1))
+    learner = LinearFilter(INPUTS, nothing, lambda w: RecursiveLeastSquares(w, 1e-6))
     for x, y in zip(each, torque):
         learner.learn(x, y)
     np.testing.assert_allclose(learner.torque(each), torque, atol=1e-4)
@@ -153,70 +142,65 @@ def test_with_rate_0_it_is_the_plain_feedforward(teacher):
     np.testing.assert_allclose(runs[1].tau_true, runs[0].tau_true, rtol=1e-9, atol=1e-9)
 
 
+class Noting:
+    """A learner that gives a constant torque and keeps what it is taught."""
+
+    def __init__(self, level):
+        self.level, self.seen = level, []
+
+    def torque(self, windows):
+        return self.level + 0 * windows[..., 0]
+
+    def learn(self, windows, torque):
+        self.seen.append((windows, torque))
+
+    correct = learn
+
+
 def test_measured_windows_are_learnt_with_the_torque_at_their_centre():
-    seen = []
-
-    class Noting:
-        def torque(self, windows):
-            return 2.0 + 0 * windows[..., 0]
-
-        def learn(self, windows, torque):
-            seen.append((windows, torque))
-
-    run = record(ARM, OnlineFeedforward(Noting(), FEEDBACK, WIDTH), EXTENTS, **SHORT)
+    learner = Noting(2.0)
+    run = record(ARM, OnlineFeedforward(learner, FEEDBACK, WIDTH), EXTENTS, **SHORT)
     moving = np.flatnonzero((run.t > -1e-9) & (run.t < 1.0 - 1e-9))
-    assert len(seen) == len(moving)
-    for (window, torque), k in list(zip(seen, moving))[::17]:
+    assert len(learner.seen) == len(moving)
+    for (window, torque), k in list(zip(learner.seen, moving))[::17]:
         np.testing.assert_allclose(window, run.q[k - 2 : k + 3].T, atol=1e-12)
         np.testing.assert_allclose(torque, run.tau_true[k], rtol=1e-9)
 
 
 def test_desired_windows_are_learnt_with_the_feedback():
-    seen = []
-
-    class Noting:
-        def torque(self, windows):
-            return 0 * windows[..., 0]
-
-        def correct(self, windows, feedback):
-            seen.append((windows, feedback))
-
-    law = OnlineFeedforward(Noting(), proportional((300.0, 90.0)), WIDTH, "feedback")
+    learner = Noting(0.0)
+    law = OnlineFeedforward(learner, proportional((300.0, 90.0)), WIDTH, "feedback")
     run = record(ARM, law, EXTENTS, **SHORT)
-    wanted, k = run.reference.q, 40
-    centre = np.flatnonzero(run.t > -1e-9)[k]
-    np.testing.assert_allclose(seen[k][0], wanted[centre - 2 : centre + 3].T, atol=1e-12)
-    np.testing.assert_allclose(seen[k][1], run.tau_true[centre], rtol=1e-9)
+    centre = np.flatnonzero(run.t > -1e-9)[40]
+    window, feedback = learner.seen[40]
+    wanted = run.reference.q[centre - 2 : centre + 3].T
+    np.testing.assert_allclose(window, wanted, atol=1e-12)
+    np.testing.assert_allclose(feedback, run.tau_true[centre], rtol=1e-9)
 
 
 def test_it_learns_in_the_loop_and_goes_on_in_the_next_run():
-    extents, networks = np.array([[40.0, 30.0]]), model(1)
-    networks = TorqueModel(
-        Weights(networks.weights.hidden_weights, *(0 * x for x in (
-            networks.weights.hidden_bias, networks.weights.output_weights,
-            networks.weights.direct_weights, networks.weights.output_bias))), INPUTS, OUTPUTS,
-    )  # fmt: skip
-    learner = LastLayer(networks, lambda w: RecursiveLeastSquares(w, 0.01))
+    w = model(1).weights
+    rest = w.hidden_bias, w.output_weights, w.direct_weights, w.output_bias
+    unlearnt = Weights(w.hidden_weights, *(0 * each for each in rest))
+    learner = LastLayer(
+        TorqueModel(unlearnt, INPUTS, OUTPUTS), lambda w: RecursiveLeastSquares(w, 0.01)
+    )
     online = OnlineFeedforward(learner, FEEDBACK, WIDTH)
-    errors = []
-    for _ in range(4):
-        run = record(ARM, online, extents)
-        errors.append(np.sqrt((run.tracking_error**2).mean()))
+    runs = [record(ARM, online, np.array([EXTENTS])) for _ in range(4)]
+    errors = [np.sqrt((run.tracking_error**2).mean()) for run in runs]
     assert errors[-1] < 0.7 * errors[0]
 
 
 def test_several_controllers_run_abreast():
     extents = np.array([[40.0, 30.0], [20.0, 10.0]])
-    alone = [record(ARM, c, extents, **SHORT) for c in (FEEDBACK, proportional((300.0, 90.0)))]
-
+    laws = [FEEDBACK, proportional((300.0, 90.0))]
+    alone = [record(ARM, law, extents, **SHORT) for law in laws]
     t = time_grid(0.002, 0.1, 1.0)
-    one = pick_and_place(extents, t, 1.0)
-    both = Trajectory(*(np.stack([x, x]) for x in one))
-    watched = Watched(Abreast([FEEDBACK, proportional((300.0, 90.0))], [1, 1]))
+    both = Trajectory(*(np.stack([x, x]) for x in pick_and_place(extents, t, 1.0)))
+    watched = Watched(Abreast(laws, [1, 1]))
     run = follow(ARM, watched, both, t, duration=1.0)
     for k in range(2):
         np.testing.assert_allclose(run.q_true[k], alone[k].q_true, atol=1e-12)
-    assert len(watched.law.laws) == 2
     with pytest.raises(ValueError, match="rows"):
         Abreast([FEEDBACK], [1, 2])
     with pytest.raises(ValueError, match="reference must have 3 rows"):

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib.control import PID, Feedforward, pd, plant
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.dynamics import Arm
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.simulation import follow, record
 from ddlib.trajectories import Trajectory
@@ -33,14 +32,11 @@ def curvature(windows):
     return (windows[..., c - 1] - 2 * windows[..., c] + windows[..., c + 1]) / 0.01**2
 
 
-def test_every_control_sample_has_its_own_window():
+def test_every_control_sample_has_its_own_window_or_it_holds_or_draws_a_line():
     np.testing.assert_array_equal(WindowFeedforward(middle, 5)(Q, Q, Q), Q)
-    found = WindowFeedforward(curvature, 5)(Q, Q, Q)
     exact = np.stack([-9 * np.sin(3 * T), -4 * np.cos(2 * T)], -1)
-    np.testing.assert_allclose(found[5:-5], exact[5:-5], atol=2e-3)
-
-
-def test_between_samples_it_holds_or_draws_a_line():
+    bent = WindowFeedforward(curvature, 5)(Q, Q, Q)
+    np.testing.assert_allclose(bent[5:-5], exact[5:-5], atol=2e-3)
     hold = WindowFeedforward(middle, 5, between="hold")(Q, Q, Q)
     np.testing.assert_array_equal(hold, np.repeat(Q[::5], 5, axis=0))
     line = WindowFeedforward(middle, 5, between="line")(Q, Q, Q)
@@ -50,12 +46,9 @@ def test_between_samples_it_holds_or_draws_a_line():
 
 
 def test_the_reference_rests_beyond_its_ends():
-    def first(windows):
-        return windows[..., 0]
-
-    found = WindowFeedforward(first, 21)(Q, Q, Q)
-    np.testing.assert_array_equal(found[:51], np.tile(Q[0], (51, 1)))
-    np.testing.assert_array_equal(found[51:], Q[1:-50])
+    first = WindowFeedforward(lambda windows: windows[..., 0], 21)(Q, Q, Q)
+    np.testing.assert_array_equal(first[:51], np.tile(Q[0], (51, 1)))
+    np.testing.assert_array_equal(first[51:], Q[1:-50])
 
 
 def test_runs_are_independent_and_a_perfect_model_helps_the_loop():
@@ -78,16 +71,18 @@ def test_runs_are_independent_and_a_perfect_model_helps_the_loop():
 
 @pytest.mark.parametrize(
     "change, name",
-    [({"width": 4}, "width"), ({"every": 0}, "every"), ({"between": "x"}, "between")],
+    [
+        ({"width": 4}, "width"),
+        ({"every": 0}, "every"),
+        ({"between": "x"}, "between"),
+        ({"step": 0.0}, "step"),
+    ],
 )
 def test_bad_arguments_are_refused(change, name):
     with pytest.raises(ValueError, match=name):
         WindowFeedforward(**{"model": middle, "width": 5, **change})
-
-
-def test_a_model_of_another_shape_is_refused():
     with pytest.raises(ValueError, match="model"):
-        WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q)
+        WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q)  # torques of another shape
 
 
 # --- in a loop ----------------------------------------------------------------------------
@@ -98,13 +93,6 @@ FEEDBACK = pd((300.0, 90.0), (35.0, 10.0))
 def weight(windows):
     """Some torque that depends on all of a window."""
     return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
-
-
-def test_a_planned_torque_is_a_feedforward():
-    made = WindowFeedforward(weight, 5, step=0.01)
-    planned = record(ARM, PlannedTorque(made, FEEDBACK), [[40, 30], [20, 10]])
-    plain = record(ARM, Feedforward(made, FEEDBACK), [[40, 30], [20, 10]])
-    np.testing.assert_array_equal(planned.q_true, plain.q_true)
 
 
 @pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
@@ -119,40 +107,30 @@ def test_a_loop_that_cannot_make_the_windows_is_refused(law):
     record(ARM, law(unknown, FEEDBACK), (40, 30), duration=0.1, rest=0.1)
 
 
-@pytest.mark.parametrize("step", [0.0, -0.01, np.nan])
-def test_a_sampling_period_is_positive(step):
-    with pytest.raises(ValueError, match="step"):
-        WindowFeedforward(middle, 5, step=step)
-
-
 def test_without_measurements_windows_in_the_loop_are_planned():
     made = WindowFeedforward(weight, 5, step=0.01)
     extents = [[40, 30], [20, 10], [10, 30]]
     log = record(ARM, MeasuredWindows(made, FEEDBACK, [[0.0], [1.0]]), extents)
     planned = record(ARM, PlannedTorque(made, FEEDBACK), extents)
+    plain = record(ARM, Feedforward(made, FEEDBACK), extents)
+    np.testing.assert_array_equal(planned.q_true, plain.q_true)
     assert log.q_true.shape == (2, *planned.q_true.shape)
     np.testing.assert_allclose(log.q_true[0], planned.q_true, atol=1e-12)
     assert np.abs(log.q_true[1] - planned.q_true).max() > 1e-3
 
 
-@pytest.mark.parametrize("tap, late", [(0, 10), (1, 5), (2, 0)])
-def test_what_has_been_is_measured(tap, late):
-    """A model that passes on one sample of the past: the measured one of so long ago."""
-    made = WindowFeedforward(lambda windows: windows[..., tap], 5)
-    reference = Trajectory(Q, 0 * Q, 0 * Q)
-    law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(reference, 0.002)
-    measured = Q + 0.1 * np.random.default_rng(0).standard_normal(Q.shape)
-    found = np.array([law(k, measured[k], 0 * measured[k]) for k in range(60)])
-    np.testing.assert_allclose(found[late:], measured[: 60 - late], atol=1e-12)
-    np.testing.assert_array_equal(found[:late], np.tile(Q[0], (late, 1)))
-
-
-@pytest.mark.parametrize("tap, ahead", [(3, 5), (4, 10)])
-def test_what_is_to_come_is_desired(tap, ahead):
+@pytest.mark.parametrize("tap, late", [(0, 10), (1, 5), (2, 0), (3, -5), (4, -10)])
+def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
+    """A model that passes on one sample of its window."""
     made = WindowFeedforward(lambda windows: windows[..., tap], 5)
     law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
-    found = np.array([law(k, Q[k] + 1.0, 0 * Q[k]) for k in range(60)])
-    np.testing.assert_array_equal(found, Q[ahead : 60 + ahead])
+    measured = Q + 0.1 * np.random.default_rng(0).standard_normal(Q.shape)
+    passed = np.array([law(k, measured[k], 0 * measured[k]) for k in range(60)])
+    if late < 0:
+        np.testing.assert_array_equal(passed, Q[-late : 60 - late])
+    else:
+        np.testing.assert_allclose(passed[late:], measured[: 60 - late], atol=1e-12)
+        np.testing.assert_array_equal(passed[:late], np.tile(Q[0], (late, 1)))
 
 
 @pytest.mark.parametrize("gain, stable", [(120.0, True), (500.0, False)])
@@ -174,13 +152,6 @@ def test_late_positions_in_the_loop_have_the_poles_of_a_late_loop(gain, stable):
     assert np.log(late / early) / 800 == pytest.approx(np.log(growth), rel=0.25)
 
 
-def test_only_windows_of_their_own_go_into_the_loop():
-    with pytest.raises(ValueError, match="between"):
-        MeasuredWindows(WindowFeedforward(middle, 5, between="hold"), FEEDBACK)
-    with pytest.raises(ValueError, match="share"):
-        MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1)
-
-
 def test_slopes_of_a_linear_model_are_its_weights():
     filters = np.random.default_rng(0).standard_normal((2, 2, 5))
     windows = np.random.default_rng(1).standard_normal((7, 2, 5))
@@ -191,30 +162,40 @@ def test_slopes_of_a_linear_model_are_its_weights():
     np.testing.assert_allclose(bent[..., 2], wanted, atol=1e-8)
 
 
-@pytest.mark.parametrize("late", [0, 1, 5])
-def test_poles_with_a_model_of_the_present_are_those_of_other_gains(late):
-    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
-    past = np.zeros((2, 2, 3))
-    past[..., 2] = [[-100, -7], [5, -30]]
-    found = np.abs(poles_inside(joints, FEEDBACK, past, 0.002, late=late)).max()
-    gain = np.hstack([np.diag([300.0, 90.0]) - past[..., 2], np.diag([35.0, 10.0])])
-    wanted = np.abs(late_poles(joints, gain, 0.002, late * 0.002)).max()
-    assert found == pytest.approx(wanted, abs=1e-12)
+JOINTS = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
+PAST = np.zeros((2, 2, 3))
+PRESENT, LATE = PAST.copy(), PAST.copy()
+PRESENT[..., 2], LATE[..., 0] = [[-100, -7], [5, -30]], -np.diag([400.0, 120.0])
+OTHER_GAINS = np.hstack([np.diag([300.0, 90.0]) - PRESENT[..., 2], np.diag([35.0, 10.0])])
 
 
-def test_poles_with_a_model_of_the_past_are_those_of_a_late_loop():
-    joints = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))
-    past = np.zeros((2, 2, 3))
-    past[..., 0] = -np.diag([400.0, 120.0])
-    found = np.abs(poles_inside(joints, pd((0.0, 0.0), (0.0, 0.0)), past, 0.002)).max()
-    gain = np.hstack([np.diag([400.0, 120.0]), np.zeros((2, 2))])
-    wanted = np.abs(late_poles(joints, gain, 0.002, 0.02)).max()
-    assert found == pytest.approx(wanted, abs=1e-12)
+@pytest.mark.parametrize(
+    "feedback, past, late, gain, delay",
+    [
+        *((FEEDBACK, PRESENT, late, OTHER_GAINS, late * 0.002) for late in (0, 1, 5)),
+        (pd((0.0, 0.0), (0.0, 0.0)), LATE, 0, np.hstack([-LATE[..., 0], np.zeros((2, 2))]), 0.02),
+    ],
+)
+def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
+    feedback, past, late, gain, delay
+):
+    inside = np.abs(poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
+    wanted = np.abs(late_poles(JOINTS, gain, 0.002, delay)).max()
+    assert inside == pytest.approx(wanted, abs=1e-12)
 
 
-def test_poles_refuse_an_integral():
-    joints = plant(np.eye(2), (1.0, 1.0))
-    with pytest.raises(ValueError, match="integral"):
-        poles_inside(joints, PID((1, 1), (1, 1)), np.zeros((2, 2, 3)), 0.002)
-    with pytest.raises(ValueError, match="past"):
-        poles_inside(joints, FEEDBACK, np.zeros((2, 3)), 0.002)
+@pytest.mark.parametrize(
+    "make, name",
+    [
+        (lambda: poles_inside(JOINTS, PID((1, 1), (1, 1)), PAST, 0.002), "integral"),
+        (lambda: poles_inside(JOINTS, FEEDBACK, PAST[0], 0.002), "past"),
+        (lambda: MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1), "share"),
+        (
+            lambda: MeasuredWindows(WindowFeedforward(middle, 5, between="hold"), FEEDBACK),
+            "between",
+        ),
+    ],
+)
+def test_what_no_loop_has_is_refused(make, name):
+    with pytest.raises(ValueError, match=name):
+        make()

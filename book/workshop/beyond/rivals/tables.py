@@ -42,7 +42,7 @@ def table_size(
     return TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
 
 
-def corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
+def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes around points of the unit cube, and their weights in multilinear interpolation.
 
     Of points ``(points, axes)`` they are of shape ``(points, 2**axes, axes)`` and ``(points,
@@ -81,7 +81,7 @@ def full_table(
         return function((middle * size + low.ravel()).reshape(x.shape))
     found = []
     for block in np.array_split(u, max(1, len(u) // 1000)):
-        nodes, weights = corners(block, cells)
+        nodes, weights = _cube_corners(block, cells)
         states = (nodes / cells * size + low.ravel()).reshape(-1, *x.shape[1:])
         values = function(states).reshape(*weights.shape, -1)
         found.append(np.einsum("nc,ncj->nj", weights, values))
@@ -298,7 +298,7 @@ class GridTable(Bounded):
         return np.concatenate(found)
 
     def _corners(self, u) -> tuple[np.ndarray, np.ndarray]:
-        nodes, weights = corners(u.reshape(len(u), -1), self.cells)
+        nodes, weights = _cube_corners(u.reshape(len(u), -1), self.cells)
         shape = (self.cells + 1,) * nodes.shape[-1]
         return np.ravel_multi_index(np.moveaxis(nodes, -1, 0), shape), weights
 
