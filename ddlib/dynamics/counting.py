@@ -36,11 +36,11 @@ class Tape:
         self._done: Counter = Counter()
         self._size = 0
 
-    def unknown(self, value: float) -> _Counted:
+    def unknown(self, value: float):
         """A number that is not known before the computation runs, like a joint angle."""
         return self._make(number("value", value), ())
 
-    def known(self, value: float) -> _Counted:
+    def known(self, value: float):
         """A number that is known off-line, like the mass of a link."""
         return self._once(("known", number("value", value)), value, None)
 
