@@ -107,84 +107,6 @@ def request(url: str, method: str = "GET"):
     return json.loads(text) if text else None
 
 
-# Nothing is awaited here: a promise on which no object of the page waits may be collected.
-SHOW = """
-(path) => {
-  const app = window.jupyterapp;
-  window.panel = null;
-  window.opening = app.restored
-    .then(() => app.commands.execute("docmanager:open", { path, factory: "Notebook" }))
-    .then((panel) => panel.context.ready.then(() => { window.panel = panel; }));
-}
-"""
-RUN = """
-async (places) => {
-  const { panel } = window;
-  const { commands } = window.jupyterapp;
-  const { content } = panel;
-  await panel.sessionContext.ready;
-  while (panel.sessionContext.session?.kernel?.status !== "idle") {
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-  if (places === null) return void commands.execute("notebook:run-all-cells");
-  const codes = content.widgets.filter(({ model }) => model.type === "code");
-  for (const place of places) {
-    content.activeCellIndex = content.widgets.indexOf(codes[place]);
-    content.deselectAll();
-    await commands.execute("notebook:run-cell");
-  }
-}
-"""
-# Without a question whether to keep what was changed. The session ends first: what still listens
-# to a closed panel would look for its kernel. And not before a kernel that starts is at rest: what
-# it is asked then would never be answered.
-CLOSE = """
-async () => {
-  const { panel } = window;
-  await panel.sessionContext.ready;
-  const starts = () => ["unknown", "starting", "busy", "connecting"]
-    .includes(panel.sessionContext.session?.kernel?.status);
-  for (let calm = 0, k = 0; calm < 5 && k < 200; k++) {
-    calm = starts() ? 0 : calm + 1;
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
-  await panel.context.revert();
-  await panel.sessionContext.shutdown();
-  panel.close();
-}
-"""
-# Every code cell to run has its prompt number, or one has failed.
-RAN = """
-(places) => {
-  const codes = [...window.panel.content.model.cells].filter((cell) => cell.type === "code");
-  const cells = places?.map((place) => codes[place]) ?? codes;
-  const errors = cells.flatMap((cell) => cell.outputs.toJSON())
-    .filter((output) => output.output_type === "error" || output.name === "stderr");
-  const todo = cells.filter((cell) => cell.executionCount === null);
-  return { todo: todo.length, errors: errors.map((e) => (e.evalue ?? e.text).slice(0, 500)) };
-}
-"""
-# Models of the widgets that cells have shown, in the order of the page.
-SHOWN = """
-() => [...window.panel.content.model.cells].filter((cell) => cell.type === "code")
-  .flatMap((cell) => cell.outputs.toJSON())
-  .map((output) => output.data?.["application/vnd.jupyter.widget-view+json"]?.model_id)
-  .filter(Boolean)
-"""
-ASK = """
-async (code) => {
-  const kernel = window.panel.sessionContext.session.kernel;
-  const future = kernel.requestExecute({ code, store_history: false });
-  let text = "";
-  future.onIOPub = ({ content }) => {
-    text += content.text ?? content.traceback?.join("\\n") ?? "";
-  };
-  await future.done;
-  return text;
-}
-"""
-
-
 def wait(page, what: str, condition, seconds: float):
     """Until the condition holds; its value."""
     end = time.monotonic() + seconds
@@ -201,18 +123,18 @@ def values(page, model: str) -> dict:
         "from ipywidgets.widgets.widget import _instances\n"
         f"print(_json.dumps(_instances[{model!r}].values))"
     )
-    return json.loads(page.evaluate(ASK, code))
+    return json.loads(page.evaluate("(code) => lab.ask(code)", code))
 
 
 def run(page, places: list[int] | None):
     """Run the code cells at those places, or all."""
 
     def done():
-        state = page.evaluate(RAN, places)
+        state = page.evaluate("(places) => lab.ran(places)", places)
         assert not state["errors"]
         return state["todo"] == 0
 
-    page.evaluate(RUN, places)
+    page.evaluate("(places) => lab.run(places)", places)
     wait(page, "the last prompt number", done, RUNNING)
 
 
@@ -271,6 +193,7 @@ def running(lab, browser):
     """An open JupyterLab, and the errors of its scripts."""
     context = browser.new_context(viewport={"width": 1400, "height": 900})
     context.set_default_timeout(1000 * STARTING)
+    context.add_init_script(path=ROOT / "tests" / "support" / "lab.js")
     page = context.new_page()
     errors = []
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -293,7 +216,7 @@ def opened(running, lab):
         enter(page, lab)
     errors.clear()
     yield page
-    page.evaluate(CLOSE)
+    page.evaluate("lab.close()")
     assert not errors
 
 
@@ -301,12 +224,12 @@ def opened(running, lab):
 def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     """With a kernel, and when it is gone."""
     page = opened
-    page.evaluate(SHOW, f"book/{source(name).name}")
+    page.evaluate("(path) => lab.show(path)", f"book/{source(name).name}")
     wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
     cells = json.loads(source(name).read_text(encoding="utf-8"))["cells"]
     codes = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     run(page, None if name == WHOLE else needed(codes))
-    models = page.evaluate(SHOWN)
+    models = page.evaluate("lab.shown()")
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
     wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)
     firsts = [handles(roots.nth(k))[0] for k in range(len(models))]

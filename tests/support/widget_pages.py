@@ -176,6 +176,24 @@ def page_of(path: Path, *widgets, change=None, extra="", mount=MOUNT, damages=()
     return path.as_uri()
 
 
+CURVES = """() => {
+  const { curves } = document.querySelector(".ddlib-curves").view;
+  return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, [...values]]));
+}"""
+
+
+def assert_curves(page, known, small=1e-6):
+    """What the page has computed or interpolated is known, to a part of each curve's size."""
+    page.evaluate(NEXT_FRAME)
+    curves = page.evaluate(CURVES)
+    for name, values in known.items():
+        allowed = small * (np.nanmax(np.abs(values)) + 1e-3)
+        np.testing.assert_allclose(
+            np.array(curves[name], float), np.ravel(values), rtol=0, atol=allowed, err_msg=name
+        )
+    return curves
+
+
 def shown_values(page) -> list[float]:
     """The numbers beside the sliders."""
     texts = page.locator(".slider output").all_inner_texts()
