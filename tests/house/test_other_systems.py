@@ -1,6 +1,5 @@
-"""Other systems than this one: Python versions, declared dependencies, pinned actions."""
+"""Other systems than this one: declared dependencies, files without rights, pinned actions."""
 
-import ast
 import errno
 import json
 import re
@@ -28,13 +27,6 @@ TEXTS = {
 HERE = {path.stem for f in ("tests", "benchmarks", "book/_ext") for path in TEXTS[f]}
 UNSEEN = {"pinocchio": ["pin"]}
 """Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
-
-
-def test_the_syntax_is_that_of_the_oldest_python():
-    assert PYPROJECT["project"]["requires-python"] == ">=3.11"
-    assert PYPROJECT["tool"]["ruff"]["target-version"] == "py311"
-    for path, text in (pair for texts in TEXTS.values() for pair in texts.items()):
-        ast.parse(text, path.name, feature_version=(3, 11))
 
 
 def no_right(*_, **__):
