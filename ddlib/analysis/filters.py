@@ -81,11 +81,9 @@ def content(f) -> np.ndarray:
     return f @ basis(f.shape[-1]).T
 
 
-def pure_part(f, degree: int = 2) -> np.ndarray:
-    """Projection of weight functions onto polynomials; 2 keeps all up to the acceleration."""
-    kept = integer("degree", degree, 0, len(DERIVATIVES) - 1) + 1
-    parts = content(f)
-    return parts[..., :kept] @ basis(np.shape(f)[-1])[:kept]
+def pure_part(f) -> np.ndarray:
+    """Projection of weight functions onto parabolas: position, velocity and acceleration."""
+    return content(f)[..., :3] @ basis(np.shape(f)[-1])[:3]
 
 
 def shares(f) -> np.ndarray:
@@ -121,35 +119,32 @@ _OTHER_MIX, _NOT_ANALYSABLE = "other mix", "not analysable"
 CLASSES = (*NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
 """Names that `classify` gives."""
 
+_PURE = 0.8  # share of the cubic part's energy from which one derivative, or two, give the name
+_SMOOTH = 0.8  # smallest share of the energy that a cubic must explain: else "not analysable"
 
-def classify(f, pure: float = 0.8, smooth: float = 0.8) -> np.ndarray:
+
+def classify(f) -> np.ndarray:
     """Name weight functions by the derivatives they respond to.
+
+    Their constants do not count, and one that is constant is "not analysable".
 
     Parameters
     ----------
     f : array_like, shape (..., width)
         Weight functions.
-    pure : float
-        Share of the cubic part's energy, without its constant, from which one
-        derivative alone (or two together) gives the name.
-    smooth : float
-        Smallest share of the energy without its constant that a cubic must explain; below
-        it the function is "not analysable".
 
     Returns
     -------
     ndarray of str, shape (...)
-        One of `CLASSES` each; a constant has no derivative and is "not analysable".
+        One of `CLASSES` each.
     """
-    number("pure", pure, 0.5, 1.0)
-    number("smooth", smooth, 0.0, 1.0)
     share = shares(f)
     v, a, j = np.moveaxis(share[..., 1:4], -1, 0)
     total = np.where(v + a + j > 0, v + a + j, 1)
     v, a, j = v / total, a / total, j / total
     varying = 1 - share[..., 0]
-    rough = (share[..., 4] > (1 - smooth) * varying) | (varying < 1e-12)
-    conditions = [rough, v >= pure, a >= pure, j >= pure, v + a >= pure, a + j >= pure]
+    rough = (share[..., 4] > (1 - _SMOOTH) * varying) | (varying < 1e-12)
+    conditions = [rough, *(x >= _PURE for x in (v, a, j, v + a, a + j))]
     return np.select(conditions, [_NOT_ANALYSABLE, *NAMED_CLASSES], _OTHER_MIX)
 
 

@@ -132,7 +132,7 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
     return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)
 
 
-def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict:
+def summary(model: TorqueModel, windows, states) -> dict:
     """Names of an ensemble's filters and what they follow, network by network.
 
     For each of `LAYERS` these are shares of its filters, one for each member: ``"classes"`` by
@@ -150,4 +150,4 @@ def summary(model: TorqueModel, windows, states, step: float = LOG_STEP) -> dict
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
             "unique": np.median(heard.unique, (1, 2)),
         }
-    return {**told, "gains": gains(mean_gradient(model, windows), step)}
+    return {**told, "gains": gains(mean_gradient(model, windows))}

@@ -6,12 +6,11 @@ gives them; leading axes are networks. Windows hold positions, rad, ``(cases, jo
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number
+from ddlib._check import finite_array, number
 from ddlib.learning import TorqueModel
 from ddlib.metrics import rmss
 
@@ -42,22 +41,19 @@ def net_inputs(model: TorqueModel, windows) -> np.ndarray:
     return net + weights.hidden_bias[..., None, :]
 
 
-def ablation(model: TorqueModel, windows, torque, group: int = 1) -> tuple[list, np.ndarray]:
-    """Groups of 1 or 2 units of one network, and its RMSS when they rest at their mean activity."""
-    integer("group", group, 1, 2)
+def ablation(model: TorqueModel, windows, torque) -> tuple[list, np.ndarray]:
+    """Units of one network, and its RMSS while each of them rests at its mean activity."""
     weights = model.weights
     if weights.hidden_bias.ndim != 1:
         raise ValueError(f"model must be a single network, got {weights.hidden_bias.shape[0]}")
     hidden, output = weights.activity(model.scaled(windows))
     logit = np.log(output / (1 - output))
     shift = hidden.mean(0) - hidden
-    groups = list(itertools.combinations(range(hidden.shape[1]), group))
-    errors = []
-    for units in groups:
-        chosen = list(units)
-        held = logit + shift[:, chosen] @ weights.output_weights[:, chosen].T
+    units, errors = list(range(hidden.shape[1])), []
+    for unit in units:
+        held = logit + shift[:, [unit]] @ weights.output_weights[:, [unit]].T
         errors.append(rmss(model.outputs.unscale(1 / (1 + np.exp(-held))), torque))
-    return groups, np.array(errors)
+    return units, np.array(errors)
 
 
 def refitted(features, torque, held_out, answer) -> np.ndarray:

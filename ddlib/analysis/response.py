@@ -24,13 +24,12 @@ from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
 
 
-def with_jerk(states, step: float = LOG_STEP) -> np.ndarray:
+def with_jerk(states) -> np.ndarray:
     """States ``(..., time, joint, 3)`` with the acceleration's central differences as a fourth."""
     states = finite_array("states", states, 3)
-    number("step", step, 0.0, open_low=True)
     if states.ndim < 3 or states.shape[-3] < 2:
         raise ValueError(f"states must have shape (..., time, joint, 3), got {states.shape}")
-    jerk = np.gradient(states[..., 2], step, axis=-2)
+    jerk = np.gradient(states[..., 2], LOG_STEP, axis=-2)
     return np.concatenate([states, jerk[..., None]], -1)
 
 
@@ -82,14 +81,14 @@ class Calibrated(NamedTuple):
     whole: np.ndarray  # through all of the network, averaged over cases
 
 
-def calibrated(model: TorqueModel, windows, step: float = LOG_STEP) -> Calibrated:
+def calibrated(model: TorqueModel, windows) -> Calibrated:
     """Gains of networks in physical units, from their torques' gradient averaged over windows."""
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
     scale = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
     direct = slope[..., None, None] * weights.direct_weights * scale
-    return Calibrated(gains(direct, step), gains(mean_gradient(model, windows), step))
+    return Calibrated(gains(direct), gains(mean_gradient(model, windows)))
 
 
 def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:

@@ -58,15 +58,14 @@ def transition_centre(model: TorqueModel) -> np.ndarray:
         return -net[..., None, None] / (weights * model.inputs.gain[:, None])
 
 
-def responses(model: TorqueModel, values, centre=None) -> np.ndarray:
-    """Activities of hidden units while one input passes through values and the others stay.
+def responses(model: TorqueModel, values) -> np.ndarray:
+    """Activities of hidden units while one input passes through values and the others are zero.
 
-    They stay at `centre`, by default zero. Shape ``(..., joint, width, points, hidden)``.
+    Shape ``(..., joint, width, points, hidden)``.
     """
     values = shaped("values", values, "(points,)")
     shape = model.weights.hidden_weights.shape[-2:]
-    centre = shaped("centre", np.zeros(shape) if centre is None else centre, shape)
-    states = np.tile(centre, (*shape, values.size, 1, 1))
+    states = np.zeros((*shape, values.size, *shape))
     for joint, place in np.ndindex(*shape):
         states[joint, place, :, joint, place] = values
     hidden = model.weights.activity(model.scaled(states.reshape(-1, *shape)))[0]

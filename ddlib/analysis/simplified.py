@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number
+from ddlib._check import non_negative, number
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
 from ddlib.metrics import rmss
@@ -16,17 +16,14 @@ _OTHER_JOINT = ("coupling", *_VELOCITY_TERMS)  # because the other joint moves
 
 
 def share_of_velocity_terms(
-    arm: Arm, trajectory: Trajectory, speed: float = 1.0, effects: Effects = IDEAL
+    arm: Arm, trajectory: Trajectory, effects: Effects = IDEAL
 ) -> np.ndarray:
     """Velocity terms over the motor's torque, root mean square, for shoulder and elbow.
 
-    The error of a model that leaves them out, when the same path is travelled `speed` times
-    faster. Of the effects, friction is part of the motor's torque.
+    The error of a model that leaves them out. Of the effects, friction is part of the torque.
     """
-    number("speed", speed, 0.0, open_low=True)
-    qd = speed * finite_array("trajectory.qd", trajectory.qd, 2)
-    terms = arm.torque_terms(trajectory.q, qd, speed**2 * trajectory.qdd)
-    needed = sum(terms.values()) + effects.friction_torque(qd)
+    terms = arm.torque_terms(*trajectory)
+    needed = sum(terms.values()) + effects.friction_torque(trajectory.qd)
     return _rms(sum(terms[name] for name in _VELOCITY_TERMS)) / _rms(needed)
 
 

@@ -74,7 +74,7 @@ def p_value(value: float, draws, side: str = "two") -> float:
     return float({"more": more, "less": less, "two": min(1.0, 2 * min(more, less))}[side])
 
 
-def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
+def related(target, windows) -> np.ndarray:
     """Share of the variance of targets that a linear filter of the windows explains.
 
     Parameters
@@ -82,8 +82,6 @@ def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
     target : array_like, shape (cases, joint)
     windows : array_like, shape (cases, joint, width)
         Positions.
-    ridge : float
-        Of the normal equations, relative to their mean diagonal.
 
     Returns
     -------
@@ -92,7 +90,6 @@ def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
         motion, and what this many taps fit to anything that is smooth.
     """
     target, windows = finite_array("target", target), finite_array("windows", windows)
-    number("ridge", ridge, 0.0)
     if target.ndim != 2 or windows.ndim != 3 or len(target) != len(windows):
         raise ValueError(
             "target and windows must have shapes (cases, joint) and (cases, joint, width), "
@@ -101,7 +98,7 @@ def related(target, windows, ridge: float = 1e-6) -> np.ndarray:
     x = windows.reshape(len(windows), -1)
     x, y = x - x.mean(0), target - target.mean(0)
     square = x.T @ x
-    square[np.diag_indices_from(square)] += ridge * np.trace(square) / len(square)
+    square[np.diag_indices_from(square)] += 1e-6 * np.trace(square) / len(square)
     left = y - x @ np.linalg.solve(square, x.T @ y)
     return 1 - (left**2).sum(0) / (y**2).sum(0)
 

@@ -60,10 +60,10 @@ def test_the_transition_is_narrow_where_weights_are_large(model, cases):
 def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
     """Rebuilt with the unit's weight taken out and its mean put into the output bias."""
     one, (windows, torque) = model[0], cases
-    groups, errors = ablation(one, windows, torque)
-    assert groups == [(k,) for k in range(6)]
+    units, errors = ablation(one, windows, torque)
+    assert units == list(range(6))
     hidden, _ = one.weights.activity(one.scaled(windows))
-    for (k,), error in zip(groups, errors, strict=True):
+    for k, error in zip(units, errors, strict=True):
         w = one.weights
         out = w.output_weights.copy()
         out[:, k] = 0
@@ -71,13 +71,6 @@ def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
         rebuilt = Weights(w.hidden_weights, w.hidden_bias, out, w.direct_weights, bias)
         own = TorqueModel(rebuilt, one.inputs, one.outputs)
         assert error == pytest.approx(rmss(own.torque(windows), torque))
-
-
-def test_pairs_of_units(model, cases):
-    groups, errors = ablation(model[1], *cases, group=2)
-    assert len(groups) == len(errors) == 15 and groups[0] == (0, 1)
-    with pytest.raises(ValueError, match="group must be an integer from 1 to 2"):
-        ablation(model[1], *cases, group=3)
     with pytest.raises(ValueError, match="model must be a single network, got 3"):
         ablation(model, *cases)
 
