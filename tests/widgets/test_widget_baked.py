@@ -139,13 +139,6 @@ def test_wrong_keys_name_choice_value_and_options(waves):
     assert waves.values == {"gain": 2.0, "shape": "sine", "twice": False, "bits": 5}
 
 
-def test_options_given_as_a_sequence_have_their_texts_as_labels():
-    choice = Choice("width", "Window", np.array([11, 21, 41]), 21)
-    assert choice.options == {11: "11", 21: "21", 41: "41"} and choice.grid == 3
-    assert [choice.place(f) for f in (0, 0.32, 0.34, 0.99, 1)] == [11, 11, 21, 41, 41]
-    assert choice.check(21.0) == 21 and type(choice.check(21.0)) is int
-
-
 @pytest.mark.parametrize(
     "changes, error, message",
     [
@@ -220,10 +213,3 @@ def test_unfit_functions_are_refused():
         CurveWidget(lambda layout: {"y": T}, [layout], [Panel("y", "y", "x", T)], alt="a")
     with pytest.raises(ValueError, match="parameter of the pad must be one of 'gain', got 'bits'"):
         make_kinds(pad=Pad("gain", "bits"))
-
-
-def test_a_curve_of_zeros_stays_zero():
-    axis = [Parameter("a", "a", 0, 1, 0, grid=3)]
-    baked = Baked(lambda a: {"y": np.zeros(30), "five": 5.0}, axis)
-    got = baked.interpolate(a=0.3)
-    assert not got["y"].any() and got["five"] == 5 and baked.error(10) < 1e-9

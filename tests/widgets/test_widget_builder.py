@@ -140,16 +140,6 @@ def press(page, name, role="button"):
 
 
 @pytest.mark.browser
-def test_named_filters_begin_and_are_scored(tmp_path, visit, widget):
-    page = opened(tmp_path, visit, widget).page
-    for name, f in builder.starts().items():
-        press(page, name)
-        assert page.evaluate(SCORE) == pytest.approx(builder.score(f), abs=1e-9)
-        np.testing.assert_allclose(heights(page), f, atol=0.006)
-    assert page.locator(".error").inner_text() == "1.00"
-
-
-@pytest.mark.browser
 def test_one_stroke_paints_across_stems(tmp_path, visit, widget):
     here = opened(tmp_path, visit, widget)
     page = here.page

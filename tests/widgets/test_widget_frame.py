@@ -143,20 +143,6 @@ def test_with_a_kernel_the_address_is_left_alone(tmp_path, visit, widget):
 
 
 @browser_test
-def test_presets_set_and_show_what_stands(tmp_path, visit, widget):
-    page = visit(page_of(tmp_path / "page.html", widget)).page
-    fast, slow = (page.get_by_role("button", name=name) for name in PRESETS)
-    fast.click()
-    page.evaluate(NEXT_FRAME)
-    assert shown_values(page) == [50, 2, 0]
-    pressed = [b.get_attribute("aria-pressed") for b in (fast, slow)]
-    assert pressed == ["true", "false"]
-    page.get_by_label("Gain").press("End")
-    page.evaluate(NEXT_FRAME)
-    assert fast.get_attribute("aria-pressed") == "false"
-
-
-@browser_test
 def test_hover_and_keys_read_values(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget)).page
     chart, box = page.locator(".chart > svg").first, page.locator(".readout").first

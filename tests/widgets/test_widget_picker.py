@@ -11,8 +11,8 @@ from widget_pages import (
     LIVE,
     NEXT_FRAME,
     PATHS,
-    READ,
     alerts,
+    assert_curves,
     cut,
     drag,
     page_of,
@@ -23,7 +23,7 @@ from widget_pages import (
 from ddlib.control import Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.metrics import rmss
-from ddlib.setups import POSITION_FEEDBACK, STATE_FEEDBACK, WINDOWS, errors, predict
+from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, predict
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
 from ddlib.widgets.picker import AXIS
@@ -153,57 +153,28 @@ def test_unfit_arguments_are_refused(networks):
 browser_test = pytest.mark.browser
 
 
-def assert_drawn(page, widget, extents):
-    """The charts show what Python computes, as well as a chart can."""
+def assert_shown(page, widget, extents):
+    """The page computes what Python does, and writes the numbers."""
     exact = widget.interpolate(**dict(zip(("shoulder_deg", "elbow_deg"), extents)))
-    for number, panel in enumerate(widget.spec["panels"]):
-        drawn = page.evaluate(READ, number)
-        for (name, _), got in zip(panel["curves"], drawn, strict=True):
-            wide = max(np.ptp(exact[name]) for name, _ in panel["curves"])
-            np.testing.assert_allclose(got, exact[name], atol=0.002 * wide + 0.02, err_msg=name)
+    assert_curves(page, exact)
     shown = page.locator(".scalars output").all_inner_texts()
     for scalar, text in zip(widget.spec["scalars"], shown, strict=True):
-        got = float(text.split()[0].replace("−", "-"))
-        assert got == pytest.approx(exact[scalar["name"]][0], abs=0.0051)
-
-
-SEEN = """() => {
-  const { curves, log } = document.querySelector(".ddlib-picker").picker.picked;
-  return [Object.fromEntries(Object.entries(curves).map(([name, x]) => [name, [...x]])), log];
-}"""
+        number = float(text.split()[0].replace("−", "-"))
+        assert number == pytest.approx(exact[scalar["name"]][0], abs=0.0051)
 
 
 @browser_test
 def test_the_page_computes_what_ddlib_does(tmp_path, visit, full):
-    """Angles to 1e-6 rad, torques and errors to a millionth of their size."""
     url = page_of(tmp_path / "page.html", full)
-    for extents in ((39.5, 14.4), (45, 45), (0, 0), (0, 31.5), (12.3, 3.3)):
+    for extents in ((45, 45), (0, 0), (12.3, 3.3)):
         query = "shoulder_deg:{},elbow_deg:{}".format(*extents)
         page = visit(f"{url}?trajectory-picker={query}").page
-        curves, log = page.evaluate(SEEN)
-        known = full.interpolate(shoulder_deg=extents[0], elbow_deg=extents[1])
-        assert set(curves) == set(known)
-        for name, values in known.items():
-            small = np.rad2deg(1e-6) if "angle" in name else 1e-6 * np.abs(values).max() + 1e-9
-            np.testing.assert_allclose(curves[name], values, rtol=0, atol=small, err_msg=name)
+        assert_shown(page, full, extents)
+        log = page.evaluate("document.querySelector('.ddlib-picker').view.picked.log")
         recording = silent().record([extents])[0]
         np.testing.assert_allclose(log["reading"], recording.q, rtol=0, atol=1e-6)
         largest = np.abs(recording.tau).max(0) + 1e-3
         assert (np.abs(log["tau"] - recording.tau) <= 1e-6 * largest).all()
-
-
-@browser_test
-def test_another_setup_is_computed_as_well(tmp_path, visit):
-    """The page takes arm, friction and gains from the set-up, not from the book's default."""
-    network = results.median_network(21, POSITION_FEEDBACK.name)
-    widget = TrajectoryPicker({"mine": network}, POSITION_FEEDBACK)
-    page = visit(page_of(tmp_path / "page.html", widget)).page
-    curves, _ = page.evaluate(SEEN)
-    known, other = widget.curves, TrajectoryPicker({"mine": network}).curves
-    for name in ("shoulder torque, recorded", "elbow torque, mine", "RMSS, mine"):
-        small = 1e-6 * np.abs(known[name]).max()
-        np.testing.assert_allclose(curves[name], known[name], rtol=0, atol=small)
-        assert np.abs(known[name] - other[name]).max() > 1e3 * small
 
 
 @browser_test
@@ -212,7 +183,7 @@ def test_drag_keys_and_sliders(tmp_path, visit, full):
     page = opened.page
     before = page.evaluate(PATHS)
     assert len(before) == 12 and all(before)
-    assert_drawn(page, full, APPENDIX_I[5])
+    assert_shown(page, full, APPENDIX_I[5])
     assert "extrapolates" in page.locator(".verdict").inner_text()
     drag(page, page.locator(".pad .frame").bounding_box(), (0.9, 0.7), (0.5, 1 / 3))
     assert all(a != b for a, b in zip(before, page.evaluate(PATHS)))
@@ -229,13 +200,13 @@ def test_drag_keys_and_sliders(tmp_path, visit, full):
     page.keyboard.press("ArrowLeft")
     page.evaluate(NEXT_FRAME)
     assert shown_values(page)[:2] == [9.5, 40.0]
-    assert_drawn(page, full, (9.5, 40.0))
+    assert_shown(page, full, (9.5, 40.0))
     for values in settings(full, 4, seed=6):
         steps = {name: round(2 * value) for name, value in values.items()}  # of half a degree
         for name, step in steps.items():
             page.locator(f"input[id$={name}]").fill(str(step))
         page.evaluate(NEXT_FRAME)
-        assert_drawn(page, full, [step / 2 for step in steps.values()])
+        assert_shown(page, full, [step / 2 for step in steps.values()])
     assert page.locator(".record button").is_disabled()
     assert "kernel" in page.locator(".record p").inner_text()
     assert not opened.problems

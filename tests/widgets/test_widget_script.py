@@ -117,25 +117,6 @@ def test_script_reads_choices_dependencies_and_numbers_of_one_byte(node, tmp_pat
 pytestmark = pytest.mark.browser
 
 
-def test_sliders_of_two_widgets(tmp_path, visit, widget):
-    opened = visit(page_of(tmp_path / "page.html", widget, make()))
-    page = opened.page
-    ids = page.evaluate("[...document.querySelectorAll('[id]')].map((el) => el.id)")
-    assert len(ids) == len(set(ids)) >= 6
-    first = page.locator(".ddlib-widget").first
-    first.get_by_label("Gain").press("End")
-    page.evaluate(NEXT_FRAME)
-    assert first.locator(".slider output").first.inner_text() == "100\u00a0N m/rad"
-    final = widget.interpolate(gain=100)["final"][0]
-    shown = first.locator(".scalars output").inner_text().replace("−", "-").split()[0]
-    assert float(shown) == pytest.approx(final, abs=0.006)
-    second = page.locator(".ddlib-widget").nth(1)
-    assert second.locator(".slider output").first.inner_text() == "10.0\u00a0N m/rad"
-    page.wait_for_function("document.querySelector('.spoken').textContent.includes('Gain 100')")
-    assert "Gain" not in second.locator(".spoken").inner_text()
-    assert not opened.problems
-
-
 def test_every_control_of_a_choice(tmp_path, visit, waves):
     opened = visit(page_of(tmp_path / "page.html", waves))
     page = opened.page
@@ -196,17 +177,6 @@ def test_cursors_ticks_and_ranges(tmp_path, visit, waves):
     assert charts.nth(0).locator(".cursor").evaluate(x)[0] == pytest.approx(place(0, 0.5), abs=0.6)
 
 
-def test_axes_follow_curves_where_asked(tmp_path, visit, waves):
-    page = visit(page_of(tmp_path / "page.html", waves)).page
-    tops = []
-    for key in ("Home", "End"):
-        page.get_by_label("Gain").press(key)
-        page.evaluate(NEXT_FRAME)
-        tops.append([c.locator("text.y").last.text_content() for c in page.locator(".chart").all()])
-    (fitted, kept, *_), (larger, same, *_) = tops
-    assert float(fitted) == 1 and float(larger) >= 4 and kept == same
-
-
 def test_pad_by_keyboard(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget)).page
     pad = page.locator(".pad")
@@ -223,27 +193,3 @@ def test_pad_by_keyboard(tmp_path, visit, widget):
     assert pad.evaluate("(el) => el.matches(':focus-visible')")
     assert pad.evaluate("(el) => getComputedStyle(el).outlineWidth") == "2px"
     assert pad.evaluate("(el) => getComputedStyle(el).touchAction") == "pan-y"
-
-
-def test_controls_have_names_and_values(tmp_path, visit, widget, waves):
-    page = visit(page_of(tmp_path / "page.html", widget, waves)).page
-    unnamed = "[...document.querySelectorAll('[role=img],[role=application],[role=group]')]"
-    assert page.evaluate(f"{unnamed}.filter((el) => !el.getAttribute('aria-label')).length") == 0
-    for control in page.locator("input, select").all():
-        assert control.evaluate("(el) => el.labels.length === 1 && !!el.labels[0].textContent")
-        if control.get_attribute("type") == "range":
-            spoken = control.get_attribute("aria-valuetext")
-            output = page.locator(f"output[for='{control.get_attribute('id')}']")
-            assert spoken and output.inner_text() == spoken
-
-
-def test_on_paper_there_are_pictures_and_nothing_to_press(tmp_path, visit, widget, waves):
-    page = visit(page_of(tmp_path / "page.html", widget, waves), "dark", 700).page
-    ink = "getComputedStyle(document.querySelector('.ddlib-curves .title')).color"
-    assert page.evaluate(ink) == "rgb(230, 233, 236)"
-    page.emulate_media(media="print")
-    assert page.evaluate(ink) == "rgb(31, 35, 40)"
-    assert not any(el.is_visible() for el in page.locator("input, button").all())
-    charts = page.locator(".chart > svg")
-    assert charts.count() == 6 and all(el.is_visible() for el in charts.all())
-    assert all(el.is_visible() for el in page.locator(".slider output, .pad").all())

@@ -7,7 +7,7 @@ import copy
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, READ, drag, page_of, settings
+from widget_pages import assert_curves, drag, page_of, settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
@@ -105,43 +105,33 @@ def test_bad_arguments_are_refused(widget, study, along):
 # In a page without a kernel
 
 
-def shown(page, name) -> str:
-    page.evaluate(NEXT_FRAME)
-    return page.locator(f"output[for$={name}]").inner_text()
-
-
-def assert_change(page, study, at, direction, row):
-    """The third chart shows the changes of a cell, and the numbers those at an epoch."""
-    page.evaluate(NEXT_FRAME)
-    drawn = [np.log10(np.array(study["cells"][at][w]["change over start"])[1:, direction - 1])
-             for w in WHO]  # fmt: skip
-    curves = page.evaluate(READ, 2)
-    _, *moving = curves if np.ptp(curves[0]) == 0 else [None, *curves]
-    np.testing.assert_allclose(moving, drawn, atol=0.06)
-    texts = page.locator(".scalars output").all_inner_texts()[1:]
-    numbers = [float(text.replace("−", "-").replace(",", "")) for text in texts]
-    assert numbers == pytest.approx([10 ** d[row - 1] for d in drawn], rel=0.011)
-
-
 @pytest.mark.browser
 def test_sliders_and_menus(tmp_path, visit, widget, study):
     widget.case, widget.width, widget.direction, widget.epoch = 0, 7, 1, 1
     opened = visit(page_of(tmp_path / "page.html", widget))
     page = opened.page
     direction, epoch = page.get_by_role("slider").all()
-    assert_change(page, study, 0, 1, 1)
+
+    def shows(**changes):
+        values.update(changes)
+        known = widget.interpolate(**values)
+        assert_curves(page, known, 5e-3)
+        texts = page.locator(".scalars output").all_inner_texts()[1:]
+        numbers = [float(text.replace("−", "-").replace(",", "")) for text in texts]
+        assert numbers == pytest.approx([10 ** known[f"now {w}"][0] for w in WHO], rel=0.011)
+
+    values = dict(widget.values)
+    shows()
     epoch.press("End")
-    assert shown(page, "epoch") == "20,000"
-    assert_change(page, study, 0, 1, 5)
+    shows(epoch=20_000)
     direction.press("ArrowRight")
-    assert shown(page, "direction") == "2"
-    assert_change(page, study, 0, 2, 5)
+    shows(direction=2)
     drag(page, direction.bounding_box(), (0.3, 0.5), (0.99, 0.5))
-    assert_change(page, study, 0, 5, 5)
+    shows(direction=5)
     page.get_by_label("Window size").select_option(label="11 samples")
-    assert_change(page, study, 1, 5, 5)
+    shows(width=11)
     page.get_by_label("Recording").select_option(label="quiet, inputs -1 to 1")
-    assert_change(page, study, 3, 5, 5)
+    shows(case=1)
     epoch.press("Home")
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '20,000'")

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, PATHS, READ, page_of
+from widget_pages import NEXT_FRAME, PATHS, assert_curves, page_of
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -18,9 +18,7 @@ from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.switches import (
     CLOSE_UP,
     DELAY,
-    QUANTISATION,
     RANGES,
-    SATURATION,
     TIMES,
     RealArmSwitches,
 )
@@ -85,29 +83,6 @@ def test_the_stronger_the_further_from_the_ideal_arm(switches):
             assert off[deviation] == 0 < weak[deviation] < strong[deviation]
 
 
-def test_saturation_clips_every_torque(switches):
-    for level, *others in itertools.product(("weak", "strong"), *(("off", "strong"),) * 3):
-        values = dict(zip(("friction", "quantisation", "delay"), others), saturation=level)
-        shown = switches.interpolate(**OFF | values)
-        for name in ("torque", "close-up"):
-            assert np.abs(shown[name]).max() <= SATURATION[level] + 1e-3
-        assert np.abs(shown["torque"]).max() > 0.99 * SATURATION[level]
-
-
-def test_quantisation_roughens_the_torque_not_the_position(switches):
-    rough, away = [], []
-    for level in QUANTISATION:
-        exact = switches._function(**OFF | {"quantisation": level})
-        rough.append(np.abs(np.diff(exact["close-up"], 2)).mean())
-        away.append(exact["shoulder position"])
-    # one step of the encoder in one period, seen by the derivative gain
-    for bits, got in zip((16, 14), rough[1:]):
-        step = KD[0] * 2 * np.pi / 2**bits / CONTROL_STEP
-        assert 0.1 < got / step < 2
-    assert rough[0] < 0.02 * rough[1] < 0.02 * rough[2]
-    assert max(away) < 0.002  # degrees
-
-
 def test_bad_values_are_refused(switches):
     for name, bad in (("friction", "weak"), ("delay", 1), ("quantisation", None)):
         with pytest.raises(TraitError, match=f"{name} must be one of 'off'"):
@@ -118,49 +93,23 @@ def test_bad_values_are_refused(switches):
 
 
 def assert_shown(page, switches, **levels):
-    page.evaluate(NEXT_FRAME)
     exact = switches._function(**{**switches.values, **levels})
-    for panel, name in enumerate(RANGES):
-        _, real = page.evaluate(READ, panel)  # what stays is drawn below
-        np.testing.assert_allclose(real, exact[name], atol=1e-3 * np.ptp(RANGES[name]))
+    assert_curves(page, exact, 1e-4)
     texts = page.locator(".scalars output").all_inner_texts()
     shown = [float(text.replace("°", " ").split()[0]) for text in texts]
     assert shown == pytest.approx([exact[name] for name in DEVIATIONS], abs=0.0051)
 
 
-SEEN = """() => {
-  const { found } = document.querySelector(".ddlib-switches").switches;
-  return Object.fromEntries(Object.entries(found).map(([name, values]) => [name, [...values]]));
-}"""
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize(
-    "levels",
-    [
-        {},
-        {"friction": "strong", "saturation": "strong", "quantisation": "strong", "delay": "strong"},
-        {"friction": "assumed", "dead_zone": "weak", "saturation": "weak", "delay": "weak"},
-    ],
-    ids=["off", "strong", "weak"],
-)
-def test_the_page_computes_what_ddlib_does(tmp_path, visit, switches, levels):
-    """To 1e-6 rad, of every combination of effects that is tried."""
-    query = ",".join(f"{name}:{level}" for name, level in (OFF | levels).items())
-    page = visit(f"{page_of(tmp_path / 'page.html', switches)}?real-arm-switches={query}").page
-    page.evaluate(NEXT_FRAME)
-    seen, known = page.evaluate(SEEN), switches._function(**OFF | levels)
-    assert set(seen) == set(known)
-    for name, tolerance in (("error", np.rad2deg(1e-6)), ("torque", 1e-3), ("close-up", 1e-3)):
-        np.testing.assert_allclose(seen[name], known[name], atol=tolerance)
-    for name in DEVIATIONS:
-        assert seen[name] == [pytest.approx(known[name], abs=1e-5)]
-
-
 @pytest.mark.browser
 def test_switches_alone_and_all(tmp_path, visit, switches):
     """By mouse and keyboard; the axes stay as they are."""
-    opened = visit(page_of(tmp_path / "page.html", switches))
+    url = page_of(tmp_path / "page.html", switches)
+    weak = {"friction": "assumed", "dead_zone": "weak", "saturation": "weak", "delay": "weak"}
+    strong = dict.fromkeys(("friction", "saturation", "quantisation", "delay"), "strong")
+    for levels in (OFF | weak, OFF | strong):
+        query = ",".join(f"{name}:{level}" for name, level in levels.items())
+        assert_shown(visit(f"{url}?real-arm-switches={query}").page, switches, **levels)
+    opened = visit(url)
     page = opened.page
     assert_shown(page, switches)
     axes = page.locator(".chart svg text.y").all_inner_texts()

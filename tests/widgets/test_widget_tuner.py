@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import CALM, NEXT_FRAME, PATHS, READ, drag, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, PATHS, drag, functions, page_of
 
 from ddlib.control import PID, Feedforward, closed_loop, plant
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
@@ -115,14 +115,6 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     np.testing.assert_allclose(answer[stable], wanted[stable], rtol=1e-5, atol=1e-5)
 
 
-def test_growth_is_that_of_the_poles():
-    law = gains(300, 600, 0)
-    loop = closed_loop(plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS), **law, period=CONTROL_STEP)
-    growth = loops.linear(ARM, VISCOUS, law, 0).growth
-    assert np.exp(growth * CONTROL_STEP) == pytest.approx(abs(loop.poles()).max(), abs=1e-12)
-    assert growth > 0
-
-
 def test_a_stopped_run_has_no_end_and_no_margin():
     run = known_run(**QUESTIONS[4].change)
     error = np.abs([run["shoulder error"], run["elbow error"]])
@@ -184,7 +176,7 @@ def test_bad_values_are_refused_and_the_ghost_is_the_setting_before(tuner):
 # In a page without a kernel
 
 SEEN = """() => {
-  const { now, ghost } = document.querySelector(".ddlib-tuner").tuner;
+  const { now, ghost } = document.querySelector(".ddlib-tuner").view;
   const { error, torque, rms, growth, log, margins } = now;
   return { error: error.map((x) => [...x]), torque: torque.map((x) => [...x]), rms, growth,
     stopped: log.stopped, margins, setting: now.setting, before: ghost.setting };
@@ -205,11 +197,6 @@ def assert_computed(page, **setting):
     assert seen["growth"] == pytest.approx(known["growth"], rel=1e-6)
     ended = np.nan if seen["stopped"] is None else TIMES[seen["stopped"]]
     assert ended == pytest.approx(known["stopped"], nan_ok=True)
-    for panel in range(4):  # what is drawn, as far as the run goes
-        _, got = page.evaluate(READ, panel)
-        name = f"{JOINTS[panel % 2]} {'error' if panel < 2 else 'torque'}"
-        whole = known[name][np.isfinite(known[name])]
-        np.testing.assert_allclose(got, whole, atol=0.01 * np.ptp(whole))
 
 
 def value_of(page, tuner, name):
@@ -310,16 +297,3 @@ def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
     part = float(re.search(r"([\d.]+)\s%", text)[1]) / 100
     less, more = (gains(START["kp"], 600 * part * share, 0.0) for share in (0.96, 1.04))
     assert is_stable(less) and not is_stable(more)
-    for share in (1e-3, 0.01, 0.1, 0.5, 1):
-        assert not is_stable(gains(START["kp"] * share, 600 * share, 0.0))
-    assert page.locator(".scalars dd").first.inner_text() == "none, stopped"
-
-
-@pytest.mark.browser
-def test_margins_are_linked_to_the_nyquist_plot(tmp_path, visit, tuner):
-    plot = '<figure id="fig-feedback-nyquist" style="margin-top: 3000px">plot</figure>'
-    page = visit(page_of(tmp_path / "page.html", tuner, extra=plot), **CALM).page
-    page.get_by_role("link", name="the Nyquist plot").click()
-    page.wait_for_function("scrollY > 1000")
-    page = visit(page_of(tmp_path / "alone.html", tuner), **CALM).page
-    assert not page.get_by_role("link").count()

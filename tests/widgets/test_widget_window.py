@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, READ, alerts, cut, drag, page_of, settings
+from widget_pages import alerts, assert_curves, cut, drag, page_of, settings
 
 from ddlib.learning import sliding_windows
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
@@ -93,50 +93,31 @@ def test_bad_arguments_are_refused(widget, models, test_run):
 
 # In a page without a kernel
 
-BARS = r"""() => {
-  const svg = document.querySelectorAll('.chart > svg')[1];
-  const ys = [...svg.querySelectorAll('text.y')].map(
-    (t) => [Number(t.getAttribute('y')), Number(t.textContent)]);
-  const [[y0, v0], [y1, v1]] = [ys[0], ys.at(-1)];
-  return svg.querySelector('.bar').getAttribute('d').match(/V[\d.]+h/g)
-    .map((s) => v0 + (parseFloat(s.slice(1)) - y0) * (v1 - v0) / (y1 - y0));
-}"""
-
-
-def assert_shown(page, widget, width, sample):
-    page.evaluate(NEXT_FRAME)
-    assert page.locator("output[for$=sample]").inner_text() == f"{0.01 * sample:.2f} s"
-    exact = widget._curves(width, sample)
-    np.testing.assert_allclose(page.evaluate(BARS), exact["activity"], atol=0.01)
-    strips = [exact["shoulder position"], exact["elbow position"]]
-    np.testing.assert_allclose(page.evaluate(READ, 0), strips, atol=0.01)
-    for panel, joint in ((2, "shoulder"), (3, "elbow")):
-        torque = exact[f"{joint} torque"]
-        _, shown = page.evaluate(READ, panel)  # the measured torque is drawn below the network's
-        np.testing.assert_allclose(shown, torque, atol=0.01 * np.ptp(torque))
-    texts = page.locator(".scalars output").all_inner_texts()
-    names = [f"{j} {what}" for j in ("shoulder", "elbow") for what in ("network", "measured")]
-    values = [float(text.replace("−", "-").split()[0]) for text in texts]
-    assert values == pytest.approx([exact[name] for name in names], abs=0.06)
-
-
-SEEN = """() => {
-  const { curves } = document.querySelector(".ddlib-curves").sliding;
-  return Object.fromEntries(Object.entries(curves).map(([name, values]) => [name, [...values]]));
-}"""
-
 
 @pytest.mark.browser
 def test_the_page_computes_what_ddlib_does(tmp_path, visit, widget):
-    url = page_of(tmp_path / "page.html", widget)
-    for width, sample in ((11, 0), (11, 299), (21, 75), (41, 150)):
-        page = visit(f"{url}?sliding-window=width:{width},sample:{sample}").page
-        seen, known = page.evaluate(SEEN), widget.interpolate(width=width, sample=sample)
-        assert set(seen) == set(known)
-        for name, values in known.items():
-            small = 1e-6 * np.abs(values).max() if "torque" in name else 1e-9
-            small = 1e-5 if name in ("first", "last") else small  # ms
-            np.testing.assert_allclose(seen[name], values, rtol=0, atol=small, err_msg=name)
+    opened = visit(page_of(tmp_path / "page.html", widget) + "?sliding-window=sample:75")
+    page, slider = opened.page, opened.page.get_by_role("slider")
+
+    def shows(width, sample):
+        assert_curves(page, widget.interpolate(width=width, sample=sample))
+        assert page.locator("output[for$=sample]").inner_text() == f"{0.01 * sample:.2f} s"
+
+    shows(21, 75)
+    slider.press("ArrowRight")
+    shows(21, 76)
+    slider.press("End")
+    shows(21, 299)
+    drag(page, slider.bounding_box(), (0.98, 0.5), (0.5, 0.5))
+    sample = int(slider.input_value())
+    assert 145 < sample < 155
+    shows(21, sample)
+    page.get_by_label("Window size").select_option(label="41 samples")
+    shows(41, sample)
+    page.get_by_label("Window size").press("Home")
+    slider.press("Home")
+    shows(11, 0)
+    assert not opened.problems
 
 
 @pytest.mark.browser
@@ -146,26 +127,3 @@ def test_damage_is_reported_in_place(tmp_path, visit, widget):
 
     damages = (cut("recorded", 8), cut("weights", 8), gone)
     assert len(alerts(tmp_path, visit, widget, *damages)) == len(damages)
-
-
-@pytest.mark.browser
-def test_slider_and_menu(tmp_path, visit, widget):
-    widget.width, widget.sample = 21, 75
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page, slider = opened.page, opened.page.get_by_role("slider")
-    assert_shown(page, widget, 21, 75)
-    slider.press("ArrowRight")
-    assert_shown(page, widget, 21, 76)
-    slider.press("Home")
-    assert_shown(page, widget, 21, 0)
-    slider.press("End")
-    assert_shown(page, widget, 21, 299)
-    drag(page, slider.bounding_box(), (0.98, 0.5), (0.5, 0.5))
-    sample = int(slider.input_value())
-    assert 145 < sample < 155
-    assert_shown(page, widget, 21, sample)
-    page.get_by_label("Window size").select_option(label="41 samples")
-    assert_shown(page, widget, 41, sample)
-    page.get_by_label("Window size").press("Home")
-    assert_shown(page, widget, 11, sample)
-    assert not opened.problems

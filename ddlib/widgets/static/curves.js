@@ -47,6 +47,7 @@ function build({ model, el }) {
   }
   read();
   dress(el, spec.title);
+  el.view = view; // for tests
 
   view.charts = spec.panels.map((panel) => chart(view, panel));
   const controls = spec.parameters.map((p, k) => (p.options ? choice : slider)(view, p, k));

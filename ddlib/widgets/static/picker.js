@@ -159,7 +159,6 @@ extras.push((view) => {
   const { model, spec } = view;
   const arm = armOf(view);
   view.el.classList.add("ddlib-picker");
-  view.el.picker = view; // for tests
   if (Object.keys(view.model.get("map").errors).length) mapOf(view);
 
   const clock = clockOf(view, { at: arm.end / 2, end: arm.end, step: arm.end / 300 }, (now) => {

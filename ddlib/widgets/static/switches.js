@@ -97,5 +97,4 @@ extras.push((view) => {
   const follow = () => rows.forEach(({ update }) => update());
   view.after.push(follow);
   follow();
-  view.el.switches = view; // for tests
 });

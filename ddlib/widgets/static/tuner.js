@@ -187,7 +187,6 @@ extras.push((view) => {
     clock.show();
   };
   view.after.push(follow);
-  el.tuner = view; // for tests
   const redraw = () => view.schedule();
   model.on("change:before", redraw);
   follow();

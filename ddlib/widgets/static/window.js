@@ -40,7 +40,3 @@ live = (view) => {
   Object.assign(curves, { from: inside(times[sample] - half), to: inside(times[sample] + half) });
   return Object.assign(curves, { first: [-1000 * half], last: [1000 * half] });
 };
-
-extras.push((view) => {
-  view.el.sliding = view; // for tests
-});
