@@ -26,8 +26,8 @@ STYLE = ("curves.css",)
 CHECKS = 200  # random settings at which the interpolation is compared with the function
 
 
-def module(*names: str) -> str:
-    """The named files of the folder `static` as one text: a widget's script must stand alone."""
+def module(*names: str | Path) -> str:
+    """Files of the folder `static`, or by full paths, as one text: a widget's script stands alone."""
     return "\n".join((STATIC / name).read_text(encoding="utf-8") for name in names)
 
 

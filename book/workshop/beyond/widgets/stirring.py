@@ -18,6 +18,8 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.loop.motions import Circles, stirred
 from workshop.beyond.studies.loop.stirring import PICKER, PLACES, SHOWN
 
+HERE = Path(__file__).parent
+
 LINES = {
     "exact behind a window": "equations",
     "pick and place": "network of pick-and-place",
@@ -50,8 +52,8 @@ class StirringPicker(CurveWidget):
     sentence. Its curves are zero. `path` holds what the study ``stirring`` kept.
     """
 
-    _esm = module(*SCRIPT, "stirring.js")
-    _css = module(*STYLE, "stirring.css")
+    _esm = module(*SCRIPT, HERE / "stirring.js")
+    _css = module(*STYLE, HERE / "stirring.css")
 
     workspace = t.Dict(help="lengths, reach and part that is drawn, m", read_only=True)
     workspace.tag(sync=True)
