@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, shaped
+from ddlib._check import finite_array, integer
 from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
 from ddlib.dynamics.formulations import link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
@@ -120,28 +120,15 @@ def _tensor_times(x) -> np.ndarray:
     return matrix
 
 
-def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
-    """The arm with only its first joints free: what lies beyond is one body with the last link.
+def locked(arm: SerialArm, joints: int) -> SerialArm:
+    """The arm with only its first joints free, the others locked at angle zero.
 
-    Parameters
-    ----------
-    arm : SerialArm
-    joints : int
-        Joints that stay free, 1 or more.
-    posture : array_like, shape (arm.joints,), optional
-        Angles at which the others are locked, rad. Default: all zero.
-
-    Returns
-    -------
-    SerialArm
-        Its last link ends where the arm's does; a posture for which it cannot is refused.
+    What lies beyond is one body with the last free link, which ends where the arm does.
     """
     integer("joints", joints, 1, arm.joints)
-    rest = np.zeros(arm.joints) if posture is None else shaped("posture", posture, (arm.joints,))
     if joints == arm.joints:
         return arm
-    angles = np.where(np.arange(arm.joints) < joints, 0.0, rest)
-    placed = frames(arm, angles)[1:]
+    placed = frames(arm, np.zeros(arm.joints))[1:]
     last = placed[joints - 1]
     bodies = [_moved(link, np.linalg.inv(last) @ f) for link, f in zip(arm.links, placed)]
     bodies = bodies[joints - 1 :]
@@ -153,7 +140,7 @@ def locked(arm: SerialArm, joints: int, posture=None) -> SerialArm:
     near = arm.links[joints - 1]
     if np.abs(end[1:]).max() > 1e-12 * max(1.0, np.abs(end).max()):
         raise ValueError(
-            f"posture must leave the hand on the x axis of link {joints}, got it at {end} m"
+            f"arm must have its hand on the x axis of link {joints} at angles zero, got {end} m"
         )
     whole = replace(
         near,

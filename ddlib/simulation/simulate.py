@@ -99,7 +99,7 @@ def _check_plant(arm, effects) -> None:
     if not isinstance(arm, Arm):
         raise TypeError(
             "arm must be an Arm, which has two joints, with base parameters a, b, d and two "
-            f"lengths, got {arm!r:.80}"
+            f"lengths, got {type(arm).__name__}"
         )
     if not isinstance(effects, Effects):
         raise TypeError(
