@@ -4,7 +4,7 @@ import control
 import numpy as np
 import pytest
 
-from ddlib.control import linear, pd, proportional
+from ddlib.control import linear, proportional
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
 from ddlib.setups import KD, KP
@@ -76,25 +76,6 @@ def test_growth_of_a_late_spring_on_the_simulated_arm(late, effect):
     peaks = np.flatnonzero((along[1:-1] > along[:-2]) & (along[1:-1] >= along[2:])) + 1
     measured = np.polyfit(run.t[peaks[1:]], np.log(along[peaks[1:]]), 1)[0]
     assert measured == pytest.approx(rate, rel=0.05)
-
-
-def test_how_late_a_pd_loop_may_be():
-    """The last stable and the first unstable whole delay, predicted and simulated."""
-    periods = next(
-        n for n in range(60)
-        if np.abs(late_poles(JOINTS, PD, CONTROL_STEP, n * CONTROL_STEP)).max() > 1
-    )  # fmt: skip
-    assert 15 < periods < 30
-    t = np.arange(0, 5, CONTROL_STEP)
-    target = np.deg2rad(0.1) * (t > 0)[:, None] * np.ones(2)
-    reference = Trajectory(target, 0 * target, 0 * target)
-    swings = []
-    for n in (periods - 1, periods):
-        effects = Effects((ViscousFriction(VISCOUS),), actuator=(Delay(n),))
-        run = follow(CMU_DD_ARM_II, pd(KP, KD), reference, t, effects=effects)
-        error = np.abs(run.tracking_error).max(-1)
-        swings.append(error[-50:].max() / error[200:250].max())
-    assert swings[0] < 1 < swings[1]
 
 
 @pytest.mark.parametrize(

@@ -24,10 +24,10 @@ def kept(path, names=("table", REFERENCE, "filter")):
 def made(tmp_path_factory):
     path = tmp_path_factory.mktemp("rivals") / "torques.npz"
     torque = kept(path)
-    return RivalPicker(path, "filter", checks=20), torque
+    return RivalPicker(path, "filter"), torque
 
 
-def test_curves_are_those_of_the_place_and_the_rival(made):
+def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(made):
     picker, torque = made
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "filter"
     run = 1 * GRID + 8  # the elbow changes fastest
@@ -38,10 +38,6 @@ def test_curves_are_those_of_the_place_and_the_rival(made):
     scale = torque[0].reshape(-1, 2).std(0)
     wanted = np.sqrt((((torque[2:, run] - torque[0, run]) / scale) ** 2).mean((1, 2)))
     np.testing.assert_allclose(found, [0, *wanted])
-
-
-def test_the_page_shows_the_same(made):
-    picker, _ = made
     assert picker.interpolation_error(40) < 1e-3
     picker.shoulder, picker.elbow, picker.rival = 9, 1, "table"
     baked = picker.interpolate()
@@ -51,7 +47,7 @@ def test_the_page_shows_the_same(made):
 
 
 def test_what_was_committed_fits():
-    picker = RivalPicker(checks=10)
+    picker = RivalPicker()
     assert picker.baked_bytes < MAX_BYTES
     assert (picker.curves["errors"] > 0).all()
 

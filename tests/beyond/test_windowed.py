@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from ddlib.control import PID, Feedforward, pd, plant
-from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
-from ddlib.effects import Effects, ViscousFriction
-from ddlib.simulation import follow, record
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.delays import late_poles
 from workshop.beyond.control.windowed import (
@@ -131,25 +130,6 @@ def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
     else:
         np.testing.assert_allclose(passed[late:], measured[: 60 - late], atol=1e-12)
         np.testing.assert_array_equal(passed[:late], np.tile(Q[0], (late, 1)))
-
-
-@pytest.mark.parametrize("gain, stable", [(120.0, True), (500.0, False)])
-def test_late_positions_in_the_loop_have_the_poles_of_a_late_loop(gain, stable):
-    """A torque ``-gain`` times the position of 10 ms ago, on an arm with a constant mass matrix."""
-    arm, still = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3)), np.zeros((1600, 2))
-    joints = plant(arm.mass_matrix(np.zeros(2)), (4.0, 4.0))
-    poles = late_poles(joints, gain * np.eye(2, 4), 0.002, 0.01)
-    growth = np.abs(poles).max()
-    assert (growth < 1) == stable
-    made = WindowFeedforward(lambda windows: -gain * windows[..., 1], 5)
-    log = follow(
-        arm, MeasuredWindows(made, lambda *_: np.zeros(2)), Trajectory(still, still, still),
-        np.arange(1600) * 0.002, effects=Effects(friction=(ViscousFriction((4.0, 4.0)),)),
-        start=([0.0, 0.01], [0.0, 0.0]), log_every=1,
-    )  # fmt: skip
-    size = np.abs(log.q_true).max(-1)
-    early, late = size[400:800].max(), size[1200:].max()
-    assert np.log(late / early) / 800 == pytest.approx(np.log(growth), rel=0.25)
 
 
 def test_slopes_of_a_linear_model_are_its_weights():
