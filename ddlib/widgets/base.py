@@ -27,7 +27,7 @@ CHECKS = 200  # random settings at which the interpolation is compared with the 
 
 
 def module(*names: str | Path) -> str:
-    """Files of the folder `static`, or by full paths, as one text: a widget's script stands alone."""
+    """Files of the folder `static`, or by full paths, as one text: a script must stand alone."""
     return "\n".join((STATIC / name).read_text(encoding="utf-8") for name in names)
 
 

@@ -81,14 +81,6 @@ def test_spline_is_scipys_not_a_knot():
     assert cubic.error(100) < 3e-5
 
 
-def test_components_make_the_table_smaller():
-    axis = [Parameter("a", "a", 0, 3, 0, grid=40), Parameter("b", "b", 0, 3, 0, grid=40)]
-    x = np.linspace(0, 1, 500)
-    baked = Baked(lambda a, b: {"y": np.sin(a + x) + b * x, "z": np.cos(a * x)}, axis)
-    assert 3 <= baked.tables[0].rank <= 12 and len(baked.tobytes()) < 80_000 < 2 * 42**2 * 1000
-    assert baked.error(100) < 0.002
-
-
 def test_faint_components_take_one_byte():
     axis = [Parameter("a", "a", 0, 3, 0, grid=200)]
     x = np.linspace(0, 1, 300)

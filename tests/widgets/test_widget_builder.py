@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, Finger, alerts, copied, cut, functions, page_of, phone
+from widget_pages import CALM, NEXT_FRAME, alerts, copied, cut, functions, page_of
 
 from ddlib.analysis import followed, frequency_response
-from ddlib.setups import JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets import FilterBuilder
 from ddlib.widgets.engine import builder
@@ -34,19 +33,6 @@ def drawn(n=20, seed=0):
 
 
 # The error
-
-
-def test_the_recording_is_that_of_the_set_up():
-    run = split(JOINT_DAMPING.record())[1]
-    q, truth, step = builder.readings()
-    half = builder.WIDTH // 2
-    seen = run.q[run.motion.start - half : run.motion.stop + half, 0]
-    np.testing.assert_array_equal(np.round(q / step) * step, seen)
-    np.testing.assert_array_equal(builder.windows()[0], seen[: builder.WIDTH])
-    np.testing.assert_array_equal(builder.windows()[-1], seen[-builder.WIDTH :])
-    speed = run.qd_true[run.motion.start - 1 : run.motion.stop + 1, 0]
-    slope = (speed[2:] - speed[:-2]) / (2 * LOG_STEP)
-    assert np.sqrt(np.mean((slope - truth) ** 2)) < 0.05 * truth.std()
 
 
 def test_the_error_is_what_is_left_of_the_acceleration():
@@ -210,29 +196,6 @@ def test_a_link_restores_what_was_drawn_and_code_gives_its_error(tmp_path, visit
         assert printed == pytest.approx(here.evaluate(SCORE), abs=1e-9)
     wrong = opened(tmp_path, visit, widget, "?builder=f:zz").page
     assert heights(wrong)[10] == pytest.approx(-0.9)
-
-
-@pytest.mark.browser
-def test_touch_draws_anywhere_and_scrolls_upwards_beside_the_dots(tmp_path, browser, widget):
-    with phone(browser, page_of(tmp_path / "page.html", widget)) as page:
-        finger = Finger(page)
-
-        def stroke(start, end):
-            (x, y), (to, down) = place(page, *start), place(page, *end)
-            finger.swipe(x, y, to - x, down - y)
-
-        stroke((3, 0.0), (3, 0.7))
-        assert heights(page)[3] == pytest.approx(0.7, abs=0.03)
-        press(page, "Zero")
-        stroke((0, 0.9), (20, -0.9))  # far from every dot
-        np.testing.assert_allclose(heights(page), np.linspace(0.9, -0.9, 21), atol=0.05)
-        page.touchscreen.tap(*place(page, 18, 0.8))
-        page.evaluate(NEXT_FRAME)
-        assert heights(page)[18] == pytest.approx(0.8, abs=0.03)
-        before, scrolled = heights(page), page.evaluate("scrollY")
-        finger.swipe(*place(page, 16, 0.8), 0, -150)
-        np.testing.assert_array_equal(heights(page), before)
-        assert page.evaluate("scrollY") > scrolled + 50
 
 
 @pytest.mark.browser

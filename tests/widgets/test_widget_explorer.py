@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import freqz
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, Finger, page_of, phone, settings
+from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
 from ddlib.setups import WINDOWS
@@ -195,14 +195,3 @@ def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
         shows(**named)
     ticks = page.locator(".chart > svg").nth(3).locator("text.x").all_text_contents()
     assert ticks[:-1] == ["0.5", "1", "2", "5", "10", "20"] and not opened.problems
-
-
-@pytest.mark.browser
-def test_touch_chooses_and_scrolls(tmp_path, browser, explorer, models):
-    with phone(browser, page_of(tmp_path / "page.html", explorer)) as page:
-        box = page.locator('[aria-label="hidden 6, shoulder\'s window"]').bounding_box()
-        page.touchscreen.tap(box["x"] + 20, box["y"] + box["height"] / 2)
-        assert_shown(page, explorer, models, **START | {"unit": "hidden 6"})
-        Finger(page).swipe(190, box["y"], 0, -165)  # up over the diagram
-        page.wait_for_function("scrollY > 100")
-        assert_shown(page, explorer, models, **START | {"unit": "hidden 6"})

@@ -272,17 +272,6 @@ def test_player_moves_the_arm(tmp_path, visit, picker):
     assert button.inner_text() == "Play"
     page.locator("input[id$=time]").press("End")
     assert page.locator("output[for$=time]").inner_text() == "3.00\u00a0s"
-    page = visit(url, reduced_motion="reduce").page  # poses
-    page.locator("input[id$=time]").press("Home")
-    page.evaluate("""() => {
-      window.seen = new Set();
-      const output = document.querySelector("output[for$=time]");
-      new MutationObserver(() => seen.add(output.textContent)).observe(output, {childList: true});
-    }""")
-    page.locator(".player button").click()
-    page.wait_for_function("[...seen].some((text) => text.startsWith('1.50'))")
-    shown = {float(text.split("\u00a0")[0]) for text in page.evaluate("[...seen]")}
-    assert shown <= {0, 0.5, 1, 1.5, 2}
 
 
 @browser_test

@@ -151,32 +151,6 @@ def test_every_control_of_a_choice(tmp_path, visit, waves):
     assert not opened.problems
 
 
-def test_cursors_ticks_and_ranges(tmp_path, visit, waves):
-    page = visit(page_of(tmp_path / "page.html", waves)).page
-    charts = page.locator(".chart > svg")
-    x = "(el) => ['x1', 'x2', 'x', 'width'].map((n) => Number(el.getAttribute(n)))"
-
-    def place(chart, value):
-        """Where a value of x lies, from the frame of the chart."""
-        path = charts.nth(chart).locator(".frame").get_attribute("d")
-        left, right = float(path[1:].split(" ")[0]), float(path.split("H")[1])
-        margin = {0: 0, 1: 0.05}[chart]  # half a step beside the first and the last stem
-        return left + (value + margin) / (1 + 2 * margin) * (right - left)
-
-    assert charts.nth(0).locator(".cursor").evaluate(x)[0] == pytest.approx(place(0, 0.2), abs=0.6)
-    begin, width = charts.nth(1).locator(".span").evaluate(x)[2:]
-    assert begin == pytest.approx(place(1, 0.2), abs=0.6)
-    assert begin + width == pytest.approx(place(1, 0.5), abs=0.6)
-    assert charts.nth(2).locator("text.x").all_text_contents() == ["a", "c", "x"]
-    ys = charts.nth(3).locator("text.y").all_text_contents()
-    assert [float(y.replace("−", "-")) for y in ys] == [-2, -1.5, -1, -0.5, 0, 0.5]
-    clip = charts.nth(3).locator(".curve").get_attribute("clip-path")
-    assert charts.nth(3).locator(f"clipPath[id='{clip[5:-1]}']").count() == 1
-    page.get_by_label("Gain").press("End")
-    page.evaluate(NEXT_FRAME)
-    assert charts.nth(0).locator(".cursor").evaluate(x)[0] == pytest.approx(place(0, 0.5), abs=0.6)
-
-
 def test_pad_by_keyboard(tmp_path, visit, widget):
     page = visit(page_of(tmp_path / "page.html", widget)).page
     pad = page.locator(".pad")

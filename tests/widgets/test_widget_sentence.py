@@ -112,36 +112,6 @@ def test_keys_and_pointer(tmp_path, visit):
     assert end_of(page) == TorqueSentence().text() and not opened.problems
 
 
-BREAKS = """() => {
-  const root = document.querySelector(".sentence");
-  const walker = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
-  const seen = [];
-  for (let text; (text = walker.nextNode()); ) {
-    if (text.parentElement.closest(".stepper")) continue;
-    for (let i = 0; i < text.length; i++) {
-      const range = document.createRange();
-      range.setStart(text, i);
-      range.setEnd(text, i + 1);
-      seen.push([text.data[i], range.getBoundingClientRect()]);
-    }
-  }
-  return seen.slice(1).map(([sign, box], k) => [seen[k][0], sign, box.top - seen[k][1].top])
-    .filter(([before, , down]) => before !== " " && down > 12).map((pair) => pair.join(""));
-}"""
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize("kind", [TorqueSentence, LoopSentence])
-def test_sign_number_and_unit_stay_together(tmp_path, visit, kind):
-    """At any width lines end where there is a plain space."""
-    query = {TorqueSentence: "?torque-sentence=second:3.1", LoopSentence: "?loop-sentence=kd:3.5"}
-    page = visit(f"{page_of(tmp_path / 'page.html', kind())}{query[kind]}").page
-    for width in range(300, 1301, 36):
-        page.set_viewport_size({"width": width, "height": 700})
-        broken = [pair for pair in page.evaluate(BREAKS) if pair[1] != " "]
-        assert not broken, (width, broken)
-
-
 @pytest.mark.browser
 def test_a_number_that_is_tapped_shows_a_minus_and_a_plus(tmp_path, browser):
     sentence = LoopSentence()
