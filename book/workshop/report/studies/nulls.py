@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ddlib import learning
 from ddlib.analysis import (
     CLASSES,
     LAYERS,
@@ -24,17 +25,7 @@ from ddlib.analysis import (
     with_filters,
     with_jerk,
 )
-from ddlib.learning import (
-    MATCHED,
-    TorqueModel,
-    TrainingSet,
-    Weights,
-    cases,
-    related,
-    solve,
-    surrogates,
-    train_ensemble,
-)
+from ddlib.learning import MATCHED, TorqueModel, TrainingSet, Weights, cases, related, surrogates
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
@@ -83,14 +74,14 @@ class _Trial:
         label = f"{setup.name}, window {self.width}"
         if setup.steps:
             found = [
-                solve(
+                learning.solve(
                     start[k : k + 1], replace(self.data, y=scaled[k]), steps=setup.steps,
                     decay=setup.decay, label=label,
                 ).model.weights
                 for k in range(count)
             ]  # fmt: skip
             return Weights.concatenate(found), start
-        model, *_ = train_ensemble(
+        model, *_ = learning.train_ensemble(
             start, self.data, targets=scaled, rate=setup.rate / self.width,
             momentum=setup.momentum, warm_up=setup.warm_up, epochs=setup.epochs, label=label,
         )  # fmt: skip
@@ -325,7 +316,7 @@ def null_controls(
         weights, _ = other.train(targets, 0)
         rows.append({"kind": "descent", "initial": initial, **row(weights)})
     for penalty in ({"decay": 1e-5}, {"decay": 1e-3}, {}):
-        solution = solve(
+        solution = learning.solve(
             Weights.random(members, 21, initial=TRIAL.initial),
             trial.data,
             test=test,

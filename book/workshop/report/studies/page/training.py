@@ -6,16 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ddlib import learning
 from ddlib.analysis import classify
-from ddlib.learning import (
-    Descent,
-    TrainingSet,
-    Weights,
-    cases,
-    default_rate,
-    prepare,
-    surrogate,
-)
+from ddlib.learning import TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from workshop.report.code_hash import study
 
@@ -63,9 +56,9 @@ def events(weights: Weights, training: np.ndarray) -> np.ndarray:
 def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
     """Train, looking every `CHECK` epochs; what was seen of each network."""
     rate = default_rate(WIDTH) / len(data.x)
-    descent = Descent(weights, data.x, data.y, rate, MOMENTUM)
+    descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
-    sets = (descent.inputs, descent.targets), prepare(*test)
+    sets = (descent.inputs, descent.targets), learning.prepare(*test)
     first = np.full((len(weights), len(EVENTS)), np.nan)
     for epoch in range(0, epochs + 1, CHECK):
         errors = [
