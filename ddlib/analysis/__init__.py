@@ -5,7 +5,7 @@
 - ``response``: what units and networks respond to, in signals and in physical units; probes
 - ``hidden_units``: saturation, ablation, cancellation, refitting, units matched between networks
 - ``sensitivity``: which inputs and ranges a network of states responds to
-- ``coverage``, ``overlap``: what samples reach, and whether others reach the same
+- ``coverage``: what samples reach, and whether others reach the same
 - ``noise``: the error that sensors leave to anybody
 - ``simplified``: what simpler models of the arm lose
 """

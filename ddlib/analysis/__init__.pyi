@@ -1,7 +1,9 @@
 from .coverage import (
     cells_reached as cells_reached,
     log10_reachable_share as log10_reachable_share,
+    nearest_distances as nearest_distances,
     principal_deviations as principal_deviations,
+    shared_cells as shared_cells,
     used_dimensions as used_dimensions,
 )
 from .filters import (
@@ -43,10 +45,6 @@ from .hidden_units import (
 from .noise import (
     acceleration_noise_gain as acceleration_noise_gain,
     noise_floor as noise_floor,
-)
-from .overlap import (
-    nearest_distances as nearest_distances,
-    shared_cells as shared_cells,
 )
 from .response import (
     calibrated as calibrated,
