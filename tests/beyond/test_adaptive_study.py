@@ -22,7 +22,7 @@ def test_a_law_beside_others_is_the_law_alone():
     laws = {"PD": runs.fixed(STATE_FEEDBACK)["PD"], "own": own}
     found = runs.trial(laws, [[40.0, 30.0], [10.0, 20.0]], CMU_DD_ARM_II, IDEAL)
     watched = Watched(own)
-    log = record(CMU_DD_ARM_II, watched, (40.0, 30.0), rest=runs.AFTER)
+    log = record(CMU_DD_ARM_II, watched, (40.0, 30.0), rest=runs._AFTER)
     off = 1e3 * np.linalg.norm(
         end_point_error(CMU_DD_ARM_II, log.reference.q, log.q_true)[log.motion], axis=-1
     )
@@ -47,7 +47,7 @@ def test_all_laws_have_one_linear_loop_when_they_know_the_arm():
         np.testing.assert_allclose(slope * KD, setup.controller.kp)
         for j in range(2):  # Slotine & Li's: the poles are the slope and K / m
             poles = sorted(np.roots([1.0, a1[j], a0[j]]))
-            assert poles == pytest.approx(sorted([-slope[j], -KD[j] / runs.INERTIA[j]]))
+            assert poles == pytest.approx(sorted([-slope[j], -KD[j] / runs._INERTIA[j]]))
 
 
 def test_estimates_rest_while_the_motors_are_not_able():

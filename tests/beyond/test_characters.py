@@ -56,11 +56,11 @@ def test_a_dead_joint_is_seen(drawn):
 
 
 def test_a_row_has_all_seeds(monkeypatch):
-    monkeypatch.setattr(characters, "SEEDS", 2)
+    monkeypatch.setattr(characters, "_SEEDS", 2)
     entry = characters._Entry(lambda k: characters.RandomFeatures("states", 20, seed=k), True)
     row = characters._entry(entry, ("e", "q", "v"))
     assert row["test"][0]["torque"] != row["test"][1]["torque"]
-    once = characters._entry(characters.ENTRIES["equations, identified"], ("e", "q", "v"))
+    once = characters._entry(characters._ENTRIES["equations, identified"], ("e", "q", "v"))
     assert len(once["test"]) == 1 and once["test"][0]["torque"] < 1e-20 and once["count"] == 5
 
 

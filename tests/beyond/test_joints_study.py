@@ -95,7 +95,7 @@ def test_costs_of_two_joints_are_the_reports():
 
 
 def test_the_study_cut_short(monkeypatch):
-    for name, value in {"STEPS": 2, "SEEDS": 2, "CASES": 60}.items():
+    for name, value in {"_STEPS": 2, "_SEEDS": 2, "CASES": 60}.items():
         monkeypatch.setattr(study, name, value)
     rows = study._by_motions("joint damping", {2: (5, 10)}, 2)
     assert [r["motions"] for r in rows] == [5, 10] and len(rows[0]["test"]) == 2

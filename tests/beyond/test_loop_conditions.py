@@ -30,7 +30,7 @@ def test_the_choice_is_the_least_error_of_motions_left_out(five, monkeypatch):
 
     monkeypatch.setattr(study, "_course", course)
     assert study._chosen_decay(five, 0) == (1e-3, 2)
-    assert set(seen) == {(4, 1)} and len(seen) == 5 * len(study.DECAYS)
+    assert set(seen) == {(4, 1)} and len(seen) == 5 * len(study._DECAYS)
 
 
 def test_the_elbow_goes_later_and_both_come_back():

@@ -91,11 +91,11 @@ def test_the_penalty_is_chosen_without_the_block_left_out():
     for block in (0, 2):
         training, test = data.fold(block)
         chosen, current = best_penalty(data, training), data.current.copy()
-        assert chosen in tx40.RIDGES
+        assert chosen in tx40._RIDGES
         current[test] = 100 * RNG.normal(size=(test.sum(), 6))
         assert best_penalty(Windowed(100, 5, data.x, current), training) == chosen
     noise = RNG.normal(size=data.current.shape)
-    assert best_penalty(Windowed(100, 5, data.x, noise), training) == max(tx40.RIDGES)
+    assert best_penalty(Windowed(100, 5, data.x, noise), training) == max(tx40._RIDGES)
 
 
 def planted(states, viscous=0.7, coulomb=0.4, inertia=0.05):
@@ -168,12 +168,12 @@ def test_networks_of_six_joints_learn_and_are_told_apart():
 def test_the_study_in_small(monkeypatch):
     monkeypatch.setattr(real_arm, "RATES", {100: (5,)})
     monkeypatch.setattr(real_arm, "trained", partial(tx40_networks.trained, epochs=20))
-    monkeypatch.setattr(real_arm, "DECAYS", (0.0, 1e-2))
+    monkeypatch.setattr(real_arm, "_DECAYS", (0.0, 1e-2))
     row = real_arm._grid(1)[0]
     assert row["network"].shape == (5, 1) and row["ridge"].shape == (5,)
     assert row["identified"].mean() < row["ridge"].mean() < row["no friction"].mean()
     found = real_arm._filters(5, 2, 2)
-    assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm.KINDS)
+    assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm._KINDS)
     for each in (found, *found["nulls"].values()):
         assert each["curved"].shape == (2, 6) and (each["curved"] <= 1).all()
     memory = real_arm._memory(1)

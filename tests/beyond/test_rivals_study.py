@@ -22,10 +22,10 @@ def test_everybody_can_be_made_at_all_sizes():
 
 
 def test_the_budget_is_the_papers_network():
-    weights = Weights.random(1, rivals.WIDTH)[0]
-    assert weights.count(biases=True) + 4 == rivals.BUDGET
+    weights = Weights.random(1, rivals._WIDTH)[0]
+    assert weights.count(biases=True) + 4 == rivals._BUDGET
     rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup.REFERENCE]
-    assert max(r["count"] for r in rows) == rivals.BUDGET
+    assert max(r["count"] for r in rows) == rivals._BUDGET
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +35,12 @@ def recorded():
 
 def test_what_is_learnt_and_asked(recorded):
     sets, asked = recorded
-    for inputs, kind in zip(rivals.INPUTS, ("windows", "states")):
+    for inputs, kind in zip(rivals._INPUTS, ("windows", "states")):
         assert {cases.kind for cases in sets[inputs].values()} == {kind}
         assert len(sets[inputs]["training"]) == 1500 and len(sets[inputs]["trajectory 6"]) == 300
         square = len(sets[inputs]["inside"]) + len(sets[inputs]["outside"])
-        assert square == 300 * rivals.GRID**2 / rivals.EVERY
-    assert asked.x.shape == (30 * rivals.GRID**2, 2, rivals.WIDTH)
+        assert square == 300 * rivals.GRID**2 / rivals._EVERY
+    assert asked.x.shape == (30 * rivals.GRID**2, 2, rivals._WIDTH)
     alone = JOINT_DAMPING.repeated(2).record(APPENDIX_I[5])
     np.testing.assert_allclose(
         sets["positions"]["trajectory 6"].x[..., 10], alone.q[alone.motion], atol=2e-3
@@ -60,7 +60,7 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     monkeypatch.setattr(rivals, "DAYS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
-    names = [("nearest", inputs, 1) for inputs in rivals.INPUTS]
+    names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]
     assert set(rows) == {*names, ("filter", "positions", 5), ("filter", "positions", 21)}
     assert len(rows["nearest", "positions", 1]["seconds"]) == 1
     wide = rows["filter", "positions", 21]

@@ -54,7 +54,7 @@ def test_end_point_error_along_a_linear_loop_is_that_of_python_control():
     found = parts.score(WHEELS, log)
     assert found.whole == pytest.approx(np.sqrt(gap2.mean()), rel=1e-6)
     assert found.largest == pytest.approx(np.sqrt(gap2.max()), rel=1e-6)
-    first = round(parts.START / 0.01)
+    first = round(parts._START / 0.01)
     assert found.start == pytest.approx(np.sqrt(gap2[:first].mean()), rel=1e-6)
     assert found.rest == pytest.approx(np.sqrt(gap2[first:].mean()), rel=1e-6)
     degrees = np.rad2deg(np.sqrt((q[moving][::5] ** 2).mean(0)))

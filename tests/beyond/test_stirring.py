@@ -47,7 +47,7 @@ class TestCircles:
         assert (np.sign(q[..., 1]) == (1 if elbow == "positive" else -1)).all()
         angle = np.unwrap(np.arctan2(offset[..., 1], offset[..., 0]))
         turns = (angle[:, -1] - angle[:, 0]) / (2 * np.pi)
-        lasts = MOTION_SECONDS - (motions.RAMP if start == "smooth" else 0)
+        lasts = MOTION_SECONDS - (motions._RAMP if start == "smooth" else 0)
         wanted = np.where(circles.clockwise, -1, 1) * lasts / circles.period
         np.testing.assert_allclose(turns, wanted, rtol=1e-9)
         farthest = np.linalg.norm(hand_of(q[:, 0]), axis=-1)  # where it begins
@@ -100,7 +100,7 @@ class TestViaPoints:
 def test_pace_is_time_with_its_derivatives():
     np.testing.assert_array_equal(motions._pace(T)[0], np.clip(T, 0, 3))
     gone, rate, change = motions._pace(T, "smooth")
-    assert gone[-1] == pytest.approx(3 - motions.RAMP) and rate.max() == 1
+    assert gone[-1] == pytest.approx(3 - motions._RAMP) and rate.max() == 1
     np.testing.assert_allclose(np.gradient(gone, T), rate, atol=3e-5)
     np.testing.assert_allclose(np.gradient(rate, T), change, atol=0.03)
     with pytest.raises(ValueError, match="start must be one of"):

@@ -26,16 +26,16 @@ from workshop.beyond.rivals.protocol import Cases, Rival
 from workshop.beyond.rivals.tables import CellTable, Nearest
 from workshop.report.code_hash import study
 
-SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}  # characters of the test
+_SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}  # characters of the test
 
 # Errors in the README of the public code; two of them are the same number.
-PUBLISHED = {"torque": 4.327e-4, "inertial": 7.338e-4, "coriolis": 2.227e-4, "gravity": 7.338e-4}
+_PUBLISHED = {"torque": 4.327e-4, "inertial": 7.338e-4, "coriolis": 2.227e-4, "gravity": 7.338e-4}
 
 # The arm that drew; its first angle counts from hanging down.
 ARM = Arm("characters", 1.3727291666666667, 0.5, 0.5176145833333333, (1.0, 1.0), (2.625, 1.5))
-SEEDS = 5  # of what starts at random
-MARKS = (50, 100, 200, 500, 1000, 1500)  # epochs of tests; the public code takes 10,000
-STARTS = 200  # initial weights asked whether all of the mass matrix can be learnt
+_SEEDS = 5  # of what starts at random
+_MARKS = (50, 100, 200, 500, 1000, 1500)  # epochs of tests; the public code takes 10,000
+_STARTS = 200  # initial weights asked whether all of the mass matrix can be learnt
 
 
 class _Entry(NamedTuple):
@@ -46,7 +46,7 @@ class _Entry(NamedTuple):
 
 
 # Rivals with settings near those that their modules give; none was fitted to the test.
-ENTRIES = {
+_ENTRIES = {
     "equations, identified": _Entry(lambda _: Identified(RIGID + GRAVITY)),
     "Lagrangian network": _Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
     "Gaussian process": _Entry(lambda k: GaussianProcess("states", restarts=0, seed=k), True),
@@ -123,7 +123,7 @@ def _tested(torque: Callable, drawn: Characters) -> dict:
 def _entry(entry: _Entry, split) -> dict:
     training, test = data().split(split)
     row: dict = {"test": [], "training": [], "seconds": []}
-    for seed in range(SEEDS if entry.random else 1):
+    for seed in range(_SEEDS if entry.random else 1):
         rival = entry.make(seed)
         began = time.process_time()
         rival.fit(states(training))
@@ -153,35 +153,35 @@ def _as_published() -> dict:
         return LagrangianNetwork(**AS_PUBLISHED, epochs=0, seed=seed).fit(cases)
 
     rows = []
-    for seed in range(SEEDS):
+    for seed in range(_SEEDS):
         row: dict = {"dead at start": _dead(untrained(seed), training.q), "course": []}
 
         def watch(epoch, rival, row=row):
-            if epoch in MARKS:
+            if epoch in _MARKS:
                 row["course"].append(_errors(_parts(rival._torque, asked), test))
 
-        rival = LagrangianNetwork(**AS_PUBLISHED, epochs=MARKS[-1], seed=seed, watch=watch)
+        rival = LagrangianNetwork(**AS_PUBLISHED, epochs=_MARKS[-1], seed=seed, watch=watch)
         began = time.process_time()
         rival.fit(cases)
         row |= {"seconds": time.process_time() - began, "dead at end": _dead(rival, training.q)}
         rows.append(row)
-    starts = [any(_dead(untrained(seed), training.q)) for seed in range(STARTS)]
-    return {"marks": list(MARKS), "networks": rows, "dead starts": starts}
+    starts = [any(_dead(untrained(seed), training.q)) for seed in range(_STARTS)]
+    return {"marks": list(_MARKS), "networks": rows, "dead starts": starts}
 
 
 @study
 def characters() -> dict:
     """Every rival on both splits; the Lagrangian network also as published, on the loader's."""
     found = {}
-    for split, test in SPLITS.items():
-        found[split] = {name: _entry(entry, test) for name, entry in ENTRIES.items()}
+    for split, test in _SPLITS.items():
+        found[split] = {name: _entry(entry, test) for name, entry in _ENTRIES.items()}
         drawn = data().of(test)
         found[split]["exact equations"] = {"test": [_tested(_exact, drawn)]}
         found[split]["variance"] = float(drawn.tau.var(0).sum())
     return {
-        "splits": SPLITS,
-        "published": PUBLISHED,
-        "seeds": SEEDS,
+        "splits": _SPLITS,
+        "published": _PUBLISHED,
+        "seeds": _SEEDS,
         "rivals": found,
         "as published": _as_published(),
     }

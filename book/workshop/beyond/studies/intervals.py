@@ -15,12 +15,12 @@ from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Estimating
 from workshop.report.code_hash import study
 
-DAYS, WIDTH, DIRECTIONS = 6, 21, 10  # recordings; samples of a window; principal directions
-LEVEL, SIGMAS = 0.95, 1.959964  # of the intervals, and their half width in deviations
-KEPT = 0.2  # share of the training cases that is kept out
+_DAYS, _WIDTH, _DIRECTIONS = 6, 21, 10  # recordings; samples of a window; principal directions
+_LEVEL, _SIGMAS = 0.95, 1.959964  # of the intervals, and their half width in deviations
+_KEPT = 0.2  # share of the training cases that is kept out
 
-PROCESSES = {
-    "directions of the window": lambda: GaussianProcess(directions=DIRECTIONS, restarts=0),
+_PROCESSES = {
+    "directions of the window": lambda: GaussianProcess(directions=_DIRECTIONS, restarts=0),
     "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
     "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
     "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
@@ -34,7 +34,7 @@ def _asked(rival, cases: Cases) -> dict:
         found = rival.torque(cases.x)
         row = {"rmss": float(rmss(found, cases.torque))}
         if deviation is not None:
-            width = SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
+            width = _SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
             row["covered"] = float((np.abs(found - cases.torque) <= width).mean())
             row["half width"] = width.mean(0)
     return row
@@ -46,14 +46,14 @@ def gaussian_intervals() -> dict:
 
     They are asked for the windows of trajectories 1 to 5 that were kept out, and for trajectory 6.
     """
-    rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in PROCESSES}
-    for day in range(1, DAYS + 1):
+    rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in _PROCESSES}
+    for day in range(1, _DAYS + 1):
         training, six = split(JOINT_DAMPING.repeated(day).record())
-        windows = Cases.windows(training, WIDTH)
-        out = np.random.default_rng(day).random(len(windows)) < KEPT
-        sets = {"kept out": windows[out], "trajectory 6": Cases.windows(six, WIDTH)}
-        for name, make in PROCESSES.items():
+        windows = Cases.windows(training, _WIDTH)
+        out = np.random.default_rng(day).random(len(windows)) < _KEPT
+        sets = {"kept out": windows[out], "trajectory 6": Cases.windows(six, _WIDTH)}
+        for name, make in _PROCESSES.items():
             rival = make().fit(windows[~out])
             for part, cases in sets.items():
                 rows[name][part].append(_asked(rival, cases))
-    return {"days": DAYS, "level": LEVEL, "processes": rows}
+    return {"days": _DAYS, "level": _LEVEL, "processes": rows}

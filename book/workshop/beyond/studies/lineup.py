@@ -17,7 +17,7 @@ from workshop.beyond.rivals.protocol import Rival
 from workshop.beyond.rivals.sequences import Convolution, Recurrent
 from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
 
-DAYS, FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
+DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
 
 
 class Line(NamedTuple):
@@ -31,7 +31,7 @@ class Line(NamedTuple):
 
 
 REFERENCE = "network of 1988"  # ten hidden units, by descent
-PENALTY = 1e-4  # the one that leaving out trajectories chooses in `rivals_1988`
+_PENALTY = 1e-4  # the one that leaving out trajectories chooses in `rivals_1988`
 
 
 def _descent(hidden, seed, **options):
@@ -58,7 +58,7 @@ def _lagrangian(units, seed):
     return LagrangianNetwork((units, units), gravity="none", friction=True, epochs=150, seed=seed)
 
 
-SEARCH = {"subset": 150, "restarts": 0}  # cases for hyperparameters, further searches
+_SEARCH = {"subset": 150, "restarts": 0}  # cases for hyperparameters, further searches
 
 
 def _table(over):
@@ -81,40 +81,40 @@ LINES: dict[str, Line] = {
     ),
     # bases
     "polynomial": Line(
-        lambda degree, _: Polynomial(degree, ridge=PENALTY), (1, 2, 3, 5), "degree", "polynomials"
+        lambda degree, _: Polynomial(degree, ridge=_PENALTY), (1, 2, 3, 5), "degree", "polynomials"
     ),
     "Fourier series": Line(
-        lambda order, _: Fourier(order, ridge=PENALTY), (1, 2), "order", "polynomials"
+        lambda order, _: Fourier(order, ridge=_PENALTY), (1, 2), "order", "polynomials"
     ),
     # known structure
     "identified": Line(_identified, (3, 7), "parameters", "known structure"),
     "linear filter": Line(
         lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
     ),
-    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", FEWER),
+    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
     # Gaussian processes
     "Gaussian process": Line(
-        lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **SEARCH),
-        (6, 9, 12), "directions", "Gaussian processes", FEWER,
+        lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **_SEARCH),
+        (6, 9, 12), "directions", "Gaussian processes", _FEWER,
     ),
     "process on states": Line(
-        lambda _, seed: GaussianProcess("states", seed=seed, **SEARCH), (6,), "quantities",
-        "Gaussian processes", FEWER,
+        lambda _, seed: GaussianProcess("states", seed=seed, **_SEARCH), (6,), "quantities",
+        "Gaussian processes", _FEWER,
     ),
     "structure and process": Line(
-        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **SEARCH), (6,),
-        "quantities", "Gaussian processes", FEWER,
+        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **_SEARCH), (6,),
+        "quantities", "Gaussian processes", _FEWER,
     ),
     "random features": Line(
         lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
-        (10, 50, 200), "features", "Gaussian processes", FEWER,
+        (10, 50, 200), "features", "Gaussian processes", _FEWER,
     ),
     # the paper's network
     REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
     "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
     "Adam": Line(
         lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
-        "the paper's network", FEWER,
+        "the paper's network", _FEWER,
     ),
     "on states": Line(
         lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10),
@@ -123,10 +123,10 @@ LINES: dict[str, Line] = {
     # other networks
     "convolutions": Line(
         lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
-        "other networks", FEWER,
+        "other networks", _FEWER,
     ),
     "recurrent": Line(
         lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
-        FEWER,
+        _FEWER,
     ),
 }  # fmt: skip

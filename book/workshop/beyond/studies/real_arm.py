@@ -34,11 +34,11 @@ from workshop.beyond.studies.tx40 import (
 from workshop.beyond.studies.tx40_networks import EPOCHS, HIDDEN, both, decayed, trained, wrong
 from workshop.report.code_hash import study
 
-COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988
-MAIN = (100, 21)  # samples a second and window where variants are tried
+_COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988
+_MAIN = (100, 21)  # samples a second and window where variants are tried
 FILTERS = (11, 21)  # windows, at 100 samples a second, whose filters are taken apart
-KINDS = ("shifted", "phases")  # unrelated currents, as smooth as the recorded ones
-DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)  # per case
+_KINDS = ("shifted", "phases")  # unrelated currents, as smooth as the recorded ones
+_DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)  # per case
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
@@ -85,7 +85,7 @@ def _cell(data: Windowed, fold, members: int) -> dict:
 
 def _variants(members: int) -> dict:
     """The main window with one thing changed at a time: errors ``(blocks, members)``."""
-    data, rows = Windowed.of(*MAIN), {}
+    data, rows = Windowed.of(*_MAIN), {}
 
     def put(name, pair):
         row = rows.setdefault(name, {"training": [], "test": []})
@@ -95,17 +95,17 @@ def _variants(members: int) -> dict:
     for fold in data.folds():
         training, _ = fold
         x, y = data.x[training], data.current[training]
-        last, kept, _ = trained(x, y, members, 0, data.width, COURSE, epochs=paper.EPOCHS)
+        last, kept, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
         for epoch, model in {**kept, paper.EPOCHS: last}.items():
             put(f"{epoch} epochs", both(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
             put(f"{units} units", both(model, data, fold))
         start = Weights.random(members, data.width, HIDDEN, 6, 6)
-        for decay in DECAYS:
+        for decay in _DECAYS:
             each = [both(decayed(x, y, start[k], decay), data, fold) for k in range(members)]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
-        for decay in DECAYS[-2:]:
+        for decay in _DECAYS[-2:]:
             put(f"on the rest, decay {decay:g}", _structured(data, fold, members, decay))
     return {n: {side: np.array(v) for side, v in row.items()} for n, row in rows.items()}
 
@@ -206,7 +206,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
         "linear": gains(fitted[own, own], data.step)[:, 1:],
         "nulls": {},
     }
-    for number, kind in enumerate(KINDS):
+    for number, kind in enumerate(_KINDS):
         drawn = surrogates(kind, y[None], draws, seed=100 * number)[:, 0]
         null, *_ = trained(data.x, y, draws, _STARTS * (number + 1), width, targets=drawn)
         row["nulls"][kind] = _described(null, data, drawn) | {"curved": _curved(null, data, known)}
@@ -215,7 +215,7 @@ def _filters(width: int, members: int, draws: int) -> dict:
 
 def _by_block() -> dict:
     """Inertia and friction from each part of the recording but one, and what friction is worth."""
-    data, found = Windowed.of(*MAIN), []
+    data, found = Windowed.of(*_MAIN), []
     states = data.states
     for training, _ in data.folds():
         made = identified(states[training], data.current[training])
@@ -225,7 +225,7 @@ def _by_block() -> dict:
 
 def _hidden_units(members: int) -> dict:
     """Errors of an output layer fitted anew, without hidden units ``(blocks,)`` and with them."""
-    data, found = Windowed.of(*MAIN), {"training": [], "test": []}
+    data, found = Windowed.of(*_MAIN), {"training": [], "test": []}
     flat = data.flat
     for cases in data.folds():
         training, given = cases[0], data.current[cases[0]]
@@ -260,7 +260,7 @@ def _differences() -> dict:
 
 def _processes(subset: int = 120) -> dict:
     """Errors of Gaussian processes by block: of windows, of states, beside known structure."""
-    data, rows = Windowed.of(*MAIN), {"windows": [], "states": [], "on the rest": []}
+    data, rows = Windowed.of(*_MAIN), {"windows": [], "states": [], "on the rest": []}
     states = data.states
     for training, test in data.folds():
         known = known_structure(states[training], data.current[training], states)

@@ -16,15 +16,15 @@ from workshop.beyond.studies.lineup import DAYS, LINES, REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
-WIDTH = 21  # samples of the windows: the paper's best
+_WIDTH = 21  # samples of the windows: the paper's best
 GRID = 9  # trajectories in a row of the square of extents
 
-EVERY, SHOWN = 4, 10  # samples of the square from test to test, and of those shown
-BUDGET = 540  # stored numbers of the paper's network with ten hidden units
+_EVERY, _SHOWN = 4, 10  # samples of the square from test to test, and of those shown
+_BUDGET = 540  # stored numbers of the paper's network with ten hidden units
 
 # Torques on the square: each rival at its largest size within the budget, or at its smallest.
 TORQUES = results.FOLDER / "rivals-torques.npz"
-INPUTS = ("positions", "exact states")  # windows of measured positions, or states without noise
+_INPUTS = ("positions", "exact states")  # windows of measured positions, or states without noise
 
 
 def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
@@ -33,10 +33,10 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     Returns
     -------
     sets : dict
-        For each of `INPUTS` cases by name: training, trajectory 6; inside and outside, the
-        trajectories of the square on either side of the training hull, every `EVERY` samples.
+        For each of `_INPUTS` cases by name: training, trajectory 6; inside and outside, the
+        trajectories of the square on either side of the training hull, every `_EVERY` samples.
     asked : Cases
-        Windows of the whole square, every `SHOWN` samples.
+        Windows of the whole square, every `_SHOWN` samples.
     """
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
@@ -44,14 +44,14 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     parts = {
         "training": (training, 1),
         "trajectory 6": (six, 1),
-        "inside": (whole.recording[whole.inside], EVERY),
-        "outside": (whole.recording[~whole.inside], EVERY),
+        "inside": (whole.recording[whole.inside], _EVERY),
+        "outside": (whole.recording[~whole.inside], _EVERY),
     }
-    seen: dict = {inputs: {} for inputs in INPUTS}
+    seen: dict = {inputs: {} for inputs in _INPUTS}
     for name, (part, every) in parts.items():
-        seen["positions"][name] = Cases.windows(part, WIDTH)[::every]
+        seen["positions"][name] = Cases.windows(part, _WIDTH)[::every]
         seen["exact states"][name] = Cases.states(part, true_states(part, setup))[::every]
-    return seen, Cases.windows(whole.recording, WIDTH)[::SHOWN]
+    return seen, Cases.windows(whole.recording, _WIDTH)[::_SHOWN]
 
 
 def _seen(line, inputs: str, size, seed: int):
@@ -63,14 +63,14 @@ def _seen(line, inputs: str, size, seed: int):
 
 
 def _floors(sets: dict) -> dict:
-    """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `INPUTS`."""
+    """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `_INPUTS`."""
     (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
     bits = float(np.log2(2 * np.pi / encoder.step))
-    found = {inputs: {} for inputs in INPUTS}
+    found = {inputs: {} for inputs in _INPUTS}
     for name, cases in sets.items():
         deviation = cases.torque.std(0)
         share = float(np.sqrt(np.mean((np.array(noise.std) / deviation) ** 2)))
-        known = JOINT_DAMPING.arm, deviation, WIDTH, bits, share, LOG_STEP
+        known = JOINT_DAMPING.arm, deviation, _WIDTH, bits, share, LOG_STEP
         found["positions"][name], found["exact states"][name] = noise_floor(*known), share
     return found
 
@@ -87,7 +87,7 @@ def rivals() -> dict:
         sets, asked = recorded(day)
         floor = floor or _floors(sets["positions"])
         for name, line in LINES.items():
-            for inputs, size in product(INPUTS, line.sizes if day <= line.days else ()):
+            for inputs, size in product(_INPUTS, line.sizes if day <= line.days else ()):
                 rival = _seen(line, inputs, size, day)
                 if rival is None:
                     continue
@@ -96,16 +96,16 @@ def rivals() -> dict:
                 row["seconds"].append(found.seconds)
                 for part, error in found.rmss.items():
                     row["errors"][part].append(error)
-                affordable = name not in torques or found.count <= BUDGET
+                affordable = name not in torques or found.count <= _BUDGET
                 if day == 1 and inputs == "positions" and affordable:
                     torques[name] = _asked(rival, asked)
         if day == 1:
             _keep(torques, asked)
     return {
         "days": DAYS,
-        "width": WIDTH,
+        "width": _WIDTH,
         "reference": REFERENCE,
-        "budget": BUDGET,
+        "budget": _BUDGET,
         "floor": floor,
         "lines": {
             name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()

@@ -20,17 +20,17 @@ from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest, full_ta
 from workshop.beyond.studies.loop.run_time_parts import exact as equations, square_extents
 from workshop.report.code_hash import study
 
-DAYS = (1, 2, 3, 4, 5)
-LATER = 100  # days until the same is recorded again; twice that: to choose settings
-WIDTH = 21  # from which states are estimated: the best of Table 4-1
+_DAYS = (1, 2, 3, 4, 5)
+_LATER = 100  # days until the same is recorded again; twice that: to choose settings
+_WIDTH = 21  # from which states are estimated: the best of Table 4-1
 KINDS = ("exact", "positions only")
-POINTS, STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
+POINTS, _STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 
 def _cases(setup: Setup, recording: Recording, kind: str, stride: int = 1) -> Cases:
     if kind == "exact":
         return Cases.states(recording, true_states(recording, setup))[::stride]
-    return Cases.windows(recording, WIDTH).estimated()[::stride]
+    return Cases.windows(recording, _WIDTH).estimated()[::stride]
 
 
 @cache
@@ -49,15 +49,15 @@ def _joined(parts: list) -> Cases:
 
 def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
-    today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + LATER))
+    today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + _LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
     inside = inside_hull(square_extents(POINTS))
     return {
         "training": _cases(today, recording[:5], kind),
-        "again": _cases(later, _recorded(day + LATER, "six")[:5], kind),
+        "again": _cases(later, _recorded(day + _LATER, "six")[:5], kind),
         "trajectory 6": _cases(today, recording[5:], kind),
-        "inside": _cases(today, motions[inside], kind, STRIDE),
-        "outside": _cases(today, motions[~inside], kind, STRIDE),
+        "inside": _cases(today, motions[inside], kind, _STRIDE),
+        "outside": _cases(today, motions[~inside], kind, _STRIDE),
     }
 
 
@@ -80,7 +80,7 @@ def _over_days(rows: list[dict]) -> dict:
 # Tables
 
 # Of each axis.
-CELLS = {
+_CELLS = {
     "states": (5, 10, 20, 40, 80),
     "motions": (2, 3, 5, 10, 20),
     "configurations": (1, 2, 3, 5, 10, 20),
@@ -89,8 +89,8 @@ CELLS = {
 
 PRACTISED = (25.0, 25.0)  # extents of the one trajectory of the map, degrees: a point of the square
 PRACTICE, REPEATED = 3, (1, 3, 10)  # days of its training; how often on each
-VARIED, PENALTY = ("states", "configurations"), 1e-4  # of a plane beside these tables
-FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
+_VARIED, _PENALTY = ("states", "configurations"), 1e-4  # of a plane beside these tables
+_FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
 
 
 def _table(over: str, cells: int) -> Rival:
@@ -102,12 +102,12 @@ def _table(over: str, cells: int) -> Rival:
 
 
 @study
-def rivals_tables(days=DAYS) -> dict:
+def rivals_tables(days=_DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
     for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for over, cells in [("nearest", 0), *((o, n) for o, some in CELLS.items() for n in some)]:
+        for over, cells in [("nearest", 0), *((o, n) for o, some in _CELLS.items() for n in some)]:
             found = []
             for day in days:
                 rival = _table(over, cells).fit(sets[day]["training"])
@@ -127,12 +127,12 @@ def _families() -> dict[str, list[Rival]]:
     return {
         "nearest": [_table("nearest", 0)],
         **{
-            over: [_table(over, cells) for cells in CELLS[over]]
+            over: [_table(over, cells) for cells in _CELLS[over]]
             for over in ("states", "motions", "configurations")
         },
         "one cell": [_table("configurations", 1)],
         "plane": [Polynomial(1)],
-        "plane, penalty": [Polynomial(1, ridge=PENALTY)],
+        "plane, penalty": [Polynomial(1, ridge=_PENALTY)],
         "structure": [Identified()],
     }
 
@@ -144,7 +144,7 @@ def _around(kind: str, days) -> dict:
     number of cells is the one that does best on the same trajectory on a day of its own. "Varied":
     the same tables from as many different trajectories, drawn at random.
     """
-    names = (*_families(), *(f"{name}, varied" for name in VARIED))
+    names = (*_families(), *(f"{name}, varied" for name in _VARIED))
     found, floor = {name: [] for name in names}, []
     for day in days:
         numbers = [1000 * day + k for k in range(PRACTICE + 2)]
@@ -152,7 +152,7 @@ def _around(kind: str, days) -> dict:
         runs = [_recorded(number, "practised") for number in numbers[:-1]]
         later, recording = setups[-1], _recorded(numbers[-1], "square")
         practised = practised_distance() == 0
-        everywhere = _cases(later, recording, kind, STRIDE)
+        everywhere = _cases(later, recording, kind, _STRIDE)
         choice = _cases(setups[-2], runs[-1][0], kind)
         by_amount = [
             _joined([_cases(s, run[:n], kind) for s, run in zip(setups, runs[:-1])])
@@ -175,7 +175,7 @@ def _around(kind: str, days) -> dict:
                 {"there": [*there, errors[practised][0]], "errors": errors,
                  "cells": getattr(best, "cells", 0)}
             )  # fmt: skip
-            if name in VARIED:
+            if name in _VARIED:
                 errors = _map(best.fit(varied), everywhere, scale)
                 found[f"{name}, varied"].append({"errors": errors})
     return {name: _over_days(some) for name, some in found.items()} | {"floor": floor}
@@ -201,38 +201,38 @@ def _full() -> dict:
         return equations(setup)(*np.moveaxis(x, -1, 0))
 
     exact, reached = torque(states), []
-    for cells in FULL:
+    for cells in _FULL:
         table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
         reached.append(1 - float(table.empty(states).mean()))
     errors = {
         name: [
             float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
-            for n in FULL
+            for n in _FULL
         ]
         for name, smooth in (("constant", False), ("multilinear", True))
     }
-    return {"cells": list(FULL), **errors, "reached": reached}
+    return {"cells": list(_FULL), **errors, "reached": reached}
 
 
 # CMAC
 
-LAYERS, EPOCHS, HASHED_WIDTH = 32, 50, 0.5  # of CMAC; assumed
-WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)  # edges of its cubes over the box's
-SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)  # weights of a joint, by hashing
+_LAYERS, _EPOCHS, _HASHED_WIDTH = 32, 50, 0.5  # of CMAC; assumed
+_WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0)  # edges of its cubes over the box's
+_SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)  # weights of a joint, by hashing
 
 
 @study
-def rivals_cmac(days=DAYS) -> dict:
+def rivals_cmac(days=_DAYS) -> dict:
     """Errors of CMAC by width, layers and slots; its collisions, and where it diverges."""
     settings = [
-        *({"layers": LAYERS, "width": width, "slots": None} for width in WIDTHS),
-        *({"layers": layers, "width": HASHED_WIDTH, "slots": None} for layers in (8, 128)),
-        *({"layers": LAYERS, "width": HASHED_WIDTH, "slots": slots} for slots in SLOTS),
+        *({"layers": _LAYERS, "width": width, "slots": None} for width in _WIDTHS),
+        *({"layers": layers, "width": _HASHED_WIDTH, "slots": None} for layers in (8, 128)),
+        *({"layers": _LAYERS, "width": _HASHED_WIDTH, "slots": slots} for slots in _SLOTS),
     ]
     rows = []
     for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for setting in settings if kind == KINDS[1] else settings[: len(WIDTHS)]:
+        for setting in settings if kind == KINDS[1] else settings[: len(_WIDTHS)]:
             found = [_cmac(sets[day], setting) for day in days]
             rows.append({"kind": kind, **setting, **_over_days(found)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
@@ -241,7 +241,7 @@ def rivals_cmac(days=DAYS) -> dict:
 
 def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
     """One CMAC: errors, what collides, and its error after each of the first passes."""
-    rival = CMAC(**setting, epochs=EPOCHS, beyond="edge")
+    rival = CMAC(**setting, epochs=_EPOCHS, beyond="edge")
     try:
         errors, diverged = _errors(rival.fit(sets["training"]), sets), False
     except Diverged:
@@ -260,22 +260,22 @@ def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
 
 def _chosen_cmac(day: int, kind: str, sets: dict[str, Cases]) -> dict:
     """The width chosen for the same motions again, and for new ones, by what it has not seen."""
-    spare = JOINT_DAMPING.repeated(day + 2 * LATER)
-    again = _cases(spare, _recorded(day + 2 * LATER, "six")[:5], kind)
+    spare = JOINT_DAMPING.repeated(day + 2 * _LATER)
+    again = _cases(spare, _recorded(day + 2 * _LATER, "six")[:5], kind)
     training = sets["training"]
 
     def made(width, cases):
-        return CMAC(LAYERS, width, epochs=EPOCHS, beyond="edge").fit(cases)
+        return CMAC(_LAYERS, width, epochs=_EPOCHS, beyond="edge").fit(cases)
 
-    fitted = {width: made(width, training) for width in WIDTHS}
-    same = min(WIDTHS, key=lambda width: _errors(fitted[width], {"x": again})["x"])
+    fitted = {width: made(width, training) for width in _WIDTHS}
+    same = min(_WIDTHS, key=lambda width: _errors(fitted[width], {"x": again})["x"])
     left = {
         width: np.mean(
             [_errors(made(width, rest), {"x": out})["x"] ** 2 for rest, out in _folds(training)]
         )
-        for width in WIDTHS
+        for width in _WIDTHS
     }
-    new = min(WIDTHS, key=left.get)
+    new = min(_WIDTHS, key=left.get)
     return {
         "practised width": same,
         "practised": _errors(fitted[same], sets)["again"],
@@ -298,7 +298,7 @@ def _folds(training: Cases) -> list[tuple[Cases, Cases]]:
 RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 
 # Families of functions and their highest degree or order.
-BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
+_BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
     "chebyshev": (Polynomial, 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
     "fourier": (Fourier, 3),
@@ -306,7 +306,7 @@ BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 
 
 @study
-def rivals_bases(days=DAYS) -> dict:
+def rivals_bases(days=_DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen.
 
     On exact states Chebyshev's polynomials alone; choices are made on positions only.
@@ -314,7 +314,7 @@ def rivals_bases(days=DAYS) -> dict:
     rows, chosen = [], {}
     for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for name, (make, highest) in list(BASES.items())[: None if kind == KINDS[1] else 1]:
+        for name, (make, highest) in list(_BASES.items())[: None if kind == KINDS[1] else 1]:
             for order in range(1, highest + 1):
                 found = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
                 for k, ridge in enumerate(RIDGES):
@@ -323,7 +323,7 @@ def rivals_bases(days=DAYS) -> dict:
                         | _over_days([each[k] for each in found])
                     )
     for name in ("chebyshev", "fourier"):
-        chosen[name] = [_left_out(*BASES[name], sets[day]["training"]) for day in days]
+        chosen[name] = [_left_out(*_BASES[name], sets[day]["training"]) for day in days]
     return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
 

@@ -19,9 +19,9 @@ from workshop.beyond.others import RealArm, staubli
 BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
 RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}  # windows, by samples a second
 SLOTS = slice(40, 860)  # hundredths of a second that all windows fit around
-RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
-PIECES = 15  # of the recording, to choose a penalty by
-DEGREE = 3  # of the polynomial whose derivatives are a window's states
+_RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
+_PIECES = 15  # of the recording, to choose a penalty by
+_DEGREE = 3  # of the polynomial whose derivatives are a window's states
 
 
 @cache
@@ -57,7 +57,7 @@ class Windowed:
     @property
     def states(self) -> np.ndarray:
         """Positions, velocities, accelerations by a cubic in each window, ``(cases, 6, 3)``."""
-        degree = min(DEGREE, self.width - 1)
+        degree = min(_DEGREE, self.width - 1)
         filters = [savitzky_golay(self.width, k, self.step, degree) for k in range(3)]
         return self.x @ np.stack(filters, -1)
 
@@ -117,16 +117,16 @@ class Ridge:
 
 
 def best_penalty(data: Windowed, training) -> float:
-    """The penalty of `RIDGES` with the least error on pieces left out of the training cases."""
+    """The penalty of `_RIDGES` with the least error on pieces left out of the training cases."""
     x, total = data.flat, 0.0
-    for piece in range(PIECES):
-        kept, tried = fold(len(x), piece, data.gap, PIECES)
+    for piece in range(_PIECES):
+        kept, tried = fold(len(x), piece, data.gap, _PIECES)
         kept, tried = kept & training, tried & training
         if tried.any():
             made = Ridge(x[kept], data.current[kept])
-            error = [made.predict(x[tried], p) - data.current[tried] for p in RIDGES]
+            error = [made.predict(x[tried], p) - data.current[tried] for p in _RIDGES]
             total = total + (np.square(error) / data.current[training].var(0)).sum((1, 2))
-    return RIDGES[int(np.argmin(total))]
+    return _RIDGES[int(np.argmin(total))]
 
 
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:

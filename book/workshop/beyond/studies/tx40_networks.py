@@ -11,8 +11,8 @@ from workshop.beyond.studies.tx40 import Windowed
 HIDDEN = 10  # as in 1988
 
 # Per sample of a window: one of six joints has three times the inputs of one of two.
-DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
-SCALING = (-1.0, 1.0)  # of the inputs
+_DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
+_SCALING = (-1.0, 1.0)  # of the inputs
 EPOCHS = 2000  # of all networks but the longest
 
 
@@ -23,12 +23,12 @@ def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=Non
     ``targets`` ``(members, cases, outputs)`` are currents of each network in place of `y`. With
     the model come models of the epochs in ``snapshots``, and the data.
     """
-    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
+    data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
     scaled = None if targets is None else data.outputs.scale(targets)
     model, _, kept = train_ensemble(
-        start, data, targets=scaled, rate=DESCENT["rate"] / width, momentum=DESCENT["momentum"],
-        warm_up=DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
+        start, data, targets=scaled, rate=_DESCENT["rate"] / width, momentum=_DESCENT["momentum"],
+        warm_up=_DESCENT["warm_up"], epochs=epochs, snapshots=snapshots, progress=False,
     )  # fmt: skip
     models = {e: TorqueModel(w, data.inputs, data.outputs) for e, w in kept.items()}
     return model, models, data
@@ -50,7 +50,7 @@ def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel
 
     Half of the decay times the sum of squared weights, biases left out, is added.
     """
-    data = TrainingSet.from_arrays(x, y, scaling=SCALING)
+    data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     flat = data.x.reshape(len(data.x), -1)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     shapes = [getattr(start, name).shape for name in names]

@@ -23,41 +23,41 @@ from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.studies.loop.runs import adaptive as batch
 from workshop.report.code_hash import study
 
-SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
+_SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
 LOADS = (2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
 PICKED = 5.0  # kg, taken up half-way
-DELAYS = (1, 2, 4)  # control periods, with `PICKED`
+_DELAYS = (1, 2, 4)  # control periods, with `PICKED`
 BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
-BEGIN = 0.5  # share of the base parameters that is known at the start
-MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
-PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
+_BEGIN = 0.5  # share of the base parameters that is known at the start
+_MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
+_PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
 
 # What is added to the set-up's effects.
 BED = {
     "nothing else": lambda e: e,
     "Stribeck": lambda e: replace(
-        e, friction=(e.friction[0], StribeckFriction(MOST, tuple(2 * x for x in MOST), 0.1))
+        e, friction=(e.friction[0], StribeckFriction(_MOST, tuple(2 * x for x in _MOST), 0.1))
     ),
-    "backlash": lambda e: replace(e, encoder=(Backlash(PLAY), *e.encoder)),
-    "dead zone": lambda e: replace(e, actuator=(DeadZone(MOST), *e.actuator)),
-    "ripple": lambda e: replace(e, motor=(Ripple(cogging=MOST),)),
+    "backlash": lambda e: replace(e, encoder=(Backlash(_PLAY), *e.encoder)),
+    "dead zone": lambda e: replace(e, actuator=(DeadZone(_MOST), *e.actuator)),
+    "ripple": lambda e: replace(e, motor=(Ripple(cogging=_MOST),)),
 }
 
-FRICTION_TRUTH = np.concatenate([batch.TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
-ZONE = (0.17, 0.14)  # rad/s: friction at the largest speed over the damping term
-FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))  # rates of the map of stops, over those elsewhere
-LATE = (0, 1, 2, 3, 5)  # delays of that map, control periods
+_FRICTION_TRUTH = np.concatenate([batch.TRUTH, JOINT_DAMPING_VISCOUS, JOINT_DAMPING_COULOMB])
+_ZONE = (0.17, 0.14)  # rad/s: friction at the largest speed over the damping term
+_FACTORS = tuple(10.0 ** np.arange(-2, 3.5, 0.5))  # rates of the map of stops, over those elsewhere
+_LATE = (0, 1, 2, 3, 5)  # delays of that map, control periods
 
 
 def _course(setup: Setup, seed: int = 1) -> dict:
     """Errors and estimates from trial to trial, before and after a load is taken up."""
-    start = np.broadcast_to(BEGIN * batch.TRUTH, (SEEDS, 3))
+    start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {
         **batch.fixed(setup),
         **{law: batch.make(law, setup, start) for law in batch.LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
-    extents, effects = batch.drawn(SEEDS, 2 * TRIALS, seed), batch.rounding(setup, SEEDS, seed)
+    extents, effects = batch.drawn(_SEEDS, 2 * TRIALS, seed), batch.rounding(setup, _SEEDS, seed)
     found, laws = batch.trials(laws, extents[:TRIALS], setup.arm, effects)
     loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
     found += loaded
@@ -76,22 +76,23 @@ def _course(setup: Setup, seed: int = 1) -> dict:
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
     laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in batch.LAWS}}
-    effects, rows = batch.rounding(setup, SEEDS, seed), []
+    extents, effects = batch.drawn(_SEEDS, 2, seed), batch.rounding(setup, _SEEDS, seed)
+    rows: list = []
     settings = [(m, 0) for m in LOADS] + [(PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        found, _ = batch.trials(laws, batch.drawn(SEEDS, 2, seed), with_load(setup.arm, mass), slow)
+        found, _ = batch.trials(laws, extents, with_load(setup.arm, mass), slow)
         rows.append({"load": mass, "late": late, "settled": batch.by_law(found, laws)})
     return {"rows": rows}
 
 
 def _sensors(seed: int = 3) -> dict:
     """The third and fourth motion over the encoder, with a tachometer and without."""
-    runs, setup = len(BITS) * SEEDS, JOINT_DAMPING
-    step = np.repeat(2 * np.pi / 2 ** np.array(BITS), SEEDS)
+    runs, setup = len(BITS) * _SEEDS, JOINT_DAMPING
+    step = np.repeat(2 * np.pi / 2 ** np.array(BITS), _SEEDS)
     effects, rows = batch.rounding(setup, runs, seed, step), {}
-    extents = np.tile(batch.drawn(SEEDS, TRIALS, seed), (1, len(BITS), 1))
-    start = np.broadcast_to(BEGIN * batch.TRUTH, (runs, 3))
+    extents = np.tile(batch.drawn(_SEEDS, TRIALS, seed), (1, len(BITS), 1))
+    start = np.broadcast_to(_BEGIN * batch.TRUTH, (runs, 3))
 
     def exact(q, qd, torque):
         limited = effects.actuator[0].apply(torque)
@@ -106,8 +107,8 @@ def _sensors(seed: int = 3) -> dict:
         found, after = batch.trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
-                "settled": errors[-1].reshape(len(BITS), SEEDS),
-                "estimate": after[name].estimate.reshape(len(BITS), SEEDS, -1),
+                "settled": errors[-1].reshape(len(BITS), _SEEDS),
+                "estimate": after[name].estimate.reshape(len(BITS), _SEEDS, -1),
             }
             for name, errors in batch.by_law(found, laws).items()
         }
@@ -117,7 +118,7 @@ def _sensors(seed: int = 3) -> dict:
 def _lyapunov() -> dict:
     """The function that never rises: in continuous time, and sampled with several sensors."""
     extents, (slope, _) = APPENDIX_I[0], batch.gains(STATE_FEEDBACK)
-    law = SlotineLi(KD, slope, 3.0 * batch.SIZES[:3] ** 2, BEGIN * batch.TRUTH)
+    law = SlotineLi(KD, slope, 3.0 * batch.SIZES[:3] ** 2, _BEGIN * batch.TRUTH)
 
     def rates(t, y):
         wanted = Trajectory(*(x[0] for x in smooth_pick_and_place(extents, [t])))
@@ -168,7 +169,7 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
     extents = np.concatenate([APPENDIX_I, APPENDIX_I[:1]])
     course = np.broadcast_to(extents, (count, *extents.shape)).copy()
     course[:, -1] = batch.drawn(1, count, seed)[:, 0]
-    start = np.broadcast_to(BEGIN * batch.TRUTH, (len(extents), 3))
+    start = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3))
     laws = {
         "learning": batch.make("rigid body", STATE_FEEDBACK, start),
         "knowing": batch.make("rigid body", STATE_FEEDBACK, factor=0.0),
@@ -184,18 +185,18 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
 
 def _drift(seed: int = 5, count: int = 10) -> dict:
     """Estimates along trajectory 5 again and again: with rounding (first), and without."""
-    setup, runs = JOINT_DAMPING, 2 * SEEDS
-    whole = np.broadcast_to(FRICTION_TRUTH, (runs, 7))
+    setup, runs = JOINT_DAMPING, 2 * _SEEDS
+    whole = np.broadcast_to(_FRICTION_TRUTH, (runs, 7))
     laws = {
         "plain": batch.make("with friction", setup, whole, 10.0),
-        "dead zone": batch.make("with friction", setup, whole, 10.0, dead_zone=ZONE),
+        "dead zone": batch.make("with friction", setup, whole, 10.0, dead_zone=_ZONE),
         "leakage": batch.make("with friction", setup, whole, 10.0, leakage=0.3),
         "friction unmodelled": batch.make("rigid body", setup, whole[:, :3], 10.0),
         "unmodelled, dead zone": batch.make(
-            "rigid body", setup, whole[:, :3], 10.0, dead_zone=ZONE
+            "rigid body", setup, whole[:, :3], 10.0, dead_zone=_ZONE
         ),
     }
-    step = np.where(np.arange(runs) < SEEDS, setup.effects.encoder[0].step, 0.0)
+    step = np.where(np.arange(runs) < _SEEDS, setup.effects.encoder[0].step, 0.0)
     course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
     found, _ = batch.trials(laws, course, setup.arm, batch.rounding(setup, runs, seed, step))
     return {
@@ -214,13 +215,13 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     only = np.where(np.arange(len(batch.FULL)) < 3, 0.0, 1.0)
     laws = {
         "none": batch.make("with friction", setup, factor=0.0),
-        "adapted": batch.make("with friction", setup, np.broadcast_to(batch.TRUTH, (SEEDS, 3))),
+        "adapted": batch.make("with friction", setup, np.broadcast_to(batch.TRUTH, (_SEEDS, 3))),
         "known": batch.make("with friction", setup, right, factor=0.0),
     }
     inner = laws["adapted"].controller
     laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
     found, after = batch.trials(
-        laws, batch.drawn(SEEDS, TRIALS, seed), setup.arm, batch.rounding(setup, SEEDS, seed)
+        laws, batch.drawn(_SEEDS, TRIALS, seed), setup.arm, batch.rounding(setup, _SEEDS, seed)
     )
     return {
         "settled": batch.by_law(found, laws),
@@ -232,10 +233,10 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
 def _bed(seed: int = 7, count: int = 3) -> dict:
     """Unmodelled effects under laws that adapt what they have, from the right parameters."""
     setup, rows = JOINT_DAMPING, {}
-    right = np.broadcast_to(FRICTION_TRUTH, (SEEDS, 7))
+    right = np.broadcast_to(_FRICTION_TRUTH, (_SEEDS, 7))
     laws = {
         "adapted": batch.make("with friction", setup, right),
-        "held": batch.make("with friction", setup, FRICTION_TRUTH, factor=0.0),
+        "held": batch.make("with friction", setup, _FRICTION_TRUTH, factor=0.0),
     }
     bare = {
         "rigid, adapted": batch.make("rigid body", setup, right[:, :3]),
@@ -243,11 +244,11 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
     }
     for k, (name, added) in enumerate(BED.items()):
         given = laws if k else {**laws, **bare}
-        effects = added(batch.rounding(setup, SEEDS, seed))
-        found, after = batch.trials(given, batch.drawn(SEEDS, count, seed), setup.arm, effects)
+        effects = added(batch.rounding(setup, _SEEDS, seed))
+        found, after = batch.trials(given, batch.drawn(_SEEDS, count, seed), setup.arm, effects)
         rows[name] = {
             "settled": {n: x[-1] for n, x in batch.by_law(found, given).items()},
-            "estimate": after["adapted"].estimate / FRICTION_TRUTH,
+            "estimate": after["adapted"].estimate / _FRICTION_TRUTH,
         }
         if given is not laws:
             rows[name]["rigid"] = after["rigid, adapted"].estimate / batch.TRUTH
@@ -256,10 +257,10 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
 
 def _map(setup: Setup = JOINT_DAMPING) -> dict:
     """Where runs are stopped: rate of adaptation against delay, and why."""
-    extents = np.tile(APPENDIX_I[[0, 5]], (len(FACTORS), 1))
-    factor, names = np.repeat(FACTORS, 2), batch.LAWS[1:]
-    start, rows = np.broadcast_to(BEGIN * batch.TRUTH, (len(extents), 3)), []
-    for late in LATE:
+    extents = np.tile(APPENDIX_I[[0, 5]], (len(_FACTORS), 1))
+    factor, names = np.repeat(_FACTORS, 2), batch.LAWS[1:]
+    start, rows = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3)), []
+    for late in _LATE:
         laws = {n: batch.make(n, setup, start, factor) for n in names}
         effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
         first = batch.trial(laws, extents, setup.arm, effects)
@@ -267,7 +268,7 @@ def _map(setup: Setup = JOINT_DAMPING) -> dict:
         ended = first.stops.stopped
         time = np.where(ended, first.stops.time, 3.2 + again.stops.time)
         reason = np.where(ended, first.stops.reason, again.stops.reason)
-        shape = (len(names), len(FACTORS), 2)
+        shape = (len(names), len(_FACTORS), 2)
         rows.append(
             {
                 "late": late,
@@ -276,7 +277,7 @@ def _map(setup: Setup = JOINT_DAMPING) -> dict:
                 "settled": again.settled.reshape(shape),
             }
         )
-    return {"laws": list(names), "factors": FACTORS, "rows": rows}
+    return {"laws": list(names), "factors": _FACTORS, "rows": rows}
 
 
 @study
@@ -286,7 +287,7 @@ def adaptive() -> dict:
     return {
         "course": {name: _course(s) for name, s in both.items()},
         "loads": {
-            JOINT_DAMPING.name: _loads(JOINT_DAMPING, DELAYS),
+            JOINT_DAMPING.name: _loads(JOINT_DAMPING, _DELAYS),
             STATE_FEEDBACK.name: _loads(STATE_FEEDBACK),
         },
         "bits": BITS,

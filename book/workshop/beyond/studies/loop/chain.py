@@ -22,9 +22,9 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
 
-MOST = DD_ARM_II_IN_SPACE.joints  # six as the real arm, and one of the book's
+_MOST = DD_ARM_II_IN_SPACE.joints  # six as the real arm, and one of the book's
 RATIOS = (0.8, 1.15, 0.9, 1.25, 0.7)  # frequencies of joints 3 to 7 over the elbow's; assumed
-NOISE = 0.024  # torque noise of joints 3 to 7 over their torque's deviation, as of the first two
+_NOISE = 0.024  # torque noise of joints 3 to 7 over their torque's deviation, as of the first two
 REACH = 10  # samples of a window on either side of its centre
 SPACING = 5  # samples from tap to tap: 5 of the report's 21
 EVERY = 2  # samples from the centre of a window to the next
@@ -88,14 +88,14 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     Parameters
     ----------
     joints : int
-        1 to `MOST`.
+        1 to `_MOST`.
     reading : {"joint damping", "state feedback"}
         Whose gains, friction and encoder shoulder and elbow have. Further joints have the elbow's
         damping ratio, frequencies by `RATIOS`, and friction in proportion to their inertia.
     """
-    integer("joints", joints, 1, MOST)
+    integer("joints", joints, 1, _MOST)
     one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))
-    inertia = np.diag(mass_matrix(DD_ARM_II_IN_SPACE, np.zeros(MOST)))
+    inertia = np.diag(mass_matrix(DD_ARM_II_IN_SPACE, np.zeros(_MOST)))
     setup = {setup.name: setup for setup in (JOINT_DAMPING, STATE_FEEDBACK)}[reading]
     kp, kd = np.array(setup.controller.kp), np.zeros(2) + setup.controller.kd
     rubbing, (encoder,) = setup.effects.friction, setup.effects.encoder
@@ -120,7 +120,7 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
         np.append(noise.std, np.zeros(5))[:joints],
     )
     tau = made.torque(moved(made, extents(joints, 64, 0))[:, ::5])
-    made.noise[2:] = NOISE * tau.std((0, 1))[2:]
+    made.noise[2:] = _NOISE * tau.std((0, 1))[2:]
     return made
 
 

@@ -34,10 +34,10 @@ from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 
 CASES = 750  # windows of a training set: what five motions have, every 20 ms
-STEPS, DECAY = 30, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 60 and this decay
+_STEPS, _DECAY = 30, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 60 and this decay
 
 # Training motions by number of joints.
-MOTIONS_OF = {
+_MOTIONS_OF = {
     1: (2, 3, 5, 10, 20, 40, 80),
     2: (2, 3, 5, 7, 10, 20, 40, 80),
     3: (5, 7, 10, 14, 20, 40, 80),
@@ -46,12 +46,12 @@ MOTIONS_OF = {
     7: (5, 10, 14, 20, 40, 80),
 }
 
-SEEDS = 10  # draws of motions, noise and weights
+_SEEDS = 10  # draws of motions, noise and weights
 TEST_MOTIONS, TEST_SEED = 20, 1000
-UNITS = (5, 20, 40)  # besides the report's ten, at four joints
-STATE_SAMPLES, STATE_STEPS, STATE_TEST = (100, 300, 1000, 3000), 40, 2000  # of random states
-MAIN = 20  # training motions of the networks whose filters are read
-REST = arms.SPACING * LOG_STEP  # s, from one tap of a window to the next
+_UNITS = (5, 20, 40)  # besides the report's ten, at four joints
+_STATE_SAMPLES, _STATE_STEPS, _STATE_TEST = (100, 300, 1000, 3000), 40, 2000  # of random states
+_MAIN = 20  # training motions of the networks whose filters are read
+_REST = arms.SPACING * LOG_STEP  # s, from one tap of a window to the next
 
 
 def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
@@ -63,7 +63,7 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
     data = TrainingSet.from_arrays(windows, torque)
     initial = options.pop("initial", INITIAL)
     start = Weights.random(1, width, hidden, joints, joints, initial=initial, seed=seed)
-    options = {"steps": STEPS, "decay": DECAY, **options}
+    options = {"steps": _STEPS, "decay": _DECAY, **options}
     # the number of steps is the setting
     with warnings.catch_warnings(action="ignore", category=NotConverged):
         return solve(start, data, test=data.transform(*test), progress=False, **options)
@@ -83,7 +83,7 @@ def tested(made: arms.Chain, **options) -> arms.Sample:
 
 def linear(training: arms.Sample, test: arms.Sample) -> float:
     """Error of a linear filter of the windows, its ridge chosen by leaving parts out."""
-    rival = Linear().fit(Cases(training.windows, training.torque, "windows", REST))
+    rival = Linear().fit(Cases(training.windows, training.torque, "windows", _REST))
     return float(rmss(rival._torque(test.windows), test.torque))
 
 
@@ -111,7 +111,7 @@ def _equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
 
     Its states are those of polynomials of this degree through the windows.
     """
-    states = windows @ derivative_filters(windows.shape[-1], REST, degree).T
+    states = windows @ derivative_filters(windows.shape[-1], _REST, degree).T
     speed, own = states[..., 1], np.eye(made.joints)
     rigid = regressor(made.arm, *np.moveaxis(states, -1, 0))
     sign = np.clip(speed / SIGN_SPEED, -1, 1)
@@ -151,7 +151,7 @@ def _by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
     return rows
 
 
-def _known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) -> list[dict]:
+def _known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=_SEEDS) -> list[dict]:
     """Errors of the identified equations, by joints and motions, one for each of the seeds."""
     rows = []
     for n in joints:
@@ -164,15 +164,15 @@ def _known_structure(joints=(1, 2, 3, 4, 5, 7), motions=(5, 20), seeds=SEEDS) ->
     return rows
 
 
-def _closed_loops(seeds: int = SEEDS) -> list[dict]:
+def _closed_loops(seeds: int = _SEEDS) -> list[dict]:
     """Two joints: recordings of closed loops beside motions followed exactly, both readings."""
     rows = []
-    for setup, motions in product((JOINT_DAMPING, STATE_FEEDBACK), (5, MAIN)):
+    for setup, motions in product((JOINT_DAMPING, STATE_FEEDBACK), (5, _MAIN)):
         made = arms.chain(2, setup.name)
         drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
         loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
         plan = [(arms.SPACING, kind) for kind in ("closed loop", *arms.MOTIONS)]
-        if motions == MAIN:
+        if motions == _MAIN:
             plan += [(1, "closed loop"), (1, arms.MOTIONS[0])]
         for spacing, kind in plan:
             if kind == "closed loop":
@@ -213,9 +213,9 @@ def _units() -> list[dict]:
     made = arms.chain(4)
     test = tested(made)
     rows = []
-    for hidden in UNITS:
-        for motions in (5, MAIN) if hidden < 40 else (MAIN,):
-            trained = [sets(made, motions, seed).pair for seed in range(1, 1 + SEEDS)]
+    for hidden in _UNITS:
+        for motions in (5, _MAIN) if hidden < 40 else (_MAIN,):
+            trained = [sets(made, motions, seed).pair for seed in range(1, 1 + _SEEDS)]
             row = {"units": hidden, "motions": motions}
             rows.append(row | _trained(trained, test.pair, hidden))
     return rows
@@ -230,19 +230,19 @@ def _random_cube(joints: int, samples: int, seed: int) -> tuple[np.ndarray, np.n
 
 def _random_states() -> list[dict]:
     """Errors on random states by joints, samples and hidden units."""
-    rows, options = [], {"steps": STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
-    for joints in MOTIONS_OF:
-        test = _random_cube(joints, STATE_TEST, TEST_SEED)
-        plan = [(10, n) for n in (STATE_SAMPLES if joints < 5 else STATE_SAMPLES[2:3])]
-        plan += [(20, n) for n in STATE_SAMPLES[2:] if joints in (3, 4)]
+    rows, options = [], {"steps": _STATE_STEPS, "decay": 0.0, "initial": STATES_INITIAL}
+    for joints in _MOTIONS_OF:
+        test = _random_cube(joints, _STATE_TEST, TEST_SEED)
+        plan = [(10, n) for n in (_STATE_SAMPLES if joints < 5 else _STATE_SAMPLES[2:3])]
+        plan += [(20, n) for n in _STATE_SAMPLES[2:] if joints in (3, 4)]
         for hidden, samples in plan:
-            trained = [_random_cube(joints, samples, seed) for seed in range(1, 1 + SEEDS)]
+            trained = [_random_cube(joints, samples, seed) for seed in range(1, 1 + _SEEDS)]
             row = {"joints": joints, "units": hidden, "samples": samples}
             rows.append(row | _trained(trained, test, hidden, **options))
     return rows
 
 
-def _pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
+def _pairs(joints: int = 4, seeds: int = _SEEDS) -> dict:
     """Which joints' windows each torque uses: gains on acceleration beside the arm's inertia."""
     made = arms.chain(joints)
     test = tested(made)
@@ -250,14 +250,14 @@ def _pairs(joints: int = 4, seeds: int = SEEDS) -> dict:
     found: dict = {"real": [], "unrelated": []}
     used: dict = {"real": [], "unrelated": []}
     for seed in range(1, 1 + seeds):
-        whole = arms.recorded(made, arms.extents(joints, MAIN, seed), seed)
-        runs = whole.torque.reshape(MAIN, -1, joints)
+        whole = arms.recorded(made, arms.extents(joints, _MAIN, seed), seed)
+        runs = whole.torque.reshape(_MAIN, -1, joints)
         torques = {"real": runs, "unrelated": surrogate("phases", runs, seed)}
         step = -(-len(whole.torque) // CASES)
         for kind, torque in torques.items():
             x, y = whole.windows[::step], torque.reshape(-1, joints)[::step]
             model = solved(x, y, test.pair, seed=seed).model[0]
-            found[kind].append(gains(mean_gradient(model, test.windows), REST)[..., 2])
+            found[kind].append(gains(mean_gradient(model, test.windows), _REST)[..., 2])
             used[kind].append(_shuffled(model.torque, test.windows, y.std(0), seed))
 
     return {
@@ -318,14 +318,14 @@ def _costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
 @study
 def joints() -> dict:
     """All of it; what each part holds stands with its function."""
-    second = {n: (5, MAIN, 40) for n in (1, 2, 3, 4)}
+    second = {n: (5, _MAIN, 40) for n in (1, 2, 3, 4)}
     return {
         "cases": CASES,
-        "steps": STEPS,
-        "seeds": SEEDS,
+        "steps": _STEPS,
+        "seeds": _SEEDS,
         "test motions": TEST_MOTIONS,
-        "windows": _by_motions(JOINT_DAMPING.name, MOTIONS_OF, SEEDS),
-        "windows, state feedback": _by_motions(STATE_FEEDBACK.name, second, SEEDS),
+        "windows": _by_motions(JOINT_DAMPING.name, _MOTIONS_OF, _SEEDS),
+        "windows, state feedback": _by_motions(STATE_FEEDBACK.name, second, _SEEDS),
         "known structure": _known_structure(),
         "closed loops": _closed_loops(),
         "units": _units(),

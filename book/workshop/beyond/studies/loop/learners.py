@@ -29,16 +29,16 @@ from workshop.report import results
 
 SEEDS = 10
 TRIALS = 10  # of one motion, or with one load
-WIDTH = 21
+_WIDTH = 21
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
 RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
-PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
+_PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
 TRUST = 1.0  # penalty where the network was trained off-line
 REPLAY = 15  # earlier samples that are learnt again with each new one
-ONE_PASS, REPLAYED, TRAINED = 0.03, 1.0, 0.1  # rates of descent from measured windows
+_ONE_PASS, _REPLAYED, _TRAINED = 0.03, 1.0, 0.1  # rates of descent from measured windows
 
 # Rate of descent by the feedback's torque: the largest tried whose error did not rise again.
-BY_FEEDBACK = {JOINT_DAMPING.name: 0.003, STATE_FEEDBACK.name: 0.03}
+_BY_FEEDBACK = {JOINT_DAMPING.name: 0.003, STATE_FEEDBACK.name: 0.03}
 
 # Rate, lead and smoothing of the memory, the last two in control samples.
 MEMORY = {JOINT_DAMPING.name: (0.1, 75, 10.0), STATE_FEEDBACK.name: (0.3, 25, 5.0)}
@@ -62,7 +62,7 @@ class Draw:
         self.effects = replace(setup.effects, encoder=encoder)
         self.plain = Feedforward(lambda q, qd, qdd: 0 * q, setup.controller)
         self.limit = setup.effects.actuator[0].limit
-        trained = results.networks(WIDTH, setup.name)
+        trained = results.networks(_WIDTH, setup.name)
         members = (first + np.arange(seeds)) % len(trained.weights)
         self.trained = replace(trained, weights=trained.weights[members][None])
         self.untrained = _untrained(self.trained, first)
@@ -76,7 +76,7 @@ class Draw:
 def _untrained(like: TorqueModel, first: int) -> TorqueModel:
     """Networks that give no torque yet: only the weights of hidden units are drawn."""
     _, seeds, hidden = like.weights.hidden_bias.shape
-    w = Weights.random(seeds, WIDTH, hidden, initial=INITIAL, seed=first)
+    w = Weights.random(seeds, _WIDTH, hidden, initial=INITIAL, seed=first)
     nothing = like.outputs.scale(np.zeros(2))
     bias = np.log(nothing / (1 - nothing)) + np.zeros((seeds, 2))
     none = {n: np.zeros_like(getattr(w, n)) for n in ("output_weights", "direct_weights")}
@@ -149,7 +149,7 @@ class Windows:
     def controller(self, learning=True):
         """A controller for one run, learning or as it is now."""
         teacher = self.teacher if learning else "nobody"
-        return OnlineFeedforward(self.learner, self.feedback, WIDTH, teacher, limit=self.limit)
+        return OnlineFeedforward(self.learner, self.feedback, _WIDTH, teacher, limit=self.limit)
 
     def keep(self, controller):
         """Nothing to do: the learner has learnt during the run."""
@@ -174,20 +174,20 @@ def _recursion(penalty):
     return lambda weights: RecursiveLeastSquares(weights, penalty, FORGETTING)
 
 
-def last_layer(model: TorqueModel, draw: Draw, penalty: float = PENALTY) -> Windows:
+def last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> Windows:
     """The network whose last layer learns by recursive least squares from measured windows."""
     return Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
 
 
 def linear_filter(draw: Draw) -> Windows:
     """A linear filter of the window that learns in the same way, from nothing."""
-    zero = np.zeros((1, draw.seeds, 2, 2 * WIDTH + 1))
-    return Windows(LinearFilter(draw.trained.inputs, zero, _recursion(PENALTY)), "torque", draw)
+    zero = np.zeros((1, draw.seeds, 2, 2 * _WIDTH + 1))
+    return Windows(LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
 
 
 def by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> Windows:
     """The network that learns from desired windows and the feedback's torque."""
-    rate = BY_FEEDBACK[draw.setup.name] * np.asarray(times)
+    rate = _BY_FEEDBACK[draw.setup.name] * np.asarray(times)
     return Windows(OnlineDescent(model, rate), "feedback", draw)
 
 
@@ -211,14 +211,14 @@ def lineup(draw: Draw) -> dict[str, object]:
 def candidates(draw: Draw) -> dict[str, object]:
     """The learners of the family: from nothing, and from networks trained off-line."""
     return {
-        "one pass": Windows(OnlineDescent(draw.untrained, ONE_PASS), "torque", draw),
-        "replay": Windows(OnlineDescent(draw.untrained, REPLAYED, replay=REPLAY), "torque", draw),
+        "one pass": Windows(OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
+        "replay": Windows(OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw),
         "last layer": last_layer(draw.untrained, draw),
         "by feedback": by_feedback(draw.untrained, draw),
         "linear filter": linear_filter(draw),
         "off-line, as it is": Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
         "off-line, replay": Windows(
-            OnlineDescent(draw.trained, TRAINED, replay=REPLAY), "torque", draw
+            OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
         ),
         "off-line, last layer": last_layer(draw.trained, draw, TRUST),
         "off-line, by feedback": by_feedback(draw.trained, draw),

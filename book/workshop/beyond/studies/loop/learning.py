@@ -20,9 +20,9 @@ from workshop.beyond.control.online import Abreast
 from workshop.beyond.studies.loop import learners
 from workshop.report.code_hash import study
 
-LOAD = 5.0  # kg, in the hand from half-way on
-TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
-RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
+_LOAD = 5.0  # kg, in the hand from half-way on
+_TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
+_RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
 def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
@@ -97,10 +97,10 @@ def _motion(draw: learners.Draw) -> dict:
 def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
     """Practise members of the paper's family; a load from half-way on; tests on three motions."""
     pupils, t = pupils or learners.candidates(draw), learners.grid()
-    loaded = with_load(draw.setup.arm, LOAD)
-    tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in TESTS]
+    loaded = with_load(draw.setup.arm, _LOAD)
+    tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in _TESTS]
     practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
-    rows, size = [1 + len(TESTS)] + [1, len(TESTS)] * len(pupils), 1 + len(TESTS)
+    rows, size = [1 + len(_TESTS)] + [1, len(_TESTS)] * len(pupils), 1 + len(_TESTS)
 
     def once(trial_number, arm, learning=True):
         every = _rows(pick_and_place(draw.family[:, trial_number], t), *tests)
@@ -130,7 +130,7 @@ def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
 def _rates(draw: learners.Draw) -> dict:
     """Six trials of one motion at several rates: the last error, and who was stopped."""
     t, reference = learners.motions(draw)["the same"]
-    many, rates = len(RATES), np.array(RATES)[:, None]
+    many, rates = len(_RATES), np.array(_RATES)[:, None]
     model = replace(draw.untrained, weights=learners.tiled(draw.untrained.weights, many))
     pupils = {
         "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners.RATE * rates),
@@ -157,4 +157,4 @@ def learning_in_the_loop() -> dict:
         draw = learners.Draw(setup)
         parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
         found[setup.name] = parts
-    return {"setups": found, "rates": RATES, "trials": learners.TRIALS, "load": LOAD}
+    return {"setups": found, "rates": _RATES, "trials": learners.TRIALS, "load": _LOAD}

@@ -26,14 +26,14 @@ from workshop.beyond.rivals.protocol import Cases
 # 1,500 cases each; "both": every second case of the first two
 FAMILIES = ("pick and place", "circles", "both", "via points")
 VIA, MOST = 3, 6  # via points of the training motions, and most that are tested
-LEG = 1.5  # s, from point to point of steady motions
+_LEG = 1.5  # s, from point to point of steady motions
 RADIUS = (0.04, 0.12)  # m
 PERIOD = (1.5, 3.0)  # s, of a turn
 DISTANCE = (0.55, 0.75)  # m, of the centres: the hand comes within 0.43 to 0.87 m
 BEARING = (-80.0, -40.0)  # degrees, of the centres
 
 # Circles within the angles of pick-and-place, where only the way the joints move is new.
-SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-50.0, -25.0)}
+_SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-50.0, -25.0)}
 CELLS = 6  # along each axis of the states
 
 # Parts of a state: position, velocity and acceleration of the shoulder, then of the elbow.
@@ -46,7 +46,7 @@ AXES = {
 }
 
 TEST_DAY = 1000  # seed of all tests: noise and members
-RAMP = 0.5  # s, of a smooth start or end
+_RAMP = 0.5  # s, of a smooth start or end
 
 
 @dataclass(frozen=True)
@@ -110,20 +110,20 @@ def _pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray
     """Time as a motion sees it, with its two derivatives, shape (3, time).
 
     "jump": full speed from the first moment to the last, as in Appendix I; "smooth": speed rises
-    and falls within `RAMP` with continuous acceleration, so that the motion goes less far.
+    and falls within `_RAMP` with continuous acceleration, so that the motion goes less far.
     """
     t = shaped("t", t, "(time,)")
     one_of("start", start, ("jump", "smooth"))
-    number("seconds", seconds, 2 * RAMP)
+    number("seconds", seconds, 2 * _RAMP)
     inside = np.clip(t, 0.0, seconds)
     if start == "jump":
         moving = (t >= 0) & (t < seconds * (1 - 1e-12))
         return np.stack([inside, 1.0 * moving, np.zeros(t.size)])
-    up, down = (np.clip(x / RAMP, 0.0, 1.0) for x in (inside, seconds - inside))
+    up, down = (np.clip(x / _RAMP, 0.0, 1.0) for x in (inside, seconds - inside))
     # speed u^2 (3 - 2 u) in a ramp: its integral is u^3 - u^4 / 2
-    gone = RAMP * (up**3 - up**4 / 2) + np.clip(inside - RAMP, 0, seconds - 2 * RAMP)
-    gone += RAMP * (0.5 - down**3 + down**4 / 2)
-    change = (6 * up * (1 - up) - 6 * down * (1 - down)) / RAMP
+    gone = _RAMP * (up**3 - up**4 / 2) + np.clip(inside - _RAMP, 0, seconds - 2 * _RAMP)
+    gone += _RAMP * (0.5 - down**3 + down**4 / 2)
+    change = (6 * up * (1 - up) - 6 * down * (1 - down)) / _RAMP
     return np.stack([gone, np.minimum(up, down) ** 2 * (3 - 2 * np.minimum(up, down)), change])
 
 
@@ -208,15 +208,15 @@ def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
 
 
 def _small_circles(runs: int, seed: int) -> Circles:
-    """Members with the ranges of `SMALL` in place of the family's."""
+    """Members with the ranges of `_SMALL` in place of the family's."""
     whole, draw = random_circles(runs, seed), np.random.default_rng((seed, 1))
-    return replace(whole, **{name: draw.uniform(*r, runs) for name, r in SMALL.items()})
+    return replace(whole, **{name: draw.uniform(*r, runs) for name, r in _SMALL.items()})
 
 
 def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
     """Recordings of the tests: another draw of each family, and what lies beyond both.
 
-    Motions with via points are quick (all in 3 s) and steady (`LEG` from point to point).
+    Motions with via points are quick (all in 3 s) and steady (`_LEG` from point to point).
     """
     today, t, arm = setup.repeated(TEST_DAY), times(), setup.arm
     circles = random_circles(members, TEST_DAY)
@@ -232,7 +232,7 @@ def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]
         **{name: recorded(today, reference) for name, reference in references.items()},
     }
     for count in range(1, MOST + 1) if vias else ():
-        points, seconds = random_points(members, count, TEST_DAY), LEG * (count + 1)
+        points, seconds = random_points(members, count, TEST_DAY), _LEG * (count + 1)
         found[f"{count} via points"] = recorded(today, via_points(points, t))
         steady = via_points(points, times(seconds), seconds)
         found[f"{count} via points, steady"] = recorded(today, steady, seconds)

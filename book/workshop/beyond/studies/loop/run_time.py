@@ -33,11 +33,11 @@ from workshop.beyond.studies.loop import run_time_parts as parts
 from workshop.report import results
 from workshop.report.code_hash import study
 
-READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
-MEMBERS, FEW = 25, 10  # networks of a cell of Table 4-1, and in side experiments: one a day
+_READINGS = (JOINT_DAMPING, STATE_FEEDBACK)
+_MEMBERS, _FEW = 25, 10  # networks of a cell of Table 4-1, and in side experiments: one a day
 
 # Learn the windows of five recordings and run on the same day.
-RIVALS: dict[str, Callable] = {
+_RIVALS: dict[str, Callable] = {
     "identified": lambda day: Estimating(Identified()),
     "linear filter": lambda day: Linear(),
     "Gaussian process": lambda day: GaussianProcess(directions=9, subset=150, restarts=0, seed=day),
@@ -47,16 +47,18 @@ RIVALS: dict[str, Callable] = {
     "network, two hidden units": lambda day: BySolver(2, steps=60, decay=1e-6, seed=day),
 }
 
-ROUNDED = (0.0, 0.02, 0.05, 0.1, 0.2)  # s: corners of the reference are averaged over it
-LOADS, FRICTIONS, LATE = (0.0, 2.0, 5.0, 10.0), (0.5, 1.0, 2.0), (0, 1, 3, 5)  # kg, factor, periods
-GAINS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)  # factors on the feedback
+_ROUNDED = (0.0, 0.02, 0.05, 0.1, 0.2)  # s: corners of the reference are averaged over it
+_LOADS = (0.0, 2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
+_FRICTIONS = (0.5, 1.0, 2.0)  # factors
+_LATE = (0, 1, 3, 5)  # control periods
+_GAINS = (1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0)  # factors on the feedback
 
 # Of the measured deviation, what a model inside the loop sees.
-SHARES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
-LATE_INSIDE = (0, 5)  # delays with a model inside the loop, control periods
-CORNERS = (16, 24, 32, 45, 48)  # trajectories of the square that are tried there
-LIMIT = (4.0, 4.0)  # joint speeds of the guard there, rad/s: five times the family's largest
-SHOWN = (-0.1, 1.0)  # s
+_SHARES = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+_LATE_INSIDE = (0, 5)  # delays with a model inside the loop, control periods
+_CORNERS = (16, 24, 32, 45, 48)  # trajectories of the square that are tried there
+_LIMIT = (4.0, 4.0)  # joint speeds of the guard there, rad/s: five times the family's largest
+_SHOWN = (-0.1, 1.0)  # s
 
 
 def _nothing(q, qd, qdd):
@@ -70,7 +72,7 @@ def _lines(setup: Setup) -> dict[str, list]:
         "exact": [parts.exact(setup)],
         "exact, with its impulses": [parts.with_impulse(setup)],
         **{f"exact, window {w}": [parts.through_window(parts.exact(setup), w)] for w in WINDOWS},
-        **{f"network, window {w}": parts.networks(setup, MEMBERS, w) for w in WINDOWS},
+        **{f"network, window {w}": parts.networks(setup, _MEMBERS, w) for w in WINDOWS},
     }
 
 
@@ -80,12 +82,12 @@ def _few(setup: Setup) -> dict[str, list]:
         "none": [_nothing],
         "exact": [parts.exact(setup)],
         "exact, window": [parts.through_window(parts.exact(setup))],
-        "network": parts.networks(setup, FEW),
+        "network": parts.networks(setup, _FEW),
     }
 
 
 def _days(models: list) -> range:
-    return range(1, 1 + (len(models) if len(models) > 1 else FEW))
+    return range(1, 1 + (len(models) if len(models) > 1 else _FEW))
 
 
 def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
@@ -97,7 +99,7 @@ def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
         rows[name] = parts.told(parts.score(setup.arm, log))
         if name.startswith("network"):
             torques[name] = torque
-    days = range(1, 1 + FEW)
+    days = range(1, 1 + _FEW)
     log = parts.drive(setup, parts.computed_torque(setup), reference, days)
     rows["computed torque"] = parts.told(parts.score(setup.arm, log))
     return rows, torques
@@ -105,13 +107,13 @@ def _square(setup: Setup, reference: Trajectory) -> tuple[dict, dict]:
 
 def _rivals(setup: Setup, reference: Trajectory) -> dict:
     """Rivals of windows as feedforwards, with their error on trajectory 6."""
-    made: dict = {name: ([], []) for name in RIVALS}
-    days = range(1, 1 + FEW)
+    made: dict = {name: ([], []) for name in _RIVALS}
+    days = range(1, 1 + _FEW)
     for day in days:
         training, six = (
             Cases.windows(part, parts.WIDTH) for part in split(setup.repeated(day).record())
         )
-        for name, make in RIVALS.items():
+        for name, make in _RIVALS.items():
             rival = make(day).fit(training)
             feedforward = WindowFeedforward(
                 rival.torque, parts.WIDTH, between="line", step=LOG_STEP
@@ -136,7 +138,7 @@ def _course(setup: Setup) -> dict:
     """Trajectory 6 over time, on day 1: joint errors and end-point errors at the start."""
     reference = parts.rounded(APPENDIX_I[5:], 0.0)
     log, slices = parts.driven(setup, _made(_lines(setup), reference), reference)
-    shown = (log.t >= SHOWN[0] - 1e-9) & (log.t <= SHOWN[1] + 1e-9)
+    shown = (log.t >= _SHOWN[0] - 1e-9) & (log.t <= _SHOWN[1] + 1e-9)
     gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
     joints = np.rad2deg(log.tracking_error)
     found = {
@@ -158,7 +160,7 @@ def _made(lines: dict, reference) -> dict:
 
 def _with_computed(setup: Setup, made: dict, reference, **changed) -> dict:
     """The same, and computed torque."""
-    days = range(1, 1 + FEW)
+    days = range(1, 1 + _FEW)
     log = parts.drive(setup, parts.computed_torque(setup), reference, days, **changed)
     middle = np.median(parts.score(setup.arm, log).whole, -1)
     return parts.errors(setup, made, reference, **changed) | {"computed torque": middle}
@@ -171,7 +173,7 @@ def _corner(setup: Setup) -> dict:
     def along(reference):
         return parts.errors(setup, _made(lines, reference), reference)
 
-    found = {f"{seconds:g}": along(parts.rounded(parts.FEWER, seconds)) for seconds in ROUNDED}
+    found = {f"{seconds:g}": along(parts.rounded(parts.FEWER, seconds)) for seconds in _ROUNDED}
     return {"rounded": found, "smooth": along(smooth_pick_and_place(parts.FEWER, parts.T))}
 
 
@@ -179,28 +181,28 @@ def _rates(setup: Setup, reference) -> dict:
     """What is done between the samples of the log, and windows at the wrong period."""
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
-    lines = {name: parts.networks(setup, FEW, **how) for name, how in options.items()}
+    lines = {name: parts.networks(setup, _FEW, **how) for name, how in options.items()}
     return parts.errors(setup, _made(lines, reference), reference)
 
 
 def _changed(setup: Setup, made: dict, reference) -> dict:
     """Load, friction and delay that no feedforward was made for."""
     found: dict = {"load": {}, "friction": {}, "delay": {}}
-    for load in LOADS:
+    for load in _LOADS:
         arm = with_load(setup.arm, load)
         knows = _made(
             {"exact, window, knows": [parts.through_window(parts.exact(setup, arm))]}, reference
         )
         found["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
     viscous, coulomb = setup.effects.friction
-    for factor in FRICTIONS:
+    for factor in _FRICTIONS:
         friction = (
             ViscousFriction(factor * np.asarray(viscous.coefficient)),
             CoulombFriction(factor * np.asarray(coulomb.level)),
         )
         effects = replace(setup.effects, friction=friction)
         found["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
-    for late in LATE:
+    for late in _LATE:
         effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
         found["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
     return found
@@ -209,7 +211,7 @@ def _changed(setup: Setup, made: dict, reference) -> dict:
 def _gains(setup: Setup, made: dict, reference) -> dict:
     """Softer and stiffer feedback, without and with feedforwards."""
     found = {}
-    for factor in GAINS:
+    for factor in _GAINS:
         kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
         other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
         found[f"{factor:g}"] = parts.errors(other, made, reference)
@@ -260,17 +262,17 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
 
 def _inside(setup: Setup) -> dict:
     """Models inside the loop: which runs the guard stops, the error of the others."""
-    reference = parts.rounded(parts.EXTENTS[list(CORNERS)], 0.0)
-    shares, found = np.array(SHARES)[:, None], {}
+    reference = parts.rounded(parts.EXTENTS[list(_CORNERS)], 0.0)
+    shares, found = np.array(_SHARES)[:, None], {}
     models = {name: _few(setup)[name] for name in ("exact, window", "network")}
     day = setup.repeated(1).effects
     for name, several in models.items():
-        for late in LATE_INSIDE:
+        for late in _LATE_INSIDE:
             effects = replace(day, actuator=(*day.actuator, Delay(late)))
             row: dict = {"stopped": [], "error": [], "poles": []}
             for model in several:
                 law = Watched(
-                    Guarded(MeasuredWindows(model, setup.controller, shares), speeds=LIMIT)
+                    Guarded(MeasuredWindows(model, setup.controller, shares), speeds=_LIMIT)
                 )
                 log = follow(setup.arm, law, reference, parts.T, effects=effects, duration=3.0)
                 row["stopped"].append(law.law.stops.stopped.mean(1))
@@ -281,7 +283,7 @@ def _inside(setup: Setup) -> dict:
 
 
 def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int) -> list[float]:
-    """Size of the largest pole of the linear loop with a model inside, at each of `SHARES`."""
+    """Size of the largest pole of the linear loop with a model inside, at each of `_SHARES`."""
     windows = sliding_windows(reference.q[..., 250:1750:5, :], parts.WIDTH).reshape(
         -1, 2, parts.WIDTH
     )
@@ -289,7 +291,7 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
     viscous = np.asarray(setup.effects.friction[0].coefficient)
     joints = plant(setup.arm.mass_matrix([0.0, float(windows[:, 1].mean())]), viscous)
     poles = [
-        poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in SHARES
+        poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in _SHARES
     ]
     return [float(np.abs(each).max()) for each in poles]
 
@@ -304,12 +306,12 @@ def run_time() -> dict:
     found: dict = {
         "points": parts.POINTS,
         "extents": parts.EXTENTS,
-        "shares": SHARES,
-        "limit": LIMIT,
+        "shares": _SHARES,
+        "limit": _LIMIT,
     }
     found["readings"] = {}
     fewer = parts.rounded(parts.FEWER, 0.0)
-    for setup in READINGS:
+    for setup in _READINGS:
         made = _made(_few(setup), fewer)
         rows, torques = _square(setup, reference)
         with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):

@@ -32,10 +32,10 @@ def square_extents(points: int) -> np.ndarray:
 
 EXTENTS = square_extents(POINTS)
 EDGE = EXTENTS[:POINTS, 1]
-INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
+_INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
 FEWER = EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
 T = time_grid(CONTROL_STEP, REST)  # control samples, s
-START = 0.5  # s: what counts as the start of a motion
+_START = 0.5  # s: what counts as the start of a motion
 Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -167,7 +167,7 @@ class Score(NamedTuple):
     """End-point errors of runs, mm, and joint errors, degrees: RMS over the motion."""
 
     whole: np.ndarray
-    start: np.ndarray  # over the first `START` seconds
+    start: np.ndarray  # over the first `_START` seconds
     rest: np.ndarray
     along: np.ndarray  # the path of the hand
     across: np.ndarray
@@ -186,7 +186,7 @@ def score(arm: Arm, recording: Recording) -> Score:
     way = way / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-12)
     along = (gap * way).sum(-1)
     across = gap[..., 1] * way[..., 0] - gap[..., 0] * way[..., 1]
-    size2, early = (gap**2).sum(-1), recording.t[moving] < START
+    size2, early = (gap**2).sum(-1), recording.t[moving] < _START
     joints = np.rad2deg(np.sqrt(((wanted - q) ** 2).mean(-2)))
 
     def root(x):
@@ -214,8 +214,8 @@ def errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[s
 def told(found: Score) -> dict:
     """Medians over the square of scores ``(members, runs)``, by member, and a map of `whole`."""
     row = {name: np.median(values, -1) for name, values in found._asdict().items()}
-    row["inside"] = np.median(found.whole[:, INSIDE], -1)
-    row["outside"] = np.median(found.whole[:, ~INSIDE], -1)
+    row["inside"] = np.median(found.whole[:, _INSIDE], -1)
+    row["outside"] = np.median(found.whole[:, ~_INSIDE], -1)
     row["map"] = np.median(found.whole, 0)
     return row
 

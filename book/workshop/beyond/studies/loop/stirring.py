@@ -34,10 +34,10 @@ from workshop.beyond.studies.loop.runs.days import training
 from workshop.report import results
 from workshop.report.code_hash import study
 
-DAYS, MEMBERS = 10, 40  # of training; members of each family in a test
-WIDTH, WIDER = 21, (11, 41)
+_DAYS, _MEMBERS = 10, 40  # of training; members of each family in a test
+WIDTH, _WIDER = 21, (11, 41)
 
-NAMES = ("network", "two units", "linear filter", "identified")
+_NAMES = ("network", "two units", "linear filter", "identified")
 PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.beyond.widgets.stirring`
 
 # Circles of the picker: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow.
@@ -53,7 +53,7 @@ SHOWN = 5  # of the samples, every so many are kept for the picker
 
 
 def _maker(setup: Setup, name: str, seed: int) -> Rival:
-    """One of `NAMES` that has learnt nothing."""
+    """One of `_NAMES` that has learnt nothing."""
     if name == "identified":
         return Estimating(Identified())
     if name == "linear filter":
@@ -102,13 +102,13 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
 def _wider(setup: Setup, runs: list, tests: dict) -> dict:
     """Networks of other windows: those of Table 4-1, and as many that learnt circles."""
     found = {}
-    for width in WIDER:
+    for width in _WIDER:
         answers, table = _answers(tests, width), results.networks(width, setup.name)
         mine: dict = {}
         for k in range(len(runs)):
             for part, error in _errors(table[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
+        other = _transfer(setup, _NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
         found[str(width)] = {"pick and place": mine, **other["network"]}
     return found
 
@@ -258,7 +258,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 
 
 @study
-def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
+def stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     """Networks and rivals of each family of motions on all others, and their hands' errors.
 
     Also which states the families visit, filters beside a null, and files with a network of each
@@ -266,8 +266,8 @@ def stirring(days: int = DAYS, members: int = MEMBERS) -> dict:
     """
     found: dict = {"days": days, "members": members, "width": WIDTH, "setups": {}}
     every = (
-        (JOINT_DAMPING, NAMES, motions.FAMILIES),
-        (STATE_FEEDBACK, NAMES[::2], motions.FAMILIES[:3]),
+        (JOINT_DAMPING, _NAMES, motions.FAMILIES),
+        (STATE_FEEDBACK, _NAMES[::2], motions.FAMILIES[:3]),
     )
     for setup, names, families in every:
         main = setup is JOINT_DAMPING

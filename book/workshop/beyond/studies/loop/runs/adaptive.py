@@ -21,24 +21,24 @@ from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.control.guarded import Guarded
 
-RIGID = PARAMETERS[:3]
-FRICTION = PARAMETERS[5:]
-FULL = (*RIGID, *FRICTION)
+_RIGID = PARAMETERS[:3]
+_FRICTION = PARAMETERS[5:]
+FULL = (*_RIGID, *_FRICTION)
 TRUTH = np.array([CMU_DD_ARM_II.a, CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # without a load
-INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # kg m^2, stretched
+_INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # kg m^2, stretched
 
 # Sizes of the parameters: rates go by their squares. Assumed.
 SIZES = np.array([5.0, 0.5, 0.5, 5.0, 1.0, 1.5, 0.5])
 
 # Box of the estimates of Craig, Hsu & Sastry: it holds the arm with 10 kg. Assumed.
-BOX = np.array([2.6, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0]), np.array([14.0, 4.0, 2.5, 20.0, 5.0, 8.0, 3.0])
-AFTER = 0.1  # s, rest before and after each motion
+_BOX = np.array([[2.6, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0], [14.0, 4.0, 2.5, 20.0, 5.0, 8.0, 3.0]])
+_AFTER = 0.1  # s, rest before and after each motion
 
 # Slotine & Li without and with friction; Craig, Hsu & Sastry; a reference model of each joint.
 LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
 
 # Of a grid of nine, on four motions of another seed, the quickest that settles.
-RATES = {
+_RATES = {
     "joint damping": dict(zip(LAWS, (3.0, 3.0, 10.0, 0.01))),
     "state feedback": dict(zip(LAWS, (3.0, 10.0, 10.0, 0.3))),
 }
@@ -88,9 +88,9 @@ class Behind:
         return self.controller.estimate
 
 
-POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the largest jump
+_POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the largest jump
 
-SMOOTH = ModelReference((POLE**2,) * 2, (2 * POLE,) * 2, (POLE,) * 2, np.zeros(8), np.zeros(8))
+SMOOTH = ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zeros(8), np.zeros(8))
 
 
 def _taught(controller: Controller, estimate) -> Controller:
@@ -133,14 +133,14 @@ def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
     With the right parameters all laws have this loop at the stretched arm without a load.
     """
     slope = np.asarray(setup.controller.kp) / KD
-    return slope, np.stack([slope * KD / INERTIA, slope + KD / INERTIA])
+    return slope, np.stack([slope * KD / _INERTIA, slope + KD / _INERTIA])
 
 
 def rates(law: str, setup: Setup, factor=1.0) -> np.ndarray:
     """Speeds of adaptation of a `law` in a `setup`, times a `factor` of shape (...)."""
-    speed = RATES[setup.name][law] * np.asarray(factor, float)[..., None]
+    speed = _RATES[setup.name][law] * np.asarray(factor, float)[..., None]
     if law == "joint models":
-        return speed * np.concatenate([m**2 * np.array([1, 2e3, 1e2, 2e3]) for m in INERTIA])
+        return speed * np.concatenate([m**2 * np.array([1, 2e3, 1e2, 2e3]) for m in _INERTIA])
     return speed * (SIZES[:3] if law == "rigid body" else SIZES) ** 2
 
 
@@ -171,11 +171,11 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
         return _AbleModelReference(
             a0, a1, a1 / 2, rate, each.reshape(*own.shape[:-1], 8), **options
         )
-    names = RIGID if law == "rigid body" else FULL
+    names = _RIGID if law == "rigid body" else FULL
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
-        made = _AbleCraig(a0, a1, a1 / 2, rate, first, *BOX, names, **options)
+        made = _AbleCraig(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
     else:
         kind = SlotineLi if jumps else _AbleSlotineLi
         made = kind(KD, slope, rate, first, names, **options)
@@ -202,7 +202,9 @@ class Trial(NamedTuple):
 
 def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, **options) -> Trial:
     """One motion of extents ``(runs, 2)``, degrees, of all laws side by side."""
-    steps = np.arange(-round(AFTER / CONTROL_STEP), round((MOTION_SECONDS + AFTER) / CONTROL_STEP))
+    steps = np.arange(
+        -round(_AFTER / CONTROL_STEP), round((MOTION_SECONDS + _AFTER) / CONTROL_STEP)
+    )
     t = steps * CONTROL_STEP
     reference = pick_and_place(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))

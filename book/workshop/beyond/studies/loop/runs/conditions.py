@@ -39,17 +39,17 @@ from workshop.beyond.studies.loop.chain import Sample, chain, extents, recorded
 from workshop.beyond.studies.loop.runs.days import recorded as recorded_days
 from workshop.report.code_hash import study
 
-COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
-STEPS = (5, 15, 60)  # of the solver, to choose from; 60 made Table 4-1
-DECAYS = (1e-6, 1e-3, 1e-2)  # to choose from, with four joints
-LATER, MEMBERS, TEST = 500, 12, 4711  # first day; test motions, and their seed
+_COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
+_STEPS = (5, 15, 60)  # of the solver, to choose from; 60 made Table 4-1
+_DECAYS = (1e-6, 1e-3, 1e-2)  # to choose from, with four joints
+_LATER, _MEMBERS, _TEST = 500, 12, 4711  # first day; test motions, and their seed
 
 
 def _copies(setup: Setup, days) -> dict:
     """End-point errors on the paper's own plan, equations given a smoothed copy of it, mm."""
     plan, equations = run_time.rounded(run_time.FEWER, 0.0), run_time.exact(setup)
     torques = {"none": 0 * plan.q[None]}
-    torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in COPIES}
+    torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in _COPIES}
     torques["network"] = run_time.planned(run_time.networks(setup, len(days)), plan)
     made = {name: (torque, days) for name, torque in torques.items()}
     return run_time.errors(setup, made, plan)
@@ -65,25 +65,25 @@ def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
 
 
 def _chosen_steps(run, day: int) -> int:
-    """Steps, of `STEPS`, with the least error on runs of pick-and-place left out in turn."""
-    wrong = np.zeros(len(STEPS))
+    """Steps, of `_STEPS`, with the least error on runs of pick-and-place left out in turn."""
+    wrong = np.zeros(len(_STEPS))
     for out in range(len(run.q)):
         rest = _cases(run[[k for k in range(len(run.q)) if k != out]], 4)
         asked = _cases(run[[out]], 4)
         course = joints.solved(
             rest.x, rest.torque, (asked.x, asked.torque), seed=day,
-            steps=max(STEPS), decay=JOINT_DAMPING.decay,
+            steps=max(_STEPS), decay=JOINT_DAMPING.decay,
         ).history.test[:, 0]  # fmt: skip
-        wrong += course[np.minimum(STEPS, len(course) - 1)] ** 2
-    return STEPS[int(wrong.argmin())]
+        wrong += course[np.minimum(_STEPS, len(course) - 1)] ** 2
+    return _STEPS[int(wrong.argmin())]
 
 
 def _stopped(setup: Setup, days, circles: bool) -> dict:
     """Hands with training stopped by pick-and-place itself, and after twenty circles if asked."""
     t = motions.times()
     asked = {
-        "circles": motions.stirred(setup.arm, motions.random_circles(MEMBERS, TEST), t),
-        "pick and place": pick_and_place(random_members(MEMBERS, TEST), t),
+        "circles": motions.stirred(setup.arm, motions.random_circles(_MEMBERS, _TEST), t),
+        "pick and place": pick_and_place(random_members(_MEMBERS, _TEST), t),
     }
     steps, models = [], {"chosen": [], "60": [], "identified": []}
     for day, run in zip(
@@ -91,17 +91,17 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
     ):
         whole = _cases(run, 1)
         steps.append(_chosen_steps(run, day))
-        models["60"].append(_fitted(STEPS[-1], whole, day))
-        stops = steps[-1] < STEPS[-1]
+        models["60"].append(_fitted(_STEPS[-1], whole, day))
+        stops = steps[-1] < _STEPS[-1]
         models["chosen"].append(_fitted(steps[-1], whole, day) if stops else models["60"][-1])
         models["identified"].append(Estimating(Identified()).fit(whole))
     if circles:
         drawn = [motions.stirred(setup.arm, motions.random_circles(20, day), t) for day in days]
         models["twenty circles"] = [
-            _fitted(STEPS[-1], _cases(run, 4), day)
+            _fitted(_STEPS[-1], _cases(run, 4), day)
             for day, run in zip(days, recorded_days(setup, drawn, days))
         ]
-    today = setup.repeated(TEST)
+    today = setup.repeated(_TEST)
     hands = {motion: _hands(today, models, reference) for motion, reference in asked.items()}
     return {"steps": steps, "hands": hands}
 
@@ -123,7 +123,7 @@ def _windows(seeds: int) -> dict:
     made = chain(4)
     test, found = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
     found["as it is"] = []
-    for seed in range(LATER, LATER + seeds):
+    for seed in range(_LATER, _LATER + seeds):
         for count in (300, 750):
             part = recorded(made, extents(4, 20, seed), seed).thinned(count)
             found[f"{count} of twenty"].append(_error(part, test, seed))
@@ -146,7 +146,7 @@ def _error(training: Sample, test: Sample, seed: int, **options) -> float:
 def _chosen_decay(five: Sample, seed: int) -> tuple[float, int]:
     """Decay and number of steps with the least error on motions that are left out in turn."""
     run, best = np.repeat(np.arange(5), len(five.torque) // 5), (np.inf, 0.0, 1)
-    for decay in DECAYS:
+    for decay in _DECAYS:
         courses = []
         for out in range(5):
             rest, asked = (_part(five, np.flatnonzero(keep)) for keep in (run != out, run == out))
@@ -165,7 +165,7 @@ def _part(sample: Sample, cases: np.ndarray) -> Sample:
 
 def _practised(setup: Setup, seeds: int) -> dict:
     """One motion practised, then frozen on others, mm: three motions, and a scaled memory."""
-    draw = learners.Draw(setup, first=LATER, seeds=seeds)
+    draw = learners.Draw(setup, first=_LATER, seeds=seeds)
     asked = learners.motions(draw)
     practise = {
         "in step": asked["the same"],
@@ -214,7 +214,7 @@ def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
     """Four findings under other conditions, both set-ups where they were found in both."""
     both = (JOINT_DAMPING, STATE_FEEDBACK)
     solved = replace(STATE_FEEDBACK, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
-    later = range(LATER, LATER + days)
+    later = range(_LATER, _LATER + days)
     return {
         "copies": {s.name: _copies(s, later) for s in both},
         "stopped": {

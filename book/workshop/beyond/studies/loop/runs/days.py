@@ -11,7 +11,7 @@ from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_
 from workshop.beyond.studies.loop import motions
 from workshop.beyond.studies.loop.run_time_parts import on_days
 
-TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training
+_TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training
 
 
 def recorded(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
@@ -40,16 +40,16 @@ def training(setup: Setup, days) -> list[dict[str, Recording]]:
     """Recordings of five motions of each family, for each day, which is the seed of their draw."""
     t = motions.times()
     references = {
-        "pick and place": lambda day: pick_and_place(APPENDIX_I[:TRAINED], t),
-        "circles": lambda day: motions.stirred(setup.arm, motions.random_circles(TRAINED, day), t),
+        "pick and place": lambda day: pick_and_place(APPENDIX_I[:_TRAINED], t),
+        "circles": lambda day: motions.stirred(setup.arm, motions.random_circles(_TRAINED, day), t),
         "via points": lambda day: motions.via_points(
-            motions.random_points(TRAINED, motions.VIA, day), t
+            motions.random_points(_TRAINED, motions.VIA, day), t
         ),
     }
     each = [[make(day) for make in references.values()] for day in days]
     joined = [Trajectory(*(np.concatenate(parts) for parts in zip(*day))) for day in each]
     logs = recorded(setup, joined, days)
     return [
-        {name: log[k * TRAINED : (k + 1) * TRAINED] for k, name in enumerate(references)}
+        {name: log[k * _TRAINED : (k + 1) * _TRAINED] for k, name in enumerate(references)}
         for log in logs
     ]
