@@ -47,17 +47,16 @@ book: $(READY)  ## execute the notebooks and build the pages
 test: export DDLIB_MEASURED = $(CURDIR)/_build/measured
 test: unmeasured lint stripped unit foreign-ci pages  ## everything that CI checks
 
-# What is quick and concerns the package itself; in three minutes, for every day.
-CORE  = $(wildcard $(addprefix tests/,dynamics effects control simulation identification learning \
-	analysis)) $(wildcard tests/test_*.py)
-FACTS = tests/book/test_prose.py tests/book/test_notebooks.py tests/book/test_lessons.py
-QUICK = not slow and not built and not browser
+# What is quick, of the package, of the house and of what pages say.
+CORE  = $(wildcard tests/test_*.py) $(addprefix tests/,dynamics effects control simulation \
+	identification learning analysis figures widgets)
+FACTS = $(addprefix tests/book/test_,prose.py notebooks.py lessons.py)
+FRESH = $(addprefix tests/report/test_,code_hash.py results.py judging.py)
 
 check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results
-	@echo "==> Core tests, house rules, facts"
-	$(PYTEST) -n $(JOBS) --dist worksteal -m "$(QUICK)" $(CORE) tests/house $(FACTS)
-	@echo "==> Results are of this code"
-	$(PYTEST) -m "$(QUICK)" tests/report/test_results.py -k committed
+	@echo "==> Core tests, house rules, facts, fresh results"
+	$(PYTEST) -n $(JOBS) --dist worksteal -m "not slow and not built and not browser" \
+	  $(CORE) tests/house $(FACTS) $(FRESH)
 
 unmeasured:
 	@rm -rf _build/measured
