@@ -111,23 +111,6 @@ def test_ridge_is_the_closed_form_and_one_fit_serves_all():
     np.testing.assert_allclose(Solution.of(design, target).coefficients(), shortest, atol=1e-10)
 
 
-def test_runges_function_is_the_textbooks():
-    """Through equally spaced points a high degree swings out near the ends; Chebyshev's do not."""
-
-    def swing(points, degree):
-        x, asked = np.zeros((len(points), 2, 3)), np.zeros((400, 2, 3))
-        x[:, 0, 0], asked[:, 0, 0] = points, np.linspace(-1, 1, 400)
-        runge = [np.tile(1 / (1 + 25 * s[:, 0, :1] ** 2), 2) for s in (x, asked)]
-        fit = np.polynomial.chebyshev.Chebyshev.fit(points, runge[0][:, 0], degree, domain=[-1, 1])
-        predicted = Polynomial(degree).fit(cases(x, runge[0])).torque(asked)[:, 0]
-        np.testing.assert_allclose(predicted, fit(asked[:, 0, 0]), atol=1e-6)
-        return np.abs(predicted - runge[1][:, 0]).max()
-
-    even = np.linspace(-1, 1, 9)
-    assert swing(even, 8) > 1.0 > swing(even, 4)
-    assert swing(np.cos(np.pi * np.arange(9) / 8), 8) < 0.25
-
-
 def test_operations_are_counted_by_hand():
     data = cases(states(100), states(100)[..., 0])
     # scaling 6, squares 6, products of two variables 15, two torques for 28 terms

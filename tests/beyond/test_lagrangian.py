@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from scipy.integrate import solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
@@ -62,16 +61,6 @@ def lagrange(rival, q, qd, qdd, h=1e-4):
     return torque
 
 
-def test_the_parts_sum_up_to_the_torque():
-    rival = untrained(1, friction=True, gain=0.5)
-    x = states(20, 2)
-    q, qd, qdd = np.moveaxis(x, -1, 0)
-    inertial = np.einsum("...ij,...j", rival.mass_matrix(q), qdd)
-    coriolis = np.einsum("...ij,...j", rival.coriolis_matrix(q, qd), qd)
-    total = inertial + coriolis + rival.gravity(q) + rival.friction_torque(qd)
-    np.testing.assert_allclose(rival._torque(x), total, rtol=1e-9, atol=1e-9)
-
-
 @pytest.mark.parametrize("gain", [0.1, 1.0, 10.0])
 def test_the_mass_matrix_is_symmetric_and_positive_definite_whatever_the_weights(gain):
     for seed in range(5):
@@ -81,50 +70,6 @@ def test_the_mass_matrix_is_symmetric_and_positive_definite_whatever_the_weights
         least = rival.floor * rival.units.torque / rival.units.acceleration
         size = np.abs(mass).max((-1, -2))
         assert (np.linalg.eigvalsh(mass)[:, 0] >= least - 1e-12 * size).all()
-
-
-def test_the_change_of_mass_minus_twice_coriolis_is_skew():
-    rival = untrained(2, 3, 0.7)
-    q, qd, _ = np.moveaxis(states(10, 5, joints=3), -1, 0)
-    h = 1e-5
-    rate = (rival.mass_matrix(q + h * qd) - rival.mass_matrix(q - h * qd)) / (2 * h)
-    found = rate - 2 * rival.coriolis_matrix(q, qd)
-    size = np.abs(rate).max()
-    assert size > 0.1
-    np.testing.assert_allclose(found + np.swapaxes(found, -1, -2), 0, atol=1e-6 * size)
-    np.testing.assert_allclose(np.einsum("ni,nij,nj->n", qd, found, qd), 0, atol=1e-6 * size)
-
-
-@pytest.mark.parametrize("forced", [False, True])
-def test_energy_changes_by_the_work_done(forced):
-    rival = untrained(4, gain=0.3, friction=forced)
-    if forced:  # without Coulomb's jumps, at which an integrator stumbles
-        rival.network.friction.data = torch.tensor([[0.3, 0.2], [0.0, 0.0]]).double()
-
-    def torque(t):
-        return np.array([2.0 * np.sin(3 * t), 1.0]) if forced else np.zeros(2)
-
-    def rates(t, y):
-        q, qd = y[:2], y[2:4]
-        power = qd @ (torque(t) - rival.friction_torque(qd))
-        return np.r_[qd, rival.forward_dynamics(q, qd, torque(t)), power]
-
-    start = np.r_[0.4, -0.3, 0.8, -0.6, 0.0]
-    path = solve_ivp(rates, (0, 1.0), start, method="DOP853", rtol=1e-8, atol=1e-9).y
-    q, qd = path[:2].T, path[2:4].T
-    kinetic = 0.5 * np.einsum("ni,nij,nj->n", qd, rival.mass_matrix(q), qd)
-    energy = kinetic + rival.potential_energy(q)
-    assert np.ptp(kinetic) > 0.1 and (np.ptp(path[4]) > 0.1) == forced
-    np.testing.assert_allclose(energy - energy[0], path[4], atol=1e-5 * np.ptp(kinetic))
-
-
-def test_inverse_and_forward_dynamics_agree():
-    rival = untrained(6, 3, 0.6, gravity="vector")
-    x = states(20, 7, joints=3)
-    q, qd, qdd = np.moveaxis(x, -1, 0)
-    np.testing.assert_allclose(
-        rival.forward_dynamics(q, qd, rival._torque(x)), qdd, rtol=1e-6, atol=1e-6
-    )
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, UPRIGHT])
@@ -139,7 +84,8 @@ def test_a_known_arm_is_recovered_from_torques_alone(arm):
     assert off(rival._torque(test.x), test.torque) < 0.01
     assert off(rival.mass_matrix(q), arm.mass_matrix(q)) < 0.01
     if any(arm.gravity_moments):
-        assert off(rival.gravity(q), arm.gravity(q)) < 0.01
+        still = np.stack([q, 0 * q, 0 * q], -1)
+        assert off(rival._torque(still), arm.gravity(q)) < 0.01
         potential = rival.potential_energy(q) - arm.potential_energy(q)
         assert potential.std() < 0.01 * arm.potential_energy(q).std()
 
@@ -149,8 +95,9 @@ def test_friction_is_recovered_beside_the_arm():
     rival = LagrangianNetwork((24, 24), gravity="none", friction=True, epochs=150, finish=200)
     rival.fit(known(CMU_DD_ARM_II, 500, friction=friction))
     qd = np.array([[1.0, 1.0], [-0.5, 0.5]])
+    there, back = (rival._torque(np.stack([0 * v, v, 0 * v], -1)) for v in (qd, -qd))
     wanted = np.array(friction[0]) * qd + np.array(friction[1]) * np.sign(qd)
-    np.testing.assert_allclose(rival.friction_torque(qd), wanted, rtol=0.02)
+    np.testing.assert_allclose((there - back) / 2, wanted, rtol=0.02)  # all else is even in speed
 
 
 def test_the_finish_lowers_the_error_a_seed_is_kept_and_epochs_are_watched():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, READ, page_of
 
 from ddlib.widgets.baking.baked import MAX_BYTES
 from workshop.beyond.studies.lineup import REFERENCE
@@ -63,20 +62,3 @@ def test_what_makes_no_sense_is_refused(made, tmp_path):
         RivalPicker(tmp_path / "torques.npz", "oracle")
     with pytest.raises(FileNotFoundError):
         RivalPicker(tmp_path / "none.npz")
-
-
-@pytest.mark.browser
-def test_a_page_without_kernel_shows_them(tmp_path, visit, made):
-    picker, torque = made
-    picker.shoulder, picker.elbow, picker.rival = 5, 5, "filter"
-    page = visit(page_of(tmp_path / "page.html", picker)).page
-    page.evaluate(NEXT_FRAME)
-    page.locator("select[id$=rival]").select_option(label="1: table")
-    page.locator("input[id$=elbow]").press("ArrowRight")
-    page.evaluate(NEXT_FRAME)
-    run = 4 * GRID + 5
-    for j in range(2):
-        shown = page.evaluate(READ, j)
-        for curve, who in zip(shown, (0, 2, 1)):
-            reach = np.ptp(torque[:, :, :, j])
-            np.testing.assert_allclose(curve, torque[who, run, :, j], atol=0.01 * reach)

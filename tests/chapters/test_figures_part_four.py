@@ -111,17 +111,9 @@ def dots(axis):
 def test_figures_are_accessible_and_name_what_they_show(made):
     said = {
         "courses": {"A", "B", "one", "two", "a load", "error, mm", "motion, number"},
-        "stops_map": {"A", "rate", "delay, ms", "error, mm", "0.1", "10"},
-        "ladders": {"network", "linear", "two joints", *LABELS},
         "growth": {"found", "a law", "2", "4", "7"},
-        "couplings": {"torque 1", "torque 2", "the arm", "unrelated torques"},
-        "by_trial": {"none", "one", "a load", "from nothing"},
-        "by_motion": {*RATIOS, "one", "two"},
-        "friction_by_joint": {*FRICTION, *LABELS},
         "gains_by_joint": {"unrelated currents", "real currents", "as identified"},
         "costs": {"tables", "bases", "one", "two", "three", "network", "test", "training", "noise"},
-        "against": {"11", "21", "RMSS", "loop, mm"},
-        "maps": {*SQUARES, "error"},
     }
     for name, (picture, _) in made.items():
         check_sound(picture)

@@ -240,11 +240,6 @@ class RandomFeatures(Rival):
         found = self.ridge.predict(self.cosines.transform(self.inputs(x)))
         return self.level + self.unit * found.reshape(len(x), -1)
 
-    def kernel(self, x, y) -> np.ndarray:
-        """Products of the features of two sets of inputs, ``(cases of x, cases of y)``."""
-        first, second = (self.cosines.transform(self.inputs(np.asarray(z))) for z in (x, y))
-        return first @ second.T
-
     def count(self):
         """Stored numbers: cosines, weights and scaling."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)

@@ -269,50 +269,12 @@ class LagrangianNetwork(Rival):
         mass = lower @ np.swapaxes(lower, -1, -2) + self.floor * np.eye(lower.shape[-1])
         return self.units.torque / self.units.acceleration * mass
 
-    def _mass_slopes(self, q) -> np.ndarray:
-        """Derivatives of the mass matrix, ``[..., i, j, k]`` by position k, kg m^2/rad."""
-        lead, (lower, moved, *_) = self._parts(q)
-        half = moved @ np.swapaxes(lower, -1, -2)
-        slopes = np.moveaxis(half + np.swapaxes(half, -1, -2), 0, -1).reshape(
-            *lead, *[len(half)] * 3
-        )
-        return self.units.torque / self.units.acceleration * slopes
-
-    def coriolis_matrix(self, q, qd) -> np.ndarray:
-        """Coriolis and centrifugal matrix by Christoffel symbols, shape ``(..., joint, joint)``."""
-        slopes = self._mass_slopes(q)
-        qd = finite_array("qd", qd, slopes.shape[-1])
-        symbols = slopes + np.swapaxes(slopes, -1, -2) - np.moveaxis(slopes, -1, -3)
-        return 0.5 * np.einsum("...ijk,...k->...ij", symbols, qd)
-
-    def gravity(self, q) -> np.ndarray:
-        """Gravity torque that was learnt, shape ``(..., joint)``, N m."""
-        lead, (lower, _, found, _) = self._parts(q)
-        found = np.zeros(lower.shape[:-1]) if found is None else found
-        return self.units.torque * found.reshape(*lead, lower.shape[-1])
-
     def potential_energy(self, q) -> np.ndarray:
         """Potential that was learnt, but for a constant, shape ``(...)``, J."""
         if self.gravity_from != "potential":
             raise ValueError(f"gravity must be 'potential', got {self.gravity_from!r}")
         lead, (*_, found) = self._parts(q)
         return self.units.torque * found.reshape(lead)
-
-    def friction_torque(self, qd) -> np.ndarray:
-        """Friction that was learnt, shape ``(..., joint)``, N m."""
-        qd = finite_array("qd", qd, self.network.joints)
-        if self.network.friction is None:
-            return np.zeros_like(qd)
-        viscous, coulomb = self.units.torque * self.network.friction.detach().double().numpy()
-        sign = np.clip(qd / SIGN_SPEED, -1.0, 1.0)
-        return viscous * qd / self.units.acceleration**0.5 + coulomb * sign
-
-    def forward_dynamics(self, q, qd, tau) -> np.ndarray:
-        """Acceleration of the model under torque `tau`, shape ``(..., joint)``, rad/s^2."""
-        qd = finite_array("qd", qd, self.network.joints)
-        bias = np.einsum("...ij,...j", self.coriolis_matrix(q, qd), qd) + self.gravity(q)
-        pushed = finite_array("tau", tau) - bias - self.friction_torque(qd)
-        return np.linalg.solve(self.mass_matrix(q), pushed[..., None])[..., 0]
 
     def count(self):
         """Stored numbers: the weights, and the units if scaled."""
