@@ -44,7 +44,7 @@ def test_at_twice_the_speed_torques_follow_the_square_of_time(drawn):
 
 
 def test_a_dead_joint_is_seen(drawn):
-    cases = characters._plain(drawn)
+    cases = characters.states(drawn, 0.0)
     rival = LagrangianNetwork(**AS_PUBLISHED, epochs=0).fit(cases)
     with torch.no_grad():
         rival.network.head.weight[:2] = 0.0

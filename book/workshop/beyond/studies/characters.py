@@ -63,9 +63,12 @@ _ENTRIES = {
 }
 
 
-def states(drawn: Characters) -> Cases:
-    """States and torques of characters, the first angle from hanging down."""
-    q = drawn.q + np.array([np.pi / 2, 0.0])
+def states(drawn: Characters, turned: float = np.pi / 2) -> Cases:
+    """States and torques of characters, the first angle from hanging down.
+
+    Without being turned it is as the public code takes it, from the horizontal.
+    """
+    q = drawn.q + np.array([turned, 0.0])
     return Cases(np.stack([q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
 
 
@@ -133,11 +136,6 @@ def _entry(entry: _Entry, split) -> dict:
     return row | {"count": rival.count(), "operations": list(rival.operations())}
 
 
-def _plain(drawn: Characters) -> Cases:
-    """As the public code takes them: the first angle from the horizontal."""
-    return Cases(np.stack([drawn.q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
-
-
 def _dead(rival: LagrangianNetwork, q) -> list[bool]:
     """For each joint, whether its entry on L's diagonal is the floor at every position."""
     lower = rival.triangle(q)
@@ -147,7 +145,7 @@ def _dead(rival: LagrangianNetwork, q) -> list[bool]:
 def _as_published() -> dict:
     """Networks with the public code's settings: their errors on the way, and dead joints."""
     training, test = data().split()
-    cases, asked = _plain(training), _plain(test).x
+    cases, asked = states(training, 0.0), states(test, 0.0).x
 
     def untrained(seed):
         return LagrangianNetwork(**AS_PUBLISHED, epochs=0, seed=seed).fit(cases)

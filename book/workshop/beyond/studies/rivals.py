@@ -28,15 +28,10 @@ _INPUTS = ("positions", "exact states")  # windows of measured positions, or sta
 
 
 def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
-    """What rivals learn from and are tested on, on one day.
+    """What rivals learn from and are tested on, on one day; and windows of the whole square.
 
-    Returns
-    -------
-    sets : dict
-        For each of `_INPUTS` cases by name: training, trajectory 6; inside and outside, the
-        trajectories of the square on either side of the training hull, every `_EVERY` samples.
-    asked : Cases
-        Windows of the whole square, every `_SHOWN` samples.
+    For each of `_INPUTS` there are cases by name: training, trajectory 6; inside and outside, the
+    trajectories of the square on either side of the training hull.
     """
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())

@@ -132,14 +132,7 @@ def best_penalty(data: Windowed, training) -> float:
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
     """Currents ``(others, 6)`` at `new` states by least squares on known terms, joint by joint.
 
-    Parameters
-    ----------
-    states, current : array_like, shapes (cases, 6, 3) and (cases, 6)
-        What is fitted.
-    new : array_like, shape (others, 6, 3)
-        States whose currents are wanted.
-    friction : bool
-        Whether friction is among the terms.
+    States ``(cases, 6, 3)`` and currents ``(cases, 6)`` are fitted, with or without friction.
     """
     return np.stack(
         [

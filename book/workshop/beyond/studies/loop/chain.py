@@ -85,13 +85,8 @@ class Chain:
 def chain(joints: int, reading: str = JOINT_DAMPING.name) -> Chain:
     """The arm with its first joints free and the others locked, in a reading of the controller.
 
-    Parameters
-    ----------
-    joints : int
-        1 to `_MOST`.
-    reading : {"joint damping", "state feedback"}
-        Whose gains, friction and encoder shoulder and elbow have. Further joints have the elbow's
-        damping ratio, frequencies by `RATIOS`, and friction in proportion to their inertia.
+    Shoulder and elbow have its gains, friction and encoder. Further joints have the elbow's damping
+    ratio, frequencies by `RATIOS`, and friction in proportion to their inertia.
     """
     integer("joints", joints, 1, _MOST)
     one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -36,11 +35,6 @@ def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None
     off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
     during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
     return 1e3 * np.sqrt((off[..., during] ** 2).mean(-1)), guard.law.stops
-
-
-def _rows(reference: Trajectory, *others: Trajectory) -> Trajectory:
-    """References as rows of runs."""
-    return Trajectory(*(np.stack(parts) for parts in zip(reference, *others)))
 
 
 def _repeated(reference: Trajectory, count: int) -> Trajectory:
@@ -76,9 +70,8 @@ def _motion(draw: learners.Draw) -> dict:
         frozen = [learner.controller(False) for learner in pupils.values()]
         learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
         count = len(plain) + 2 * len(pupils)
-        found = trial(
-            draw, plain + frozen + learning, [1] * count, _repeated(wanted, count), times
-        )[0]
+        every = _repeated(wanted, count)
+        found, _ = trial(draw, plain + frozen + learning, [1] * count, every, times)
         tests[name] = {
             "no feedforward": found[0],
             "exact equations": found[1],
@@ -94,16 +87,17 @@ def _motion(draw: learners.Draw) -> dict:
     }
 
 
-def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
+def _family(draw: learners.Draw) -> dict:
     """Practise members of the paper's family; a load from half-way on; tests on three motions."""
-    pupils, t = pupils or learners.candidates(draw), learners.grid()
+    pupils, t = learners.candidates(draw), learners.grid()
     loaded = with_load(draw.setup.arm, _LOAD)
     tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in _TESTS]
     practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
     rows, size = [1 + len(_TESTS)] + [1, len(_TESTS)] * len(pupils), 1 + len(_TESTS)
 
     def once(trial_number, arm, learning=True):
-        every = _rows(pick_and_place(draw.family[:, trial_number], t), *tests)
+        own = pick_and_place(draw.family[:, trial_number], t)
+        every = (np.stack(parts) for parts in zip(own, *tests))
         every = Trajectory(*(np.concatenate([x] * (1 + len(pupils))) for x in every))
         controllers = [draw.plain]
         for learner in pupils.values():
@@ -112,9 +106,8 @@ def _family(draw: learners.Draw, pupils: Mapping | None = None) -> dict:
         return found.reshape(1 + len(pupils), size, draw.seeds)
 
     for k in range(2 * learners.TRIALS):
-        for name, found in zip(
-            practice, once(k, draw.setup.arm if k < learners.TRIALS else loaded)
-        ):
+        arm = draw.setup.arm if k < learners.TRIALS else loaded
+        for name, found in zip(practice, once(k, arm)):
             practice[name].append(found[0])
             tested[name].append(found[1:].mean(0))
     after = once(0, draw.setup.arm, learning=False)

@@ -106,7 +106,7 @@ def random_circles(runs: int, seed: int) -> Circles:
     return Circles(*(draw.uniform(*r, shape) for r in ranges), draw.random(shape) < 0.5)
 
 
-def _pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray:
+def _pace(t, start: str = "jump") -> np.ndarray:
     """Time as a motion sees it, with its two derivatives, shape (3, time).
 
     "jump": full speed from the first moment to the last, as in Appendix I; "smooth": speed rises
@@ -114,14 +114,13 @@ def _pace(t, start: str = "jump", seconds: float = MOTION_SECONDS) -> np.ndarray
     """
     t = shaped("t", t, "(time,)")
     one_of("start", start, ("jump", "smooth"))
-    number("seconds", seconds, 2 * _RAMP)
-    inside = np.clip(t, 0.0, seconds)
+    inside = np.clip(t, 0.0, MOTION_SECONDS)
     if start == "jump":
-        moving = (t >= 0) & (t < seconds * (1 - 1e-12))
+        moving = (t >= 0) & (t < MOTION_SECONDS * (1 - 1e-12))
         return np.stack([inside, 1.0 * moving, np.zeros(t.size)])
-    up, down = (np.clip(x / _RAMP, 0.0, 1.0) for x in (inside, seconds - inside))
+    up, down = (np.clip(x / _RAMP, 0.0, 1.0) for x in (inside, MOTION_SECONDS - inside))
     # speed u^2 (3 - 2 u) in a ramp: its integral is u^3 - u^4 / 2
-    gone = _RAMP * (up**3 - up**4 / 2) + np.clip(inside - _RAMP, 0, seconds - 2 * _RAMP)
+    gone = _RAMP * (up**3 - up**4 / 2) + np.clip(inside - _RAMP, 0, MOTION_SECONDS - 2 * _RAMP)
     gone += _RAMP * (0.5 - down**3 + down**4 / 2)
     change = (6 * up * (1 - up) - 6 * down * (1 - down)) / _RAMP
     return np.stack([gone, np.minimum(up, down) ** 2 * (3 - 2 * np.minimum(up, down)), change])
@@ -141,7 +140,7 @@ def stirred(
     elbow : {"positive", "negative"}
         Sign of the elbow angle; in pick-and-place it is negative.
     start : {"jump", "smooth"}
-        As in `pace`.
+        Whether speed is full at once, as in Appendix I, or after a ramp.
 
     Returns
     -------
@@ -183,7 +182,7 @@ def times(seconds: float = MOTION_SECONDS) -> np.ndarray:
 
 
 def recorded(
-    setup: Setup, reference: Trajectory, seconds: float = MOTION_SECONDS, controller=None
+    setup: Setup, reference: Trajectory, seconds: float = MOTION_SECONDS, controller=None, seed=None
 ) -> Recording:
     """Drive the arm of a set-up along references at `times`, and log what its sensors say."""
     return follow(
@@ -192,7 +191,7 @@ def recorded(
         reference,
         times(seconds),
         effects=setup.effects,
-        seed=setup.seed,
+        seed=setup.seed if seed is None else seed,
         log_every=round(LOG_STEP / CONTROL_STEP),
         duration=seconds,
     )

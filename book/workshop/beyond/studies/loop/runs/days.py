@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ddlib._check import shaped
 from ddlib.setups import Setup
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.simulation import Recording
+from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 from workshop.beyond.studies.loop import motions
 from workshop.beyond.studies.loop.run_time_parts import on_days
 
@@ -22,17 +24,9 @@ def recorded(setup: Setup, references: list[Trajectory], days) -> list[Recording
     """
     days = shaped("days", days, f"({len(references)},)").astype(int)
     together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
-    runs = np.arange(together.q.shape[1])
-    log = follow(
-        setup.arm,
-        setup.controller,
-        together,
-        motions.times(),
-        effects=on_days(setup.effects, setup, days),
-        seed=1000 * (1 + days[:, None]) + runs,
-        log_every=round(LOG_STEP / CONTROL_STEP),
-        duration=MOTION_SECONDS,
-    )
+    today = replace(setup, effects=on_days(setup.effects, setup, days))
+    seeds = 1000 * (1 + days[:, None]) + np.arange(together.q.shape[1])
+    log = motions.recorded(today, together, seed=seeds)
     return [log[k] for k in range(len(days))]
 
 
