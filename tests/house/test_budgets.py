@@ -20,6 +20,9 @@ LINES = {
 LONGEST, LARGEST, NAMES = 400, 9, 700
 """Lines of a module, modules of a package, public names of ddlib and the workshop together."""
 
+EACH_CHAPTER = ROOT / "book" / "workshop" / "chapters"
+"""Has a module for each chapter, and so more than other packages."""
+
 
 def files(folder: str, suffix: str = "py") -> list[Path]:
     return sorted((ROOT / folder).rglob(f"*.{suffix}"))
@@ -72,7 +75,8 @@ def test_every_room_keeps_to_its_budget():
     packages = {path.parent for path in ours if path.name == "__init__.py"}
     for package in sorted(packages):
         count = len(list(package.glob("*.py"))) - 1
-        over += [f"{package}: {count} modules"] * (count > LARGEST)
+        if count > LARGEST and package != EACH_CHAPTER:
+            over.append(f"{package}: {count} modules")
     count = sum(len(public_names(path)) for path in ours)
     over += [f"{count} public names of {NAMES}"] * (count > NAMES)
     assert not over, "\n".join(over).replace(f"{ROOT}/", "")
