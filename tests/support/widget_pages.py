@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import base64
 import copy
 import json
@@ -105,6 +106,16 @@ def copied(page, name="Code") -> str:
     page.get_by_role("button", name=name).first.click()
     page.wait_for_function("window.copied")
     return page.evaluate("window.copied")
+
+
+def code_of(chapter: str, name: str) -> str:
+    """The text that a cell of a chapter keeps under a name."""
+    cells = json.loads((ROOT / "book" / f"{chapter}.ipynb").read_text(encoding="utf-8"))["cells"]
+    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
+        for line in ast.parse(source).body if f"{name} = " in source else ():
+            if isinstance(line, ast.Assign) and line.targets[0].id == name:
+                return ast.literal_eval(line.value)
+    raise AssertionError(f"{chapter} has no {name}")
 
 
 def cut(name, count):

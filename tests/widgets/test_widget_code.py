@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import ast
-import json
-from pathlib import Path
-
 import numpy as np
 import pytest
+from widget_pages import code_of
 
 from ddlib.widgets import picker
 from ddlib.widgets.parts.common import filled
 
-BOOK = Path(__file__).parents[2] / "book"
 STATES = {
     "EXPLORER_CODE": (
         "convolution-filters",
@@ -29,16 +25,6 @@ STATES = {
     "PICKER_CODE": ("trajectories-and-recording", {"shoulder_deg": 39.5, "elbow_deg": 14.4}, "11 "),
     "CODE": ("index", {"motion": 1}, "[["),
 }
-
-
-def code_of(chapter: str, name: str) -> str:
-    """The text that a cell of a chapter keeps under a name."""
-    cells = json.loads((BOOK / f"{chapter}.ipynb").read_text(encoding="utf-8"))["cells"]
-    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
-        for line in ast.parse(source).body if f"{name} = " in source else ():
-            if isinstance(line, ast.Assign) and line.targets[0].id == name:
-                return ast.literal_eval(line.value)
-    raise AssertionError(f"{chapter} has no {name}")
 
 
 @pytest.mark.parametrize("name", STATES)

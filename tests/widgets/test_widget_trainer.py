@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 import torch
-from widget_pages import CALM, NEXT_FRAME, alerts, copied, cut, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, alerts, code_of, copied, cut, functions, page_of
 
 from ddlib.analysis import CLASSES, classify
 from ddlib.learning import Descent, default_rate
@@ -108,6 +108,19 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     for layer in ("direct", "hidden"):
         f = getattr(weights, f"{layer}_weights")
         assert page["names"][layer] == [CLASSES.index(name) for name in classify(f).ravel()]
+
+
+@pytest.mark.browser
+def test_copied_code_trains_the_same_network(evaluate, widget, capsys):
+    page = taught(evaluate, widget, 40, seed=5, shift=0)
+    values = {"scaling": "(-1, 1)", "shifted": 0, "seed": 5, "momentum": 0.98, "epochs": 40}
+    code = code_of("window-networks", "TRAINER_CODE")
+    for name, value in (values | {"rate": default_rate(21)}).items():
+        code = code.replace(f"{{{name}}}", str(value))
+    exec(code, {})
+    training, test = map(float, capsys.readouterr().out.split())
+    assert page["training"][-1] == pytest.approx(training, rel=1e-3)
+    assert page["error"] == pytest.approx(test, rel=1e-3)
 
 
 @pytest.mark.browser
