@@ -16,6 +16,7 @@ from .levenberg_marquardt import (
 from .network import (
     TorqueModel as TorqueModel,
     Weights as Weights,
+    rows as rows,
 )
 from .span import (
     Directions as Directions,
@@ -23,7 +24,6 @@ from .span import (
     effective_steps as effective_steps,
     jacobian as jacobian,
     moved as moved,
-    rows as rows,
     with_ones as with_ones,
 )
 from .surrogates import (

@@ -12,7 +12,7 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, shaped
-from ddlib.learning.network import TorqueModel, Weights
+from ddlib.learning.network import TorqueModel, Weights, from_rows, rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
     History,
@@ -203,11 +203,7 @@ class Descent:
     def __init__(self, weights: Weights, x, y, eps, momentum):
         n, self.hidden = weights.hidden_bias.shape
         self.shape, self.members = weights.hidden_weights.shape[-2:], n
-        inputs = int(np.prod(self.shape))
-        layers = (weights.hidden_weights, weights.direct_weights)
-        rows = np.concatenate([w.reshape(n, -1, inputs) for w in layers], 1)
-        biases = np.concatenate([weights.hidden_bias, weights.output_bias], 1)
-        first = np.concatenate([rows, biases[..., None]], -1)
+        first = rows(weights)
         self.rows = first.shape[1]
         self.first = _tensor(first.reshape(n * self.rows, -1))
         self.second = _tensor(weights.output_weights)
@@ -276,14 +272,7 @@ class Descent:
     def weights(self) -> Weights:
         """All members as plain arrays."""
         first = self.first.numpy().astype(float).reshape(self.members, self.rows, -1)
-        hidden, skip = first[:, : self.hidden, :-1], first[:, self.hidden :, :-1]
-        return Weights(
-            hidden.reshape(*hidden.shape[:2], *self.shape),
-            first[:, : self.hidden, -1],
-            self.second.numpy().astype(float),
-            skip.reshape(*skip.shape[:2], *self.shape),
-            first[:, self.hidden :, -1],
-        )
+        return from_rows(first, self.second.numpy().astype(float), self.shape)
 
 
 def times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:

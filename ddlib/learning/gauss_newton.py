@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 import torch
 
-from ddlib.learning.network import Weights
+from ddlib.learning.network import Weights, from_rows, rows
 from ddlib.learning.training import TrainingSet
 
 _BLOCK = 512  # cases whose products of inputs are held at once, or more while they are
@@ -62,18 +62,13 @@ class Objective:
 
     def pack(self, weights: Weights) -> torch.Tensor:
         """Vector of a network's parameters, shape (parameter,)."""
-        parts = [(weights.hidden_weights, weights.hidden_bias)]
-        parts += [(weights.direct_weights, weights.output_bias)]
-        rows = [np.column_stack([w.reshape(len(w), -1), b]) for w, b in parts]
-        first = _float64(np.concatenate(rows)) @ self._colour
+        first = _float64(rows(weights)) @ self._colour
         return torch.cat([first.flatten(), _float64(weights.output_weights).flatten()])
 
     def unpack(self, vector: torch.Tensor) -> Weights:
         """Network of a vector of parameters."""
         first, second = self._parts(vector)
-        rows = (first @ self._whiten.T).numpy()
-        window, h = rows[:, :-1].reshape(self._rows, *self._window), self._hidden
-        return Weights(window[:h], rows[:h, -1], second.numpy().copy(), window[h:], rows[h:, -1])
+        return from_rows((first @ self._whiten.T).numpy(), second.numpy().copy(), self._window)
 
     def value(self, vector: torch.Tensor) -> tuple[float, float]:
         """The objective (penalty included) and the pooled training RMSS."""

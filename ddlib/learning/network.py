@@ -135,6 +135,34 @@ class Weights:
         return hidden, _sigmoid(net + self.output_bias[..., None, :])
 
 
+def rows(weights: Weights) -> np.ndarray:
+    """Weights from the window to each unit and its bias, ``(..., unit, joint * width + 1)``.
+
+    Hidden units come first, then the outputs with their direct weights.
+    """
+    parts = [
+        np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
+        for w, b in (
+            (weights.hidden_weights, weights.hidden_bias),
+            (weights.direct_weights, weights.output_bias),
+        )
+    ]
+    return np.concatenate(parts, -2)
+
+
+def from_rows(first: np.ndarray, output_weights: np.ndarray, window: tuple) -> Weights:
+    """Networks of their `rows` and hidden-to-output weights, `window` being (joints, width)."""
+    hidden = output_weights.shape[-1]
+    filters = first[..., :-1].reshape(*first.shape[:-1], *window)
+    return Weights(
+        filters[..., :hidden, :, :],
+        first[..., :hidden, -1],
+        output_weights,
+        filters[..., hidden:, :, :],
+        first[..., hidden:, -1],
+    )
+
+
 @dataclass(frozen=True)
 class TorqueModel:
     """Trained networks with their scaling: positions in rad to torques in N m.

@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import finite_array, integer, non_negative, number, shaped
-from ddlib.learning.network import Weights
+from ddlib.learning.network import Weights, from_rows, rows
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
 
@@ -37,21 +37,6 @@ def with_ones(x) -> np.ndarray:
     """Windows ``(cases, joint, width)`` as rows, with a one for the bias."""
     x = shaped("x", x, "(cases, joint, width)")
     return np.column_stack([x.reshape(len(x), -1), np.ones(len(x))])
-
-
-def rows(weights: Weights) -> np.ndarray:
-    """Weights from the window to each unit and its bias, ``(..., unit, joint * width + 1)``.
-
-    Hidden units come first, then the outputs with their direct weights.
-    """
-    parts = [
-        np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
-        for w, b in (
-            (weights.hidden_weights, weights.hidden_bias),
-            (weights.direct_weights, weights.output_bias),
-        )
-    ]
-    return np.concatenate(parts, -2)
 
 
 @dataclass(frozen=True)
@@ -157,17 +142,9 @@ def moved(weights: Weights, change) -> Weights:
     """One network plus changes of its parameters, ``(..., parameter)``, ordered as `jacobian`."""
     start, change = rows(weights), finite_array("change", change)
     shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
-    lead, hidden = change.shape[:-1], len(weights.hidden_bias)
-    first = start + change[..., : start.size].reshape(*lead, *start.shape)
-    second = change[..., start.size :].reshape(*lead, *weights.output_weights.shape)
-    filters = first[..., :-1].reshape(*first.shape[:-1], *weights.hidden_weights.shape[-2:])
-    return Weights(
-        filters[..., :hidden, :, :],
-        first[..., :hidden, -1],
-        weights.output_weights + second,
-        filters[..., hidden:, :, :],
-        first[..., hidden:, -1],
-    )
+    first = start + change[..., : start.size].reshape(*change.shape[:-1], *start.shape)
+    second = change[..., start.size :].reshape(*change.shape[:-1], *weights.output_weights.shape)
+    return from_rows(first, weights.output_weights + second, weights.hidden_weights.shape[-2:])
 
 
 class _Course(NamedTuple):
