@@ -51,27 +51,13 @@ _RAMP = 0.5  # s, of a smooth start or end
 
 @dataclass(frozen=True)
 class Circles:
-    """Circles of the hand: "extents" of a family, one value for each member.
+    """Circles of the hand: "extents" of a family, arrays of one value for each member."""
 
-    Attributes
-    ----------
-    radius : ndarray, shape (runs,)
-        m.
-    period : ndarray, shape (runs,)
-        Of one turn, s.
-    distance : ndarray, shape (runs,)
-        Of the centre from the shoulder, m.
-    bearing_deg : ndarray, shape (runs,)
-        Direction of the centre, degrees from the x axis.
-    clockwise : ndarray of bool, shape (runs,)
-        Which way round.
-    """
-
-    radius: np.ndarray
-    period: np.ndarray
-    distance: np.ndarray
-    bearing_deg: np.ndarray
-    clockwise: np.ndarray
+    radius: np.ndarray  # m
+    period: np.ndarray  # of one turn, s
+    distance: np.ndarray  # of the centre from the shoulder, m
+    bearing_deg: np.ndarray  # of the centre, degrees from the x axis
+    clockwise: np.ndarray  # bool
 
     def __post_init__(self):
         for name in ("radius", "period", "distance"):
@@ -129,23 +115,10 @@ def _pace(t, start: str = "jump") -> np.ndarray:
 def stirred(
     arm: Arm, circles: Circles, t, elbow: str = "negative", start: str = "jump"
 ) -> Trajectory:
-    """References of the family, each from the point of its circle farthest from the shoulder.
+    """References ``(runs, time, 2)``, each from its circle's farthest point from the shoulder.
 
-    Parameters
-    ----------
-    arm : Arm
-    circles : Circles
-    t : array_like, shape (time,)
-        Times, s; the motion is from 0 to `MOTION_SECONDS`.
-    elbow : {"positive", "negative"}
-        Sign of the elbow angle; in pick-and-place it is negative.
-    start : {"jump", "smooth"}
-        Whether speed is full at once, as in Appendix I, or after a ramp.
-
-    Returns
-    -------
-    Trajectory
-        Arrays of shape (runs, time, 2).
+    The motion is from 0 to `MOTION_SECONDS`; ``elbow`` is the sign of its angle, negative in
+    pick-and-place, and ``start`` is "jump", as in Appendix I, or "smooth", after a ramp.
     """
     one_of("elbow", elbow, ELBOWS)
     turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period

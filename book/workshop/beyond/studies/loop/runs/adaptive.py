@@ -147,20 +147,9 @@ def rates(law: str, setup: Setup, factor=1.0) -> np.ndarray:
 def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **options):
     """An adaptive controller of a set-up, behind `SMOOTH`; "joint models" have a model anyway.
 
-    Parameters
-    ----------
-    law : str
-        Of `LAWS`.
-    setup : Setup
-    start : array_like, shape (..., 3) or (..., 7), optional
-        Base parameters to begin with, and friction if it is given; default: those of the arm
-        without a load.
-    factor : float or array_like, shape (...)
-        Times the law's rate.
-    jumps : bool
-        Follow the reference itself, whose velocity jumps, and learn whatever the motors can do.
-    **options
-        Of the controller.
+    It begins with the parameters ``start``, shape (..., 3) or with friction (..., 7); without it
+    with those of the arm without a load. ``factor`` multiplies the law's rate. With ``jumps`` it
+    follows the reference itself, and learns whatever the motors can do.
     """
     slope, (a0, a1) = gains(setup)
     start = TRUTH if start is None else np.asarray(start, float)
