@@ -21,6 +21,7 @@ from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.studies.loop.runs import adaptive as batch
+from workshop.beyond.studies.loop.runs.adaptive import LAWS
 from workshop.report.code_hash import study
 
 _SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
@@ -54,14 +55,14 @@ def _course(setup: Setup, seed: int = 1) -> dict:
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {
         **batch.fixed(setup),
-        **{law: batch.make(law, setup, start) for law in batch.LAWS},
+        **{law: batch.make(law, setup, start) for law in LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
     extents, effects = batch.drawn(_SEEDS, 2 * TRIALS, seed), batch.rounding(setup, _SEEDS, seed)
     found, laws = batch.trials(laws, extents[:TRIALS], setup.arm, effects)
     loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
     found += loaded
-    known = [n for n in laws if n.startswith(batch.LAWS)]
+    known = [n for n in laws if n.startswith(LAWS)]
     return {
         "settled": batch.by_law(found, laws),
         "hand": batch.by_law(found, laws, "hand"),
@@ -75,7 +76,7 @@ def _course(setup: Setup, seed: int = 1) -> dict:
 
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
-    laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in batch.LAWS}}
+    laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in LAWS}}
     extents, effects = batch.drawn(_SEEDS, 2, seed), batch.rounding(setup, _SEEDS, seed)
     rows: list = []
     settings = [(m, 0) for m in LOADS] + [(PICKED, late) for late in delays]
@@ -258,7 +259,7 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
 def _map(setup: Setup = JOINT_DAMPING) -> dict:
     """Where runs are stopped: rate of adaptation against delay, and why."""
     extents = np.tile(APPENDIX_I[[0, 5]], (len(_FACTORS), 1))
-    factor, names = np.repeat(_FACTORS, 2), batch.LAWS[1:]
+    factor, names = np.repeat(_FACTORS, 2), LAWS[1:]
     start, rows = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3)), []
     for late in _LATE:
         laws = {n: batch.make(n, setup, start, factor) for n in names}
