@@ -24,17 +24,17 @@ from ddlib.widgets.engine.plain import ENGINE, SLIDING, gains, lean, networks, p
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 
-RIGID = "Lagrange-Euler"
-RECORDED = "recorded"
+_RIGID = "Lagrange-Euler"
+_RECORDED = "recorded"
 
-TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
+_TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
 AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
-STEP = 0.1  # between two shades of the map, RMSS
-SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
+_STEP = 0.1  # between two shades of the map, RMSS
+_SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
 
 _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
 
-NOTE = (
+_NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
     "mean square error over the standard deviation of the training torques. The shades were "
     f"computed beforehand, at {AXIS.size} × {AXIS.size} places."
@@ -122,7 +122,7 @@ class TrajectoryPicker(LiveWidget):
         models = dict(models or {})
         for name, model in models.items():
             single = isinstance(model, TorqueModel) and model.weights.hidden_bias.ndim == 1
-            if not single or name in (RIGID, RECORDED):
+            if not single or name in (_RIGID, _RECORDED):
                 raise TypeError(f"models must be single networks by name, got {name}: {model!r}")
         if on_record is not None and not callable(on_record):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
@@ -130,17 +130,17 @@ class TrajectoryPicker(LiveWidget):
         curves = _Curves(setup, models)
         square = curves(*(x.ravel() for x in np.meshgrid(AXIS, AXIS, indexing="ij")))
         self.numbers = {n: x.reshape(2 * AXIS.shape) for n, x in square.items() if x.ndim == 1}
-        peaks = (Scalar(f"peak {j}", f"Largest {RIGID} torque, {j}", "N m") for j in JOINTS)
+        peaks = (Scalar(f"peak {j}", f"Largest {_RIGID} torque, {j}", "N m") for j in JOINTS)
         super().__init__(
             curves.one,
             _parameters(),
-            _panels([RIGID, RECORDED, *models] if models else [RIGID]),
+            _panels([_RIGID, _RECORDED, *models] if models else [_RIGID]),
             title="Trajectory picker",
             alt="The square of shoulder and elbow extents with the six trajectories of Appendix I, "
             "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds.",
             scalars=[*peaks, *(Scalar(f"RMSS, {n}", f"RMSS, {n}", digits=2) for n in models)],
             pad=_pad(),
-            note=NOTE if models else "",
+            note=_NOTE if models else "",
             presets={
                 str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
                 for k, extents in enumerate(APPENDIX_I.tolist(), 1)
@@ -156,8 +156,8 @@ class TrajectoryPicker(LiveWidget):
         layouts, weights = networks(models.values())
         told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
         self._keep(
-            map={"side": AXIS.size, "step": STEP, "errors": errors},
-            arm={"lengths": lengths, "angles": angles, "times": TIMES.tolist()},
+            map={"side": AXIS.size, "step": _STEP, "errors": errors},
+            arm={"lengths": lengths, "angles": angles, "times": _TIMES.tolist()},
             loop={**curves.plain(), "models": told},
             weights=weights,
         )
@@ -218,16 +218,16 @@ def _pad() -> Pad:
     ]
     corners = _TRAINING[HULL.vertices].tolist()
     label = "hull of the training set"
-    return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=SNAP)
+    return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=_SNAP)
 
 
 def _panels(lines) -> list[Panel]:
     angles = {f"{joint} angle": joint for joint in JOINTS}
-    panels = [Panel("Joint angles, °", angles, "time, s", TIMES)]
+    panels = [Panel("Joint angles, °", angles, "time, s", _TIMES)]
     for joint in JOINTS:
         torques = {f"{joint} torque, {line}": line for line in lines}
         title = f"{joint.title()} torque, N m"
-        panels.append(Panel(title, torques, "time, s", TIMES, y_fit=True))
+        panels.append(Panel(title, torques, "time, s", _TIMES, y_fit=True))
     return panels
 
 
@@ -243,7 +243,7 @@ class _Curves:
             # near zero extents a motion's own deviation vanishes: that of the training set
             self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
             self.t, self.during = training.t, training.motion
-            every = round(TIMES[1] / np.diff(training.t).mean())
+            every = round(_TIMES[1] / np.diff(training.t).mean())
             start, stop = training.motion.start, training.motion.stop
             self.shown = np.append(np.arange(start, stop, every), stop - 1)
 
@@ -253,14 +253,14 @@ class _Curves:
 
     def __call__(self, shoulder_deg, elbow_deg) -> dict:
         extents_deg = np.stack(np.broadcast_arrays(shoulder_deg, elbow_deg), -1).reshape(-1, 2)
-        motion = pick_and_place(extents_deg, TIMES)
+        motion = pick_and_place(extents_deg, _TIMES)
         rigid = self.setup.arm.inverse_dynamics(*motion)
         numbers = {f"peak {joint}": np.abs(rigid[..., j]).max(-1) for j, joint in enumerate(JOINTS)}
-        torques = {RIGID: rigid}
+        torques = {_RIGID: rigid}
         if self.models:
             recording = self.setup.record(extents_deg)
             recorded = recording.tau[:, self.during]
-            torques[RECORDED] = recording.tau[:, self.shown]
+            torques[_RECORDED] = recording.tau[:, self.shown]
             for name, model in self.models.items():
                 windows = sliding_windows(recording.q, model.weights.width, self.during)
                 torque = np.stack([model.torque(run) for run in windows])
@@ -276,9 +276,9 @@ class _Curves:
         """What the page needs to compute the same."""
         motion = {
             "arm": plant(self.setup.arm, IDEAL)["arm"],
-            "times": TIMES.tolist(),
+            "times": _TIMES.tolist(),
             "motion": MOTION_SECONDS,
-            "lines": {"rigid": RIGID, "recorded": RECORDED},
+            "lines": {"rigid": _RIGID, "recorded": _RECORDED},
         }
         if not self.models:
             return motion

@@ -21,8 +21,8 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
-MOVED = 0.05  # the film begins where the weights have gone this part of their way
-ERRORS = {"training": "training", "test": "trajectory 6"}
+_MOVED = 0.05  # the film begins where the weights have gone this part of their way
+_ERRORS = {"training": "training", "test": "trajectory 6"}
 
 
 class TrainingPlayer(HintonWidget):
@@ -66,7 +66,7 @@ class TrainingPlayer(HintonWidget):
         self._index = {epoch: k for k, epoch in enumerate(epochs.tolist())}
         self._weights = model.weights[:, member]
         every = errors(model[:, member], recording).named()
-        self._errors = {name: every[name] for name in ERRORS}
+        self._errors = {name: every[name] for name in _ERRORS}
         self._names = unit_names(self._weights[0])
         self._reach = self._weights.width // 2
         self._functions = weight_functions(self._weights)
@@ -106,7 +106,7 @@ class TrainingPlayer(HintonWidget):
                     x_scale="power",
                     y_scale="log",
                     y_range=_decades(list(self._errors.values())),
-                    fixed={name: self._errors[n][started] for n, name in ERRORS.items()},
+                    fixed={name: self._errors[n][started] for n, name in _ERRORS.items()},
                     cursor="place",
                 ),
             ],
@@ -116,13 +116,13 @@ class TrainingPlayer(HintonWidget):
                 f"network's RMSS on training runs and trajectory 6 over {epochs[-1]:,} epochs."
             ),
             scalars=[
-                *(Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in ERRORS.items()),
+                *(Scalar(f"{n} RMSS", f"RMSS, {name}") for n, name in _ERRORS.items()),
                 Scalar("largest", "Weight of the largest square", digits=2),
             ],
             depends={
                 **dict.fromkeys(("lowest", "highest"), ("unit",)),
                 **dict.fromkeys(("place", "largest"), ("epoch",)),
-                **dict.fromkeys((f"{n} RMSS" for n in ERRORS), ("epoch",)),
+                **dict.fromkeys((f"{n} RMSS" for n in _ERRORS), ("epoch",)),
                 "weights of all units": ("epoch",),
             },
             **{"tolerance": EXACT, **options},
@@ -148,7 +148,7 @@ def _moved(weights) -> int:
         for x in (weights.hidden_weights, weights.direct_weights, weights.output_weights)
     ]
     length = np.linalg.norm(np.hstack(ways), axis=1)
-    return int(np.argmax(length >= MOVED * length[-1]))
+    return int(np.argmax(length >= _MOVED * length[-1]))
 
 
 def _decades(values) -> tuple[float, float]:

@@ -50,7 +50,7 @@ CLOSE_UP = _T[_CLOSE]  # of the close-up, s: every control period around the tur
 # Axes of the charts: they stay, whatever is switched on. All combinations lie within.
 RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
 
-CODE = """\
+_CODE = """\
 from ddlib.widgets import RealArmSwitches
 
 RealArmSwitches().interpolate(
@@ -101,7 +101,7 @@ class RealArmSwitches(LiveWidget):
                 for what, unit, digits in (("position", "°", 3), ("torque", "N m", 2))
                 for joint in JOINTS
             ],
-            code=CODE,
+            code=_CODE,
             note=(
                 "Strengths are the shoulder's; the elbow's are 0.3 times as large. Friction is dry "
                 "friction and, at 1 rad/s, as much viscous friction."

@@ -35,7 +35,7 @@ _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 
 START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}  # the book's gains
 
-CODE = """\
+_CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.widgets.tuner import tuned
 
@@ -46,7 +46,7 @@ run["shoulder error"], run["growth"], run["stopped"]"""
 
 
 @dataclass(frozen=True)
-class Question:
+class _Question:
     """What happens if: asked before it is shown."""
 
     text: str  # what is changed
@@ -74,14 +74,14 @@ _KINDS = (
 )
 
 QUESTIONS = (
-    Question(
+    _Question(
         "the damper is taken away (derivative gain 0)",
         {"kd": 0.0},
         _KINDS,
         1,
         "P alone is a spring. Only the joint's own friction takes energy out of the swing.",
     ),
-    Question(
+    _Question(
         "there is no damper, and an integral gain of 600 N m/(rad s) is added",
         {"kd": 0.0, "ki": 600.0},
         ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
@@ -89,7 +89,7 @@ QUESTIONS = (
         "An integral answers to errors that have been: it pushes late, and so along the swing.",
         {"kd": 0.0},
     ),
-    Question(
+    _Question(
         "there is no damper, and every torque comes 20 ms late",
         {"kd": 0.0, "late": 10},
         _KINDS,
@@ -98,14 +98,14 @@ QUESTIONS = (
         "it than of the joint's own.",
         {"kd": 0.0},
     ),
-    Question(
+    _Question(
         "the damper is there, and every torque comes 20 ms late",
         {"late": 10},
         _KINDS,
         0,
         "The damper leads by more than the delay lags: the phase margin pays for it.",
     ),
-    Question(
+    _Question(
         "the damper is more than twice as strong (80 N m s/rad), and every torque comes 40 ms late",
         {"kd": 80.0, "late": 20},
         _KINDS,
@@ -113,7 +113,7 @@ QUESTIONS = (
         "A stronger damper has its crossover at a higher frequency, where the same delay is a "
         "larger angle.",
     ),
-    Question(
+    _Question(
         "the damper is made twice as strong (70 N m s/rad)",
         {"kd": 2 * KD[0]},
         (
@@ -124,7 +124,7 @@ QUESTIONS = (
         1,
         "The reference begins with a jump of its velocity, and only the damper looks at velocity.",
     ),
-    Question(
+    _Question(
         "feedforward is switched on",
         {"feedforward": True},
         (
@@ -197,7 +197,7 @@ class PIDTuner(LiveWidget):
                 *(Scalar(f"{j} phase margin", f"{j.title()} phase margin", "°", 1) for j in JOINTS),
                 Scalar("crossover", "Shoulder crossover", "rad/s", 1),
             ],
-            code=CODE,
+            code=_CODE,
             note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
             **options,
         )

@@ -10,8 +10,8 @@ import numpy as np
 
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-STEPS = {2: 32_767, 1: 127}  # largest integer of two bytes, and of one: numbers are scaled to it
-FAINT = 10  # components that never reach so many tolerances are stored in one byte a number
+_STEPS = {2: 32_767, 1: 127}  # largest integer of two bytes, and of one: numbers are scaled to it
+_FAINT = 10  # components that never reach so many tolerances are stored in one byte a number
 TINY = 1e-12  # keeps divisions by a size finite where all is zero
 SHARE = 0.3  # of the tolerance that leaving components out may cost
 
@@ -45,14 +45,14 @@ class Table:
         if rank:
             table, shapes = left[:, :rank], shapes[:rank]
             most = np.abs(table).max(0) + TINY, np.abs(shapes).max(1) + TINY
-            strong = most[0] * most[1] / 2 > FAINT * tolerance
+            strong = most[0] * most[1] / 2 > _FAINT * tolerance
             self.wide = int(np.flatnonzero(strong).max(initial=-1)) + 1
-            steps = np.where(np.arange(rank) < self.wide, STEPS[2], STEPS[1])
+            steps = np.where(np.arange(rank) < self.wide, _STEPS[2], _STEPS[1])
             self.scale = most[0] * most[1] / steps**2
             table, shapes = steps * table / most[0], (steps / most[1])[:, None] * shapes
         else:
             self.wide = samples
-            self.scale = np.array([np.abs(rows).max() / STEPS[2] or 1.0])
+            self.scale = np.array([np.abs(rows).max() / _STEPS[2] or 1.0])
             table, shapes = rows / self.scale, np.empty((0, samples))
         self.table = np.rint(table).astype("<i2").reshape(*size, -1)
         self.shapes = np.rint(shapes).astype("<i2")

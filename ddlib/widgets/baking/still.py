@@ -14,7 +14,7 @@ from ddlib.figures import COLOURS, DASHES, illustrate
 from ddlib.widgets.parts.panels import Pad, Panel
 from ddlib.widgets.parts.parameters import Parameter
 
-COLUMNS = 3  # most charts side by side
+_COLUMNS = 3  # most charts side by side
 START = "data:image/svg+xml;base64,"  # of a still's address: it holds the picture, leads nowhere
 
 
@@ -46,7 +46,7 @@ def still_picture(
 ) -> str:
     """The starting state as the address of an SVG with fixed, light colours; `alt` describes it."""
     count = len(panels) + bool(pad)
-    rows = -(-count // COLUMNS)
+    rows = -(-count // _COLUMNS)
     columns = -(-count // rows)
 
     def draw(figure):

@@ -18,14 +18,14 @@ from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
 from ddlib.widgets.engine.plain import lean
 from ddlib.widgets.parts.panels import Panel
 
-WIDTH = 21  # stems of the window
-ZEROS = 20  # other zeros of the encoder by which the same motion is read again
+_WIDTH = 21  # stems of the window
+_ZEROS = 20  # other zeros of the encoder by which the same motion is read again
 FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
 LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
 TALL = 0.9  # largest stem of a starting point, of the height there is
-GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
+_GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 
-HINT = (
+_HINT = (
     "Drag the dots, or sweep across them in one stroke that begins anywhere (by touch beside the "
     "dots: sideways); by keyboard the arrow keys go from stem to stem and move it, with Shift "
     "faster. Only the shape counts: the page multiplies the output by the factor and adds the "
@@ -43,14 +43,14 @@ def readings() -> tuple[np.ndarray, np.ndarray, float]:
     accelerations in the motion (rad/s^2), and the step of the encoder that reads them (rad).
     """
     run = split(JOINT_DAMPING.record())[1]
-    half, (encoder,) = WIDTH // 2, JOINT_DAMPING.effects.encoder
+    half, (encoder,) = _WIDTH // 2, JOINT_DAMPING.effects.encoder
     q = run.q_true[run.motion.start - half : run.motion.stop + half, 0]
     return q, true_states(run, JOINT_DAMPING)[:, 0, 2], encoder.step
 
 
 def zeros() -> np.ndarray:
     """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn within a step."""
-    drawn = np.random.default_rng(15).uniform(0.0, readings()[2], ZEROS)
+    drawn = np.random.default_rng(15).uniform(0.0, readings()[2], _ZEROS)
     return np.concatenate([[0.0], drawn])
 
 
@@ -58,12 +58,12 @@ def windows(zero: float = 0.0) -> np.ndarray:
     """Windows of the positions as an encoder with this zero (rad) reads them, shape (300, 21)."""
     q, _, step = readings()
     read = np.round((q + zero) / step) * step - zero
-    return sliding_windows(read[:, None], WIDTH, slice(WIDTH // 2, len(q) - WIDTH // 2))[:, 0]
+    return sliding_windows(read[:, None], _WIDTH, slice(_WIDTH // 2, len(q) - _WIDTH // 2))[:, 0]
 
 
 def fitted(f, zero: float = 0.0) -> np.ndarray:
     """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,)."""
-    f = shaped("f", f, (WIDTH,))
+    f = shaped("f", f, (_WIDTH,))
     output, truth = windows(zero) @ f, readings()[1]
     output = output - output.mean()
     power = output @ output
@@ -93,13 +93,13 @@ def starts() -> dict[str, np.ndarray]:
         "Velocity": _textbook(21, 1),
     }
     tall = {name: TALL * f / np.abs(f).max() for name, f in filters.items()}
-    return {**tall, "Zero": np.zeros(WIDTH)}
+    return {**tall, "Zero": np.zeros(_WIDTH)}
 
 
 def _textbook(width: int, derivative: int = 2) -> np.ndarray:
     """A filter of Savitzky and Golay with zeros around it."""
     f = savitzky_golay(width, derivative, LOG_STEP, degree=2 if width == 3 else 3)
-    return np.pad(f, (WIDTH - width) // 2)
+    return np.pad(f, (_WIDTH - width) // 2)
 
 
 class FilterBuilder(PageWidget):
@@ -124,7 +124,7 @@ class FilterBuilder(PageWidget):
     motion.tag(sync=True)
 
     def __init__(self, unit):
-        unit = shaped("unit", unit, (WIDTH,))
+        unit = shaped("unit", unit, (_WIDTH,))
         q, truth, step = readings()
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()
@@ -137,12 +137,12 @@ class FilterBuilder(PageWidget):
         output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
         panels = [
             Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
-            Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=GAINS),
+            Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=_GAINS),
         ]
         spec = {
             "title": "Be the network: measure acceleration",
-            "hint": HINT,
-            "width": WIDTH,
+            "hint": _HINT,
+            "width": _WIDTH,
             "samples": len(q),
             "period": LOG_STEP,
             "step": step,
@@ -157,7 +157,7 @@ class FilterBuilder(PageWidget):
             "panels": [panel.description() for panel in panels],
             "curves": [
                 *({"name": name, "low": -most, "high": most} for name in output),
-                *({"name": name, "low": GAINS[0], "high": GAINS[1]} for name in gain),
+                *({"name": name, "low": _GAINS[0], "high": _GAINS[1]} for name in gain),
             ],
         }
         motion = np.concatenate([q, truth]).astype("<f8").tobytes()
@@ -173,24 +173,24 @@ def _still(time, truth) -> tuple[str, str]:
     response = frequency_response(f, FREQUENCIES, LOG_STEP)
     output = windows() @ f
     factor = np.polyfit(output - output.mean(), truth, 1)[0]
-    half = WIDTH // 2 * LOG_STEP * 1e3
+    half = _WIDTH // 2 * LOG_STEP * 1e3
     curves = {
         "weights": f,
         "output": fitted(f),
-        "gain": np.clip(np.abs(factor * response), GAINS[0], None),
+        "gain": np.clip(np.abs(factor * response), _GAINS[0], None),
     }
     ideal = {"ideal": (2 * np.pi * FREQUENCIES) ** 2}
     panels = [
         Panel(
             "Weights", {"weights": name}, "time from the centre, ms",
-            np.linspace(-half, half, WIDTH), kind="stems",
+            np.linspace(-half, half, _WIDTH), kind="stems",
         ),
         Panel(
             "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth}
         ),
         Panel(
             "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", FREQUENCIES, "log", "log",
-            fixed=ideal, y_range=GAINS,
+            fixed=ideal, y_range=_GAINS,
         ),
     ]  # fmt: skip
     alt = (

@@ -21,7 +21,7 @@ from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 
-SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains
+_SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains
 
 
 class LiveSentence(PageWidget):
@@ -135,7 +135,7 @@ class LoopSentence(LiveSentence):
             {"period": 0.5, "kp": 10, "kd": 0.5, "friction": 0.05},
             {
                 "kind": "loop",
-                "modes": modes(CMU_DD_ARM_II, self.FRICTION * SHARE),
+                "modes": modes(CMU_DD_ARM_II, self.FRICTION * _SHARE),
                 "friction": self.FRICTION,
                 "ratios": {"kp": KP[1] / KP[0], "kd": KD[1] / KD[0]},
             },
@@ -147,7 +147,7 @@ class LoopSentence(LiveSentence):
         """Growth of the slowest or least stable motion, 1/s, by python-control."""
         ratios = self.spec["ratios"]
         law = {"kp": [kp, kp * ratios["kp"]], "ki": [0.0, 0.0], "kd": [kd, kd * ratios["kd"]]}
-        return linear(CMU_DD_ARM_II, friction * SHARE, law, 0, 1e-3 * period).growth
+        return linear(CMU_DD_ARM_II, friction * _SHARE, law, 0, 1e-3 * period).growth
 
     def results(self, **values) -> dict[str, str]:
         """Whether the loop is stable, and how soon a disturbance has halved or doubled."""

@@ -18,12 +18,12 @@ from ddlib.widgets.engine.plain import ENGINE, gains, lean, network, plant, weig
 from ddlib.widgets.parts.panels import Panel
 
 REST = 0.4  # s between two motions that are played: longer than half a window
-FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
-SPRING = 150.0  # N/m, stiffness of the pull on the hand
-TOSS_RATE = 4.0  # rad/s^2, largest acceleration that the button gives the joints,
-TOSS_SECONDS = 0.4  # and for how long
+_FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
+_SPRING = 150.0  # N/m, stiffness of the pull on the hand
+_TOSS_RATE = 4.0  # rad/s^2, largest acceleration that the button gives the joints,
+_TOSS_SECONDS = 0.4  # and for how long
 
-HINT = (
+_HINT = (
     "Grab the hand and throw it, or focus it and hold an arrow key. Friction slows the arm; under "
     "Play a controller drives it along the paper's trajectories. The network never sees the "
     "torque: from each window of positions it tells the torque at the window's centre."
@@ -67,7 +67,7 @@ class ThrownArm(PageWidget):
         still, alt = _still(model, setup)
         spec = {
             "title": "Throw the arm: a network tells its torque",
-            "hint": HINT,
+            "hint": _HINT,
             "code": code,
             "plant": plant(setup.arm, setup.effects),
             "gains": gains(setup.controller),
@@ -76,9 +76,9 @@ class ThrownArm(PageWidget):
             "every": round(LOG_STEP / CONTROL_STEP),
             "motion": MOTION_SECONDS,
             "rest": REST,
-            "force": FORCE,
-            "spring": SPRING,
-            "toss": {"rate": TOSS_RATE, "seconds": TOSS_SECONDS},
+            "force": _FORCE,
+            "spring": _SPRING,
+            "toss": {"rate": _TOSS_RATE, "seconds": _TOSS_SECONDS},
             "torques": (0.5 * span).tolist(),
             "trajectories": [_trajectory(k) for k in order],
             "units": _units(model),

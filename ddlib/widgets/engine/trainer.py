@@ -20,11 +20,11 @@ from ddlib.widgets.parts.panels import Panel
 WIDTH = 21  # samples of the window
 EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
 SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
-STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
-MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
-ERRORS = (0.03, 2.0)  # range of the errors shown
+_STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
+_MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
+_ERRORS = (0.03, 2.0)  # range of the errors shown
 
-HINT = (
+_HINT = (
     "A network with ten hidden units learns the torques of both joints from windows of 21 "
     "positions, by the descent of this chapter, in your browser. For speed it sees every fifth "
     "window of the five training runs; its error on trajectory 6 is over all. Shifted torques "
@@ -78,7 +78,7 @@ class NetworkTrainer(PageWidget):
     level : float
         RMSS in training below which the error counts as gone.
     momentum : float
-        Acceleration at the start, one of `MOMENTA`.
+        Acceleration at the start: 0, 0.5, 0.9, 0.95, 0.98 or 0.995.
     shifts : int
         Draws of torques that are shifted in time.
     code : str
@@ -107,7 +107,7 @@ class NetworkTrainer(PageWidget):
         shifts: int = 5,
         code: str = "",
     ):
-        one_of("momentum", momentum, MOMENTA)
+        one_of("momentum", momentum, _MOMENTA)
         recording = JOINT_DAMPING.record()
         training, test = split(recording)
         motion, half = recording.motion, WIDTH // 2
@@ -122,7 +122,7 @@ class NetworkTrainer(PageWidget):
         panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
         spec = {
             "title": "Train a network",
-            "hint": HINT,
+            "hint": _HINT,
             "code": code,
             "layout": {
                 "hidden": HIDDEN_UNITS,
@@ -147,8 +147,8 @@ class NetworkTrainer(PageWidget):
             "shifts": [shift.tolist() for shift in shifted],
             "initial": INITIAL,
             "rate": default_rate(WIDTH),
-            "steps": list(STEPS),
-            "momenta": list(MOMENTA),
+            "steps": list(_STEPS),
+            "momenta": list(_MOMENTA),
             "momentum": momentum,
             "epochs": epochs,
             "check": check,
@@ -174,8 +174,8 @@ class NetworkTrainer(PageWidget):
 def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
     """Charts of the errors and of the torques on the test run, and the ranges of their curves."""
     errors = {"training": "training", "test": f"trajectory {TEST_TRAJECTORY}"}
-    panels = [Panel("Error, RMSS", errors, "epoch", epochs, "log", "log", y_range=ERRORS)]
-    ranges = dict.fromkeys(errors, ERRORS)
+    panels = [Panel("Error, RMSS", errors, "epoch", epochs, "log", "log", y_range=_ERRORS)]
+    ranges = dict.fromkeys(errors, _ERRORS)
     for joint, most in zip(JOINTS, (1.15 * np.abs(torque).max(0)).tolist()):
         lines = {f"{joint} network": "network", f"{joint} true": "measured"}
         title = f"{joint.title()} torque on trajectory {TEST_TRAJECTORY}, N m"
