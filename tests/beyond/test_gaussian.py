@@ -9,7 +9,7 @@ from sklearn.decomposition import PCA
 
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.rivals.gaussian import GaussianProcess, Inputs, RandomFeatures, SemiParametric
+from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures, SemiParametric
 from workshop.beyond.rivals.protocol import Cases
 
 STEP = 0.01
@@ -92,15 +92,16 @@ def test_an_input_that_does_not_matter_gets_a_long_length():
 
 def test_directions_of_windows_are_uncorrelated_and_of_unit_size():
     x = np.cumsum(np.random.default_rng(0).standard_normal((200, 2, 11)), -1)
-    inputs = Inputs(x, 5)
+    cases = Cases(x, x[..., 5], "windows", STEP)
+    inputs = RandomFeatures(features=1, directions=5).fit(cases).inputs
     features, flat = inputs(x), x.reshape(200, -1)
     np.testing.assert_allclose(features.T @ features / 200, np.eye(5), atol=1e-9)
     np.testing.assert_allclose(features.mean(0), 0, atol=1e-9)
-    assert inputs.count() == 22 + 22 * 5 and Inputs(x).count() == 44
+    assert inputs.count() == 22 + 22 * 5
     leading = PCA(5).fit_transform(flat)
     np.testing.assert_allclose(np.abs(features), np.abs(leading / leading.std(0)), atol=1e-8)
     with pytest.raises(ValueError, match="directions"):
-        Inputs(x, 23)
+        RandomFeatures(directions=23).fit(cases)
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])

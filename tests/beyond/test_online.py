@@ -16,7 +16,6 @@ from workshop.beyond.control.online import (
     LinearFilter,
     OnlineDescent,
     OnlineFeedforward,
-    OnlineNetwork,
 )
 from workshop.beyond.control.windowed import WindowFeedforward
 
@@ -38,7 +37,7 @@ def windows(seed=1, cases=6):
 
 def test_it_is_the_network_of_the_learning_package():
     networks, each = model(), np.stack([windows(k) for k in range(3)])
-    online = OnlineNetwork(networks)
+    online = OnlineDescent(networks, 0.0)
     np.testing.assert_allclose(online.torque(windows()), networks.torque(windows()), rtol=1e-12)
     for k, torque in enumerate(online.torque(each)):  # windows of its own for every run
         np.testing.assert_allclose(torque, networks[k].torque(each[k]), rtol=1e-12)
@@ -87,7 +86,7 @@ def test_a_rate_for_each_run_and_momentum():
         together.learn(each[:, k], torque)
         alone.learn(each[2:, k], torque[2:])
     np.testing.assert_allclose(together.output[2], alone.output[0], rtol=1e-12)
-    np.testing.assert_array_equal(together.hidden[0], OnlineNetwork(model()).hidden[0])
+    np.testing.assert_array_equal(together.hidden[0], OnlineDescent(model(), 0.0).hidden[0])
 
 
 def test_replay_learns_earlier_samples_again():

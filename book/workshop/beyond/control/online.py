@@ -35,7 +35,7 @@ def _with_one(x):
     return np.concatenate([x, np.ones((*x.shape[:-1], 1))], -1)
 
 
-class OnlineNetwork:
+class _OnlineNetwork:
     """The window network with its scaling, in plain arrays that a learner replaces.
 
     Leading axes of the weights are runs. The hidden units' weights are ``(..., hidden, joint width
@@ -92,7 +92,7 @@ class OnlineNetwork:
         return back @ seen / count, delta @ features / count
 
 
-class OnlineDescent(OnlineNetwork):
+class OnlineDescent(_OnlineNetwork):
     """All weights learn by gradient descent, a step for each sample."""
 
     def __init__(
@@ -131,7 +131,7 @@ class OnlineDescent(OnlineNetwork):
         self.hidden, self.output = self.hidden + self._steps[0], self.output + self._steps[1]
 
 
-class LastLayer(OnlineNetwork):
+class LastLayer(_OnlineNetwork):
     """The output units' weights learn by recursive least squares; the hidden units stay.
 
     The target of a unit is the net input that would give the wanted torque. ``recursion(weights)``

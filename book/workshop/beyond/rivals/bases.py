@@ -55,7 +55,7 @@ def _few(terms):
         raise ValueError(f"degree or order must give at most {_MOST} functions, got {terms}")
 
 
-class Solution(NamedTuple):
+class _Solution(NamedTuple):
     """Linear least squares by singular values, solved for any penalty on squared coefficients."""
 
     sizes: np.ndarray  # singular values over the root of the number of cases, largest first
@@ -64,7 +64,7 @@ class Solution(NamedTuple):
     floor: float  # a singular value at most so large is taken for rounding
 
     @classmethod
-    def of(cls, design, target) -> Solution:
+    def of(cls, design, target) -> _Solution:
         """Decompose functions ``(cases, functions)`` and targets ``(cases, joint)``."""
         design = shaped("design", design, "(cases, functions)")
         target = shaped("target", target, f"({len(design)}, joint)")
@@ -81,7 +81,7 @@ class Solution(NamedTuple):
         return self.directions[kept].T @ (factor[:, None] * self.seen[kept])
 
 
-class Basis(Rival):
+class _Basis(Rival):
     """Torque as a sum of functions of the state, fitted by least squares.
 
     States are scaled so that the training states' box has edges from -1 to 1. The mean torque is
@@ -96,14 +96,14 @@ class Basis(Rival):
         self.centre, self.half = (low + high) / 2, np.where(high > low, (high - low) / 2, 1.0)
         self._prepare(self.centre.size)
         self.mean = torque.mean(0)
-        self._solution = Solution.of(self.design(x), torque - self.mean)
+        self._solution = _Solution.of(self.design(x), torque - self.mean)
         self.coefficients = self._solution.coefficients(self.ridge)
 
     def _torque(self, x):
         blocks = np.array_split(x, max(1, len(x) // _BLOCK))
         return np.concatenate([self.mean + self.design(b) @ self.coefficients for b in blocks])
 
-    def with_ridge(self, ridge: float) -> Basis:
+    def with_ridge(self, ridge: float) -> _Basis:
         """The same fitted rival with another penalty, at nearly no cost."""
         if not hasattr(self, "coefficients"):
             raise NotFitted(f"{self!r} has learnt nothing: call fit first")
@@ -129,7 +129,7 @@ class Basis(Rival):
         return self.coefficients.size + self.mean.size + self.centre.size + self.half.size
 
 
-class Polynomial(Basis):
+class Polynomial(_Basis):
     """A polynomial of the state: products of Chebyshev polynomials or of powers.
 
     `degree` is the largest sum of a term's exponents. Both kinds span the same functions: without
@@ -166,7 +166,7 @@ class Polynomial(Basis):
         )
 
 
-class Fourier(Basis):
+class Fourier(_Basis):
     """A Fourier series of the state: sines and cosines of waves in all directions.
 
     `order` is the largest sum of a wave's whole numbers of periods along all axes, `period` that

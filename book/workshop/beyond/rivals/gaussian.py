@@ -26,7 +26,7 @@ _STEPS = 100  # iterations that a search for hyperparameters may take
 _TINY = 1e-9  # share of the torque below which what is left over counts as rounding
 
 
-class Inputs:
+class _Inputs:
     """Inputs of a kernel: each number standardised, or the leading directions of the windows.
 
     Neighbouring positions are nearly equal, and what tells a torque is their small differences.
@@ -88,7 +88,7 @@ class GaussianProcess(Rival):
         self.seed = integer("seed", seed, 0)
 
     def _fit(self, x, torque):
-        self.inputs = Inputs(x, self.directions)
+        self.inputs = _Inputs(x, self.directions)
         self.level, self.unit = torque.mean(0), torque.std(0)
         self.unit = np.where(self.unit > 0, self.unit, 1.0)
         features, target = self.inputs(x), (torque - self.level) / self.unit
@@ -223,7 +223,7 @@ class RandomFeatures(Rival):
         self.seed = integer("seed", seed, 0)
 
     def _fit(self, x, torque):
-        self.inputs = Inputs(x, self.directions)
+        self.inputs = _Inputs(x, self.directions)
         self.level, self.unit = torque.mean(0), torque.std(0)
         self.unit = np.where(self.unit > 0, self.unit, 1.0)
         z, target = self.inputs(x), (torque - self.level) / self.unit

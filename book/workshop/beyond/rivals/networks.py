@@ -25,7 +25,7 @@ from ddlib.paper import EPOCHS, HIDDEN_UNITS
 from workshop.beyond.rivals.protocol import KINDS, Rival
 
 
-class Network(Rival):
+class _Network(Rival):
     """A network with sigmoid hidden units and direct weights; how it is trained is left open.
 
     Positions of a window are scaled by the joint's range, states by that of each quantity. The
@@ -78,7 +78,7 @@ class Network(Rival):
         return Operations(each + outputs, each + units + outputs, units, units)
 
 
-class ByDescent(Network):
+class ByDescent(_Network):
     """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
 
     def __init__(
@@ -96,7 +96,7 @@ class ByDescent(Network):
         return model[0]
 
 
-class BySolver(Network):
+class BySolver(_Network):
     """The network by Levenberg-Marquardt; it may stop before it has converged.
 
     Beside `steps` and `decay` of `ddlib.learning.levenberg_marquardt.solve` there are the kind of
@@ -116,7 +116,7 @@ class BySolver(Network):
         return found.model
 
 
-class ByAdam(Network):
+class ByAdam(_Network):
     """The network by Adam with decoupled weight decay, all cases at once, inputs from -1 to 1."""
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):

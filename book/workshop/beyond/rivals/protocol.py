@@ -202,7 +202,7 @@ class Estimating(Rival):
         )
 
 
-class Trial(NamedTuple):
+class _Trial(NamedTuple):
     """How a rival fared; errors are by set, pooled over joints, over the set's own deviation."""
 
     rmss: dict[str, float]
@@ -211,7 +211,7 @@ class Trial(NamedTuple):
     seconds: float  # of processor time, for training
 
 
-def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> Trial:
+def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> _Trial:
     """Train a rival and test it on named sets; a test beyond its training inputs is no warning."""
     began = time.process_time()
     rival.fit(training)
@@ -219,4 +219,4 @@ def trial(rival: Rival, training: Cases, tests: Mapping[str, Cases]) -> Trial:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", OutsideFamilyWarning)
         errors = {name: float(rmss(rival.torque(c.x), c.torque)) for name, c in tests.items()}
-    return Trial(errors, rival.count(), rival.operations(), seconds)
+    return _Trial(errors, rival.count(), rival.operations(), seconds)

@@ -55,7 +55,7 @@ class _Slid(nn.Module):
         return torch.sigmoid(self.direct(x) + self.output(torch.sigmoid(self.hidden(x))))
 
 
-class Sequence(Rival):
+class _Sequence(Rival):
     """A network over the window as a sequence, trained by Adam; its layers are left open.
 
     Each joint's window enters as its middle position and the deviations from it, both scaled to
@@ -108,7 +108,7 @@ class Sequence(Rival):
         return numbers + 4 * len(self.scale[0][0]) + 2 * self.offset.size
 
 
-class Convolution(Sequence):
+class Convolution(_Sequence):
     """Two layers of convolutions along the window, then a linear one over all that is left."""
 
     TAPS = 5  # samples that a filter sees
@@ -142,7 +142,7 @@ class Convolution(Sequence):
         return Operations(products + units, products + units, units, units)
 
 
-class Recurrent(Sequence):
+class Recurrent(_Sequence):
     """A gated recurrent unit that reads the window; its last state gives the torques."""
 
     def __init__(self, channels=16, epochs=60, **options):

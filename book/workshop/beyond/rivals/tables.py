@@ -21,7 +21,7 @@ _QUANTITIES = (("position", "rad"), ("velocity", "rad/s"), ("acceleration", "rad
 _AXES = 8  # most axes of a multilinear table: each doubles the corners of a cell
 
 
-class TableSize(NamedTuple):
+class _TableSize(NamedTuple):
     """What a full table takes: its cells, the numbers in them, and bytes."""
 
     cells: int
@@ -34,12 +34,12 @@ def table_size(
     axes: int = 6,  # for the states of two joints
     numbers: int = 2,  # kept in a cell: two torques
     width: int = 4,  # bytes of a number
-) -> TableSize:
+) -> _TableSize:
     """Cells and memory of a table with every cell."""
     for name, value in (("cells", cells), ("axes", axes), ("numbers", numbers), ("width", width)):
         integer(name, value, 1)
     all_cells = int(cells) ** axes
-    return TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
+    return _TableSize(all_cells, all_cells * numbers, all_cells * numbers * width)
 
 
 def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
@@ -237,7 +237,7 @@ class CellTable(Bounded):
         """Whether nothing was recorded in the cells of states ``(cases, joint, 3)``."""
         return self._tree.query(self._places(self._scaled(x)))[0] > 0
 
-    def full(self) -> TableSize:
+    def full(self) -> _TableSize:
         """What the table takes with all its cells, filled or not."""
         return table_size(self.cells, self.filled.shape[1], self.coefficients[0].size)
 
@@ -307,7 +307,7 @@ class GridTable(Bounded):
         index, _ = self._corners(self._scaled(x))
         return ~np.isin(index, self.known).any(-1)
 
-    def full(self) -> TableSize:
+    def full(self) -> _TableSize:
         """What the table takes with all its nodes, known or not."""
         return table_size(self.cells + 1, self.low.size, self.values.shape[1])
 
