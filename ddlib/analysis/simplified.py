@@ -16,14 +16,17 @@ _OTHER_JOINT = ("coupling", *_VELOCITY_TERMS)  # because the other joint moves
 
 
 def share_of_velocity_terms(
-    arm: Arm, trajectory: Trajectory, effects: Effects = IDEAL
+    arm: Arm, trajectory: Trajectory, speed: float = 1.0, effects: Effects = IDEAL
 ) -> np.ndarray:
     """Velocity terms over the motor's torque, root mean square, for shoulder and elbow.
 
-    The error of a model that leaves them out. Of the effects, friction is part of the torque.
+    The error of a model that leaves them out, when the path is travelled `speed` times faster.
+    Of the effects, friction is part of the torque.
     """
-    terms = arm.torque_terms(*trajectory)
-    needed = sum(terms.values()) + effects.friction_torque(trajectory.qd)
+    number("speed", speed, 0.0, open_low=True)
+    qd = speed * trajectory.qd
+    terms = arm.torque_terms(trajectory.q, qd, speed**2 * trajectory.qdd)
+    needed = sum(terms.values()) + effects.friction_torque(qd)
     return _rms(sum(terms[name] for name in _VELOCITY_TERMS)) / _rms(needed)
 
 
