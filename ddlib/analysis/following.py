@@ -139,15 +139,15 @@ def summary(model: TorqueModel, windows, states) -> dict:
     name, ``"follow"`` by the quantity that the output correlates best with; ``"unique"``, medians
     of the unique shares, ``(members, 3)``. Then come the whole networks' ``"gains"``.
     """
-    told: dict = {}
+    layers: dict = {}
     for layer, attribute in LAYERS.items():
         f = getattr(model.weights, attribute)
         if f.ndim != 4:
             raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
         names, heard = classify(f), followed(f, windows, states)
-        told[layer] = {
+        layers[layer] = {
             "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
             "unique": np.median(heard.unique, (1, 2)),
         }
-    return {**told, "gains": gains(mean_gradient(model, windows))}
+    return {**layers, "gains": gains(mean_gradient(model, windows))}
