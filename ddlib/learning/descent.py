@@ -73,10 +73,8 @@ def train_ensemble(
     targets : array_like, shape (members, cases, output), optional
         Scaled targets of each member in place of ``data.y``, to whose spread errors are
         relative all the same.
-    rate, momentum : float or array_like, shape (members,)
-        As in `train`; the default rate is `default_rate`.
-    epochs : int
-        As in `train`.
+    rate, momentum, epochs
+        As in `train`; the first two may be arrays, shape (members,). Default: `default_rate`.
     warm_up : int
         Epochs at the start with a momentum of `WARM_UP_MOMENTUM`, if that is smaller. Large
         steps before the units have found their parts saturate them for good.

@@ -77,10 +77,8 @@ def solve(
     ----------
     weights : Weights
         Initial weights of one network or, with a leading axis, of an ensemble.
-    data : TrainingSet
-        Cases and scaling.
-    test : tuple of ndarray, optional
-        Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
+    data, test, progress, label
+        As in `ddlib.learning.train_ensemble`.
     decay : float
         Strength of the penalty, 0 or more.
     steps : int
@@ -90,10 +88,6 @@ def solve(
         J is at most this. The penalty counts as residuals.
     target_rmss : float, optional
         Training RMSS at which a member may stop.
-    progress : bool
-        Show a progress bar with the RMSS after the last step.
-    label : str
-        What the bar says.
 
     Warns
     -----

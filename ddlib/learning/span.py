@@ -78,10 +78,9 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
     """How many plain steps against a standing error descent has taken along each mode.
 
     For a parameter p that starts at 0 with the slope ``g + curvature p`` of the error, p is
-    ``-eps g q(t)`` after t epochs, and the share ``1 - rate q(t)`` of the slope is left. At
-    first q counts the epochs, times ``1 / (1 - momentum)`` when momentum has gathered; at last it
-    is ``1 / rate``. The recursion ``step = momentum step + 1 - rate q`` is linear, so that
-    powers of one small matrix jump to any epoch.
+    ``-eps g q(t)`` after t epochs, and the share ``1 - rate q(t)`` of the slope is left. The
+    recursion ``step = momentum step + 1 - rate q`` is linear, so that powers of one small matrix
+    jump to any epoch.
 
     Parameters
     ----------
