@@ -36,9 +36,6 @@ from .picker import (
 from .player import (
     TrainingPlayer as TrainingPlayer,
 )
-from .spectrum import (
-    SpectrumExplorer as SpectrumExplorer,
-)
 from .switches import (
     RealArmSwitches as RealArmSwitches,
 )

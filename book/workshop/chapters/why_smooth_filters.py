@@ -1,14 +1,15 @@
-"""Figures of the chapter *Why the filters are smooth*."""
+"""Figures and widget of the chapter *Why the filters are smooth*."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import positive, shaped
+from ddlib._check import integer, positive, shaped
+from ddlib.analysis import content
 from ddlib.figures.style import (
     COLOURS,
     INK,
@@ -17,6 +18,21 @@ from ddlib.figures.style import (
     illustrate,
     legend_above,
 )
+from ddlib.learning import Directions
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
+from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
+from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice
+
+WHO = ("measured", "predicted")
+FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
+_SHARES = dict(enumerate(("bias", "pos.", "vel.", "acc.", "jerk", "rest")))
+
+_CHARTS = 'extras.push((view) => view.el.classList.add("ddlib-spectrum"));\n'
+_TWO_BY_TWO = """
+.ddlib-spectrum .charts { grid-template-columns: repeat(auto-fit, minmax(min(100%, 17rem), 1fr)); }
+"""
 
 
 def predicted_curves(
@@ -55,3 +71,134 @@ def predicted_curves(
         legend_above(figure, handles, [*names, "predicted"])
 
     return illustrate(draw, alt, 7.0, 3.5)
+
+
+class SpectrumExplorer(CurveWidget):
+    """Pick a direction of the windows; see its shape, and watch it being learnt.
+
+    Curves are medians over the networks of the study "span". The slider steps over the epochs
+    that it kept; nothing is interpolated.
+
+    Parameters
+    ----------
+    study : mapping
+        What `workshop.report.studies.span.span` returns, or `results.read` of it.
+    directions : sequence of Directions
+        Of the training set of each cell of the study, in their order.
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    _esm = module(*SCRIPT, "player.js") + _CHARTS
+    _css = module(*STYLE, "player.css") + _TWO_BY_TWO
+
+    def __init__(self, study: Mapping, directions: Sequence[Directions], **options):
+        cells = study["cells"]
+        if len(directions) != len(cells):
+            raise ValueError(
+                f"directions must be one for each of {len(cells)} cells, got {len(directions)}"
+            )
+        names, self._cells = [], {}
+        for cell, along in zip(cells, directions):
+            width = integer("width", cell["width"], 3)
+            if along.filters.shape[-1] != width:
+                raise ValueError(
+                    f"directions must be of window {width} like its cell, "
+                    f"got {along.filters.shape[-1]}"
+                )
+            name = "{}, inputs {:g} to {:g}".format(cell["setup"], *cell["scaling"])
+            names += [name] if name not in names else []
+            self._cells[names.index(name), width] = cell, along
+        epochs = study["epochs"][1:]  # at epoch 0 nothing has changed
+        shown = len(cells[0]["measured"]["error"][0])
+        self._index = {epoch: k for k, epoch in enumerate(epochs, 1)}
+        self._reach = max(width for _, width in self._cells) // 2
+        places = np.log10(epochs)
+        self._places = np.clip(places, 1e-3 * places[-1], (1 - 1e-3) * places[-1])
+        time = np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3
+        over = {"cursor": "place", "x_scale": "power"}
+        cell, per_epoch = ("case", "width", "direction"), ("case", "width", "direction", "epoch")
+        shape = [f"{joint} shape" for joint in JOINTS]
+        courses = [f"{what} {who}" for what in ("change", "error") for who in WHO]
+        super().__init__(
+            self._curves,
+            [
+                Choice("case", "Recording", dict(enumerate(names)), 0),
+                width_choice({width for _, width in self._cells}),
+                Choice("direction", "Direction", range(1, shown + 1), 4, display="slider"),
+                Choice(
+                    "epoch", "Epoch", {e: f"{e:,}" for e in epochs}, epochs[-1], display="slider"
+                ),
+            ],
+            [
+                Panel(
+                    "The direction as a filter",
+                    dict(zip(shape, JOINTS)),
+                    CENTRE,
+                    time,
+                    kind="stems",
+                    cursor=("first", "last"),
+                    y_fit=True,
+                ),
+                share_panel("What it responds to, share", "part of the window", _SHARES),
+                Panel(
+                    "Change over the start, times",
+                    {f"change {who}": who for who in WHO},
+                    "epoch",
+                    places,
+                    fixed={"as large as the start": np.zeros(len(places))},
+                    y_scale="power",
+                    y_range=(FLOOR, 3.0),
+                    **over,
+                ),
+                Panel(
+                    "Its part of the RMSS",
+                    {f"error {who}": who for who in WHO},
+                    "epoch",
+                    places,
+                    y_fit=True,
+                    **over,
+                ),
+            ],
+            title="Learning along a direction",
+            alt=(
+                "A direction of the windows as a filter, the derivatives that it responds to, and "
+                "over the epochs how far training has changed the weights along it, measured and "
+                "predicted, and what it leaves of the error."
+            ),
+            scalars=[
+                Scalar("variance", "Variance, times that of direction 1", scale="power"),
+                *(
+                    Scalar(f"now {who}", f"Change, {who}, times the start", scale="power")
+                    for who in WHO
+                ),
+            ],
+            depends={
+                **dict.fromkeys((*shape, *courses, "shares", "variance"), cell),
+                **dict.fromkeys((f"now {who}" for who in WHO), per_epoch),
+                **dict.fromkeys(("first", "last"), ("width",)),
+                "place": ("epoch",),
+            },
+            note="Where the change is below 1, the random start outweighs what was learnt.",
+            **{"tolerance": EXACT, **options},
+        )
+
+    def _curves(self, case, width, direction, epoch) -> dict:
+        cell, along = self._cells[case, width]
+        k, row = direction - 1, self._index[epoch]
+        f, half = along.filters[k], (width // 2 + 0.5) * LOG_STEP * 1e3
+        energy = [along.axes[k, -1] ** 2, *(content(f) ** 2).sum(0)]
+        curves = {f"{joint} shape": zero_padded(g, self._reach) for joint, g in zip(JOINTS, f)}
+        for who in WHO:
+            change = np.array(cell[who]["change over start"])[1:, k]
+            change = np.log10(np.maximum(change, 10**FLOOR))
+            curves |= {f"change {who}": change, f"now {who}": change[row - 1]}
+            curves[f"error {who}"] = np.array(cell[who]["error"])[1:, k]
+        return {
+            **curves,
+            "shares": np.array([*energy, max(0.0, 1 - sum(energy))]),
+            "variance": np.log10(cell["variance"][k]),
+            "place": self._places[row - 1],
+            "first": -half,
+            "last": half,
+        }

@@ -11,7 +11,7 @@ from widget_pages import assert_curves, drag, page_of, settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
-from ddlib.widgets.spectrum import FLOOR, WHO, SpectrumExplorer
+from workshop.chapters.why_smooth_filters import FLOOR, WHO, SpectrumExplorer
 
 EPOCHS = (0, 1, 10, 100, 1000, 20_000)
 WIDTHS, SHOWN = (7, 11), 5
