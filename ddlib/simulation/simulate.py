@@ -12,9 +12,15 @@ from ddlib.simulation.plant import Plant, substeps
 from ddlib.simulation.recording import Recording, equal_steps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
-CONTROL_STEP = 0.002  #: Control period of the DD Arm II, s.
-LOG_STEP = 0.010  #: Sampling period of the recordings, s (Appendix I: 100 samples per second).
-REST = 0.5  #: Rest recorded before and after a motion, s, so that every window is whole.
+# The page Provenance shows these notes.
+CONTROL_STEP = 0.002
+"""Control period of the DD Arm II, s."""
+
+LOG_STEP = 0.010
+"""Sampling period of the recordings, s (Appendix I: 100 samples per second)."""
+
+REST = 0.5
+"""Rest recorded before and after a motion, s, so that every window is whole."""
 
 
 class _Streams:
