@@ -10,18 +10,17 @@ from book_pages import PAGES
 pytestmark = pytest.mark.browser
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_narrow_page_breaks_no_rule(scheme, site, visit):
-    opened = visit(f"{site}/{PAGES[1]}.html", scheme, 400)
-    assert not violations(opened.page)
+def test_narrow_page_breaks_no_rule(site, visit):
+    opened = visit(f"{site}/{PAGES[1]}.html", "light", 400)
+    assert not violations_in(opened.page, "light", "dark")
 
 
-@pytest.mark.parametrize("opener", [".search-button-field", ".dropdown-download-buttons > button"])
-def test_what_opens_breaks_no_rule(opener, site, visit):
-    opened = visit(f"{site}/{PAGES[1]}.html")
-    opened.page.locator(opener).click()
-    chromium.settle(opened.page)
-    assert not violations(opened.page)
+def test_what_opens_breaks_no_rule(site, visit):
+    for opener in (".search-button-field", ".dropdown-download-buttons > button"):
+        opened = visit(f"{site}/{PAGES[1]}.html")
+        opened.page.locator(opener).click()
+        chromium.settle(opened.page)
+        assert not violations(opened.page), opener
 
 
 def test_faults_are_found(tmp_path, visit):

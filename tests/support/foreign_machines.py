@@ -54,16 +54,7 @@ def commands(jobs: int, root: Path) -> dict[str, list]:
     """What is checked, and how."""
     pages = sorted((root / "book").glob("*.ipynb"))
     runner = root / "tests" / "support" / "forked_notebooks.py"
-    claims = [
-        "-m",
-        "pytest",
-        "-q",
-        "-n",
-        jobs,
-        "tests/report/test_claims.py",
-        "-k",
-        "verdicts_are",
-    ]
+    claims = ["-m", "pytest", "-q", "-n", jobs, "tests/report/test_claims.py", "-k", "verdicts_are"]
     return {"claims": claims, "notebooks": [runner, "--jobs", jobs, *pages]}
 
 
@@ -94,15 +85,8 @@ def reproduce(name: str, jobs: int) -> list[str]:
         path = os.pathsep.join([str(copy), str(copy / "book"), os.environ.get("PYTHONPATH", "")])
         os.environ["PYTHONPATH"] = path
         env = environment(name, Path(folder, "measured"))
-        command = [
-            sys.executable,
-            "-m",
-            "workshop.report.reproduce",
-            "--force",
-            "--jobs",
-            str(jobs),
-        ]
-        if subprocess.run(command, env=env, cwd=copy).returncode:
+        make = ["-m", "workshop.report.reproduce", "--force", "--jobs", str(jobs)]
+        if subprocess.run([sys.executable, *make], env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
         names = ("report/test_results", "report/test_ledger", "book/test_prose")
         files = [f"tests/{name}.py" for name in names]

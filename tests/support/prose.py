@@ -181,11 +181,7 @@ def sentence(text: str, page: str = "page") -> Sentence:
 def typed_numbers(one: Sentence, allowed=()) -> list[str]:
     """Numbers that were typed in a sentence about results, and are neither names nor settings.
 
-    Parameters
-    ----------
-    one : Sentence
-    allowed : sequence of str
-        Pieces of text whose numbers are no results.
+    Numbers in the `allowed` pieces of text are no results.
     """
     if not RESULT_WORDS.search(one.bare):
         return []
