@@ -87,8 +87,7 @@ foreign-ci: $(READY)
 	@echo "==> Notebooks and claims on a foreign machine"
 	$(BIN)/python tests/support/foreign_machines.py --jobs $(JOBS) --ci
 
-# All tests with one of these marks are here: tests/house/test_suite.py.
-PAGE_TESTS = tests/book tests/widgets tests/figures tests/beyond
+PAGE_TESTS = $(shell grep -rlE "mark\.(browser|built)\b" tests --include="test_*.py")
 
 pages: $(READY)
 	@$(BIN)/python book/_ext/build.py --strict
