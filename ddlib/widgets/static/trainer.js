@@ -96,7 +96,7 @@ function filtersOf({ directWeights, hiddenWeights, width }) {
 
 // A run of the training, with what has been seen of it every few epochs.
 function schoolOf(spec, positions, torques, choice, { training, test } = casesOf(spec, positions, torques, choice)) {
-  const net = choice.net ?? randomNetwork(spec, choice.seed);
+  const net = randomNetwork(spec, choice.seed);
   const eps = (spec.rate * choice.step) / training.windows.length;
   const epoch = descent(net, training.windows, training.targets, eps, choice.momentum);
   const looks = spec.epochs / spec.check + 1;
