@@ -1,5 +1,6 @@
 """The package from its wheel, in an empty folder: whole, without the book, mostly without torch."""
 
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -46,12 +47,9 @@ print(ddlib.__file__, tried, *failed, sep="\\n")
 def site(tmp_path_factory):
     """An empty folder into which the wheel is unpacked."""
     tree, site = (tmp_path_factory.mktemp(name) for name in ("tree", "site"))
-    files = [path for name in SOURCES for path in ((ROOT / name), *(ROOT / name).rglob("*"))]
-    for path in files:
-        if path.is_file() and "__pycache__" not in path.parts:
-            copy = tree / path.relative_to(ROOT)
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_bytes(path.read_bytes())
+    for name in SOURCES:
+        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy
+        copy(ROOT / name, tree / name)
     build = "from setuptools.build_meta import build_wheel; build_wheel('.')"
     built = subprocess.run([sys.executable, "-c", build], cwd=tree, capture_output=True, text=True)
     assert built.returncode == 0, built.stderr
