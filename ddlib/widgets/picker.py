@@ -239,6 +239,7 @@ class _Curves:
         self.setup, self.models = replace(setup, effects=silent), models
         self.one = lru_cache(maxsize=16)(self._one)
         if models:
+            self.gains = gains(setup.controller)
             training = self.setup.record(_TRAINING)
             # near zero extents a motion's own deviation vanishes: that of the training set
             self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
@@ -286,7 +287,7 @@ class _Curves:
         return {
             **motion,
             "plant": plant(self.setup.arm, self.setup.effects),
-            "gains": gains(self.setup.controller),
+            "gains": self.gains,
             "step": CONTROL_STEP,
             "every": every,
             "periods": every * self.t.size,

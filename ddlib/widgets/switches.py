@@ -109,27 +109,25 @@ class RealArmSwitches(LiveWidget):
             **options,
         )
         steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in QUANTISATION.items()}
-        self.set_trait(
-            "loop",
-            {
-                "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
-                "gains": gains(pd(KP, KD)),
-                "share": SHARE.tolist(),
-                "levels": {
-                    "friction": FRICTION,
-                    "dead_zone": DEAD_ZONE,
-                    "saturation": SATURATION,
-                    "quantisation": steps,
-                    "delay": DELAY,
-                },
-                "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
-                "motion": MOTION_SECONDS,
-                "step": CONTROL_STEP,
-                "periods": len(_T),
-                "whole": 16,
-                "close": [int(_CLOSE[0]), int(_CLOSE[-1]) + 1],
+        loop = {
+            "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
+            "gains": gains(pd(KP, KD)),
+            "share": SHARE.tolist(),
+            "levels": {
+                "friction": FRICTION,
+                "dead_zone": DEAD_ZONE,
+                "saturation": SATURATION,
+                "quantisation": steps,
+                "delay": DELAY,
             },
-        )
+            "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
+            "motion": MOTION_SECONDS,
+            "step": CONTROL_STEP,
+            "periods": len(_T),
+            "whole": 16,
+            "close": [int(_CLOSE[0]), int(_CLOSE[-1]) + 1],
+        }
+        self._keep(loop=loop)
 
 
 def _choices() -> list[Choice]:

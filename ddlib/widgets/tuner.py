@@ -201,23 +201,20 @@ class PIDTuner(LiveWidget):
             note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
             **options,
         )
-        self.set_trait("before", self.values)
         effects = Effects(friction=(ViscousFriction(VISCOUS),))
-        self.set_trait(
-            "loop",
-            {
-                "plant": plant(arm, effects),
-                "modes": modes(arm, VISCOUS),
-                "elbow": _ELBOW,
-                "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
-                "motion": MOTION_SECONDS,
-                "step": CONTROL_STEP,
-                "periods": len(_T),
-                "every": round(LOG_STEP / CONTROL_STEP),
-                "most": np.deg2rad(MOST_DEG),
-                "questions": [q.description() for q in QUESTIONS],
-            },
-        )
+        loop = {
+            "plant": plant(arm, effects),
+            "modes": modes(arm, VISCOUS),
+            "elbow": _ELBOW,
+            "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
+            "motion": MOTION_SECONDS,
+            "step": CONTROL_STEP,
+            "periods": len(_T),
+            "every": round(LOG_STEP / CONTROL_STEP),
+            "most": np.deg2rad(MOST_DEG),
+            "questions": [q.description() for q in QUESTIONS],
+        }
+        self._keep(before=self.values, loop=loop)
 
     @t.validate("before")
     def _checked_before(self, proposal):

@@ -8,8 +8,8 @@ function insideOf(world, spec, id) {
   let parts = null;
   let frame = 0;
 
-  const ink = { colour: "ink", width: 2.5, dash: [] };
   const orange = { colour: "c1", width: 2, dash: [6, 3] };
+  const both = (truth, told) => [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...orange, of: told }];
   const rows = [
     {
       colour: "c0",
@@ -19,21 +19,13 @@ function insideOf(world, spec, id) {
     {
       colour: "c1",
       title: make("span"),
-      live: [
-        "velocity, rad/s",
-        [-1, 1],
-        [{ ...ink, of: (s) => s.v[chosen.joint] }, { ...orange, of: (s) => s.rates?.[chosen.joint] }],
-      ],
+      live: ["velocity, rad/s", [-1, 1], both((s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint])],
       pair: ["velocity", "what the line measures"],
     },
     {
       colour: "c2",
       title: make("span"),
-      live: [
-        "acceleration, rad/s²",
-        [-8, 8],
-        [{ ...ink, of: (s) => s.a[chosen.joint] }, { ...orange, of: (s) => s.bends?.[chosen.joint] }],
-      ],
+      live: ["acceleration, rad/s²", [-8, 8], both((s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint])],
       pair: ["acceleration", "what the parabola measures"],
     },
   ];
