@@ -1,6 +1,3 @@
-from .dynamics import (
-    CENTRED as CENTRED,
-)
 from .lines import (
     by_case as by_case,
     curves as curves,
