@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import inspect
 import re
+import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
-from types import ModuleType
 from unittest import mock
 
 import numpy as np
@@ -20,7 +19,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 def drawn(make: Callable[[], Illustration]) -> tuple[Illustration, Figure]:
-    """An illustration and the matplotlib figure that it was made from."""
+    """An illustration, made without a warning, and the matplotlib figure behind it."""
     kept = []
 
     class Kept(Figure):
@@ -28,24 +27,38 @@ def drawn(make: Callable[[], Illustration]) -> tuple[Illustration, Figure]:
             super().__init__(*args, **options)
             kept.append(self)
 
-    with mock.patch.object(style, "Figure", Kept):
+    with mock.patch.object(style, "Figure", Kept), warnings.catch_warnings():
+        warnings.simplefilter("error")
         picture = make()
     return picture, kept[-1]
 
 
-def figures_in(module: ModuleType) -> set[str]:
-    """The public figures that a module defines itself."""
-    functions = inspect.getmembers(module, inspect.isfunction)
-    return {n for n, f in functions if f.__module__ == module.__name__ and n[0] != "_"}
+def check_sound(picture: Illustration) -> None:
+    """It may stand in any page, is read aloud as its text, and drawn in the page's own ink."""
+    root = ET.fromstring(picture.svg)
+    assert root.tag == f"{SVG}svg" and root.attrib["role"] == "figure"
+    assert root.attrib["aria-label"] == picture.alt
+    tags = {element.tag.removeprefix(SVG) for element in root.iter()}
+    assert not tags & {"style", "script", "metadata", "image"} and "data:" not in picture.svg
+    assert INK not in picture.svg and ("currentColor" in picture.svg or not words(picture))
+    assert not re.search(r"\bnan\b", picture.svg + picture.alt)
+    own = ids(picture.svg)
+    targets = {a or b for a, b in re.findall(r'href="([^"]*)"|url\(([^)]*)\)', picture.svg)}
+    assert len(own) == len(set(own)) and targets == {f"#{name}" for name in own}
 
 
-def check_sound(figure: Illustration) -> None:
-    """Read aloud as its alternative text, drawn in the page's own ink, with numbers only."""
-    assert isinstance(figure, Illustration)
-    root = ET.fromstring(figure.svg)
-    assert root.attrib["role"] == "figure" and root.attrib["aria-label"] == figure.alt
-    assert INK not in figure.svg and "currentColor" in figure.svg
-    assert not re.search(r"\bnan\b", figure.svg)
+def ids(svg: str) -> list[str]:
+    return [e.attrib["id"] for e in ET.fromstring(svg).iter() if "id" in e.attrib]
+
+
+def size(svg: str) -> list[float]:
+    """Width and height in points."""
+    return [float(x) for x in ET.fromstring(svg).attrib["viewBox"].split()[2:]]
+
+
+def black_or_white(picture: Illustration) -> set[str]:
+    """What cannot be seen on a dark or on a light page."""
+    return set(re.findall(r"(?:fill|stroke): (#000000|#ffffff|black|white)", picture.svg))
 
 
 def curves(figure: Figure, colour: str) -> list[np.ndarray]:
@@ -54,20 +67,15 @@ def curves(figure: Figure, colour: str) -> list[np.ndarray]:
     return [line.get_xydata() for line in shown if line.get_color() == colour]
 
 
-def on_paper(axis, points) -> np.ndarray:
-    """Where an axis draws points, in pixels from the lower left corner."""
-    return axis.transData.transform(points)
-
-
 def boxes(figure: Figure, colour: str) -> np.ndarray:
     """Left, bottom, right, top of the rectangles of a colour, in the units of their axes."""
-    found = [
+    corners = [
         (*patch.get_bbox().min, *patch.get_bbox().max)
         for axis in figure.axes
         for patch in axis.patches
         if isinstance(patch, Rectangle) and to_hex(patch.get_facecolor()) == colour
     ]
-    return np.array(found).reshape(-1, 4)
+    return np.array(corners).reshape(-1, 4)
 
 
 def words(picture: Illustration) -> list[str]:

@@ -1,0 +1,126 @@
+"""Hinton diagrams: area is size, white is positive, and each weight lies where it belongs."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from pictures import boxes, drawn
+
+from ddlib.figures import hinton
+from ddlib.learning import Weights
+from workshop.chapters.whole_state_space import hinton_states
+
+NAMES = tuple(field.name for field in fields(Weights))
+
+diagrams = pytest.mark.parametrize(
+    "diagram, width", [(hinton, 11), (hinton, 21), (hinton_states, 3)]
+)
+
+
+def planted(width: int, rest: float = 0.0, hidden: int = 5, **values) -> Weights:
+    """A network with all weights `rest`, but for ``field={index: value}``."""
+    weights = Weights.random(1, width, hidden)[0]
+    for name in NAMES:
+        getattr(weights, name)[...] = rest
+        for index, value in values.get(name, {}).items():
+            getattr(weights, name)[index] = value
+    return weights
+
+
+def squares(diagram, weights) -> tuple[np.ndarray, np.ndarray]:
+    """Centre, side and sign of every square; left, right, top, bottom of units as one reads.
+
+    y runs downwards.
+    """
+    _, figure = drawn(lambda: diagram(weights))
+    marks = []
+    for sign, colour in ((1, "#ffffff"), (-1, "#000000")):
+        for left, bottom, right, top in boxes(figure, colour):
+            assert right - left == pytest.approx(top - bottom)
+            marks.append(((left + right) / 2, -(bottom + top) / 2, right - left, sign))
+    units = boxes(figure, "#8c8c8c")[:, [0, 2, 3, 1]] * [1, 1, -1, -1]
+    return np.array(marks), units[np.lexsort((units[:, 0], units[:, 2].round()))]
+
+
+def units_of(marks, units) -> list[int]:
+    """The unit that each square lies in; a square lies in one unit, and all of it."""
+    centre, half = marks[:, None, :2], marks[:, None, 2:3] / 2
+    inside = (units[:, 0::2] <= centre - half) & (centre + half <= units[:, 1::2])
+    assert (inside.all(-1).sum(1) == 1).all()
+    return inside.all(-1).argmax(1).tolist()
+
+
+@diagrams
+def test_area_is_size_and_white_is_positive(diagram, width):
+    """Weights between hidden and output units are seen at both ends."""
+    weights = Weights.random(1, width, seed=width)[0]
+    marks, units = squares(diagram, weights)
+    values = np.concatenate([getattr(weights, n).ravel() for n in (*NAMES, "output_weights")])
+    area = np.sort(marks[:, 3] * marks[:, 2] ** 2)
+    np.testing.assert_allclose(area / abs(area).max(), np.sort(values) / weights.largest)
+    assert len(units) == 12 and set(units_of(marks, units)) == set(range(12))
+
+
+@diagrams
+@pytest.mark.parametrize("hidden", [1, 5, 10])
+def test_squares_do_not_overlap(diagram, width, hidden):
+    marks, _ = squares(diagram, planted(width, 1.0, hidden))
+    apart = np.abs(marks[:, None, :2] - marks[None, :, :2]).max(-1)
+    np.fill_diagonal(apart, np.inf)
+    assert apart.min() >= marks[:, 2].max() - 1e-9
+
+
+@diagrams
+@pytest.mark.parametrize(
+    "field, index, places",
+    [
+        ("hidden_weights", (3, 0, 1), [5]),
+        ("hidden_bias", 4, [6]),
+        ("direct_weights", (1, 1, 0), [1]),
+        ("output_bias", 0, [0]),
+        ("output_weights", (1, 2), [1, 4]),
+    ],
+)
+def test_each_weight_lies_in_its_unit(diagram, width, field, index, places):
+    """Units as one reads: two outputs, then the hidden ones; biases at the upper left."""
+    for value in (2.0, -2.0):
+        marks, units = squares(diagram, planted(width, **{field: {index: value}}))
+        assert sorted(units_of(marks, units)) == places and set(marks[:, 3]) == {np.sign(value)}
+        if "bias" in field:
+            left, right, top, bottom = units[places[0]]
+            assert marks[0, 0] < left + 0.3 * (right - left) and marks[0, 1] < (top + bottom) / 2
+
+
+@diagrams
+def test_inputs_stand_in_their_order(diagram, width):
+    """From left to right; the shoulder's above the elbow's, or before them in one row."""
+    shoulder = {(1, 0, k): k + 1.0 for k in range(width)}
+    elbow = {(1, 1, k): -k - 1.0 for k in range(width)}
+    marks, units = squares(diagram, planted(width, hidden_weights=shoulder | elbow))
+    assert units_of(marks, units) == [3] * 2 * width
+    upper, lower = (m[m[:, 0].argsort()] for m in (marks[:width], marks[width:]))
+    for row in (upper, lower):
+        np.testing.assert_allclose((row[:, 2] / row[-1, 2]) ** 2, np.arange(1, width + 1) / width)
+        np.testing.assert_allclose(np.diff(row[:, 0], 2), 0, atol=1e-9)
+        assert np.ptp(row[:, 1]) < 1e-9
+    if diagram is hinton:
+        assert upper[0, 1] < lower[0, 1]
+    else:
+        assert upper[0, 1] == lower[0, 1] and upper[-1, 0] < lower[0, 0]
+    assert upper[0, 1] > units[3, 2:].mean()  # below biases and weights to the outputs
+
+
+@pytest.mark.parametrize(
+    "diagram, weights, message",
+    [
+        (hinton, Weights.random(3, 11), "weights must be of one network"),
+        (hinton, planted(11), "weights must be finite and not all zero"),
+        (hinton, planted(11, np.nan), "weights must be finite and not all zero"),
+        (hinton_states, Weights.random(2, 3), "weights must be of one network"),
+        (hinton_states, Weights.random(1, 5)[0], "weights must be of one network"),
+        (hinton_states, planted(3, np.nan), "weights must be finite"),
+    ],
+)
+def test_refusals(diagram, weights, message):
+    with pytest.raises(ValueError, match=message):
+        diagram(weights)
