@@ -341,7 +341,10 @@ def plain_ticks(axis: Axis) -> None:
 
 
 def _inline(svg: str, alt: str) -> str:
-    """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name."""
+    """Matplotlib's SVG file as markup for a page: own ids, page colours, an accessible name.
+
+    Matplotlib writes each thing in one way, so patterns find it; there is no setting for these.
+    """
     svg = svg[svg.index("<svg ") :]
     # Matplotlib's style sheet would reach every element of the page
     svg = re.sub(r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", svg, flags=re.DOTALL)
