@@ -7,9 +7,6 @@ from .maps import (
     COLOUR_MAP as COLOUR_MAP,
     rmss_by_window as rmss_by_window,
 )
-from .states import (
-    SYMBOLS as SYMBOLS,
-)
 from .style import (
     COLOURS as COLOURS,
     DASHES as DASHES,
