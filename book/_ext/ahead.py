@@ -110,7 +110,7 @@ def forked_kernels(wanted: bool = True) -> Iterator[None]:
 
 
 def start_importing() -> None:
-    """Let the server import before the first kernel asks for it, from the book's folders as well."""
+    """Let the server import before the first kernel asks, from the book's folders as well."""
     known = os.environ.get(PATHS)
     os.environ[PATHS] = os.pathsep.join(filter(None, (HERE, known)))
     multiprocessing.forkserver.ensure_running()

@@ -11,8 +11,8 @@ from pathlib import Path
 from docutils import nodes
 from sphinx import addnodes
 
-SHOWN = ("workshop.report.measures", "workshop.beyond.measures")
-"""Packages whose source has pages."""
+SHOWN = ("workshop.report.measures", "workshop.report.evidence.expressions")
+"""Packages and modules whose source has pages."""
 
 
 def skip_field(app, what, name, obj, skip, options):

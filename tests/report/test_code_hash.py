@@ -4,8 +4,7 @@ import re
 
 import pytest
 
-from workshop.report import code_hash as hashes
-from workshop.report import results
+from workshop.report import code_hash as hashes, results
 
 STUDY = """
 from ddlib.code_hash import study

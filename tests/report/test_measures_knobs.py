@@ -81,14 +81,3 @@ def test_printed_numbers_are_the_papers():
     found = np.exp(knobs.printed(knobs.CELLS + knobs.WEIGHTS))
     wanted = [0.078, 0.027, 0.024, 0.22, 0.10, 0.13, 18.9, 11.7, 4.2]
     np.testing.assert_allclose(found, wanted)
-
-
-def test_a_coarse_encoder(monkeypatch):
-    rng = np.random.default_rng(0)
-    cells = {"joint damping": rng.uniform(0.06, 0.08, (5, 5)), "16 bits": np.full((5, 1), 0.035)}
-    setups = {name: {"11": {"training": value.tolist()}} for name, value in cells.items()}
-    monkeypatch.setattr(results, "read", {"recordings": {"setups": setups}}.__getitem__)
-    found = knobs.coarse_encoder()
-    assert found.value == pytest.approx(0.035 / np.median(cells["joint damping"]))
-    assert found.text.startswith("0.035 for 0.07") and found.text.endswith("at 11")
-    assert found.replicates.std() > 0

@@ -5,8 +5,7 @@ import itertools
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from ddlib.learning import Weights
 from workshop.report import parity_networks

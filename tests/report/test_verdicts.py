@@ -10,12 +10,11 @@ from workshop.report.evidence.verdicts import (
     DRAWS,
     FEWEST,
     STANDS,
-    Measured,
     bootstrap,
     fresh,
+    judged,
     mean,
     median,
-    over_members,
     shares,
     stands,
     turns_at,
@@ -51,19 +50,12 @@ def test_members_bring_all_that_is_theirs():
     assert (found == 0).all()
 
 
-def test_the_same_seed_draws_the_same():
-    x = np.arange(9.0)
-    assert (bootstrap(mean, x) == bootstrap(mean, x)).all()
-    assert (bootstrap(mean, x, seed=1) != bootstrap(mean, x)).any()
-
-
 def test_value_and_replicates_come_from_one_function():
     x, y = np.array([1.0, 2.0, 6.0] * 2), np.full(6, 2.0)
-    value, replicates = over_members(lambda a, b: mean(a) / mean(b), x, y)
-    assert value == 1.5
+    value, text, replicates = judged(lambda a, b: mean(a) / mean(b), x, y, text="{} times".format)
+    assert value == 1.5 and text == "1.5 times"
     assert replicates.shape == (DRAWS,) and 0.5 <= replicates.min() < replicates.max() <= 3
-    value, _ = over_members(lambda pair: mean(pair[0] * pair[1]), (x, y))
-    assert value == 6
+    assert judged(lambda pair: mean(pair[0] * pair[1]), (x, y), text="six")[:2] == (6, "six")
 
 
 def test_networks_on_recordings_are_drawn_on_both_levels():
@@ -102,17 +94,13 @@ def test_shares_of_draws():
     assert list(found) == ["reproduced", "qualitative"]
 
 
-@pytest.mark.parametrize(
-    "share, wanted",
-    [(1.0, "reproduced"), (DECIDED, "reproduced"), (0.949, "undecided"), (0.5, "undecided")],
-)
-def test_a_verdict_needs_nearly_all_draws(share, wanted):
-    assert fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
+def test_a_verdict_needs_nearly_all_draws():
+    for share, wanted in ((1.0, "reproduced"), (DECIDED, "reproduced"), (0.949, "undecided")):
+        assert fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
 
 
-@pytest.mark.parametrize(
-    "written, share, holds",
-    [
+def test_what_a_written_verdict_bears():
+    for written, share, holds in (
         ("reproduced", 1.0, True),
         ("reproduced", STANDS, True),
         ("reproduced", 0.049, False),
@@ -122,10 +110,13 @@ def test_a_verdict_needs_nearly_all_draws(share, wanted):
         ("undecided", 0.999, True),
         ("undecided", CONTRADICTS, False),
         ("not reproduced", 0.3, False),  # a planted one
-    ],
-)
-def test_what_a_written_verdict_bears(written, share, holds):
-    assert stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+    ):
+        assert stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+    for share in np.linspace(0, 1, 201):
+        found = {"reproduced": share, "not reproduced": 1 - share}
+        assert stands(fresh(found), found)
+    with pytest.raises(ValueError, match="written must be one of"):
+        stands("fine", {"reproduced": 1.0})
 
 
 def test_how_often_a_new_ensemble_ends_a_verdict():
@@ -133,21 +124,6 @@ def test_how_often_a_new_ensemble_ends_a_verdict():
     for limit, wanted in ((STANDS, 1), (0.8, 29)):
         apart = stats.norm.ppf(limit) - stats.norm.ppf(DECIDED)
         assert round(float(100 * stats.norm.cdf(apart / np.sqrt(2)))) == wanted
-
-
-def test_every_fresh_verdict_stands():
-    for share in np.linspace(0, 1, 201):
-        found = {"reproduced": share, "not reproduced": 1 - share}
-        assert stands(fresh(found), found)
-
-
-def test_unknown_verdicts_are_refused():
-    with pytest.raises(ValueError, match="written must be one of"):
-        stands("fine", {"reproduced": 1.0})
-
-
-def test_replicates_are_optional():
-    assert Measured(1.0, "text").replicates is None
 
 
 def test_where_a_share_reaches_a_level():

@@ -8,36 +8,45 @@ import pytest
 from book_pages import CHAPTERS
 
 from ddlib.tables import typeset
-from workshop.report.evidence import claims, ledger_tables, wall
+from workshop.report.evidence import claims, expressions, ledger_tables, wall
 from workshop.report.evidence.claims import LEDGER, OWN, SECTIONS, Claim, Printed
 from workshop.report.evidence.verdicts import VERDICTS, Measured
 
 ALL = claims.load()
-ANY = next(claim.measure for claim in ALL if claim.measure)
 
 
-def make(band, printed="no number", draws=None, value=0.5, monkeypatch=None, **changes):
-    fields = {
-        "id": "a", "where": "section 4", "chapter": "verdict", "claim": "c < d", "why": "w",
-        "refuted": "r", "verdict": "reproduced", "measure": ANY, "printed": printed,
-        "band": band, **changes,
-    }  # fmt: skip
-    found = Measured(value, "told", None if draws is None else np.array(draws, float))
-    monkeypatch.setattr(Claim, "measured", lambda self: found)
-    monkeypatch.setattr(wall, "window", lambda claim: None)
-    return Claim(**fields)
+@pytest.fixture
+def make(monkeypatch):
+    """``make(band, draws)``: a claim that measures these draws."""
+
+    def made(band, draws=None, printed="no number", **changes) -> Claim:
+        fields = {
+            "id": "a", "where": "section 4", "chapter": "verdict", "claim": "c < d", "why": "w",
+            "refuted": "r", "verdict": "reproduced", "measure": "networks.untrained",
+            "printed": printed, "band": band, **changes,
+        }  # fmt: skip
+        found = Measured(0.5, "told", None if draws is None else np.array(draws, float))
+        monkeypatch.setattr(Claim, "measured", lambda self: found)
+        return Claim(**fields)
+
+    return made
 
 
 def tiles(text) -> list[str]:
     return re.findall(r"<details class=\"claim\".*?</details>", text, re.DOTALL)
 
 
-@pytest.mark.parametrize("section", SECTIONS)
-def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
-    expected = claims.of_section(section)
+def code_of(claim) -> str:
+    if not claim.measure:
+        return f"{expressions.__name__.replace('.', '/')}.html#find"
+    function = claims.function(claim.measure)
+    return f"{function.__module__.replace('.', '/')}.html#{claim.measure.split('.')[-1]}"
+
+
+def test_a_tile_for_each_claim_with_all_that_the_file_says():
+    expected = [claim for section in SECTIONS for claim in claims.of_section(section)]
     found = tiles(wall.Tiles(expected)._repr_markdown_())
-    assert len(found) == len(expected)
-    for text, claim in zip(found, expected):
+    for text, claim in zip(found, expected, strict=True):
         head, inside = text.split("</summary>")
         assert f'id="claim-{claim.id}"' in head and f'data-verdict="{claim.judge()}"' in head
         assert html.escape(typeset(claim.claim), quote=False) in head
@@ -46,16 +55,14 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
         assert typeset(claims.printed(claim)) in inside
         page = [] if claim.chapter == LEDGER else [claim.chapter]
         assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
-        file, _, name = claim.measure.rpartition(".")
-        code = f'measures/{file.replace(".", "/")}.html#{name}">code</a>'
-        assert (f'<a href="../_modules/book/workshop/report/evidence/{code}' in inside) == bool(
-            claim.measure
-        )
+        code = f'<a href="../_modules/{code_of(claim)}">code</a>'
+        assert (code in inside) == claim.is_measured == (">code</a>" in inside)
+        if width := ledger_tables.window(claim):
+            assert re.search(rf"\b{width}\b", text), claim.id
 
 
-@pytest.mark.parametrize(
-    "where, expected",
-    [
+def test_parts_of_a_section(make):
+    for where, expected in (
         ("section 7.1", "7.1. Future Work"),
         ("section 7", ""),
         ("Abstract", ""),
@@ -63,21 +70,9 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says(section):
         ("Table 4-1", "Table 4-1"),
         ("Figure 5-6", "Figure 5-6"),
         ("section 4, footnote", ""),
-    ],
-)
-def test_parts_of_a_section(where, expected, monkeypatch):
-    claim = make({"to": 1}, monkeypatch=monkeypatch, where=where)
-    assert wall.part(claim) == expected
-
-
-def test_every_subsection_that_is_named_is_one_of_a_claim():
+    ):
+        assert wall.part(make({"to": 1}, where=where)) == expected
     assert {wall.part(claim)[:3] for claim in ALL} >= set(wall.PARTS)
-
-
-def test_measured_at_one_window_and_said_so():
-    for text, claim in zip(tiles(wall.Tiles(ALL)._repr_markdown_()), ALL, strict=True):
-        if width := ledger_tables.window(claim):
-            assert re.search(rf"\b{width}\b", text), claim.id
 
 
 def test_signs_differ_and_lead_to_tiles():
@@ -109,10 +104,9 @@ def parts(text) -> dict[str, tuple]:
     return {name: (float(left), float(wide or 0)) for name, left, wide in found}
 
 
-def test_the_picture_of_the_draws(monkeypatch):
+def test_the_picture_of_the_draws(make):
     draws = np.linspace(0.2, 0.4, 2001)
-    claim = make({"from": 0.1, "to": 0.5}, Printed("0.30"), draws, monkeypatch=monkeypatch)
-    text = wall.draws(claim)
+    text = wall.draws(make({"from": 0.1, "to": 0.5}, draws, Printed("0.30")))
     found = parts(text)
     assert found["median"][0] == pytest.approx(50, abs=0.1)
     assert found["printed"][0] == pytest.approx(50, abs=0.1)
@@ -120,57 +114,41 @@ def test_the_picture_of_the_draws(monkeypatch):
     assert found["draws"][1] == pytest.approx(scale * 0.95 * 0.2, abs=0.2)
     assert found["band"][0] == pytest.approx(100 - sum(found["band"]), abs=0.2)
     assert "from 0.205 to 0.395, median 0.300; reproduced from 0.100 to 0.500; printed 0.30" in text
+    factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), Printed("10"))
+    assert "reproduced from 5.00 to 20.0" in wall.draws(factor)
 
 
-def test_a_band_that_is_open_fills_its_side(monkeypatch):
+def test_a_band_that_is_open_fills_its_side(make):
     draws = np.linspace(1.0, 2.0, 50)
-    text = wall.draws(make({"to": 1.5}, draws=draws, monkeypatch=monkeypatch))
+    text = wall.draws(make({"to": 1.5}, draws))
     left, width = parts(text)["band"]
     assert left == 0 and 40 < width < 60 and "reproduced up to 1.50" in text
-    text = wall.draws(make({"from": 1.5}, draws=draws, monkeypatch=monkeypatch))
-    left, width = parts(text)["band"]
-    assert left + width == pytest.approx(100, abs=0.2) and "reproduced from 1.50" in text
+    text = wall.draws(make({"from": 1.5}, draws))
+    assert sum(parts(text)["band"]) == pytest.approx(100, abs=0.2)
+    assert "reproduced from 1.50" in text
 
 
-def test_values_that_span_decades_have_a_logarithmic_scale(monkeypatch):
-    draws = np.geomspace(0.01, 100, 2001)
-    found = parts(wall.draws(make({"to": 1.0}, draws=draws, monkeypatch=monkeypatch)))
+def test_values_that_span_decades_have_a_logarithmic_scale(make):
+    found = parts(wall.draws(make({"to": 1.0}, np.geomspace(0.01, 100, 2001))))
     assert found["median"][0] == pytest.approx(50, abs=0.5)
     assert sum(found["band"]) == pytest.approx(50, abs=0.5)
 
 
-def test_a_band_by_factor(monkeypatch):
-    draws = np.linspace(9.0, 11.0, 50)
-    claim = make({"factor": 2}, Printed("10"), draws, monkeypatch=monkeypatch)
-    assert "reproduced from 5.00 to 20.0" in wall.draws(claim)
-
-
-@pytest.mark.parametrize("draws, band", [(None, {"to": 1}), ([True] * 50, {"is": True})])
-def test_no_picture_without_draws_or_range(monkeypatch, draws, band):
-    assert wall.draws(make(band, draws=draws, monkeypatch=monkeypatch)) == ""
-
-
-def test_draws_that_are_all_alike_have_a_picture(monkeypatch):
-    for value in (0.0, 3.0):
-        text = wall.draws(make({"to": value}, draws=[value] * 50, monkeypatch=monkeypatch))
+def test_no_picture_without_draws_or_range(make):
+    assert wall.draws(make({"to": 1})) == wall.draws(make({"is": True}, [True] * 50)) == ""
+    for value in (0.0, 3.0):  # draws that are all alike have one
+        text = wall.draws(make({"to": value}, [value] * 50))
         assert parts(text)["median"][0] == pytest.approx(50)
 
 
-def test_text_is_escaped(monkeypatch):
-    claim = make({"to": 1}, monkeypatch=monkeypatch)
-    assert "c &lt; d" in wall.Tiles([claim])._repr_markdown_()
-
-
-@pytest.mark.parametrize(
-    "verdict, head",
-    [
+def test_what_would_have_changed_the_verdict(make, monkeypatch):
+    for verdict, head in (
         ("reproduced", "What would have refuted it"),
         ("undecided", "What would have refuted it"),
         ("not reproduced", "What would have supported it"),
         ("by construction", "Why nothing could have refuted it"),
-    ],
-)
-def test_what_would_have_changed_the_verdict(monkeypatch, verdict, head):
-    claim = make({"to": 1}, monkeypatch=monkeypatch, verdict=verdict)
-    monkeypatch.setattr(Claim, "judge", lambda self: verdict)
-    assert f"*{head}:* r" in wall.Tiles([claim])._repr_markdown_()
+    ):
+        claim = make({"to": 1}, verdict=verdict)
+        monkeypatch.setattr(Claim, "judge", lambda self: self.verdict)
+        text = wall.Tiles([claim])._repr_markdown_()
+        assert f"*{head}:* r" in text and "c &lt; d" in text

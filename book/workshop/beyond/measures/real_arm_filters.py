@@ -1,7 +1,7 @@
-"""The filters of networks on a real arm: their names, gains and shares, beside fair nulls.
+"""The filters of networks on a real arm, their gains and shares, beside fair nulls: "real-arm".
 
-Read from the result "real-arm". These networks learnt the whole recording; the nulls learnt
-currents of the same spectra that have nothing to do with the motion. The replicates draw networks.
+These networks learnt the whole recording; the nulls learnt currents of the same spectra that have
+nothing to do with the motion. Replicates draw networks.
 """
 
 from __future__ import annotations
@@ -15,19 +15,29 @@ from ddlib.tables import significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
-NAMED = ("velocity", "acceleration", "velocity + acceleration")
-"""Classes of filters that the paper finds."""
+NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that the paper finds
 
 WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
 """Gains of a network, and what the identified model has in their place."""
 
 UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
-"""Units of these gains."""
 
 
 def row(width: int) -> dict:
     """Networks of a window on the whole recording, and on unrelated currents."""
     return results.read("real-arm")["windows"][str(width)]
+
+
+def _members(width: int, name: str) -> tuple[np.ndarray, list[np.ndarray]]:
+    """An entry of the networks, and of each kind of nulls."""
+    found = row(width)
+    return np.array(found["real"][name]), [np.array(x[name]) for x in found["nulls"].values()]
+
+
+def _gains(what: str, width: int) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """What a gain is in the identified model, in the networks, and in each kind of nulls."""
+    name, wanted = WORTH[what]
+    return np.array(row(width)["identified"][wanted]), *_members(width, name)
 
 
 def named(ensemble: dict) -> np.ndarray:
@@ -40,15 +50,7 @@ def named(ensemble: dict) -> np.ndarray:
 
 
 def excess(width: int = 21) -> Measured:
-    """Share of velocity and acceleration filters, less that on unrelated currents (judged).
-
-    Less the mean over the draws of the surrogate that gives most of them.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
+    """Share of velocity and acceleration filters, less the most that a kind of nulls gives."""
     found = row(width)
     real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
     told = "; ".join(
@@ -70,22 +72,10 @@ def _off(gains, true) -> np.ndarray:
 
 
 def calibrated(what: str = "inertia", width: int = 21) -> Measured:
-    """How far the gains of networks on a joint's own motion are from the arm's: the worst (judged).
-
-    Parameters
-    ----------
-    what : {"inertia", "friction"}
-        Gains on acceleration, or on velocity.
-    width : int
-        Window size.
-    """
-    found, (name, wanted) = row(width), WORTH[what]
-    real, true = np.array(found["real"][name]), np.array(found["identified"][wanted])
+    """How far gains on a joint's own motion are from the arm's, in the worst joint."""
+    true, real, nulls = _gains(what, width)
     typical = np.median(_off(real[:, None], true))  # of one network, as each of the nulls is
-    chance = max(
-        p_value(typical, _off(np.array(x[name])[:, None], true), "less")
-        for x in found["nulls"].values()
-    )
+    chance = max(p_value(typical, _off(x[:, None], true), "less") for x in nulls)
     pairs = zip(np.median(real, 0), true)
     told = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
     text = f"{told} {UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
@@ -99,23 +89,13 @@ def _pearson(a, b) -> np.ndarray:
 
 
 def beyond_null(what: str = "friction", width: int = 11) -> Measured:
-    """Joints at which the gain is nearer the identified value than unrelated currents bring it.
+    """At how many joints the typical gain is nearer the identified one than chance brings it.
 
-    At how many of six joints the typical network (the median of the distances of single networks)
-    is nearer than all but a twentieth of the networks on either surrogate (judged).
-
-    Parameters
-    ----------
-    what : {"inertia", "friction"}
-        Gains on acceleration, or on velocity.
-    width : int
-        Window size.
+    The typical network has the median of the distances of single networks; chance is all but a
+    twentieth of the networks of either kind of nulls.
     """
-    found, (name, wanted) = row(width), WORTH[what]
-    true = np.array(found["identified"][wanted])
-    real = np.array(found["real"][name])
-    nulls = [np.abs(np.array(x[name]) / true - 1) for x in found["nulls"].values()]
-    edge = np.min([np.percentile(x, 5, axis=0) for x in nulls], axis=0)
+    true, real, nulls = _gains(what, width)
+    edge = np.min([np.percentile(np.abs(x / true - 1), 5, axis=0) for x in nulls], axis=0)
 
     def joints(drawn):
         return (np.median(np.abs(drawn / true - 1), axis=-2) < edge).sum(-1)
@@ -131,19 +111,11 @@ def follow(what: str = "friction", width: int = 11) -> Measured:
     Both in units of the joint's own deviations, of current over those of velocity or acceleration,
     so that large motors do not count by their size. The median of single networks; by chance: the
     95th percentile of single networks of unrelated currents.
-
-    Parameters
-    ----------
-    what : {"inertia", "friction"}
-    width : int
-        Window size.
     """
-    found, (name, wanted) = row(width), WORTH[what]
-    unit = np.array(found["deviations"][name])
-    true = np.array(found["identified"][wanted]) * unit
-    real = np.array(found["real"][name]) * unit
-    nulls = [_pearson(np.array(x[name]) * unit, true) for x in found["nulls"].values()]
-    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    unit = np.array(row(width)["deviations"][WORTH[what][0]])
+    true, real, nulls = _gains(what, width)
+    true, real = true * unit, real * unit
+    chance = max(float(np.percentile(_pearson(x * unit, true), 95)) for x in nulls)
     r = np.median(_pearson(real, true))
     return judged(
         lambda drawn: np.median(_pearson(drawn, true), axis=-1) - chance,
@@ -153,21 +125,12 @@ def follow(what: str = "friction", width: int = 11) -> Measured:
 
 
 def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
-    """Joints whose own filter follows a quantity more than on unrelated currents (judged).
+    """At how many joints the own filter follows a quantity more than on unrelated currents.
 
     Of the direct weights from a joint to its own motor: what the quantity explains of the filter's
-    output, and position and the other one do not. More than 19 of 20 networks on either surrogate;
-    how many of six joints.
-
-    Parameters
-    ----------
-    what : {"velocity", "acceleration"}
-    width : int
-        Window size.
+    output, and position and the other one do not. More than 19 of 20 networks of either null.
     """
-    found, name = row(width), f"unique {what}"
-    real = np.array(found["real"][name])
-    nulls = [np.array(x[name]) for x in found["nulls"].values()]
+    real, nulls = _members(width, f"unique {what}")
     edge = np.max([np.percentile(x, 95, axis=0) for x in nulls], axis=0)
     pairs = zip(np.median(real, 0), edge)
     told = ", ".join(f"{100 * a:.0f} ({100 * b:.0f})" for a, b in pairs)
@@ -179,41 +142,25 @@ def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
 
 
 def shares_follow(width: int = 21) -> Measured:
-    """Correlation over six joints of velocity's share in a filter and friction's in the current.
-
-    The filters are the direct weights from each joint to its own motor.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
-    found, name = row(width), "share of velocity"
-    true, real = np.array(found["friction"]), np.array(found["real"][name])
+    """Correlation over joints of velocity's share in the own filter and friction's in current."""
+    true, (real, nulls) = np.array(row(width)["friction"]), _members(width, "share of velocity")
     r = float(_pearson(np.median(real, 0), true))
     typical = np.median(_pearson(real, true))  # of one network, as each of the nulls is
-    chance = [p_value(typical, _pearson(np.array(x[name]), true), "more")
-              for x in found["nulls"].values()]  # fmt: skip
-    text = f"r {r:.2f}; as high by chance: p {max(chance):.2f}"
+    chance = max(p_value(typical, _pearson(x, true), "more") for x in nulls)
+    text = f"r {r:.2f}; as high by chance: p {chance:.2f}"
     return judged(lambda drawn: _pearson(np.median(drawn, axis=-2), true), real, text=text)
 
 
 def compensate_friction(width: int = 21) -> Measured:
-    """Share of the hidden units' non-linear part that friction and rigid body explain (judged).
+    """Share of the hidden units' non-linear part that friction and rigid body explain.
 
-    Median of six outputs; least squares takes out what is linear in the window.
-
-    Told beside it: what single networks of unrelated currents reach, in the same median.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
+    Median of six outputs, beside it what single networks of unrelated currents reach; least squares
+    takes out what is linear in the window.
     """
-    cells = row(width)
-    found = np.array(cells["curved"])
-    told = ", ".join(significant(x, 2) for x in np.median(found, 0))
-    nulls = [np.median(x["curved"], axis=-1) for x in cells["nulls"].values()]
+    found = row(width)
+    curved = np.array(found["curved"])
+    told = ", ".join(significant(x, 2) for x in np.median(curved, 0))
+    nulls = [np.median(x["curved"], axis=-1) for x in found["nulls"].values()]
     chance = max(float(np.percentile(x, 95)) for x in nulls)
     text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
-    return judged(median, found, text=text)
+    return judged(median, curved, text=text)

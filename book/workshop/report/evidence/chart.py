@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
 
-LOOKS = (
+_LOOKS = (
     {"color": COLOURS[2]},
     {"color": COLOURS[0], "alpha": 0.75},
     {"color": COLOURS[1]},
@@ -18,7 +18,7 @@ LOOKS = (
 )
 """How a bar's parts look, in the order of the verdicts."""
 
-DIGIT = 5.4
+_DIGIT = 5.4
 """Width of a digit in a bar, points."""
 
 
@@ -26,11 +26,6 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
     """Verdicts by section: one bar each below its title, a part for every verdict.
 
     A part has its number in it, unless it is too narrow to hold that.
-
-    Parameters
-    ----------
-    counts : mapping
-        ``{section: {verdict: number}}``, up to six verdicts, the same for each section.
     """
     if not counts:
         raise ValueError("counts must hold one section or more, got none")
@@ -42,10 +37,10 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         places = range(len(counts))
         most = max(sum(row.values()) for row in counts.values())
         room = (72 * figure.get_figwidth() - 24) / (1.05 * most)  # points for each claim
-        for name, look in zip(names, LOOKS):
+        for name, look in zip(names, _LOOKS):
             numbers = [row[name] for row in counts.values()]
             bars = axis.barh(places, numbers, left=starts, height=0.5, label=name, **look)
-            fits = [number * room > DIGIT * len(str(number)) + 1 for number in numbers]
+            fits = [number * room > _DIGIT * len(str(number)) + 1 for number in numbers]
             words = [str(number) if number and fit else "" for number, fit in zip(numbers, fits)]
             axis.bar_label(bars, words, label_type="center", color=INK, size=8.5)
             starts = [a + b for a, b in zip(starts, numbers)]

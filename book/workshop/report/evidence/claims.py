@@ -16,8 +16,9 @@ An entry has these fields:
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
     The printed value: a number, or text such as "by eye"; `OWN` for what this book claims itself.
-``measure``, ``with``
-    A function of `workshop.report.measures` as "module.function", and its keyword arguments.
+``measure`` or ``find``, ``with``
+    A function of `workshop.report.measures` as "module.function", and its keyword arguments; or an
+    expression of `workshop.report.evidence.expressions`, and what its placeholders stand for.
 ``band``, ``loose``
     What makes the claim "reproduced", and what still makes it "qualitative": ``{factor: 1.5}``
     (of the printed number), ``{from: 0.9}``, ``{to: 2}``, both, or ``{is: true}``. Without
@@ -32,7 +33,10 @@ An entry has these fields:
 ``refuted``
     One sentence, by the verdict: the outcome that would have made it "not reproduced"; for a claim
     that is, the outcome that would have made it better; why there is none, if by construction;
-    what a test would need, if not testable. An outcome is a noun with what belongs to it.
+    what a test would need, if not testable. An outcome is a noun with what belongs to it. Most
+    are ``{says: "An error of more than {}.", above: 0.5, as: half}``: a measured value ``above``
+    or ``below`` a bound, ``within`` or ``outside`` a factor of the printed number; the braces hold
+    the bound, or the words ``as`` which it is told.
 """
 
 from __future__ import annotations
@@ -52,7 +56,9 @@ import numpy as np
 import yaml
 
 from ddlib._check import one_of
+from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
+from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
 
 FILE = BOOK / "claims.yml"
@@ -63,7 +69,8 @@ LEDGER = "ledger"
 
 SHARED = "DDLIB_MEASURED"
 """Environment variable with a folder in which notebooks that are built together share what they
-measured. Who sets it takes a new folder for other code or results."""
+measured: each runs in a process of its own, which an argument does not reach. Who sets it takes a
+new folder for other code or results."""
 
 OWN = "not in the paper"
 """As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
@@ -106,11 +113,13 @@ class Claim:
     why: str
     refuted: str
     measure: str = ""
+    find: Mapping = field(default_factory=dict)
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
     arm: str = ""
     again: str = ""
+    outcome: Mapping = field(default_factory=dict)  # side and bound in `refuted`, if it has any
 
     def __post_init__(self):
         for name in ("id", "where", "chapter", "claim", "why", "refuted"):
@@ -120,10 +129,12 @@ class Claim:
         self.place()
         one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
         testable = self.verdict != "not testable"
-        if testable != bool(self.band) or (testable and not self.measure):
+        if testable != bool(self.band) or (testable and not self.is_measured):
             raise ValueError(
                 f"claim {self.id!r} must have measure and band, or be 'not testable' without band"
             )
+        if self.measure and self.find:
+            raise ValueError(f"claim {self.id!r} must have measure or find, not both")
         if self.loose and self.verdict in ("by construction", "not testable"):
             raise ValueError(f"claim {self.id!r} is {self.verdict}: it must not have loose")
         if self.again and not self.arm:
@@ -132,6 +143,20 @@ class Claim:
             )
         for bounds in (self.band, self.loose):
             self._check_band(bounds)
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether anything measures it."""
+        return bool(self.measure or self.find)
+
+    def but_for_reading(self) -> tuple[str, str]:
+        """What measures it without the argument ``setup``, and that: a reading of the controller.
+
+        Claims that agree in the first are one sentence. Without ``setup`` it is state feedback.
+        """
+        rest = {name: value for name, value in self.arguments.items() if name != "setup"}
+        key = json.dumps([self.measure, self.find, rest], sort_keys=True)
+        return key, self.arguments.get("setup", STATE_FEEDBACK.name)
 
     def _check_band(self, bounds):
         kinds = set(bounds)
@@ -151,11 +176,6 @@ class Claim:
 
         What comes first in ``where`` counts. Tables and figures come after their section's
         text, whose subsections come in order: sort by this.
-
-        Raises
-        ------
-        ValueError
-            If ``where`` names none of the paper's parts.
         """
         found = _PLACE.search(self.where)
         if found is None:
@@ -170,30 +190,22 @@ class Claim:
         return found["section"], int(found["part"] or 0), 0
 
     def measured(self) -> Measured:
-        """What we find, by the claim's measuring function.
-
-        Raises
-        ------
-        ValueError
-            If the claim is not testable.
-        MeasureError
-            If its function is missing, fails, or returns what cannot be judged.
-        """
-        if not self.measure:
+        """What we find, by the claim's measuring function or expression."""
+        if not self.is_measured:
             raise ValueError(f"claim {self.id!r} is not testable: it has no measure")
         try:
-            return _measured(self.measure, json.dumps(dict(self.arguments), sort_keys=True))
+            return _measured(json.dumps([self.measure, self.find, self.arguments]))
         except Exception as error:
             given = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
             raise MeasureError(
-                f"claim {self.id!r} could not be measured by {self.measure}({given}): "
+                f"claim {self.id!r} could not be measured by {self.measure or 'find'}({given}): "
                 f"{type(error).__name__}: {error}"
             ) from error
 
     def judge(self) -> str:
         """The verdict: the written one while it stands, else what the measurement gives.
 
-        Whether it stands: `workshop.report.evidence.verdicts`. Without replicates it has to be `fresh`.
+        Whether it stands: see `verdicts`. Without replicates it has to be `fresh`.
         """
         if not self.band:
             return "not testable"
@@ -243,12 +255,10 @@ class Claim:
 
 
 @cache
-def _measured(measure: str, arguments: str) -> Measured:
+def _measured(way: str) -> Measured:
     """`_measure`, once in a process, and once in all that share the folder `SHARED` names."""
     folder = os.environ.get(SHARED)
-    if not folder:
-        return _measure(measure, arguments)
-    return joblib.Memory(folder, verbose=0).cache(_measure)(measure, arguments)
+    return joblib.Memory(folder, verbose=0).cache(_measure)(way) if folder else _measure(way)
 
 
 def function(measure: str) -> Callable:
@@ -258,8 +268,10 @@ def function(measure: str) -> Callable:
     return getattr(importlib.import_module(f"workshop.{room}.measures.{module}"), name)
 
 
-def _measure(measure: str, arguments: str) -> Measured:
-    result = function(measure)(**json.loads(arguments))
+def _measure(way: str) -> Measured:
+    """What a function of some name or an expression finds with some arguments."""
+    measure, expression, arguments = json.loads(way)
+    result = function(measure)(**arguments) if measure else find(expression, arguments)
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()
@@ -286,15 +298,15 @@ _TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
 
 def load(path: Path = FILE) -> list[Claim]:
-    """All claims, in the order of the file.
-
-    Raises
-    ------
-    ValueError
-        If an entry has unknown or missing fields, an id twice, or repeats a claim that is not
-        there.
-    """
+    """All claims, in the order of the file."""
     return list(_parsed(path.read_text(encoding="utf-8")))
+
+
+def _sentence(says: str, **outcome) -> tuple[str, dict]:
+    """What would refute a claim in words, and as sides and bounds of the measured value."""
+    words = outcome.pop("as", None)
+    told = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
+    return says.format(*told), outcome
 
 
 @lru_cache(maxsize=4)
@@ -307,6 +319,8 @@ def _parsed(text: str) -> tuple[Claim, ...]:
         if isinstance(entry.get("printed"), float):
             entry["printed"] = Printed(plain["printed"])
         try:
+            if isinstance(entry.get("refuted"), dict):
+                entry["refuted"], entry["outcome"] = _sentence(**entry["refuted"])
             claim = Claim(**entry)
         except TypeError as error:
             raise ValueError(
@@ -322,19 +336,21 @@ def _parsed(text: str) -> tuple[Claim, ...]:
     return tuple(claims)
 
 
+def measured(id: str) -> Measured:
+    """What we find for one claim, for a page that quotes it."""
+    by_id = {claim.id: claim for claim in load()}
+    if id not in by_id:
+        raise ValueError(f"id must be of a claim in {FILE.name}, got {id!r}")
+    return by_id[id].measured()
+
+
 def of_the_paper() -> list[Claim]:
     """All claims but this book's own and those that are judged again on another arm."""
     return [claim for claim in load() if claim.printed != OWN and not claim.arm]
 
 
 def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
-    """Sentences of the paper that are judged twice: the first claim and the one on another arm.
-
-    Parameters
-    ----------
-    arm : str
-        As in the field ``arm``, like "a real arm".
-    """
+    """Sentences of the paper that are judged twice: the first claim and the one on another arm."""
     first = {claim.id: claim for claim in load()}
     return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
 
@@ -348,34 +364,19 @@ def of_chapter(chapter: str) -> list[Claim]:
 
 
 def printed(claim: Claim) -> str:
-    """What the paper prints, for a table.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """What the paper prints, for a table."""
     if isinstance(claim.printed, (str, Printed)):
         return getattr(claim.printed, "text", claim.printed)
     return f"{claim.printed:,g}"
 
 
 def here(claim: Claim) -> str:
-    """What we find, for a table.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
-    return claim.measured().text if claim.measure else "–"
+    """What we find, for a table."""
+    return claim.measured().text if claim.is_measured else "–"
 
 
 def sure(claim: Claim) -> str:
-    """The verdict, and in which share of the draws it comes out where that was found.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """The verdict, and in which share of the draws it comes out where that was found."""
     verdict, found = claim.judge(), claim.shares()
     if not found:
         return verdict
@@ -386,12 +387,6 @@ def sure(claim: Claim) -> str:
 
 
 def of_section(section: str) -> list[Claim]:
-    """The claims of a section of the paper, in the paper's order.
-
-    Parameters
-    ----------
-    section : str
-        Key of `SECTIONS`: "0" for the abstract, "1" to "7", "8" for Appendix I.
-    """
+    """The claims of a section of the paper, in the paper's order."""
     one_of("section", section, tuple(SECTIONS))
     return sorted((c for c in of_the_paper() if c.place()[0] == section), key=Claim.place)

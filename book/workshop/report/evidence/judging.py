@@ -1,7 +1,7 @@
 """Both verdicts of every claim: the written one, and the one its measurement gives by itself.
 
-``python -m workshop.report.evidence.judging`` lists them; with ``--write`` it also keeps the fresh verdicts
-beside the results from which they follow, in ``book/results/verdicts.json``. Whoever commits
+In ``book``, ``python -m workshop.report.evidence.judging`` lists them; with ``--write`` it also keeps
+the fresh verdicts beside the results from which they follow, in ``book/results/verdicts.json``. Whoever commits
 other results or bands writes them anew, and then each written verdict has to be the fresh one.
 Results made on another machine are other draws: there it has to stand
 (`workshop.report.evidence.verdicts`).
@@ -22,12 +22,7 @@ NAME = "verdicts"
 
 
 def distance(claim: Claim) -> float:
-    """Relative distance of the value from the nearest edge of its bands; NaN if it has none.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """Relative distance of the value from the nearest edge of its bands; NaN if it has none."""
     value, edges = float(claim.measured().value), claim.edges()
     return min((abs(value - e) / max(abs(e), 1e-300) for e in edges), default=math.nan)
 
@@ -50,10 +45,6 @@ def line(claim: Claim) -> str:
     Id, value, relative distance from the nearest edge, shares of the draws, fresh verdict,
     written verdict, and "CONTRADICTED" if the written one does not stand, "stands" if it does
     though the fresh one differs.
-
-    Parameters
-    ----------
-    claim : Claim
     """
     fresh = claim.fresh()
     note = "stands" if fresh != claim.verdict else ""

@@ -27,10 +27,10 @@ QUESTIONS = FILE.with_name("questions.yml")
 FIELDS = ("where", "printed", "wrong", "here")
 """Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does."""
 
-FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
+_FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
 """Unit named inside a figure, window by the text of section 5.1, window by the caption."""
 
-SETS = ("random set A", "random set B", "trajectory 6")
+_SETS = ("random set A", "random set B", "trajectory 6")
 """The data sets of Table 6-1."""
 
 
@@ -38,34 +38,13 @@ def unit_fits(unit: int, width: int) -> bool:
     """Whether a unit of this number is a hidden or an output unit of a window network.
 
     Inputs are numbered first, from 0 or from 1.
-
-    Parameters
-    ----------
-    unit, width : int
-        Number of the unit; window size.
     """
     inputs, others = 2 * width, paper.HIDDEN_UNITS + 2
     return inputs < unit <= inputs + others
 
 
 def errata(path: Path = FILE) -> Table:
-    """Where the paper contradicts itself, a formula or arithmetic; what is computable is computed.
-
-    Parameters
-    ----------
-    path : path
-        The errata: a list of entries with the `FIELDS`.
-
-    Returns
-    -------
-    Table
-        Place, what is printed, what is wrong or unclear, what this book does.
-
-    Raises
-    ------
-    ValueError
-        If an entry has unknown or missing fields, one that is no text, or an unknown ``$name``.
-    """
+    """Where the paper contradicts itself, a formula or arithmetic, computed where it can be."""
     rows = _filled("erratum", FIELDS, path, computed())
     return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
 
@@ -99,7 +78,7 @@ def computed() -> dict[str, str]:
         f"unit {unit} of Figure {figure} is "
         f"{'no input' if unit_fits(unit, text) else 'an input'} at {text} and "
         f"{'no input' if unit_fits(unit, caption) else 'an input'} at {caption}"
-        for figure, (unit, text, caption) in FIGURE_UNITS.items()
+        for figure, (unit, text, caption) in _FIGURE_UNITS.items()
     )
     return {
         "rate": f"{1 / 1.2e-3:.0f}",
@@ -119,14 +98,7 @@ def computed() -> dict[str, str]:
 
 
 def open_questions() -> Table:
-    """What the questions that the paper leaves open decide, from the committed results.
-
-    Returns
-    -------
-    Table
-        Question, decision, errors as decided, errors otherwise. Both sides of a row have
-        the same number of networks.
-    """
+    """What the questions that the paper leaves open decide, from the committed results."""
     fields = ("question", "decision", "decided", "otherwise")
     rows = _filled("question", fields, QUESTIONS, {**_table_4_1(), **_table_6_1()})
     header = ("question", "decision", "as decided", "otherwise")
@@ -204,12 +176,12 @@ def _table_6_1() -> dict[str, str]:
     first, *choices = results.read("state-space-choices")["rows"]
 
     def sets(errors, deviation="own deviation"):
-        return _triple([errors[name][deviation] for name in SETS])
+        return _triple([errors[name][deviation] for name in _SETS])
 
     def options(row):
         return f"step {row['rate']:g}, momentum {row['momentum']:g}, initial ±{row['initial']:g}"
 
-    drawn = [[np.median(d["errors"][s]["own deviation"]) for d in table["draws"]] for s in SETS]
+    drawn = [[np.median(d["errors"][s]["own deviation"]) for d in table["draws"]] for s in _SETS]
     return {
         "options": options(first),
         "chosen": sets(first["errors"]),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import json
 import re
 from collections.abc import Iterable, Mapping
 
@@ -63,16 +62,6 @@ def chosen(ids: Iterable[str]) -> Table:
     """Some claims: claim and its chapter, printed value, ours, verdict, reason.
 
     The verdict comes with the share of the draws in which it comes out.
-
-    Parameters
-    ----------
-    ids : iterable of str
-        Of claims, in the order of the rows.
-
-    Raises
-    ------
-    ValueError
-        If there is no claim of that name.
     """
     known = {claim.id: claim for claim in load()}
     header = ("claim", "printed", "here", "verdict", "why")
@@ -84,18 +73,7 @@ def chosen(ids: Iterable[str]) -> Table:
 
 
 def again_table(arm: str) -> Table:
-    """Sentences that are judged again on another arm: both verdicts side by side.
-
-    Parameters
-    ----------
-    arm : str
-        As in the field ``arm`` of a claim, like "a real arm".
-
-    Raises
-    ------
-    ValueError
-        If no claim is judged there.
-    """
+    """Sentences that are judged again on another arm: both verdicts side by side."""
     pairs = judged_again(arm)
     if not pairs:
         raise ValueError(f"arm must be named by claims, got {arm!r}")
@@ -116,26 +94,16 @@ def _here(claim: Claim) -> str:
 
 
 def window(claim: Claim) -> int | None:
-    """The one window size that a claim is measured at; None if there is none or there are several.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """The window size that a claim is measured at; None if there is none or there are several."""
     if not claim.measure:
-        return None
+        return claim.arguments.get("width")
     given = inspect.signature(function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
 
 
 def left_out(claims: Iterable[Claim]) -> Table:
-    """Claims that are not testable: why, what a test would need, where the verdict would turn.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-    """
+    """Claims that are not testable: why, what a test would need, where the verdict would turn."""
     rows = [
         (c.where, c.claim, c.why, c.refuted, here(c))
         for c in sorted(claims, key=Claim.place)
@@ -150,12 +118,7 @@ def _judged(claim: Claim) -> str:
 
 
 def bands(claim: Claim) -> str:
-    """The value that is judged and what decides the verdict, in words.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """The value that is judged and what decides the verdict, in words."""
     if not claim.band:
         return "not judged"
     value = claim.measured().value
@@ -185,24 +148,13 @@ def _linked(claim: Claim) -> str:
 
 
 def page_of(claim: Claim) -> str:
-    """The file of the page that deals with a claim, beside the others; empty if there is none.
-
-    Parameters
-    ----------
-    claim : Claim
-    """
+    """The file of the page that deals with a claim, beside the others; empty if there is none."""
     names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
     return next((name for name in names if FILE.with_name(name).is_file()), "")
 
 
 def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
-    """How many claims of each section of the paper have which verdict.
-
-    Returns
-    -------
-    dict
-        ``{title of the section: {verdict: number}}``, sections without claims left out.
-    """
+    """How many claims of each section of the paper have which verdict."""
     found: dict[str, dict[str, int]] = {}
     for claim in sorted(claims, key=Claim.place):
         row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
@@ -222,24 +174,12 @@ def readings(claims: Iterable[Claim]) -> dict[str, tuple[int, dict[str, int]]]:
 
     They have the same measure and arguments but for the argument ``setup``; without it the
     reading is state feedback. Joint damping counts where it is judged by all of them, too.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-
-    Returns
-    -------
-    dict
-        For "table" (Table 4-1) and "figures" (those of section 5): the number of claims, and
-        of the reproduced ones for each name of a reading.
     """
     verdicts = {"table": {}, "figures": {}}
     for claim in claims:
         kinds = [k for k, place in _SHOWN.items() if claim.where.startswith(place)]
         for kind in kinds:
-            rest = {k: v for k, v in claim.arguments.items() if k != "setup"}
-            key = (claim.measure, json.dumps(rest, sort_keys=True))
-            setup = claim.arguments.get("setup", STATE_FEEDBACK.name)
+            key, setup = claim.but_for_reading()
             verdicts[kind].setdefault(key, {})[setup] = claim.verdict
     found = {}
     for kind, cells in verdicts.items():

@@ -7,7 +7,7 @@ its value, from a bootstrap over the networks, and its verdict is what most repl
 - The *fresh* verdict is the one that at least `DECIDED` of the replicates get, and "undecided"
   if none has so many.
 - The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
-  (`workshop.report.evidence.judging`). Results made anew on another machine are another draw; there it
+  (`judging`). Results made anew on another machine are another draw; there it
   *stands* until the replicates contradict it: a decided one while at least `STANDS` of them agree,
   "undecided" while no verdict has `CONTRADICTS`.
 
@@ -53,17 +53,7 @@ CONTRADICTS = 1.0
 
 
 class Measured(NamedTuple):
-    """What a measuring function returns.
-
-    Attributes
-    ----------
-    value : float or bool
-        What the bands judge; a median, if there are many.
-    text : str
-        What the tables show, spread included.
-    replicates : ndarray, shape (draws,), optional
-        The value in each draw of a bootstrap over networks or other independent parts.
-    """
+    """What a measuring function returns."""
 
     value: float | bool
     text: str
@@ -139,42 +129,22 @@ def _picked(cells, pick: Callable, rng=None) -> list:
 
 
 def median(cell) -> np.ndarray:
-    """Median over all members and all that is theirs, one for each draw.
-
-    Parameters
-    ----------
-    cell : ndarray, shape (draws, members, ...)
-        As a statistic of `bootstrap` gets it.
-    """
+    """Median over all members and all that is theirs, one for each draw."""
     return np.median(cell.reshape(len(cell), -1), axis=-1)
 
 
 def mean(cell) -> np.ndarray:
-    """Mean over all members and all that is theirs, one for each draw.
-
-    Parameters
-    ----------
-    cell : ndarray, shape (draws, members, ...)
-        As a statistic of `bootstrap` gets it.
-    """
+    """Mean over all members and all that is theirs, one for each draw."""
     return cell.reshape(len(cell), -1).mean(-1)
 
 
-def over_members(statistic: Callable, *cells, nested: bool = False) -> tuple[float, np.ndarray]:
-    """A statistic of all members, and its replicates from `bootstrap`.
+def rank_correlation(first, second) -> np.ndarray:
+    """Spearman's rank correlation along the last axis."""
+    from scipy.stats import rankdata  # takes half a second; every page imports this module
 
-    Parameters
-    ----------
-    statistic, *cells, nested
-        As in `bootstrap`.
-
-    Returns
-    -------
-    value : float
-    replicates : ndarray, shape (draws,)
-    """
-    once = _picked(cells, lambda n: np.arange(n)[None])
-    return float(np.asarray(statistic(*once))[0]), bootstrap(statistic, *cells, nested=nested)
+    a, b = (rankdata(x, axis=-1) for x in (first, second))  # those drawn twice share a mean rank
+    a, b = (x - x.mean(-1, keepdims=True) for x in (a, b))
+    return (a * b).sum(-1) / np.sqrt((a**2).sum(-1) * (b**2).sum(-1))
 
 
 def judged(
@@ -189,56 +159,32 @@ def judged(
     text : str or callable
         What the tables show, or ``text(value)`` that returns it.
     """
-    value, replicates = over_members(statistic, *cells, nested=nested)
+    once = _picked(cells, lambda n: np.arange(n)[None])
+    value = float(np.asarray(statistic(*once))[0])
+    replicates = bootstrap(statistic, *cells, nested=nested)
     return Measured(value, text(value) if callable(text) else text, replicates)
 
 
 def largest_median(*cells) -> np.ndarray:
-    """The largest of the medians of some cells, one for each draw.
-
-    Parameters
-    ----------
-    *cells : ndarray, shape (draws, members, ...)
-        As a statistic of `bootstrap` gets them.
-    """
+    """The largest of the medians of some cells, one for each draw."""
     return np.max([median(cell) for cell in cells], axis=0)
 
 
 def shares(verdicts) -> dict[str, float]:
-    """Share of the draws in which each verdict comes out, the most frequent first.
-
-    Parameters
-    ----------
-    verdicts : array_like of str, shape (draws,)
-        The verdict of each draw.
-    """
+    """Share of the draws in which each verdict comes out, the most frequent first."""
     names, counts = np.unique(verdicts, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return {str(names[k]): float(counts[k] / counts.sum()) for k in order}
 
 
 def fresh(found: Mapping[str, float]) -> str:
-    """The verdict that shares of draws give by themselves; "undecided" if none is decided.
-
-    Parameters
-    ----------
-    found : mapping
-        As from `shares`.
-    """
+    """The verdict that shares of draws give by themselves; "undecided" if none is decided."""
     best = max(found, key=found.get)
     return best if found[best] >= DECIDED else "undecided"
 
 
 def stands(written: str, found: Mapping[str, float]) -> bool:
-    """Whether shares of draws do not contradict a written verdict; see the module.
-
-    Parameters
-    ----------
-    written : str
-        One of `VERDICTS`.
-    found : mapping
-        As from `shares`.
-    """
+    """Whether shares of draws do not contradict a written verdict; see the module."""
     one_of("written", written, VERDICTS)
     if written == "undecided":
         return max(found.values()) < CONTRADICTS
@@ -246,22 +192,7 @@ def stands(written: str, found: Mapping[str, float]) -> bool:
 
 
 def turns_at(values, shares, level: float) -> float:
-    """Value of an assumed parameter at which a claim would turn, from a few that were tried.
-
-    Parameters
-    ----------
-    values : array_like, shape (n,)
-        Values tried, positive.
-    shares : array_like, shape (n,)
-        What the claim would be judged by at each, positive.
-    level : float
-        Where the verdict turns. Between the values both go linearly on logarithmic scales.
-
-    Raises
-    ------
-    ValueError
-        If the shares do not reach from below the level to above it.
-    """
+    """Value of an assumed parameter at which a claim would turn, from a few that were tried."""
     order = np.argsort(shares)
     tried, found = (np.log(np.asarray(x, dtype=float)[order]) for x in (values, shares))
     if not found[0] <= np.log(level) <= found[-1]:

@@ -26,6 +26,7 @@ from workshop.report.evidence.claims import (
     printed,
     sure,
 )
+from workshop.report.evidence.expressions import find
 from workshop.report.evidence.ledger_tables import HEADS, bands, page_of, window
 from workshop.report.evidence.verdicts import VERDICTS
 
@@ -49,7 +50,7 @@ PARTS = {
 }
 """Titles of the paper's subsections."""
 
-MIDDLE = (0.025, 0.5, 0.975)
+_MIDDLE = (0.025, 0.5, 0.975)
 """Quantiles of the draws that a tile's picture shows."""
 
 _TABLE = 10  # a table's place among subsections
@@ -64,12 +65,7 @@ def mark(verdict: str) -> str:
 
 @dataclass(frozen=True)
 class Wall:
-    """One small square for every claim, section by section: its verdict's sign and colour.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-    """
+    """One small square for every claim, section by section: its verdict's sign and colour."""
 
     claims: Iterable[Claim]
 
@@ -92,15 +88,7 @@ class Wall:
 
 @dataclass(frozen=True)
 class Tiles:
-    """Claims to open: sentence and verdict outside; value, picture, bands and reasons inside.
-
-    Parameters
-    ----------
-    claims : iterable of Claim
-        In the order in which they are shown.
-    on : str
-        The page on which they are shown: those of a chapter link to the ledger.
-    """
+    """Claims to open: sentence and verdict outside; value, picture, bands and reasons inside."""
 
     claims: Iterable[Claim]
     on: str = LEDGER
@@ -113,13 +101,7 @@ class Tiles:
 
 
 def chapter_tiles(chapter: str) -> Tiles:
-    """A chapter's "Paper and reproduction": its claims as `Tiles`.
-
-    Parameters
-    ----------
-    chapter : str
-        Name of the page, like "window-networks".
-    """
+    """A chapter's "Paper and reproduction": its claims as `Tiles`."""
     return Tiles(of_chapter(chapter), chapter)
 
 
@@ -133,17 +115,7 @@ def _text(text: str) -> str:
 
 
 def part(claim: Claim) -> str:
-    """The subsection, table or figure in which a claim stands; empty for its section's own text.
-
-    Parameters
-    ----------
-    claim : Claim
-
-    Returns
-    -------
-    str
-        Like "7.1. Future Work" or "Table 4-1".
-    """
+    """The subsection, table or figure in which a claim stands; empty for its section's own text."""
     section, below, number = claim.place()
     if number:
         return f"{'Table' if below == _TABLE else 'Figure'} {section}-{number}"
@@ -197,35 +169,25 @@ def _links(claim: Claim, on: str) -> str:
         links.append(f"[chapter]({page})")
     if on != LEDGER and claim.printed != OWN and not claim.arm:
         links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
-    if claim.measure:
+    if claim.is_measured:
         links.append(f'<a href="{source(claim)}">code</a>')
     return " · ".join(links)
 
 
 def source(claim: Claim) -> str:
     """Address of the lines that measure a claim, from the page of a chapter."""
-    measure = inspect.unwrap(function(claim.measure))
+    measure = inspect.unwrap(function(claim.measure) if claim.measure else find)
     return f"{CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
 def draws(claim: Claim) -> str:
-    """A claim's draws as a small picture: 95 % of them, their median, the band, the printed value.
-
-    Parameters
-    ----------
-    claim : Claim
-
-    Returns
-    -------
-    str
-        HTML; empty where there are no draws, or the band is no range.
-    """
+    """A claim's draws in a small picture: 95 % of them, their median, band and printed value."""
     if not claim.band or "is" in claim.band:
         return ""
     replicates = claim.measured().replicates
     if replicates is None:
         return ""
-    low, median, high = np.quantile(np.asarray(replicates, float), MIDDLE)
+    low, median, high = np.quantile(np.asarray(replicates, float), _MIDDLE)
     band = _range(claim)
     given = float(claim.printed) if isinstance(claim.printed, Printed) else None
     place, ends = _scale([low, high, *filter(np.isfinite, band), *([given] if given else [])])

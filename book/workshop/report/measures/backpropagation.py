@@ -11,7 +11,7 @@ from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork
 from ddlib.setups import STATE_FEEDBACK, WINDOWS
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, parity_networks, results
-from workshop.report.evidence.verdicts import Measured, judged, median, over_members
+from workshop.report.evidence.verdicts import Measured, judged, median
 
 LEVEL = 0.75
 """Training RMSS to which runs with and without acceleration are timed."""
@@ -49,19 +49,7 @@ def chain_rule() -> Measured:
 
 
 def reach(history: History, level: float = LEVEL) -> np.ndarray:
-    """Epochs after which each member's training error first falls below a level.
-
-    Parameters
-    ----------
-    history : History
-    level : float
-        RMSS.
-
-    Returns
-    -------
-    ndarray, shape (members,)
-        Interpolated between the noted epochs; infinite if it never does.
-    """
+    """Epochs after which each member's training error first falls below a level."""
     found = []
     for error in history.training.T:
         below = np.flatnonzero(error < level)
@@ -102,13 +90,6 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
 
     The task is parity of a few bits, so that neighbours in every direction differ, with
     Gaussian noise on the inputs of training and test. Best possible: the nearest corner.
-
-    Parameters
-    ----------
-    bits : int
-        Number of inputs.
-    noise : float
-        Standard deviation; the corners are 1 apart.
     """
     x, y = parity_networks.parity_cases(bits)
     rng = np.random.default_rng(0)
@@ -132,15 +113,7 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
 
 
 def polynomial(coding: str = "bits", most: int = 10) -> Measured:
-    """Growth of the number of coefficients of parity as a polynomial, in doublings per bit.
-
-    Parameters
-    ----------
-    coding : {"bits", "signs"}
-        How the inputs are written.
-    most : int
-        Largest number of bits.
-    """
+    """Growth of the number of coefficients of parity as a polynomial, in doublings per bit."""
     bits = np.arange(2, most + 1)
     counts = [
         np.count_nonzero(
@@ -153,17 +126,7 @@ def polynomial(coding: str = "bits", most: int = 10) -> Measured:
 
 
 def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> Measured:
-    """Growth of a network's coefficients beyond ``n log2 n``, from few bits to many.
-
-    Parameters
-    ----------
-    name : str
-        One of `workshop.report.parity_networks.NETWORKS`.
-    most : int
-        Up to this length all inputs are checked; an error is raised if one is wrong.
-    large : int
-        Length to which the count is followed, checked there for every number of bits on.
-    """
+    """Growth of a network's coefficients beyond ``n log2 n``, from few bits to many."""
     make = parity_networks.NETWORKS[name]
     for n in range(2, most + 1):
         x = parity_networks.patterns(n)
@@ -182,11 +145,6 @@ def stable(widths=WINDOWS) -> Measured:
 
     The largest over windows, each the median of its networks. Two networks of each are kept:
     too few to draw from, so there are no replicates.
-
-    Parameters
-    ----------
-    widths : sequence of int
-        Window sizes.
     """
     found = {width: _late_change(width) for width in widths}
     half, last, _ = found[widths[0]]
@@ -212,11 +170,6 @@ def settling(steepest: float = 0.1) -> Measured:
     """Epochs from which on the median slope of the error stays flat, the largest over windows.
 
     The end of the longest runs if it is still steep there: then it is a lower bound.
-
-    Parameters
-    ----------
-    steepest : float
-        Flat: ``d ln(error) / d ln(epoch)`` no steeper than this, as in `History.settled`.
     """
     cells, epochs = [], []
     for record in results.read("longer")["windows"].values():
@@ -232,14 +185,14 @@ def settling(steepest: float = 0.1) -> Measured:
         last = np.where(steep.any(-1), steep.shape[-1] - 1 - steep[..., ::-1].argmax(-1), -1)
         return at[np.minimum(last + 2, len(at) - 1)], last < steep.shape[-1] - 1
 
-    value, replicates = over_members(
-        lambda *drawn: np.max([settled(at, c)[0] for at, c in zip(epochs, drawn)], axis=0), *cells
-    )
+    def latest(*drawn):
+        return np.max([settled(at, slopes)[0] for at, slopes in zip(epochs, drawn)], axis=0)
+
     words = []
     for at, slopes in zip(epochs, cells):
         (needed,), (flat,) = settled(at, slopes[None])
         words.append(f"{needed:,}" if flat else f"over {needed:,}")
-    return Measured(value, "epochs: " + ", ".join(words), replicates)
+    return judged(latest, *cells, text="epochs: " + ", ".join(words))
 
 
 # --- ddlib.learning.span: what is learnt along them
@@ -250,73 +203,10 @@ def learning(width: int, case: int) -> dict:
     return results.read("span")["cells"][len(WINDOWS) * case + WINDOWS.index(width)]
 
 
-def changes_predicted(width: int = 21, case: int = 0, by: str = "own") -> Measured:
-    """Correlation of the logarithms of predicted and measured changes along all directions.
-
-    Parameters
-    ----------
-    width, case : int
-        Window size; recording and scaling, as in the study.
-    by : str
-        What predicts: the network's "own" tangent, or that "of another" network, "of shuffled
-        torques", or squared singular values, "of the spectrum".
-    """
-    found = dict(learning(width, case)["correlation"])
-    found["own"] = np.array(found["own"])[:, -1]
-    others = ", ".join(
-        f"{significant(np.median(v), 2)} {k}" for k, v in found.items() if k != "own"
-    )
-    text = f"{spread(found[by])}" + (f"; {others}" if by == "own" else "")
-    return judged(median, found[by], text=text)
-
-
-def prediction_factor(epoch: int, width: int = 21, case: int = 0) -> Measured:
-    """Factor by which predicted and measured changes differ, median over 12 directions.
-
-    Parameters
-    ----------
-    epoch : int
-        One of the study's epochs.
-    width, case : int
-        As in `changes_predicted`.
-    """
-    row = results.read("span")["epochs"].index(epoch) - 1
-    factors = np.array(learning(width, case)["factor"])[:, row]
-    return judged(median, factors, text=f"factor {spread(factors)}")
-
-
-def prediction_off(name: str, case: int = 0) -> Measured:
-    """Factor between median predicted and median measured values, the largest of three windows.
-
-    Parameters
-    ----------
-    name : str
-        A quantity of the study: "learnt", "rmss", "roughness, trained", ...
-    case : int
-        As in `changes_predicted`.
-    """
-    cells = [learning(w, case) for w in WINDOWS]
-    pairs = [tuple(np.array(c[who][name]) for who in ("predicted", "measured")) for c in cells]
-
-    def factor(*drawn):
-        return np.exp(np.max([np.abs(np.log(median(p) / median(m))) for p, m in drawn], axis=0))
-
-    shown = zip(WINDOWS, ([significant(np.median(x), 2) for x in pair] for pair in pairs))
-    text = ", ".join(f"{p} predicted, {m} measured at {w}" for w, (p, m) in shown)
-    return judged(factor, *pairs, text=text)
-
-
 def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
     """Epoch at which some directions' parts of the error are half, over that of others.
 
     Of several directions the geometric mean counts.
-
-    Parameters
-    ----------
-    first, then : list of int
-        Directions below and above the line, 1 for the steepest.
-    width, case : int
-        As in `changes_predicted`.
     """
     cell, epochs = learning(width, case), {}
     for who in ("measured", "predicted"):
@@ -328,13 +218,7 @@ def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
 
 
 def centred(name: str = "rmss") -> Measured:
-    """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows.
-
-    Parameters
-    ----------
-    name : str
-        Quantity of the study.
-    """
+    """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows."""
     cells = [[learning(w, case) for case in (0, 1)] for w in WINDOWS]
     pairs = {
         who: [tuple(np.array(c[who][name]) for c in both) for both in cells]

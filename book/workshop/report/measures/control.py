@@ -91,13 +91,7 @@ def feedback() -> Measured:
 
 
 def disturbances(load: float = 5.0) -> Measured:
-    """How many times smaller feedback makes the error under a constant load.
-
-    Parameters
-    ----------
-    load : float
-        Torque on the shoulder, N m.
-    """
+    """How many times smaller feedback makes the error under a constant load."""
     effects = Effects(actuator=(Load((load, 0.0)),))
     with_, without = _rms(_errors([1, 1], [1, 0], effects))
     text = f"{load:g} N m on the shoulder: {significant(with_, 2)}° for "
@@ -165,11 +159,6 @@ def track(rotors, frozen, model, gains, speed: float = 1.0, extents=EXTENTS) -> 
     -------
     ndarray, shape (runs, time, 2)
         Degrees.
-
-    Raises
-    ------
-    ValueError
-        If the speed is not positive.
     """
     positive("speed", speed, 0.0, open_low=True)
     frozen = np.asarray(frozen)[:, None]
@@ -204,11 +193,6 @@ def linearised(speed: float = 2.0) -> Measured:
 
     The arm and one frozen in its stretched posture follow the same motion, with PD alone and
     with feedforward from a model that is 20 % too small.
-
-    Parameters
-    ----------
-    speed : float
-        How many times faster than in three seconds.
     """
     frozen = np.array([False, True, False, True])
 
@@ -226,13 +210,7 @@ def linearised(speed: float = 2.0) -> Measured:
 
 
 def faster(speed: float = 2.0) -> Measured:
-    """The error of PD alone over that with a model, arm with all effects, at higher speed.
-
-    Parameters
-    ----------
-    speed : float
-        How many times faster than in three seconds.
-    """
+    """The error of PD alone over that with a model, arm with all effects, at higher speed."""
     slow, fast = _real(1.0), _real(speed)
     text = f"{significant(fast[1], 2)}° with a model, {significant(fast[0], 2)}° without "
     text += f"at {speed:g} times the speed; "
@@ -253,13 +231,7 @@ def _geared(gear: float, own_model: bool, extents: tuple) -> np.ndarray:
 
 
 def backdriven(gear: float = 100.0) -> Measured:
-    """How far the moving shoulder throws the elbow off, without gears over behind gears.
-
-    Parameters
-    ----------
-    gear : float
-        Gear ratio of the other arm; its rotors are a Puma's.
-    """
+    """How far the moving shoulder throws the elbow off, without gears over behind gears."""
     direct, geared = np.abs(_geared(gear, False, tuple(APPENDIX_I[3]))[..., 1]).max(1)
     text = f"the shoulder throws a resting elbow off by {direct:.1f}°, "
     text += f"behind gears of {gear:g} to 1 by {geared:.2f}°"
@@ -267,13 +239,7 @@ def backdriven(gear: float = 100.0) -> Measured:
 
 
 def target_for_models(gear: float = 100.0) -> Measured:
-    """What a model of each joint by itself leaves of PD's error: without over behind gears.
-
-    Parameters
-    ----------
-    gear : float
-        Gear ratio of the other arm; its rotors are a Puma's.
-    """
+    """What a model of each joint by itself leaves of PD's error: without over behind gears."""
     left = [_rms(_geared(gear, own, tuple(EXTENTS))) for own in (True, False)]
     direct, geared = left[0] / left[1]
     text = f"a model without coupling leaves {100 * direct:.0f} % of PD's error, "

@@ -120,12 +120,6 @@ def extra_links(samples: int = 4000) -> Measured:
     Coupling is what a joint needs because others move: its torque less that of the same state
     with the other joints at rest. RMS over the RMS torque without gravity, random states, all
     joints equally fast; the mean over the joints that move.
-
-    Parameters
-    ----------
-    samples : int
-        Random states: angles in a whole turn, velocities and accelerations up to 1 rad/s and
-        rad/s^2.
     """
     arm = PUMA_560.first(4)
     rng = np.random.default_rng(0)
@@ -311,13 +305,7 @@ def backlash(gaps=(1e-3, 2e-3, 4e-3)) -> Measured:
 
 
 def high_frequency(softer=(0.3, 0.1)) -> Measured:
-    """Torque that a springy shaft leaves over the rigid body's, the ringing at the start included.
-
-    Parameters
-    ----------
-    softer : sequence of float
-        Parts of the assumed stiffness at which the share is told too.
-    """
+    """Torque that a springy shaft leaves over the rigid body's, ringing at the start included."""
     factors = (1, *softer)
     stiffness = np.outer(factors, SHAFT.stiffness)
     run = _drive(len(factors), transmission=(replace(SHAFT, stiffness=stiffness),))
@@ -329,14 +317,7 @@ def high_frequency(softer=(0.3, 0.1)) -> Measured:
 
 
 def dead_zone(width: float = 0.1) -> Measured:
-    """Half width of a dead zone that is significant, N m: share of the rigid body's torque.
-
-    Parameters
-    ----------
-    width : float
-        Half of an assumed zone, N m, at both joints, whose share is told too. What a zone
-        swallows of a torque is in proportion to its width.
-    """
+    """Half width of a dead zone that is significant, N m: share of the rigid body's torque."""
     tau = _ideal().tau_true[_ideal().motion]
     lost = DeadZone((width, width)).inverse(tau) - tau
     share, text = _shares(lost)
@@ -360,11 +341,6 @@ def sampling(late: float = 1.2e-3) -> Measured:
     """Multiple of the assumed viscous friction from which on late position feedback is stable.
 
     The torque is held over a control period, and late.
-
-    Parameters
-    ----------
-    late : float
-        Delay between reading and torque, s.
     """
     viscous = np.array(SETUP.effects.friction[0].coefficient)
     gain = np.hstack([np.diag(SETUP.controller.kp), np.zeros((2, 2))])

@@ -29,12 +29,7 @@ from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, predict
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed
-from workshop.report.evidence.verdicts import Measured, judged, mean, median, over_members
-
-
-def _more(trained, untrained):
-    """Mean over trained networks less the mean over the same before training."""
-    return mean(trained) - mean(untrained)
+from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
 
 
 def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
@@ -46,65 +41,36 @@ def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.n
 def of_class(
     width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
 ) -> Measured:
-    """Share of a layer's filters that `ddlib.analysis.classify` gives a name, less untrained.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    name : str
-        One of `ddlib.analysis.filters.CLASSES`.
-    layer : {"hidden", "direct"}
-        To the hidden units, or directly to the outputs.
-    setup : str
-        Which reading of the controller.
-    """
+    """Share of a layer's filters that `ddlib.analysis.classify` gives a name, less untrained."""
     trained, before = (classify(f) == name for f in _pair(width, layer, setup))
-    value, replicates = over_members(lambda pair: _more(*pair), (trained, before))
     text = f"{trained.sum()} of {trained.size} filters, {before.sum()} before training"
-    return Measured(value, text, replicates)
+    return judged(lambda pair: mean(pair[0]) - mean(pair[1]), (trained, before), text=text)
 
 
 def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
     """Share of hidden filters that are not analysable after training; a narrower window's beside.
 
     Before training all are, at every window: that some are left says little.
-
-    Parameters
-    ----------
-    wide, narrow : int
-        Window sizes.
     """
     cells = [classify(committed.filters(w, "hidden")) == "not analysable" for w in (wide, narrow)]
-    value, replicates = over_members(mean, cells[0])
     text = ", ".join(f"{c.sum()} of {c.size} at {w}" for c, w in zip(cells, (wide, narrow)))
     before = [(classify(_pair(w, "hidden")[1]) == "not analysable").mean() for w in (wide, narrow)]
-    return Measured(value, f"{text}; before training {100 * min(before):.0f} %", replicates)
+    return judged(mean, cells[0], text=f"{text}; before training {100 * min(before):.0f} %")
 
 
 def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
-    """Share of a layer's filters whose output correlates best with a quantity (judged).
+    """Share of a layer's filters whose output correlates best with a quantity.
 
     Along the training motions, with the true position, velocity and acceleration of the joint
-    whose window the filter sees. The replicates draw networks.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    name : str
-        One of `ddlib.analysis.following.QUANTITIES`.
-    layer : str
-        One of `ddlib.analysis.following.LAYERS`.
+    whose window the filter sees.
     """
     training = committed.training()
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
     f = getattr(committed.networks(width).weights, LAYERS[layer])
     strongest = followed(f, cases(training, width)[0], states).strongest
     each = (strongest == QUANTITIES.index(name)).mean((1, 2))
-    share, draws = over_members(lambda x: x.mean(-1), each)
     counts = ", ".join(f"{n} {(strongest == k).sum()}" for k, n in enumerate(QUANTITIES))
-    return Measured(share, f"best correlated with {counts} of {strongest.size}", draws)
+    return judged(mean, each, text=f"best correlated with {counts} of {strongest.size}")
 
 
 def rougher(wide: int = 41, narrow: int = 21) -> Measured:
@@ -112,38 +78,31 @@ def rougher(wide: int = 41, narrow: int = 21) -> Measured:
     cells = [roughness(committed.filters(w, "hidden")) for w in (wide, narrow)]
     before = [roughness(_pair(w, "hidden")[1]) for w in (wide, narrow)]
     wide_, narrow_, *null = (significant(np.median(x), 2) for x in (*cells, *before))
-    text = f"roughness {wide_} at {wide}, {narrow_} at {narrow}; before training {null[0]} and "
-    value, replicates = over_members(lambda a, b: median(a) / median(b), *cells)
-    return Measured(value, text + null[1], replicates)
+    text = f"roughness {wide_} at {wide}, {narrow_} at {narrow}; "
+    text += "before training {} and {}".format(*null)
+    return judged(lambda a, b: median(a) / median(b), *cells, text=text)
 
 
 def direct_smoothness() -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
     cells, before = zip(*(map(roughness, _pair(w, "direct")) for w in WINDOWS))
-
-    def largest(*cells):
-        return np.max([median(cell) for cell in cells], axis=0)
-
-    value, replicates = over_members(largest, *cells)
     now, then = (", ".join(significant(np.median(x), 2) for x in xs) for xs in (cells, before))
-    return Measured(value, f"roughness {now}; before training {then}", replicates)
+    return judged(largest_median, *cells, text=f"roughness {now}; before training {then}")
 
 
 def changed_roughness(width: int = 41) -> Measured:
     """Roughness of what training adds to the initial weights of the hidden units."""
     trained, before = _pair(width, "hidden")
     change = roughness(trained - before)
-    value, replicates = over_members(median, change)
-    return Measured(value, f"{spread(change)}; the filters have {spread(roughness(trained))}",
-                    replicates)  # fmt: skip
+    text = f"{spread(change)}; the filters have {spread(roughness(trained))}"
+    return judged(median, change, text=text)
 
 
 def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
     """Median share of the constant term in the energy of the filters."""
     trained, before = (shares(f)[..., 0] for f in _pair(width, layer))
-    value, replicates = over_members(median, trained)
-    text = f"{100 * value:.1f} % of the energy, {100 * np.median(before):.1f} % before training"
-    return Measured(value, text, replicates)
+    now, then = (100 * np.median(x) for x in (trained, before))
+    return judged(median, trained, text=f"{now:.1f} % of the energy, {then:.1f} % before training")
 
 
 def parts_sum_up() -> Measured:
@@ -152,67 +111,57 @@ def parts_sum_up() -> Measured:
     gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
     odd = decompose(f, "paper").odd
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))
-    return Measured(
-        skew,
-        f"the parts sum to f (to {scientific(gap)}); as printed, odd(x) + odd(-x) reaches "
-        f"{100 * skew:.0f} % of odd's peak in the median",
-    )
+    text = f"the parts sum to f (to {scientific(gap)}); as printed, odd(x) + odd(-x) reaches "
+    return Measured(skew, f"{text}{100 * skew:.0f} % of odd's peak in the median")
 
 
-def _activities(width: int, model: Callable = committed.networks, setup: str = STATE_FEEDBACK.name):
-    windows, torque = cases(committed.training(setup), width)
-    found = model(width, setup)
-    return windows, torque, found.weights.activity(found.scaled(windows))[0]
+def _both(of: Callable) -> list:
+    """What a function makes of the trained networks, and of the same before training."""
+    return [of(models) for models in (committed.networks, committed.untrained)]
 
 
 def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Median share of cases in which a hidden unit is below 0.1 or above 0.9."""
-    share, before = (
-        saturated(_activities(width, model, setup)[2])
-        for model in (committed.networks, committed.untrained)
-    )
-    value, replicates = over_members(median, share)
-    text = f"{100 * value:.0f} % of the time, {100 * np.median(before):.0f} % before training"
-    return Measured(value, text, replicates)
+    windows, _ = cases(committed.training(setup), width)
+
+    def often(models):
+        model = models(width, setup)
+        return saturated(model.weights.activity(model.scaled(windows))[0])
+
+    share, before = _both(often)
+    now, then = (100 * np.median(x) for x in (share, before))
+    return judged(median, share, text=f"{now:.0f} % of the time, {then:.0f} % before training")
 
 
 def transition(width: int) -> Measured:
     """Median width of the transition region in standard deviations of the net input."""
-    found, before = (
-        transition_width(net_inputs(model(width), _activities(width)[0]))
-        for model in (committed.networks, committed.untrained)
-    )
-    value, replicates = over_members(median, found)
-    text = f"{significant(value, 2)} standard deviations, "
-    text += f"{significant(np.median(before), 2)} before training"
-    return Measured(value, text, replicates)
-
-
-def _spare(width: int, worse: float, model: Callable) -> np.ndarray:
-    windows, torque = cases(committed.training(), width)
-    found = model(width)
-    spare = []
-    for k in range(len(found.weights)):
-        before = rmss(found[k].torque(windows), torque)
-        spare.append(int((ablation(found[k], windows, torque)[1] < worse * before).sum()))
-    return np.array(spare)
+    windows, _ = cases(committed.training(), width)
+    found, before = _both(lambda models: transition_width(net_inputs(models(width), windows)))
+    now, then = (significant(np.median(x), 2) for x in (found, before))
+    return judged(median, found, text=f"{now} standard deviations, {then} before training")
 
 
 def spare_units(width: int, worse: float = 1.1) -> Measured:
     """Median number of hidden units of ten that can be held still at almost no loss.
 
-    Parameters
-    ----------
-    width : int
-        Window size.
-    worse : float
-        "Almost no loss": the training error grows by less than this factor.
+    The training error then grows by less than the factor `worse`.
     """
-    spare = _spare(width, worse, committed.networks)
-    before = _spare(width, worse, committed.untrained)
-    value, replicates = over_members(median, spare)
-    text = f"{value:.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "
-    return Measured(value, f"{text}{np.median(before):.0f} before training", replicates)
+    windows, torque = cases(committed.training(), width)
+
+    def spare_of(models):
+        every = models(width)
+        return np.array(
+            [
+                (
+                    ablation(one, windows, torque)[1] < worse * rmss(one.torque(windows), torque)
+                ).sum()
+                for one in (every[k] for k in range(len(every.weights)))
+            ]
+        )
+
+    spare, before = _both(spare_of)
+    text = f"{np.median(spare):.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "
+    return judged(median, spare, text=f"{text}{np.median(before):.0f} before training")
 
 
 def shoulder_profile(width: int) -> Measured:
@@ -220,8 +169,7 @@ def shoulder_profile(width: int) -> Measured:
     test = committed.recording()[5]
     predicted = predict(committed.networks(width), test)
     wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
-    value, replicates = over_members(median, wrong)
-    return Measured(value, spread(wrong), replicates)
+    return judged(median, wrong, text=spread(wrong))
 
 
 RUNS = ("training", "trajectory 6")
@@ -241,15 +189,7 @@ def _features(width: int, setup: str) -> tuple:
 
 
 def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray:
-    """Errors of a linear filter of the window, by least squares: training, trajectory 6.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    setup : str
-        One of `workshop.report.SETUPS`.
-    """
+    """Errors of a linear filter of the window, by least squares: training, trajectory 6."""
     (x, _, y), (new, _, answer) = _features(width, setup)
     return refitted(x, y, new, answer)
 
@@ -257,44 +197,24 @@ def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray
 def hidden_units_add(
     width: int = 21, setup: str = JOINT_DAMPING.name, runs: str = "training"
 ) -> Measured:
-    """Error of a linear filter alone over that with the hidden units, both fitted anew (judged).
-
-    Parameters
-    ----------
-    width : int
-        Window size of networks of Table 4-1.
-    setup : str
-        One of `workshop.report.SETUPS`.
-    runs : str
-        One of `RUNS`.
-    """
+    """Error of a linear filter alone over that with the hidden units, both fitted anew."""
     (x, hidden, y), (new, held, answer) = _features(width, setup)
     alone = linear_alone(width, setup)[RUNS.index(runs)]
-    both = np.array(
-        [
-            refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)[
-                RUNS.index(runs)
-            ]
-            for h, t in zip(hidden, held)
-        ]
-    )
+    pairs = [
+        refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)
+        for h, t in zip(hidden, held)
+    ]
+    both = np.array(pairs)[:, RUNS.index(runs)]
     text = f"{significant(alone, 2)} alone, {significant(np.median(both), 2)} with hidden units"
     return judged(median, alone / both, text=text)
 
 
 def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
-    """Share of the hidden units' non-linear part that friction and rigid body explain (judged).
+    """Share of the hidden units' non-linear part that friction and rigid body explain.
 
     Least squares takes what is linear in the window out of the hidden units' sum, of the true
     friction torque and of the rigid body's. What is left of the sum is fitted by what is left of
     both together; R², the better of two joints, medians over networks.
-
-    Parameters
-    ----------
-    width : int
-        Window size of networks of Table 4-1.
-    setup : str
-        One of `workshop.report.SETUPS`.
     """
     run, chosen = committed.training(setup), SETUPS[setup]
     x, hidden, _ = _features(width, setup)[0]
@@ -309,21 +229,11 @@ def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
         return y - axes @ (axes.T @ y)
 
     known = [curved(y.reshape(-1, 2)) for y in (chosen.effects.friction_torque(speed), rigid)]
-    by = {"friction": known[:1], "rigid body": known[1:], "together": known}
-    fits = {
-        name: np.array(
-            [
-                [explained(part[:, j], *(k[:, j] for k in parts)) for j in (0, 1)]
-                for part in map(curved, sums)
-            ]
+    rest, told = [curved(each) for each in sums], []
+    for name, parts in (("friction", known[:1]), ("rigid body", known[1:]), ("together", known)):
+        fits = np.array(
+            [[explained(x[:, j], *(k[:, j] for k in parts)) for j in (0, 1)] for x in rest]
         )
-        for name, parts in by.items()
-    }
-    told = "; ".join(
-        "{} {:.2f} and {:.2f}".format(name, *np.median(each, axis=0)) for name, each in fits.items()
-    )
-    return judged(
-        lambda each: np.median(each, axis=1).max(-1),
-        fits["together"],
-        text=f"R² {told}, shoulder and elbow",
-    )
+        told.append("{} {:.2f} and {:.2f}".format(name, *np.median(fits, axis=0)))
+    text = f"R² {'; '.join(told)}, shoulder and elbow"
+    return judged(lambda each: np.median(each, axis=1).max(-1), fits, text=text)

@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib import paper
-from ddlib.setups import JOINT_DAMPING, WINDOWS
-from ddlib.tables import significant
+from ddlib.setups import WINDOWS
 from workshop.report import results
-from workshop.report.evidence.verdicts import Measured, judged, median
 from workshop.report.knobs import Emulator, knobs_of, left_out, shares, spread_evenly, weigh
 
 CELLS = tuple((column, width) for column in ("training", "test") for width in WINDOWS)
@@ -30,28 +28,14 @@ def printed(wanted=CELLS) -> np.ndarray:
 
 
 class Screen(NamedTuple):
-    """What the design says of the six cells.
+    """What the design says of the six cells."""
 
-    Attributes
-    ----------
-    names : tuple of str
-        The knobs.
-    places : ndarray, shape (runs, knobs)
-    values : ndarray, shape (runs, networks, cells)
-        Logarithms of the errors.
-    covariance : ndarray, shape (cells, cells)
-        Of one network on one recording around the mean of its run.
-    emulators : tuple of Emulator
-    scores : ndarray, shape (cells, runs)
-        Each run less what the others predict, in the standard deviations of that.
-    """
-
-    names: tuple[str, ...]
-    places: np.ndarray
-    values: np.ndarray
-    covariance: np.ndarray
+    names: tuple[str, ...]  # of the knobs
+    places: np.ndarray  # (runs, knobs)
+    values: np.ndarray  # logarithms of errors, (runs, networks, cells)
+    covariance: np.ndarray  # of one network on one recording around the mean of its run
     emulators: tuple[Emulator, ...]
-    scores: np.ndarray
+    scores: np.ndarray  # each run less what the others predict, in deviations, (cells, runs)
 
     def predict(self, places) -> tuple[np.ndarray, np.ndarray]:
         """Means and their variances at some places, ``(places, cells)``.
@@ -64,14 +48,7 @@ class Screen(NamedTuple):
 
 
 def screen_of(places, values, names) -> Screen:
-    """Emulators of some cells.
-
-    Parameters
-    ----------
-    places : array_like, shape (runs, knobs)
-    values : array_like, shape (runs, networks, cells)
-    names : sequence of str
-    """
+    """Emulators of some cells."""
     places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
     runs, networks, cells = values.shape
     means = values.mean(1)
@@ -84,13 +61,7 @@ def screen_of(places, values, names) -> Screen:
 
 
 def logarithms(method: str, wanted=CELLS) -> np.ndarray:
-    """Logarithms of what the design's runs gave, ``(runs, networks, wanted)``.
-
-    Parameters
-    ----------
-    method : {"descent", "solver"}
-    wanted : sequence of (column, width)
-    """
+    """Logarithms of what the design's runs gave, ``(runs, networks, wanted)``."""
     rows = results.read("screened")["methods"][method]
     found = [[row["windows"][str(w)][column] for column, w in wanted] for row in rows]
     return np.log(found).transpose(0, 2, 1)
@@ -104,20 +75,9 @@ def screen(method: str, wanted=CELLS) -> Screen:
 
 
 def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
-    """Share of the variance that each knob makes, products with others included.
+    """Share of the variance that each knob makes in a column of Table 4-1 (training, test).
 
-    Parameters
-    ----------
-    method : {"descent", "solver"}
-    column : {"training", "test"}
-        Means over its three windows.
-    draws : int
-        Of the regression's coefficients.
-
-    Returns
-    -------
-    dict
-        ``{knob: (10 %, median, 90 %)}`` of the draws.
+    Products with others included, a mean over three windows; 10 %, 50 % and 90 % of the draws.
     """
     here = screen(method)
     total = [
@@ -130,19 +90,11 @@ def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
 
 
 class Posterior(NamedTuple):
-    """Places of the knobs, spread evenly, and what the printed numbers make of them.
+    """Places of the knobs, spread evenly, and what the printed numbers make of them."""
 
-    Attributes
-    ----------
-    places : ndarray, shape (places, knobs)
-    weights : ndarray, shape (places,)
-    evidence : float
-        Logarithm of the mean likelihood.
-    """
-
-    places: np.ndarray
+    places: np.ndarray  # (places, knobs)
     weights: np.ndarray
-    evidence: float
+    evidence: float  # logarithm of the mean likelihood
 
     @property
     def effective(self) -> float:
@@ -163,35 +115,8 @@ def posterior(method: str, wanted=CELLS, count: int = 2**14) -> Posterior:
     """Posterior of the knobs of a method, given printed numbers; default: the six errors.
 
     One network on one recording was printed, so an observation scatters as ours do.
-
-    Parameters
-    ----------
-    method : str
-        "descent" or "solver".
-    wanted : sequence
-        The printed numbers that are given, as in `CELLS`.
-    count : int
-        Places at which the posterior is weighed.
     """
     here = screen(method, wanted)
     places = spread_evenly(count, len(here.names))
     weights, evidence = weigh(*here.predict(places), here.covariance, printed(wanted))
     return Posterior(places, weights, evidence)
-
-
-def coarse_encoder(width: int = 11) -> Measured:
-    """Training error with an encoder of 16 bits over that with the coarse one of joint damping.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
-    setups = results.read("recordings")["setups"]
-    coarse, fine = (
-        np.array(setups[name][str(width)]["training"]) for name in (JOINT_DAMPING.name, "16 bits")
-    )
-    text = f"{significant(np.median(fine), 2)} for {significant(np.median(coarse), 2)}"
-    return judged(
-        lambda a, b: median(a) / median(b), fine, coarse, text=f"{text} at {width}", nested=True
-    )

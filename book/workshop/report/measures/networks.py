@@ -2,93 +2,19 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import rankdata
 
 from ddlib import paper
 from ddlib.analysis import classify, saturated, shares, shuffled, transition_range
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, train_ensemble
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
-from ddlib.tables import scientific, significant, spread
+from ddlib.setups import STATE_FEEDBACK, WINDOWS
+from ddlib.tables import scientific, spread
 from workshop.report import committed, results
-from workshop.report.evidence.verdicts import (
-    Measured,
-    judged,
-    largest_median,
-    mean,
-    median,
-    over_members,
-)
+from workshop.report.evidence.verdicts import Measured, judged, mean, median, rank_correlation
 from workshop.report.exact_states import random_states, states_along, torque
-
-
-def _cells(setup: str = STATE_FEEDBACK.name) -> dict[int, dict]:
-    """Cells of Table 4-1; those of joint damping have an axis of recordings before the networks."""
-    if setup == JOINT_DAMPING.name:
-        days = results.read("recordings")["setups"][setup]
-        return {w: {**days[str(w)], "errors": days[str(w)]} for w in WINDOWS}
-    table = results.read("table-4-1")["setups"][setup]
-    return {width: table[str(width)] for width in WINDOWS}
-
-
-def _nested(setup: str) -> bool:
-    return setup == JOINT_DAMPING.name
-
-
-def _errors(column: str, setup: str = STATE_FEEDBACK.name) -> dict[int, np.ndarray]:
-    return {width: np.array(cell["errors"][column]) for width, cell in _cells(setup).items()}
-
-
-def _medians(errors: dict) -> str:
-    return ", ".join(significant(np.median(e), 2) for e in errors.values())
-
-
-def table_4_1(width: int, column: str, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """A cell of Table 4-1, median over all networks: `width`, `column` of the errors, `setup`."""
-    cell = _errors(column, setup)[width]
-    return judged(median, cell, text=spread(cell.ravel()), nested=_nested(setup))
-
-
-def in_order(column: str, order: list, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Whether the median errors of the windows rise in this order.
-
-    Parameters
-    ----------
-    column : str
-        Column of the errors, like "test".
-    order : sequence of int
-        Windows from the lowest to the highest median error; those of equal rank in a list.
-    setup : str
-        Which reading of the controller.
-    """
-    errors = _errors(column, setup)
-
-    def holds(*cells):
-        medians = dict(zip(errors, map(median, cells)))
-        ranks = [[medians[w] for w in np.atleast_1d(level)] for level in order]
-        pairs = itertools.pairwise(ranks)
-        return np.all([np.max(low, 0) < np.min(high, 0) for low, high in pairs], axis=0)
-
-    value, replicates = over_members(holds, *errors.values(), nested=_nested(setup))
-    text = f"medians {_medians(errors)}; in {100 * replicates.mean():.0f} % of draws"
-    return Measured(bool(value), text, replicates)
-
-
-def worse_on_test(setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Smallest ratio of median test to median training error over the windows."""
-    training, test = _errors("training", setup), _errors("test", setup)
-    cells = [(training[w], test[w]) for w in WINDOWS]
-
-    def least(*cells):
-        return np.min([median(test) / median(training) for training, test in cells], axis=0)
-
-    ratios = [significant(np.median(test) / np.median(training), 2) for training, test in cells]
-    text = "test / training " + ", ".join(ratios)
-    return judged(least, *cells, text=text, nested=_nested(setup))
 
 
 def multiplications(width: int = 21) -> Measured:
@@ -106,41 +32,10 @@ def weights_against_nwh(widths=WINDOWS) -> Measured:
     return Measured(max(ratios, key=lambda r: abs(np.log(r))), f"weights for n w h: {text}")
 
 
-def largest_weight(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
-    """Magnitude of the largest weight, the median over all networks."""
-    largest = np.array(_cells(setup)[width]["largest weight"])
-    return judged(median, largest, text=spread(largest.ravel(), 3), nested=_nested(setup))
-
-
-def slope() -> Measured:
-    """Largest median steepness of the error at the end of training, over the windows."""
-    slopes = [np.abs(cell["slope"]) for cell in _cells().values()]
-    text = ", ".join(significant(np.median(s), 2) for s in slopes)
-    return judged(largest_median, *slopes, text=f"d ln(error) / d ln(epoch) {text}")
-
-
-def _sizes(column: str) -> dict[int, np.ndarray]:
-    """Errors of the networks of ten window sizes, narrow ones first."""
-    rows = results.read("window-sizes")["rows"]
-    return {row["width"]: np.array(row[column]) for row in sorted(rows, key=lambda r: r["width"])}
-
-
-def best_window() -> Measured:
-    """Window with the lowest median test error, over sizes from 3 to 81."""
-    sizes = _sizes("test")
-    widths = np.array(list(sizes))
-
-    def best(*cells):
-        return widths[np.argmin([median(cell) for cell in cells], axis=0)]
-
-    value, replicates = over_members(best, *sizes.values())
-    least = significant(np.median(sizes[int(value)]), 2)
-    return Measured(value, f"{value:.0f} samples ({least})", replicates)
-
-
 def training_error_falls() -> Measured:
     """Share of steps to the next larger window at which the median training error falls."""
-    sizes = _sizes("training")
+    rows = results.read("window-sizes")["rows"]
+    sizes = {row["width"]: np.array(row["training"]) for row in rows}
     steps = len(sizes) - 1
 
     def falls(*cells):
@@ -150,49 +45,7 @@ def training_error_falls() -> Measured:
     return judged(falls, *sizes.values(), text=lambda value: f"{value * steps:.0f} {text}")
 
 
-def memory(width: int, by: str = "descent") -> Measured:
-    """Training error on shuffled torques: what falls below 1 was memorised.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    by : str
-        "descent"; "solver" for Levenberg-Marquardt; "solver, decay" for it with weight decay.
-    """
-    row = {row["width"]: row for row in results.read("memory")["rows"]}[width]
-    cell = row if by == "descent" else row[by]
-    largest = significant(np.median(cell["largest weight"]), 2)
-    text = f"{spread(cell['training'], 3)}, largest weight {largest}"
-    return judged(median, cell["training"], text=text)
-
-
 # --- section 6: networks of exact states
-
-
-def table_6_1(set_name: str, deviation: str = "own deviation") -> Measured:
-    """A row of Table 6-1: the median over all networks."""
-    errors = results.read("table-6-1")["errors"][set_name][deviation]
-    return judged(median, errors, text=spread(errors))
-
-
-def largest_state_weight() -> Measured:
-    """Magnitude of the largest weight (Figure 6-1), the median over all networks."""
-    largest = results.read("table-6-1")["largest weight"]
-    return judged(median, largest, text=spread(largest, 3))
-
-
-def state_slope() -> Measured:
-    """Median steepness of the error at the end of training."""
-    slopes = np.abs(results.read("table-6-1")["slope"])
-    return judged(median, slopes, text=f"d ln(error) / d ln(epoch) {spread(slopes)}")
-
-
-def generalisation() -> Measured:
-    """Error on random set B over that on random set A, network by network: the median."""
-    errors = results.read("table-6-1")["errors"]
-    a, b = (np.array(errors[f"random set {name}"]["own deviation"]) for name in "AB")
-    return judged(median, b / a, text=f"B / A {spread(b / a)}")
 
 
 def trajectory_shoulder() -> Measured:
@@ -241,13 +94,7 @@ def _networks() -> TorqueModel:
 
 
 def explained(layer: str = "direct") -> Measured:
-    """Median share of position, velocity and acceleration in filters, the least of three windows.
-
-    Parameters
-    ----------
-    layer : {"direct", "hidden"}
-        Direct weights, or those of hidden units.
-    """
+    """Median share of position, velocity and acceleration in filters; the least of 3 windows."""
     cells, before = (
         [shares(committed.filters(w, layer, model))[..., :3].sum(-1) for w in WINDOWS]
         for model in (committed.networks, committed.untrained)
@@ -324,9 +171,7 @@ def weights_and_saturation() -> Measured:
 
     def correlation(*drawn):
         x, y = (np.concatenate([c[k].reshape(len(c[k]), -1) for c in drawn], -1) for k in (0, 1))
-        ranks = [rankdata(values, axis=-1) for values in (x, y)]
-        x, y = (r - r.mean(-1, keepdims=True) for r in ranks)
-        return (x * y).sum(-1) / np.sqrt((x**2).sum(-1) * (y**2).sum(-1))
+        return rank_correlation(x, y)
 
     units = f"over {sum(largest.size for largest, _ in cells)} units"
     return judged(correlation, *cells, text=lambda value: f"rank correlation {value:.2f} {units}")

@@ -54,13 +54,7 @@ def members() -> Measured:
 
 
 def random_draws(resolution: float = 0.1) -> Measured:
-    """Chance that uniform draws put as many of the extents on a limit as are there.
-
-    Parameters
-    ----------
-    resolution : float
-        Step of the printed values, degrees.
-    """
+    """Chance that uniform draws put as many of the extents on a limit as are there."""
     on_limit = int(np.isin(APPENDIX_I, (0.0, MAX_EXTENT_DEG)).sum())
     chance = binom.sf(on_limit - 1, APPENDIX_I.size, resolution / MAX_EXTENT_DEG)
     text = f"{on_limit} of {APPENDIX_I.size} extents lie on a limit; uniform draws do that with "
@@ -113,15 +107,7 @@ def _missed(recording: Recording) -> float:
 
 
 def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
-    """Multiple of the assumed gains from which on position feedback alone follows closely.
-
-    Parameters
-    ----------
-    factors : sequence of float
-        Multiples tried, the first of them 1.
-    close : float
-        Closely: the RMS tracking error is this part of the RMS angle.
-    """
+    """Multiple of the assumed gains from which on position feedback alone follows closely."""
 
     def missed(factor):
         gains = tuple(factor * np.array(KP))
@@ -138,13 +124,7 @@ def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
 
 
 def unreachable(width: int = 21) -> Measured:
-    """Upper bound on the reachable share of the windows' cube, as a power of ten.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
+    """Upper bound on the reachable share of the windows' cube, as a power of ten."""
     power = 2 * log10_reachable_share(width, RADIUS * LOG_STEP / np.pi)
     recording = committed.recording()
     windows = sliding_windows(recording.q[:TRAINING], width, recording.motion)
@@ -162,13 +142,7 @@ def _states(setup: str) -> np.ndarray:
 
 
 def coverage(cells: int = 10) -> Measured:
-    """Share of the cells of section 6's cube that the training recordings reach.
-
-    Parameters
-    ----------
-    cells : int
-        Along each of the six axes.
-    """
+    """Share of the cells of section 6's cube that the training recordings reach."""
     shares = {}
     for name in SETUPS:
         states = _states(name).reshape(-1, 6)

@@ -21,7 +21,7 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, results
-from workshop.report.evidence.verdicts import Measured, judged, mean, median, over_members
+from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
 from workshop.report.measures.backpropagation import learning
 
 
@@ -30,13 +30,6 @@ def estimates(orders: list, widths: list) -> Measured:
 
     Relative to the true derivative's standard deviation, on the training recordings; of
     several window sizes the best counts.
-
-    Parameters
-    ----------
-    orders : list of int
-        Orders of the derivatives: 1 velocity, 2 acceleration, 3 jerk.
-    widths : list of int
-        Window sizes.
     """
     run, names = committed.training(), {1: "velocity", 2: "acceleration", 3: "jerk"}
     true, errors = run.qd_true, {}
@@ -53,26 +46,6 @@ def estimates(orders: list, widths: list) -> Measured:
         )
     shown = ", ".join(f"{names[k]} {significant(errors[k], 2)}" for k in orders)
     return Measured(max(errors[k] for k in orders), f"relative error {shown}")
-
-
-def without_noise() -> Measured:
-    """Largest change of the largest weight when training data have no noise and no friction.
-
-    The same initial weights in both; the median over networks is taken for each window.
-    """
-    table, clean = results.read("table-4-1")["setups"][STATE_FEEDBACK.name], results.read("clean")
-    ratios = {}
-    for width in WINDOWS:
-        perfect = np.array(clean["windows"][str(width)]["largest weight"])
-        noisy = np.array(table[str(width)]["largest weight"])[: perfect.size]
-        ratios[width] = perfect / noisy
-    text = ", ".join(f"{significant(np.median(r), 2)} at {w}" for w, r in ratios.items())
-
-    def change(*cells):
-        return np.max([np.abs(median(cell) - 1) for cell in cells], axis=0)
-
-    value, replicates = over_members(change, *ratios.values())
-    return Measured(value, f"largest weight without noise over with: {text}", replicates)
 
 
 def paths(width: int = 11) -> Measured:
@@ -94,11 +67,6 @@ def growth(width: int = 21) -> Measured:
     """Weights over those in proportion to window, joints or hidden units, each doubled.
 
     The one furthest from 1 is judged.
-
-    Parameters
-    ----------
-    width : int
-        Window size before doubling.
     """
     base = {"width": width, "hidden": 10, "joints": 2, "outputs": 2}
     before = Weights.random(1, **base)[0].count()
@@ -111,70 +79,16 @@ def growth(width: int = 21) -> Measured:
     for name, (factor, change) in larger.items():
         ratios[name] = Weights.random(1, **(base | change))[0].count() / (factor * before)
     text = ", ".join(f"{r:.2f} for {name}" for name, r in ratios.items())
-    worst = max(ratios.values(), key=lambda r: abs(np.log(r)))
+    worst = max(ratios.values(), key=lambda r: abs(np.log(r)))  # furthest from 1
     return Measured(worst, f"weights over what proportion gives: {text}")
 
 
 def sigmoids(width: int = 11) -> Measured:
-    """Multiplications for each sigmoid of a network.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
+    """Multiplications for each sigmoid of a network."""
     network = Weights.random(1, width)[0]
     units = network.hidden_bias.size + network.output_bias.size
     text = f"{network.count()} multiplications, {units} sigmoids at window {width}"
     return Measured(network.count() / units, text)
-
-
-def _furthest(ratios) -> np.ndarray:
-    """Of some ratios the one furthest from 1, for each draw; shape ``(ratios, draws)``."""
-    ratios = np.asarray(ratios)
-    return np.take_along_axis(ratios, np.abs(np.log(ratios)).argmax(0)[None], 0)[0]
-
-
-def more_hidden_units(column: str = "test") -> Measured:
-    """Median error with 20 or 40 hidden units over that with ten: the one furthest from 1.
-
-    Parameters
-    ----------
-    column : str
-        Which error: "training", "test" or "best test".
-    """
-    rows = {row["units"]: row[column] for row in results.read("hidden-units")["rows"]}
-    cells = [rows[units] for units in (10, 20, 40)]
-
-    def furthest(ten, *more):
-        return _furthest([median(cell) / median(ten) for cell in more])
-
-    value, replicates = over_members(furthest, *cells)
-    text = ", ".join(f"{significant(np.median(rows[u]), 2)} with {u}" for u in (10, 20, 40))
-    return Measured(value, f"{column}: {text}", replicates)
-
-
-def acceleration() -> Measured:
-    """Training error without momentum over that with it, at the window where that is least.
-
-    Each at its best step size.
-    """
-    kept = results.read("acceleration")
-    cells = [(np.array(e["without"]), np.array(e["with"])) for e in kept["errors"].values()]
-
-    def best(drawn):
-        return np.median(drawn, axis=1).min(-1)
-
-    def least(*pairs):
-        return np.min([best(without) / best(with_it) for without, with_it in pairs], axis=0)
-
-    value, replicates = over_members(least, *cells)
-    words = [
-        " and ".join(significant(np.median(e, axis=0).min(), 2) for e in (with_it, without))
-        for without, with_it in cells
-    ]
-    told = ", ".join(f"{w} at window {width}" for w, width in zip(words, kept["errors"]))
-    return Measured(value, f"with and without: {told}, after {kept['epochs']:,} epochs", replicates)
 
 
 def scaling() -> Measured:
@@ -196,48 +110,33 @@ def training_is_monotone(other: int = 2) -> Measured:
     """Share of the steps between records, over 60,000 epochs, at which the error falls.
 
     Every record counts; how often it falls depends on how far apart they are.
-
-    Parameters
-    ----------
-    other : int
-        The text tells the share for every so many records, too.
     """
     windows = results.read("longer")["windows"].values()
     histories = [np.array(w["history"]["training"]) for w in windows]
     falls, apart = ([np.diff(h[:, ::k], axis=-1) < 0 for h in histories] for k in (1, other))
-    value, replicates = over_members(_mean_of_cells, *falls)
-    text = ", ".join(f"{100 * f.mean():.0f} %" for f in falls)
-    wider = float(np.mean([f.mean() for f in apart]))
-    text = f"falls at {text} of the records: {significant(value, 3)} of all, "
-    return Measured(value, f"{text}{significant(wider, 3)} at 1 record in {other}", replicates)
+    shares = ", ".join(f"{100 * f.mean():.0f} %" for f in falls)
+    wider = significant(np.mean([f.mean() for f in apart]), 3)
+
+    def text(value):
+        text = f"falls at {shares} of the records: {significant(value, 3)} of all, "
+        return f"{text}{wider} at 1 record in {other}"
+
+    return judged(_mean_of_cells, *falls, text=text)
 
 
 def rises_again(factor: float = 1.05) -> Measured:
-    """Share of networks whose last test error is well above their best one.
-
-    Parameters
-    ----------
-    factor : float
-        Well above: by more than this factor.
-    """
+    """Share of networks whose last test error is well above their best one."""
     table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
     worse = {
         w: np.array(table[str(w)]["errors"]["test"]) > factor * np.array(table[str(w)]["best test"])
         for w in WINDOWS
     }
-    value, replicates = over_members(_mean_of_cells, *worse.values())
     text = ", ".join(f"{x.sum()} of {x.size} at {w}" for w, x in worse.items())
-    return Measured(value, text, replicates)
+    return judged(_mean_of_cells, *worse.values(), text=text)
 
 
 def accurate(level: float = 0.1) -> Measured:
-    """Largest median test error over window sizes and readings of the controller.
-
-    Parameters
-    ----------
-    level : float
-        Cells with a larger error are named in the text.
-    """
+    """Largest median test error over window sizes and readings of the controller."""
     table = results.read("table-4-1")["setups"]
     cells = {
         (name, w): np.array(table[name][str(w)]["errors"]["test"])
@@ -245,58 +144,33 @@ def accurate(level: float = 0.1) -> Measured:
         for w in WINDOWS
     }
 
-    def largest(*drawn):
-        return np.max([median(cell) for cell in drawn], axis=0)
-
-    value, replicates = over_members(largest, *cells.values())
     medians = {key: float(np.median(cell)) for key, cell in cells.items()}
     fail = [f"{name} {w}: {significant(m, 2)}" for (name, w), m in medians.items() if m > level]
-    smallest = significant(min(medians.values()), 2)
-    text = f"RMSS {smallest} to {significant(value, 2)}; above {level:g} are "
-    return Measured(
-        value, f"{text}{len(fail)} of {len(cells)} cells: {', '.join(fail)}", replicates
-    )
-
-
-def short_window(short: int = 11, long: int = 21) -> Measured:
-    """Error of the least-squares acceleration from a short window over that from a long one.
-
-    Parameters
-    ----------
-    short, long : int
-        Window sizes.
-    """
-    rows = {row["width"]: row["acceleration error"] for row in results.read("window-sizes")["rows"]}
-    text = f"{significant(rows[short], 2)} at {short}, {significant(rows[long], 2)} at {long}"
-    return Measured(rows[short] / rows[long], text)
+    least, most = (significant(f(medians.values()), 2) for f in (min, max))
+    text = f"RMSS {least} to {most}; above {level:g} are {len(fail)} of {len(cells)} cells: "
+    return judged(largest_median, *cells.values(), text=text + ", ".join(fail))
 
 
 def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -> Measured:
     """Largest weight of a wide window over that of a narrow one, medians over networks.
 
     Beside it the same for the taps of least-squares acceleration filters.
-
-    Parameters
-    ----------
-    narrow, wide : int
-        Window sizes.
-    beside_filters : bool
-        Judge the ratio as a multiple of the filters'.
     """
     table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
     cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
     taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
     fall = taps[0] / taps[1]
     unit = fall if beside_filters else 1.0
-    value, replicates = over_members(lambda a, b: median(a) / median(b) / unit, *cells)
     if beside_filters:
         printed = paper.LARGEST_WEIGHT[wide] / paper.LARGEST_WEIGHT[narrow]
-        text = f"{significant(value, 2)} times the filter's ratio, as printed "
-        text += f"{significant(printed / fall, 2)} times"
+        text = f"times the filter's ratio, as printed {significant(printed / fall, 2)} times"
     else:
-        text = f"{significant(value, 2)} of the weight at {narrow}, "
-        text += f"the filter {significant(fall, 2)}"
-    return Measured(value, text, replicates)
+        text = f"of the weight at {narrow}, the filter {significant(fall, 2)}"
+    return judged(
+        lambda a, b: median(a) / median(b) / unit,
+        *cells,
+        text=lambda value: f"{significant(value, 2)} {text}",
+    )
 
 
 # --- ddlib.learning.span: the directions of the windows
@@ -306,11 +180,6 @@ def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
     """Share of a change of the input weights that no combination of the windows gives.
 
     Batch descent with momentum in double precision on a few cases, fewer than there are inputs.
-
-    Parameters
-    ----------
-    taken, epochs : int
-        Number of cases and of epochs.
     """
     data = TrainingSet.from_recording(committed.training(), 11)
     picked = np.linspace(0, len(data.x) - 1, taken).astype(int)
@@ -327,13 +196,7 @@ def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
 
 
 def direction_purity(count: int = 9) -> Measured:
-    """Least share of one derivative, or the bias, in the first directions of three windows.
-
-    Parameters
-    ----------
-    count : int
-        How many directions: two of each derivative up to the jerk, and the bias.
-    """
+    """Least share of one derivative, or the bias, in the first directions of three windows."""
     least = {}
     for width in WINDOWS:
         along = Directions.of(TrainingSet.from_recording(committed.training(), width))
@@ -344,13 +207,7 @@ def direction_purity(count: int = 9) -> Measured:
 
 
 def noise_left(width: int = 41) -> Measured:
-    """Correlation of trained with initial weights along the directions predicted not to be learnt.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
-    """
+    """Correlation of trained with initial weights in directions predicted not to be learnt."""
     learnt = int(np.median(learning(width, 0)["predicted"]["learnt"]))
     along = Directions.of(TrainingSet.from_recording(committed.training(), width))
     models = committed.networks(width), committed.untrained(width)
@@ -364,11 +221,6 @@ def learnt_by_solver(width: int = 41) -> Measured:
     """Share of directions in which Levenberg-Marquardt moves weights beyond their start.
 
     Of joint damping; beside it the share by descent on the same recording.
-
-    Parameters
-    ----------
-    width : int
-        Window size.
     """
     name = JOINT_DAMPING.name
     along = Directions.of(TrainingSet.from_recording(committed.training(name), width))

@@ -2,60 +2,37 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
 
-from ddlib.setups import STATE_FEEDBACK
 from ddlib.tables import Table, typeset
 from workshop.report.evidence import claims
 from workshop.report.evidence.claims import Claim
 from workshop.report.evidence.verdicts import Measured
 
-SHUFFLES = 10_000
-"""Permutations that stand for chance."""
+SHUFFLES = 10_000  # permutations that stand for chance
 
 
 def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
-    """Sentences that are judged under several readings of "a proportional controller".
+    """Sentences judged under two or more readings of "a proportional controller".
 
-    They have the same measure and arguments but for ``setup``; without it the reading is state
-    feedback.
-
-    Parameters
-    ----------
-    sentences : iterable of Claim
-
-    Returns
-    -------
-    list of dict
-        For each sentence its claim by the name of the reading; two readings or more.
+    Of each its claims by the name of the reading, as `Claim.but_for_reading` tells them apart.
     """
-    found: dict[tuple, dict[str, Claim]] = {}
+    groups: dict[tuple, dict[str, Claim]] = {}
     for claim in sentences:
-        if claim.measure:
-            rest = {k: v for k, v in claim.arguments.items() if k != "setup"}
-            key = (claim.measure, json.dumps(rest, sort_keys=True))
-            setup = claim.arguments.get("setup", STATE_FEEDBACK.name)
-            found.setdefault(key, {})[setup] = claim
-    return [group for group in found.values() if len(group) > 1]
+        if claim.is_measured:
+            key, setup = claim.but_for_reading()
+            groups.setdefault(key, {})[setup] = claim
+    return [group for group in groups.values() if len(group) > 1]
 
 
 def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
-    """Verdicts of sentences by reading: a row for each, those that agree last.
-
-    Parameters
-    ----------
-    groups : iterable of dict
-        As from `by_reading`.
-    readings : iterable of str
-        Names of the readings, one column each.
-    """
+    """Verdicts of sentences by reading: a row for each, those that agree last."""
     readings, rows = tuple(readings), []
     for group in groups:
-        first = next(iter(sorted(group.values(), key=lambda claim: len(claim.claim))))
+        first = min(group.values(), key=lambda claim: len(claim.claim))
         verdicts = [group[name].verdict if name in group else "–" for name in readings]
         same = len({claim.verdict for claim in group.values()}) == 1
         rows.append((same, (f"{first.claim} ({first.where})", *verdicts)))
@@ -64,16 +41,10 @@ def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) 
 
 
 class Agreement(NamedTuple):
-    """How often two lists of verdicts agree.
+    """How often two lists of verdicts agree, and shuffled ones do.
 
-    Attributes
-    ----------
-    pairs, same : int
-        How many there are, and how many of them are alike.
-    expected : float
-        How many would be alike if one list were shuffled.
-    chance : float
-        Share of the shuffles in which at least as many are.
+    ``expected`` is how many would be alike if one list were shuffled, ``chance`` the share of the
+    shuffles in which at least as many are.
     """
 
     pairs: int
@@ -82,28 +53,15 @@ class Agreement(NamedTuple):
     chance: float
 
 
-def agreement(pairs: Iterable[tuple[str, str]], seed: int = 0) -> Agreement:
-    """Whether pairs of verdicts agree more often than shuffled ones.
-
-    Parameters
-    ----------
-    pairs : iterable of (str, str)
-    seed : int
-        Of the shuffles.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two pairs.
-    """
+def agreement(pairs: Iterable[tuple[str, str]]) -> Agreement:
+    """Whether pairs of verdicts agree more often than shuffled ones."""
     pairs = list(pairs)
     if len(pairs) < 2:
         raise ValueError(f"pairs must be two or more, got {len(pairs)}")
     first, second = np.array(pairs).T
-    same, rng = int((first == second).sum()), np.random.default_rng(seed)
+    same, rng = int((first == second).sum()), np.random.default_rng(0)
     drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(SHUFFLES)])
-    of = {name: (first == name).sum() * (second == name).sum() for name in set(first)}
-    expected = sum(of.values()) / len(pairs)
+    expected = sum((first == v).sum() * (second == v).sum() for v in set(first)) / len(pairs)
     return Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
 
 
@@ -112,13 +70,9 @@ def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
 
     The second number is the sum over the claims of the share of the draws that disagree: an
     expectation needs no independence.
-
-    Parameters
-    ----------
-    sentences : iterable of Claim
     """
-    found = [(claim.verdict, claim.shares()) for claim in sentences if claim.verdict != "undecided"]
-    agree = [shares.get(verdict, 0.0) for verdict, shares in found if shares]
+    decided = [claim for claim in sentences if claim.verdict != "undecided"]
+    agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
     return len(agree), float(len(agree) - sum(agree))
 
 
@@ -130,27 +84,14 @@ def changed_by_reading() -> Measured:
 
 
 def carried_over(arm: str) -> Measured:
-    """Chance that shuffled verdicts agree as often as those on two arms do.
-
-    Parameters
-    ----------
-    arm : str
-        As in the field ``arm`` of a claim. Sentences that could not be tested on the first arm
-        are left out.
-    """
+    """Chance that shuffled verdicts agree as often as those on two arms do."""
     found = agreement(pairs_on(arm))
     text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
     return Measured(found.chance, text)
 
 
 def pairs_on(arm: str) -> list[tuple[str, str]]:
-    """Verdicts of sentences on the simulated arm and on another one, where both were tested.
-
-    Parameters
-    ----------
-    arm : str
-        As in the field ``arm`` of a claim.
-    """
+    """Verdicts of sentences on the simulated arm and on another one, where both were tested."""
     pairs = [(first.verdict, again.verdict) for first, again in claims.judged_again(arm)]
     return [pair for pair in pairs if "not testable" not in pair]
 
