@@ -1,10 +1,10 @@
 """Both verdicts of every claim: the written one, and the one its measurement gives by itself.
 
-In ``book``, ``python -m workshop.report.evidence.judging`` lists them; with ``--write`` it also keeps
-the fresh verdicts beside the results from which they follow, in ``book/results/verdicts.json``. Whoever commits
-other results or bands writes them anew, and then each written verdict has to be the fresh one.
-Results made on another machine are other draws: there it has to stand
-(`workshop.report.evidence.verdicts`).
+In ``book``, ``python -m workshop.report.evidence.judging`` lists them; with ``--write`` it also
+keeps the fresh verdicts beside the results from which they follow, in
+``book/results/verdicts.json``. Whoever commits other results or bands writes them anew, and then
+each written verdict has to be the fresh one. Results made on another machine are other draws:
+there it has to stand (`verdicts`).
 """
 
 from __future__ import annotations
