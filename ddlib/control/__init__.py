@@ -1,9 +1,4 @@
-"""Controllers of the joints, and the linear analysis of their loops.
-
-- ``controllers``: proportional, PD and PID control, feedforward, computed torque
-- ``linear``: loops as python-control systems: poles, `margins` of gain and phase
-- ``velocity``: velocity from position readings, noise against lag
-"""
+"""Controllers of the joints, the linear analysis of their loops, velocity from positions."""
 
 import lazy_loader
 

@@ -11,6 +11,7 @@ from .controllers import (
 from .linear import (
     Margins as Margins,
     closed_loop as closed_loop,
+    late_poles as late_poles,
     loop_gain as loop_gain,
     margins as margins,
     opened_loop as opened_loop,

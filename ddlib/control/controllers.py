@@ -64,19 +64,12 @@ class PID:
 
     ``tau = kp e + ki integral(e) + kd de/dt`` with ``e = q_ref - q``. The derivative
     part uses the reference velocity and the measured velocity.
-
-    Parameters
-    ----------
-    kp, ki, kd : array_like, shape (2,) or (runs, 2)
-        Gains per joint, N m/rad, N m/(rad s) and N m s/rad.
-    integral_limit : float
-        Largest magnitude of the integral's torque, N m (anti wind-up).
     """
 
-    kp: tuple[float, float]
-    ki: tuple[float, float] = (0.0, 0.0)
-    kd: tuple[float, float] = (0.0, 0.0)
-    integral_limit: float = 1e6
+    kp: tuple[float, float]  #: N m/rad per joint, (2,) or (runs, 2).
+    ki: tuple[float, float] = (0.0, 0.0)  #: N m/(rad s).
+    kd: tuple[float, float] = (0.0, 0.0)  #: N m s/rad.
+    integral_limit: float = 1e6  #: Largest magnitude of the integral's torque, N m.
 
     def __post_init__(self):
         for name in ("kp", "ki", "kd"):
@@ -121,19 +114,10 @@ def pd(kp, kd) -> PID:
 
 @dataclass(frozen=True)
 class Feedforward:
-    """Off-line inverse dynamics of the reference, added to a feedback law (Figure 2-1).
+    """Off-line inverse dynamics of the reference, added to a feedback law (Figure 2-1)."""
 
-    Parameters
-    ----------
-    model : callable
-        ``model(q, qd, qdd) -> tau`` over arrays ``(..., 2)``: the box marked "inverse
-        arm". An `Arm` is accepted too; its `inverse_dynamics` is used.
-    feedback : Controller or callable
-        Corrects what the model gets wrong.
-    """
-
-    model: Callable | Arm
-    feedback: Controller
+    model: Callable | Arm  #: ``model(q, qd, qdd) -> tau`` over ``(..., 2)``, or an arm.
+    feedback: Controller  #: Corrects what the model gets wrong.
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""

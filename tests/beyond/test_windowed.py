@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from ddlib.control import PID, Feedforward, pd, plant
+from ddlib.control import PID, Feedforward, late_poles, pd, plant
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.delays import late_poles
 from workshop.beyond.control.windowed import (
     MeasuredWindows,
     PlannedTorque,

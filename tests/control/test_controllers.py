@@ -130,27 +130,6 @@ def test_exact_feedforward_tracks(arm):
     assert coarse / fine == pytest.approx(2, abs=0.1)
 
 
-def test_feedforward_adds_the_model_to_the_feedback():
-    t = time_grid(0.01)[:20]
-    reference = reference_at(t)
-    q, qd = np.random.default_rng(0).normal(size=(2, 20, 2))
-    arm, feedback = CMU_DD_ARM_II, PID(KP, KI, KD)
-    calls = []
-
-    def model(*states):
-        calls.append(states)
-        return arm.inverse_dynamics(*states)
-
-    laws = [c.start(reference, 0.01) for c in (Feedforward(model, feedback), feedback)]
-    wanted = arm.inverse_dynamics(*reference)
-    for k in range(20):
-        with_model, without = (law(k, q[k], qd[k]) for law in laws)
-        np.testing.assert_allclose(with_model - without, wanted[k], atol=1e-12)
-    assert len(calls) == 1  # off line: once per run, for the whole reference
-    same = Feedforward(arm, feedback).start(reference, 0.01)(0, q[0], qd[0])
-    np.testing.assert_allclose(same - feedback.start(reference, 0.01)(0, q[0], qd[0]), wanted[0])
-
-
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)
 def test_computed_torque_makes_the_error_linear(arm):
     """e'' + kd e' + kp e = 0 for each joint alone, from the velocity step at the start."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import savgol_coeffs
 
-from ddlib.control import EstimatedVelocity, difference, end_slope, lag, noise_gain, pd, stacked
+from ddlib.control import EstimatedVelocity, difference, end_slope, lag, noise_gain, pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Quantisation
 from ddlib.simulation import follow
@@ -51,16 +51,6 @@ def test_the_shortest_difference_is_what_follow_has_built_in():
     own = run(EstimatedVelocity(feedback, difference(1, STEP)))
     built_in = run(feedback, velocity="difference")
     np.testing.assert_allclose(own.tau, built_in.tau, atol=1e-8)
-
-
-def test_runs_may_differ_in_their_filter():
-    feedback = pd((200.0, 80.0), (30.0, 12.0))
-    rows = [difference(2, STEP), difference(7, STEP), end_slope(9, 2, STEP)]
-    together = run(EstimatedVelocity(feedback, stacked(rows)))
-    for k, row in enumerate(rows):
-        np.testing.assert_allclose(
-            together.tau[k], run(EstimatedVelocity(feedback, row)).tau, atol=1e-7
-        )
 
 
 def test_the_law_sees_the_estimate_only():

@@ -1,4 +1,4 @@
-"""Every figure of the book, drawn from few and round numbers: `EXAMPLES`, by the figure's name."""
+"""Every figure of the book, by its name: drawn from few numbers, and what must then be seen."""
 
 from functools import cache, partial
 
@@ -251,6 +251,122 @@ EXAMPLES = {
     "two_families": partial(stirring.two_families, {"first": STATES, "second": -STATES}, "Clouds."),
     "maps": partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
 }  # fmt: skip
+
+
+def xy(x, *heights) -> list[np.ndarray]:
+    """A curve for each array of heights over the same places."""
+    return [np.transpose([x, y]) for y in heights]
+
+
+def spans(x, values) -> list:
+    """A vertical stroke at each place, from the least to the largest of its values."""
+    return [[(x, low), (x, high)] for x, low, high in zip(x, values.min(1), values.max(1))]
+
+
+MIDDLE = np.median(ERRORS, 1)
+ELBOW, HAND = CMU_DD_ARM_II.forward_kinematics(np.array([0.6, 0.9]))
+DOTS = TIED["dots"].reshape(-1, 2)
+SIDE_BY_SIDE = [xy(X, X, X**2), xy(X, 2 * X, 3 * X), xy(X, X)]
+JOINTS = np.arange(1, 7)
+
+SHOWN = {
+    "curves": [xy(X, X, X**2), xy(X[1:], 1 / X[1:])],
+    "families": [xy(X, *FAN.T, 2 * X), xy(X, *FAN.T, 2 * X, *2 * FAN.T, 4 * X)],
+    "by_case": [xy(X, case) for case in CASES.values()],
+    "decomposition": [
+        xy(10.0 * np.arange(-10, 11), f, (f + f[::-1]) / 2 - f.mean(), (f - f[::-1]) / 2)
+        for f in FILTERS.values()
+    ],
+    "arm_sketch": [[[(0, 0), ELBOW], [ELBOW, HAND]]],
+    "operations": [[[(2, 100), (3, 1000), (4, 10_000)], [(2, 500), (3, 500), (4, 500)]]],
+    "extents_square": [[[(10, 20)], APPENDIX_I[:5], APPENDIX_I[5:]]],
+    "reached": [list(RINGING[..., 2 * k : 2 * k + 2]) for k in range(3)],
+    "rounding": [xy(T[:4], [0, 1, 1, 3]), xy(T[:4], [1, -1, 1, -1], [0, 0, 0, 0])],
+    "tied": [[DOTS * [180 / np.pi, 1]]],
+    "side_by_side": SIDE_BY_SIDE,
+    "side_by_side, log": SIDE_BY_SIDE,
+    "overlay": [xy(T, MEASURED, torque) for torque in PREDICTED.values()],
+    "plane": [PLACES],
+    "intervals": [  # one series above the other
+        [
+            [(0.5, -0.15), (2, -0.15)], [(1, -0.15)], [(1, 0.15), (4, 0.15)], [(2, 0.15)],
+            [(1, 0.85), (1, 0.85)], [(1, 0.85)],
+        ],
+        [[(0.2, 0), (0.4, 0)], [(0.3, 0)]],
+    ],
+    "intervals, ends": [[[(-0.5, 0), (0.9, 0)], [(0, 0)], [(0.3, 0)]]],
+    "clusters": [
+        [
+            *xy([-0.25, 0, 0.25], GROUPS["few, one"]), [(-0.36, 2), (0.36, 2)],
+            *xy(np.linspace(0.75, 1.25, 4), GROUPS["many"]), [(0.64, 4), (1.36, 4)],
+            [(0, wanted), (1, wanted)],
+        ]
+        for wanted in (4, 0)
+    ],
+    "against_nulls": [  # bars with their ends, a dot for each draw
+        [
+            [(0, -0.43), (0.2, 0.43)], [(0.2, -0.43), (0.2, 0.43)], [(0.1, 0.57), (0.1, 1.43)],
+            *xy([0.4] * 3, [-0.131, -0.129, np.nan]), *xy([0.7] * 3, [0.129, 0.131, np.nan]),
+        ],
+        [[(0, -0.43), (0, 0.43)], [(1, 0.57), (1, 1.43)]],
+    ],
+    "predicted_curves": [
+        [*xy(X, X, 2 * X), *xy(X, X**2, X**3)],
+        [[(1e-3, 1e-2), (1, 1)], [(10, 5)], [(1e-3, 1e-3), (10, 10)]],
+    ],
+    "torque_along": [xy(T, EXACT[:, j], NETWORKS[1, :, j]) for j in range(2)],  # the median network
+    "error_by_size": [
+        [[(100, 0.4), (100, 0.2), (100, 0.1)], [(100, 0.2), (10_000, 0.02)], [(100, 0.3)]],
+        [[(5, 0.2), (80, 0.1)]],
+    ],
+    "responses": [xy(X, *activity.T) for activity in ACTIVITY.reshape(6, len(X), 4)],
+    "courses": [xy([1, 2, 3], MIDDLE, 2 * MIDDLE), xy([1, 2, 3], MIDDLE)],
+    "stops_map": [[[(1, 0)]]],
+    "ladders": [
+        [*xy(SIZE, MIDDLE), *spans(SIZE, ERRORS), [(0, 0.2), (1, 0.2)]],
+        [*xy(SIZE, 2 * MIDDLE), *spans(SIZE, 2 * ERRORS)],
+    ],
+    "growth": [
+        [
+            [(2, 4), (4, 9), (7, 15)], [(2, 4), (4, 8), (7, 14)],
+            [(2, 3), (2, 5)], [(4, 8), (4, 10)], [(7, 12), (7, 20)],
+        ]
+    ],
+    "couplings": [
+        [
+            [(0.7, -0.9), (1.3, 0.9)], [(1.7, -0.9), (2.3, 0.9)],  # middle nine tenths of nulls
+            [(0.64, 2.0), (1.36, 2.0)], [(1.64, 0.5), (2.36, 0.5)],
+            *xy([0.8, 1.8], REAL[0, 0]), *xy([1, 2], REAL[1, 0]), *xy([1.2, 2.2], REAL[2, 0]),
+        ],
+        [*xy([0.8, 1.8], REAL[0, 1])],
+    ],
+    "by_trial": [[*xy(SIZE, MIDDLE, 2 * MIDDLE), [(7.5, 0), (7.5, 1)]]],
+    "by_motion": [
+        [
+            [(0.1, -0.065), (0.9, -0.065)], [(0.2, -0.065)], [(1, 0.065), (3, 0.065)],
+            [(2, 0.065)], [(0.5, 0.935), (0.7, 0.935)], [(0.6, 0.935)], [(4, 1.065)],
+        ]
+    ],
+    "friction_by_joint": [  # a jump at rest, a slope beyond
+        [[(0, -0.2), (-2, -1.2)], [(0, 0.2), (2, 1.2)], *xy(*MIDDLES)],
+        [[(0, 0.4), (2, 1.4)]],
+    ],
+    "gains_by_joint": [
+        [
+            *([(k - 0.275, -0.45), (k + 0.275, 0.45)] for k in JOINTS),
+            *xy(JOINTS - 0.15, GAINS[0]), *xy(JOINTS + 0.15, GAINS[1]),
+        ]
+    ],
+    "costs": [  # from small to large
+        [*xy([10, 100, 1000], MIDDLE[[1, 0, 2]], MIDDLE[[1, 0, 2]] / 2), [(10, 0.1), (10, 0.3)]]
+    ],
+    "against": [[*xy([1, 2], [3, 4]), *xy([1] * 3, [7] * 3)], [[(5, 6)] * 2, [(5, 5), (6, 6)]]],
+    "traded": [[[(1, 30), (2, 20)], [(3, 4)], [(10, 0), (10, 1)], [(0, 15), (1, 15)]]],
+    "paths": [[WANTED, WANTED + np.array((0.1, -0.2))], [WANTED]],  # errors are exaggerated
+    "two_families": [[STATES[:, [k, k + 3]], -STATES[:, [k, k + 3]]] for k in range(3)],
+    "maps": [[[(20, 30)]]] * 3,
+}  # fmt: skip
+"""What each of a figure's axes must show: points, ``(x, y)``; bars from corner to corner."""
 
 
 @cache

@@ -9,9 +9,11 @@ from collections.abc import Callable
 from unittest import mock
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import PathPatch, Rectangle
 
 from ddlib.figures import INK, Illustration, style
 
@@ -65,6 +67,19 @@ def curves(figure: Figure, colour: str) -> list[np.ndarray]:
     """The points of each line of a colour, ``(points, 2)`` in the units of its axes."""
     shown = [line for axis in figure.axes for line in axis.lines if line.get_linestyle() != "None"]
     return [line.get_xydata() for line in shown if line.get_color() == colour]
+
+
+def shapes(axis: Axes) -> list[np.ndarray]:
+    """The points of lines, strokes and dots, and the corners of bars, ``(points, 2)`` each."""
+    strokes = [part for part in axis.collections if isinstance(part, LineCollection)]
+    parts = [line.get_xydata() for line in axis.lines]
+    parts += [segment for part in strokes for segment in part.get_segments()]
+    for patch in axis.patches:
+        if isinstance(patch, Rectangle):
+            parts.append(patch.get_bbox().get_points())
+        elif isinstance(patch, PathPatch):
+            parts.append(patch.get_path().vertices[::2])
+    return parts
 
 
 def boxes(figure: Figure, colour: str) -> np.ndarray:

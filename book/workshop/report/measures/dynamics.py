@@ -20,7 +20,7 @@ from ddlib.analysis import (
     share_of_other_joint,
     share_of_velocity_terms,
 )
-from ddlib.control import difference, end_slope, linear, noise_gain
+from ddlib.control import difference, end_slope, late_poles, linear, noise_gain
 from ddlib.dynamics import (
     CMU_DD_ARM_II,
     PUMA_560,
@@ -51,7 +51,6 @@ from ddlib.trajectories import (
     pick_and_place,
     random_extents,
 )
-from workshop.beyond.control.delays import late_poles
 from workshop.report.evidence.verdicts import Measured, judged, turns_at
 
 SETUP = STATE_FEEDBACK

@@ -4,13 +4,12 @@ import control
 import numpy as np
 import pytest
 
-from ddlib.control import linear, proportional
+from ddlib.control import late_poles, linear, proportional
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.delays import late_poles
 
 VISCOUS = (0.5, 0.15)
 M = CMU_DD_ARM_II.mass_matrix([0.0, 0.0])
