@@ -18,11 +18,7 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
         Standard deviation to divide by; default: that of `target` itself over its cases.
         The paper does not say which data set's it used for the test trajectory.
     pooled : bool
-        Whether to join the joints: the root of their mean squared RMSS.
-
-    Returns
-    -------
-    ndarray, shape (...) if pooled, else (..., joint)
+        Whether to join the joints, by the root of their mean squared RMSS, or give each its own.
     """
     predicted, target = finite_array("predicted", predicted), finite_array("target", target)
     if target.ndim < 2 or not target.shape[-2] or predicted.shape[-2:] != target.shape[-2:]:

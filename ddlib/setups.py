@@ -55,33 +55,9 @@ INITIAL = 0.3
 
 @dataclass(frozen=True)
 class Setup:
-    """Arm, effects, controller and training: everything that decides Table 4-1.
+    """Arm, effects, controller and training: everything that decides Table 4-1."""
 
-    Parameters
-    ----------
-    name : str
-        What tables call it.
-    controller : Controller
-    arm : Arm
-    effects : Effects
-    epochs, warm_up : int
-    momentum, initial : float
-    rate : float
-        Step size per case times the width of the window (`ddlib.learning.training.default_rate`).
-    scaling : tuple of float
-        Range that the network's inputs are scaled to.
-    hidden : int
-        Number of hidden units.
-    seed : int
-        Seed of the sensor noise of the recording.
-    steps : int
-        Steps of Levenberg-Marquardt in place of descent; 0: descent, as in 1988. Training ends
-        after them, converged or not.
-    decay : float
-        Weight decay of Levenberg-Marquardt (`ddlib.learning.levenberg_marquardt.solve`).
-    """
-
-    name: str
+    name: str  #: What tables call it.
     controller: Controller
     arm: Arm = CMU_DD_ARM_II
     effects: Effects = CMU_DD_ARM_II_EFFECTS
@@ -89,12 +65,12 @@ class Setup:
     momentum: float = MOMENTUM
     warm_up: int = WARM_UP
     initial: float = INITIAL
-    rate: float = 33.0
-    scaling: tuple[float, float] = (0.0, 1.0)
-    hidden: int = paper.HIDDEN_UNITS
-    seed: int = 0
-    steps: int = 0
-    decay: float = 0.0
+    rate: float = 33.0  #: Step size per case times the width of the window.
+    scaling: tuple[float, float] = (0.0, 1.0)  #: Range that the network's inputs are scaled to.
+    hidden: int = paper.HIDDEN_UNITS  #: Number of hidden units.
+    seed: int = 0  #: Of the sensor noise of the recording.
+    steps: int = 0  #: Of Levenberg-Marquardt in place of descent, converged or not; 0: descent.
+    decay: float = 0.0  #: Weight decay of Levenberg-Marquardt.
 
     def __post_init__(self):
         integer("steps", self.steps, 0)
@@ -195,18 +171,10 @@ def train_windows(
     snapshots=(),
     progress=True,
 ) -> tuple[TorqueModel, History, dict[int, Weights]]:
-    """Train networks of one window size on runs 1 to 5, following run 6.
+    """Train networks of one window size on runs 1 to 5 of Appendix I, following run 6.
 
-    Parameters
-    ----------
-    setup : Setup
-    recording : Recording
-        The six runs of Appendix I.
-    width, members, seed : int
-        Window size, number of networks, seed of the first one's weights.
-    snapshots, progress
-        As in `ddlib.learning.train_ensemble`, which says what is returned. A set-up with
-        `Setup.steps` of Levenberg-Marquardt has no snapshots.
+    `seed` is of the first network's weights; `snapshots`, `progress` and what is returned are those
+    of `ddlib.learning.train_ensemble`. A set-up with Levenberg-Marquardt `steps` has no snapshots.
     """
     from ddlib.learning import train_ensemble
 
@@ -261,26 +229,14 @@ def _start(setup, recording, width, members, seed) -> tuple:
 
 @dataclass(frozen=True)
 class Errors:
-    """RMSS on an Appendix I recording, in each way the paper may have meant.
+    """RMSS on an Appendix I recording, in each way the paper may have meant."""
 
-    Attributes
-    ----------
-    training, test : ndarray, shape (members,)
-        Pooled over the joints, each set divided by its own standard deviation.
-    by_training_deviation : ndarray, shape (members,)
-        Of trajectory 6, divided by the training set's standard deviation.
-    shoulder, elbow : ndarray, shape (members,)
-        Of trajectory 6, one joint.
-    desired : ndarray, shape (members,)
-        Of trajectory 6 when the network sees the reference in place of measured positions.
-    """
-
-    training: np.ndarray
-    test: np.ndarray
-    by_training_deviation: np.ndarray
-    shoulder: np.ndarray
-    elbow: np.ndarray
-    desired: np.ndarray
+    training: np.ndarray  #: Pooled, divided by the training set's own deviation.
+    test: np.ndarray  #: Of trajectory 6, pooled, divided by its own deviation.
+    by_training_deviation: np.ndarray  #: Of trajectory 6, divided by the training set's deviation.
+    shoulder: np.ndarray  #: Of trajectory 6, one joint.
+    elbow: np.ndarray  #: Of trajectory 6, one joint.
+    desired: np.ndarray  #: Of trajectory 6, from the reference in place of measured positions.
 
     def named(self) -> dict[str, np.ndarray]:
         """The same under the names that results and tables use."""
@@ -351,13 +307,8 @@ class Square(NamedTuple):
 def square(setup: Setup, points: int = 9) -> Square:
     """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
 
-    Parameters
-    ----------
-    setup : Setup
-        Which arm, controller and sensors.
-    points : int
-        Extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that each
-        joint moves in all.
+    `points` are extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that
+    each joint moves in all.
     """
     integer("points", points, 2)
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
@@ -366,20 +317,10 @@ def square(setup: Setup, points: int = 9) -> Square:
 
 
 def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:
-    """What perfect sensors would have read in the motion: position, velocity, acceleration.
+    """What perfect sensors would have read in the motion, ``(..., samples, joint, 3)``.
 
-    Parameters
-    ----------
-    recording : Recording
-    setup : Setup
-        Its arm and its friction give the acceleration from the torque.
-    skip : float
-        Seconds left out at the start of the motion, where the transient is; less than its length.
-
-    Returns
-    -------
-    ndarray, shape (..., samples, joint, 3)
-        In rad, rad/s and rad/s^2.
+    Position (rad), velocity and acceleration, which the setup's arm and friction give from the
+    torque. The first `skip` s of the motion, where the transient is, may be left out.
     """
     motion, (begin, end) = recording.motion, recording.span
     number("skip", skip, 0.0, end - begin - recording.step)

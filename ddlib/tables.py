@@ -83,18 +83,10 @@ def quote(name: str, value) -> None:
 
 @dataclass(frozen=True)
 class Table:
-    """A table that a notebook shows as Markdown.
+    """A table that a notebook shows as Markdown."""
 
-    Parameters
-    ----------
-    header : sequence of str
-        Column heads.
-    rows : iterable of sequence
-        Cells: text is taken as it is, numbers are formatted by `significant`.
-    """
-
-    header: Sequence[str]
-    rows: Iterable[Sequence]
+    header: Sequence[str]  #: Column heads.
+    rows: Iterable[Sequence]  #: Cells: text as it is, numbers by `significant`.
 
     def __post_init__(self):
         if not all(str(head).strip() for head in self.header):

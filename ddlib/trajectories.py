@@ -35,7 +35,7 @@ class Trajectory(NamedTuple):
 
 
 def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajectory:
-    """The family ``phi = -theta sin(pi t / 3)``: out and back in three seconds.
+    """The family ``phi = -theta sin(pi t / 3)`` (Appendix I): out and back in three seconds.
 
     Before 0 s and from the end of the motion on the reference rests at zero, so its velocity
     jumps at both ends: by 0.82 rad/s for an extent of 45 degrees in three seconds.
@@ -48,13 +48,6 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
         Times, s.
     duration : float
         Length of the motion, s: the 3 of the formula.
-
-    Returns
-    -------
-    Trajectory
-        Arrays of shape ``(..., time, 2)``.
-
-    Source: Goldberg & Pearlmutter 1988, Appendix I.
     """
     extents_deg = finite_array("extents_deg", extents_deg, 2)
     t = shaped("t", t, "(time,)")

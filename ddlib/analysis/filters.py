@@ -1,9 +1,7 @@
 """Weights as convolution filters: even and odd parts, derivative content (section 5.1).
 
-A weight function is a unit's weights from one joint's window, ``f(x)`` with x from
--n to n samples, oldest first. Convolved with the position it estimates derivatives:
-even filters see acceleration, odd ones velocity (and jerk). Everywhere here the last axis of `f`
-is the window.
+A weight function ``f(x)`` is a unit's weights from one joint's window, the last axis of `f`, oldest
+sample first. Even functions see acceleration, odd ones velocity (and jerk).
 """
 
 from __future__ import annotations
@@ -36,16 +34,11 @@ def odd_width(f) -> np.ndarray:
 
 
 def decompose(f, convention: str = "symmetric") -> Decomposition:
-    """Split a weight function into constant, even and odd parts.
+    """Split weight functions ``(..., width)`` into constant, even and odd parts about x = 0.
 
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions; the centre sample is x = 0.
-    convention : {"symmetric", "paper"}
-        "symmetric": the mean is taken out of the even part, so that the odd part is
-        odd. "paper": as printed in section 5.1, where it is taken out of the *odd*
-        part: the sum is the same, but "odd" is then not odd and "even" keeps the mean.
+    With the "symmetric" `convention` the mean is taken out of the even part, so that the odd part
+    is odd. "paper": as printed in section 5.1, where it is taken out of the *odd* part: the sum is
+    the same, but "odd" is then not odd and "even" keeps the mean.
     """
     f = odd_width(f)
     one_of("convention", convention, ("symmetric", "paper"))
@@ -87,18 +80,9 @@ def pure_part(f) -> np.ndarray:
 
 
 def shares(f) -> np.ndarray:
-    """Share of each derivative in the energy of weight functions.
+    """Share of each derivative in the energy of weight functions ``(..., width)``, shape (..., 5).
 
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions.
-
-    Returns
-    -------
-    ndarray, shape (..., 5)
-        Position, velocity, acceleration, jerk and the rest (what a cubic does not
-        explain); the five sum to 1.
+    Position, velocity, acceleration, jerk, and the rest, which no cubic explains; they sum to 1.
     """
     f = odd_width(f)
     energy = (f**2).sum(-1, keepdims=True)
@@ -124,19 +108,9 @@ _SMOOTH = 0.8  # smallest share of the energy that a cubic must explain: else "n
 
 
 def classify(f) -> np.ndarray:
-    """Name weight functions by the derivatives they respond to.
+    """Name weight functions by the derivatives they respond to, one of `CLASSES` each.
 
     Their constants do not count, and one that is constant is "not analysable".
-
-    Parameters
-    ----------
-    f : array_like, shape (..., width)
-        Weight functions.
-
-    Returns
-    -------
-    ndarray of str, shape (...)
-        One of `CLASSES` each.
     """
     share = shares(f)
     v, a, j = np.moveaxis(share[..., 1:4], -1, 0)
@@ -188,23 +162,16 @@ def roughness(f) -> np.ndarray:
 
 
 def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) -> np.ndarray:
-    """Least-squares filter that estimates a derivative at the window's centre.
+    """Least-squares filter that estimates a derivative at the window's centre, shape (width,).
 
     Parameters
     ----------
     width : int
-        Window size in samples, odd.
-    derivative : int
-        Order of the derivative, 0 to `degree`.
+        Window size in samples, odd; ``weights @ window``, oldest sample first, is the estimate.
+    derivative, degree : int
+        Order of the derivative, and degree of the fitted polynomial.
     step : float
         Sampling period, s.
-    degree : int
-        Degree of the fitted polynomial.
-
-    Returns
-    -------
-    ndarray, shape (width,)
-        Weights, oldest sample first: ``weights @ window`` estimates the derivative.
     """
     from scipy.signal import savgol_coeffs
 

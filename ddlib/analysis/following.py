@@ -1,10 +1,4 @@
-"""What weights respond to: not their shape, but what their output follows along a recording.
-
-The shape of a filter says what it *could* see (`ddlib.analysis.filters`). What it does see
-depends on the motion, too: a small constant times a large position can outweigh a pure parabola
-times a small acceleration. Here the output itself is compared with true positions, velocities,
-accelerations.
-"""
+"""What the outputs of filters follow along a recording, which depends on the motion, too."""
 
 from __future__ import annotations
 
@@ -25,14 +19,7 @@ LAYERS = {"hidden": "hidden_weights", "direct": "direct_weights"}
 
 
 def explained(target, *by) -> float:
-    """Share of the variance of a signal that others explain, linearly with a constant.
-
-    Parameters
-    ----------
-    target : array_like, shape (cases,)
-    *by : array_like, shape (cases,)
-        One or more other signals.
-    """
+    """Share of the variance of a signal that others explain, linearly with a constant."""
     target = finite_array("target", target)
     signals = [finite_array("by", x) for x in by]
     if target.ndim != 1 or not signals or any(x.shape != target.shape for x in signals):
@@ -66,21 +53,11 @@ class Responses(NamedTuple):
 
 
 def followed(f, windows, states) -> Responses:
-    """What the filters of units follow, each joint's filter by itself.
+    """What the filters of units follow, each joint's filter by itself; leading shape (..., joint).
 
-    Parameters
-    ----------
-    f : array_like, shape (..., joint, width)
-        Weights along the windows of the joints.
-    windows : array_like, shape (cases, joint, width)
-        Positions that the network sees.
-    states : array_like, shape (cases, joint, 3)
-        True position, velocity and acceleration at the windows' centres.
-
-    Returns
-    -------
-    Responses
-        Leading shape ``(..., joint)``.
+    `f` are weights along the windows of the joints, ``(..., joint, width)``; `windows` hold the
+    positions that the network sees, ``(cases, joint, width)``, `states` the true position, velocity
+    and acceleration at their centres, ``(cases, joint, 3)``.
     """
     f = finite_array("f", f)
     joints, width = f.shape[-2:]

@@ -1,7 +1,7 @@
 """Hidden units at work (section 5.2): saturation, ablation, cancellation, matching.
 
-Activities of hidden units along some cases are ``(..., cases, hidden)``, as `Weights.activity`
-gives them; leading axes are networks. Windows hold positions, rad, ``(cases, joint, width)``.
+Activities are ``(..., cases, hidden)``, leading axes networks; windows hold positions, rad,
+``(cases, joint, width)``.
 """
 
 from __future__ import annotations
@@ -57,22 +57,12 @@ def ablation(model: TorqueModel, windows, torque) -> tuple[list, np.ndarray]:
 
 
 def refitted(features, torque, held_out, answer) -> np.ndarray:
-    """Errors of a linear output layer that is fitted anew to given features, with a constant.
+    """Pooled RMSS of a linear output layer fitted anew to features: in training and on other cases.
 
-    With hidden activities and windows as features this is what the hidden units are worth when
-    the output layer has done its best with them; with windows alone, what a linear filter is.
-
-    Parameters
-    ----------
-    features, held_out : array_like, shapes (cases, features) and (others, features)
-        On the training runs, and on cases that the layer is not fitted to.
-    torque, answer : array_like, shapes (cases, joint) and (others, joint)
-        Measured torques, N m.
-
-    Returns
-    -------
-    ndarray, shape (2,)
-        Pooled RMSS in training and on the other cases.
+    With hidden activities and windows as features this is what the hidden units are worth when the
+    output layer has done its best with them; with windows alone, what a linear filter is.
+    `features` and `held_out` are ``(cases, features)``, the torques `torque` and `answer`
+    ``(cases, joint)``.
     """
     features, held_out = finite_array("features", features), finite_array("held_out", held_out)
     torque, answer = finite_array("torque", torque), finite_array("answer", answer)
@@ -103,22 +93,11 @@ def cancellation(model: TorqueModel, windows) -> np.ndarray:
 
 
 def match(first, second) -> tuple[np.ndarray, np.ndarray]:
-    """Pair the units of two networks by what they do on the same cases.
+    """Pair the units of two networks by their activities ``(cases, hidden)`` on the same cases.
 
-    The pairs maximise the sum of absolute correlations (Hungarian algorithm): a unit and its
-    mirror image, which is on when the other is off, serve the network alike.
-
-    Parameters
-    ----------
-    first, second : array_like, shape (cases, hidden)
-        Activities of two networks.
-
-    Returns
-    -------
-    partner : ndarray of int, shape (hidden,)
-        Unit of `second` for each one of `first`.
-    correlation : ndarray, shape (hidden,)
-        Absolute correlation of each pair; 0 for units that never change.
+    The pairs maximise the sum of absolute correlations (Hungarian algorithm): a unit and its mirror
+    image, which is on when the other is off, serve the network alike. Returned are the unit of
+    `second` for each one of `first`, and the absolute correlations; 0 for units that never change.
     """
     from scipy.optimize import linear_sum_assignment
 

@@ -1,10 +1,4 @@
-"""The error that sensors leave to anybody who estimates the acceleration from a window.
-
-Fit a parabola to a window of measured positions: its curvature estimates the acceleration, and
-rounding by the encoder makes the estimate noisy. The mass matrix turns that noise into torque;
-the noise of the measured torque comes on top. What results, as an RMSS, is a floor for the
-training errors of Table 4-1, if the networks see the acceleration through such a filter.
-"""
+"""The error that encoder and torque sensor leave to anybody who estimates accelerations."""
 
 from __future__ import annotations
 
@@ -30,21 +24,10 @@ def noise_floor(
 ) -> float:
     """RMSS that encoder and torque sensor leave, both joints pooled.
 
-    Parameters
-    ----------
-    arm : Arm
-        Its mass matrix at ``q = 0`` turns accelerations into torques.
-    deviation : array_like, shape (2,)
-        Standard deviation of the torques of both joints, N m, above 0.
-    width : int
-        Window size in samples, odd, 3 or more.
-    bits : float
-        Of the encoders: ``2 ** bits`` steps a turn, 1 to 40. Rounding is taken for white
-        noise with a deviation of a step over the root of 12.
-    torque_noise : float
-        Noise of the measured torques as a share of their deviation, 0 or more.
-    period : float
-        Sampling period, s.
+    The arm's mass matrix at ``q = 0`` turns errors of the acceleration, estimated in windows of
+    `width` samples, into torques, of which `deviation` (N m, (2,)) is the spread. Encoders have
+    ``2 ** bits`` steps a turn, and rounding is taken for white noise with a deviation of a step
+    over the root of 12; `torque_noise` is a share of the deviation, `period` is in s.
     """
     deviation = positive("deviation", deviation, (2,))
     number("bits", bits, 1.0, 40.0)

@@ -1,13 +1,6 @@
-"""What units and networks respond to along a motion, in signals and in physical units.
+"""What whole units and networks respond to along a motion, in signals and in physical units.
 
-The shape of a filter says what it could see; its response says what it does see
-(`ddlib.analysis.following` looks at each joint's filter by itself). Here a unit is taken as a
-whole, with both windows, and a network by its gains: the inertia and the damping that its torque
-shows, through the direct weights alone and through all of it.
-
-A gain is the factor of an acceleration filter in the least-squares fit of the network's filter by
-a position, a velocity and an acceleration filter. With those of a parabola (`savitzky_golay`) as
-templates that is a moment of the filter (`gains`): they are the dual basis of 1, x and x²/2.
+(`ddlib.analysis.following` looks at each joint's filter by itself.)
 """
 
 from __future__ import annotations

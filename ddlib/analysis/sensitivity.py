@@ -1,7 +1,6 @@
 """What a network of states responds to (section 6): which inputs, and which ranges of them.
 
-A state has six numbers, position, velocity and acceleration of each joint. They are the last
-two axes, ``(joint, width)`` with a width of 3, everywhere here. A model is one network or many.
+Position, velocity and acceleration of each joint are the last two axes, ``(joint, width)``.
 """
 
 from __future__ import annotations

@@ -40,14 +40,10 @@ class _Function:
 
 
 def as_controller(controller: Controller | Callable) -> Controller:
-    """A controller as it is, or one made of a plain function.
+    """A controller as it is, or one made of a plain function ``f(wanted, q, qd) -> tau``.
 
-    Parameters
-    ----------
-    controller : Controller or callable
-        A function ``f(wanted, q, qd) -> tau`` gets the sample of the reference (a `Trajectory`
-        of position, velocity and acceleration) and the measured state, each of shape (..., 2)
-        in rad and rad/s, and returns torques in N m.
+    The function gets the sample of the reference (a `Trajectory` of position, velocity,
+    acceleration) and the measured state, ``(..., 2)`` in rad and rad/s, and returns torques in N m.
     """
     if callable(getattr(controller, "start", None)):
         return controller

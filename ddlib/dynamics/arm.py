@@ -34,33 +34,15 @@ class Arm:
 
     All methods take angles `q` (rad), velocities `qd` (rad/s) and accelerations `qdd` (rad/s^2)
     as arrays ``(..., 2)``, shoulder first; under gravity angles count from hanging straight down.
-
-    Parameters
-    ----------
-    name : str
-        What the arm is called in tables and figures.
-    a, b, d : float
-        Base inertial parameters in kg m^2, so that ``M11 = a + 2 b cos q2``,
-        ``M12 = d + b cos q2``, ``M22 = d``.
-    lengths : tuple of float
-        Link lengths in m (for drawing and kinematics only).
-    gravity_moments : tuple of float
-        ``((m1 lc1 + m2 l1) g, m2 lc2 g)`` in N m; zero for a horizontal arm.
-    provenance : dict
-        For each quantity, where its value comes from.
-
-    Raises
-    ------
-    ValueError
-        If a parameter is not finite or the mass matrix is not positive definite.
     """
 
-    name: str
-    a: float
-    b: float
-    d: float
-    lengths: tuple[float, float]
-    gravity_moments: tuple[float, float] = (0.0, 0.0)
+    name: str  #: What tables and figures call it.
+    a: float  #: Base inertial parameters, kg m^2: ``M11 = a + 2 b cos q2``,
+    b: float  #: ``M12 = d + b cos q2``,
+    d: float  #: ``M22 = d``.
+    lengths: tuple[float, float]  #: Of the links, m (for drawing and kinematics only).
+    gravity_moments: tuple[float, float] = (0.0, 0.0)  #: ``((m1 lc1 + m2 l1) g, m2 lc2 g)``, N m.
+    #: For each quantity, where its value comes from.
     provenance: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     def __post_init__(self):

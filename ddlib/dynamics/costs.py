@@ -48,16 +48,10 @@ PUBLISHED_CUSTOMISED = Operations(224, 174)
 
 @cache
 def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> Operations:
-    """Operations of one evaluation of the torques of an arm.
+    """Operations of one evaluation of an arm's torques, by `newton_euler` or another formulation.
 
-    Parameters
-    ----------
-    formulation : callable
-        `newton_euler`, `lagrange_euler` or `recursive_lagrange`.
-    arm : SerialArm
-    knowledge : {"nothing", "zeros", "arm"}
-        What is known off-line: nothing, the zeros of the method, or also the arm's constants. With
-        "arm" the formula is customised: nothing is computed twice or in vain.
+    `knowledge` says what is known off-line: "nothing", the "zeros" of the method, or also the
+    constants of the "arm"; then the formula is customised: nothing is computed twice or in vain.
     """
     one_of("knowledge", knowledge, KNOWLEDGE)
     tape = Tape()

@@ -1,8 +1,4 @@
-"""Numbers that count the arithmetic done with them.
-
-What is known off-line (a constant of the arm, a zero) costs nothing: that is what customising a
-formula to one arm means.
-"""
+"""Numbers that count the arithmetic done with them; what is known off-line costs nothing."""
 
 from __future__ import annotations
 

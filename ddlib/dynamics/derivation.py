@@ -61,20 +61,12 @@ class Derivation:
 
 @cache
 def derive(links: int, gravity: bool = False) -> Derivation:
-    """Derive the torques of a planar arm from its energy.
+    """Derive the torques of a planar arm of 1 to 6 links from its energy.
 
-    Parameters
-    ----------
-    links : int
-        Number of links, 1 to 6.
-    gravity : bool
-        Whether the plane is vertical. Angles then count from hanging straight down.
-
-    Notes
-    -----
-    Link k turns at the rate ``w_k = qd_1 + ... + qd_k``. Its centre of mass moves with the
-    sum of ``l_i w_i`` across every earlier link and ``r_k w_k`` across its own, and two
-    directions i and j enclose the angle ``q_(i+1) + ... + q_j``.
+    With `gravity` the plane is vertical, and angles count from hanging straight down. Link k turns
+    at the rate ``w_k = qd_1 + ... + qd_k``. Its centre of mass moves with the sum of ``l_i w_i``
+    across every earlier link and ``r_k w_k`` across its own, and two directions i and j enclose the
+    angle ``q_(i+1) + ... + q_j``.
     """
     integer("links", links, 1, _MAX_LINKS)
 

@@ -37,17 +37,9 @@ class Constants(NamedTuple):
 def newton_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     """Recursive Newton-Euler (Luh, Walker & Paul 1980): torques, one per joint.
 
-    Motion goes outwards, forces come inwards, equal work for every joint.
-
-    Parameters
-    ----------
-    constants : Constants
-        From `ddlib.dynamics.serial.SerialArm.constants`.
-    q, qd, qdd : sequence
-        Angle (rad), velocity (rad/s) and acceleration (rad/s^2) of each joint: numbers,
-        arrays or counting numbers.
-    zero, one
-        The numbers that stand for 0 and 1.
+    Motion goes outwards, forces come inwards, equal work for every joint. `constants` are from
+    `SerialArm.constants`; angles (rad), velocities and accelerations of the joints are numbers,
+    arrays or counting numbers, for which `zero` and `one` stand for 0 and 1.
     """
     links, acceleration = constants
     z, rest = [zero, zero, one], [zero, zero, zero]

@@ -56,22 +56,12 @@ def inertial_parameters(link: SpatialLink) -> np.ndarray:
 
 
 def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
-    """Matrix Y with ``tau = Y p``, p the `inertial_parameters` of all links in their order.
+    """Matrix Y ``(..., joints, 10 joints)`` with ``tau = Y p``; angles in rad.
 
-    Force and moment of a link are linear in its parameters, and each joint feels the moments of
-    all links beyond it about its axis. Many columns depend on others, or are zero: only some
-    combinations of parameters move a joint (Khosla 1986).
-
-    Parameters
-    ----------
-    arm : SerialArm
-        Its geometry and gravity count, its masses do not.
-    q, qd, qdd : array_like, shape (..., joints)
-        Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-
-    Returns
-    -------
-    ndarray, shape (..., joints, 10 joints)
+    p are the `inertial_parameters` of all links in their order. Force and moment of a link are
+    linear in them, and each joint feels the moments of all links beyond it about its axis. Many
+    columns depend on others, or are zero: only some combinations of parameters move a joint (Khosla
+    1986).
     """
     q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
     placed = frames(arm, q)

@@ -46,20 +46,10 @@ def reach(arm: Arm) -> tuple[float, float]:
 
 
 def inverse_kinematics(arm: Arm, hand, elbow: str = "positive") -> np.ndarray:
-    """Angles that bring the hand to a point, shape (..., 2), rad.
+    """Angles (rad) that bring the hand to points ``(..., 2)``, m from the shoulder.
 
-    Parameters
-    ----------
-    arm : Arm
-    hand : array_like, shape (..., 2)
-        Position from the shoulder, m.
-    elbow : {"positive", "negative"}
-        Sign of the elbow angle.
-
-    Raises
-    ------
-    Unreachable
-        If a point is too far or too near: with the arm within 3 degrees of stretched or folded.
+    `elbow` is the sign of the elbow angle, "positive" or "negative". Points that are too far or too
+    near, with the arm within 3 degrees of stretched or folded, are `Unreachable`.
     """
     hand, (l1, l2) = finite_array("hand", hand, 2), arm.lengths
     one_of("elbow", elbow, ELBOWS)

@@ -51,17 +51,10 @@ class SpatialLink:
 
 @dataclass(frozen=True)
 class SerialArm:
-    """A chain of links, each turning about the axis at its near end.
+    """A chain of links, each turning about the axis at its near end."""
 
-    Parameters
-    ----------
-    links : iterable of SpatialLink
-        From the base outwards.
-    gravity : array_like, shape (3,)
-        Acceleration of free fall in the base's frame, m/s^2.
-    """
-
-    links: tuple[SpatialLink, ...]
+    links: tuple[SpatialLink, ...]  #: From the base outwards.
+    #: Acceleration of free fall in the base's frame, m/s^2.
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
@@ -93,20 +86,10 @@ class SerialArm:
         return SerialArm(self.links[:joints], self.gravity)
 
     def inverse_dynamics(self, q, qd, qdd, formulation: Callable = newton_euler) -> np.ndarray:
-        """Torque that produces acceleration `qdd` in state `q`, `qd`.
+        """Torque (N m) that produces `qdd` in state `q`, `qd`, each ``(..., joints)`` in rad and s.
 
-        Parameters
-        ----------
-        q, qd, qdd : array_like, shape (..., joints)
-            Angles (rad), velocities (rad/s), accelerations (rad/s^2).
-        formulation : callable
-            `newton_euler`, `lagrange_euler` or `recursive_lagrange` of
-            `ddlib.dynamics.formulations`: they agree, at different cost.
-
-        Returns
-        -------
-        ndarray, shape (..., joints)
-            Torques, N m.
+        `formulation` is `newton_euler`, `lagrange_euler` or `recursive_lagrange`: they agree, at
+        different cost.
         """
         state = checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))

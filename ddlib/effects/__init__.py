@@ -1,10 +1,4 @@
-"""What Lagrange-Euler leaves out: friction, actuators and sensors, each of which can be off.
-
-- ``friction``: the friction laws: viscous, Coulomb, Stribeck, and stiction (`StickSlipFriction`)
-- ``actuators``: saturation, dead zone, ripple, flexible shafts, computing time
-- ``real_arm``: `Effects`, all of them in the order in which a signal meets them; the sensors'
-  part, where an encoder is rounded (`Quantisation`), noise, delay, backlash; the book's real arm
-"""
+"""What Lagrange-Euler leaves out: friction, actuators and sensors, each of which can be off."""
 
 import lazy_loader
 

@@ -1,9 +1,4 @@
-"""From recordings to equations for identification: differences, smoothing, modulation.
-
-Differences of quantised positions are noisy, and noise in the motion biases least squares;
-smoothing filters bend what they smooth, and that biases it too. Modulating functions need no
-acceleration and treat torque and motion alike.
-"""
+"""From recordings to equations for identification: differences, smoothing, modulation."""
 
 from __future__ import annotations
 
@@ -123,12 +118,8 @@ def repeat(
     """The same motions recorded many times: new sensor noise, the encoder mounted anew.
 
     Arguments are those of `ddlib.simulation.record`. In each repetition the zero of the encoders
-    falls elsewhere within a step.
-
-    Returns
-    -------
-    Recording
-        Arrays ``(repetitions, runs, time, joint)``; the reference is ``(runs, time, joint)``.
+    falls elsewhere within a step. Arrays are ``(repetitions, runs, time, joint)``, the reference
+    ``(runs, time, joint)``.
     """
     integer("repetitions", repetitions, 1)
     extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)

@@ -1,18 +1,11 @@
 """Six joints of which only the axes are known: what each motor's current may depend on.
 
-Each joint gets equations of its own, linear in unknown factors, by Lagrange's equation:
-
-- Axis 1 is vertical, axis 2 crosses it and is level, axis 3 is parallel to axis 2. Joints 2 and 3
-  are a planar pair under gravity and under the centrifugal torque of joint 1.
-- Axis 4 lies in the plane of the pair; axes 5 and 6 cross the one before at a right angle. Joints 4
-  to 6 feel each its own acceleration, some of what carries it, and the weight of a wrist whose
-  centre lies on axis 6.
-- Motor 6 turns joint 5, too, so that both feel friction of the sum of their velocities.
-
-The angles of joints 2 and 3 come with their cosine and their sine, so that their zeros need not be
-known; those of joints 4 and 5 are zero where axis 5 is parallel to axis 2, and axis 6 to axis 4.
-Assumed are masses that are symmetric about the plane of the pair, and a wrist that joints 1 to 3
-carry as a part of the forearm and that has no velocity terms.
+Each joint has equations linear in unknown factors, by Lagrange's equation. Axis 1 is vertical, axis
+2 crosses it and is level, axis 3 is parallel to axis 2; axis 4 lies in the plane of that pair, axes
+5 and 6 cross the one before at a right angle. Motor 6 turns joint 5, too, so that both feel
+friction of the sum of their velocities. The zeros of joints 2 and 3 need not be known. Assumed are
+masses symmetric about the plane of the pair, and a wrist that joints 1 to 3 carry as a part of the
+forearm and that has no velocity terms.
 """
 
 from __future__ import annotations

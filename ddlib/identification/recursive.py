@@ -11,17 +11,10 @@ class RecursiveLeastSquares:
     """Estimates of ``target = weights @ features``, sample by sample.
 
     After every sample they are what batch least squares would give for all samples so far, with a
-    penalty on the distance from the first guess (Ljung 1999, section 11.2).
-
-    Parameters
-    ----------
-    weights : array_like, shape (..., outputs, features)
-        First guess, later the estimate; leading axes are runs, each with an estimate of its own.
-    penalty : float
-        Weight of the first guess, above 0.
-    forgetting : float
-        A sample that is n steps old counts ``forgetting ** n``; at most 1. Features that are not
-        excited are forgotten all the same: the estimate's uncertainty then grows without bound.
+    `penalty` (above 0) on the distance from the first guess (Ljung 1999, section 11.2). `weights`
+    are ``(..., outputs, features)``; leading axes are runs, each with an estimate of its own. A
+    sample that is n steps old counts ``forgetting ** n``; features that are not excited are
+    forgotten all the same: the estimate's uncertainty then grows without bound.
     """
 
     def __init__(self, weights, penalty: float = 1e-3, forgetting: float = 1.0):

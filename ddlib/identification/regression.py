@@ -1,8 +1,4 @@
-"""Base parameters and friction by linear least squares, with a confidence for each.
-
-The torque is linear in the parameters once the motion is known (An, Atkeson & Hollerbach 1988;
-Khosla 1986).
-"""
+"""Base parameters and friction by linear least squares, with a confidence for each."""
 
 from __future__ import annotations
 
@@ -57,15 +53,8 @@ class Estimate:
 def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     """Weighted linear least squares: each joint counts by the inverse of its own noise.
 
-    A joint's noise is what its equations leave over. It decides the weights, which decide
-    what is left over; a few rounds settle both.
-
-    Parameters
-    ----------
-    equations : Equations
-        Leading axes are repetitions, each solved for itself.
-    rounds : int
-        How often the weights are renewed.
+    A joint's noise is what its equations leave over. It decides the weights, which decide what is
+    left over; a few `rounds` settle both. Leading axes are repetitions, each solved for itself.
     """
     integer("rounds", rounds, 1)
     names, regressors, torques = equations
@@ -94,14 +83,10 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
 
 
 def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
-    """Equations at known states: one for every sample and joint.
+    """Equations at known states, one for every sample and joint.
 
-    Parameters
-    ----------
-    q, qd, qdd, torque : array_like, shape (..., samples, 2)
-        Angles (rad), velocities (rad/s), accelerations (rad/s^2) and torques (N m).
-    names : sequence of str
-        Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
+    Angles (rad), velocities, accelerations and torques (N m) are ``(..., samples, 2)``; `names` are
+    parameters from `RIGID`, `GRAVITY` and `FRICTION`.
     """
     q, qd, qdd, torque = np.broadcast_arrays(
         *(finite_array(n, x, 2) for n, x in zip(("q", "qd", "qdd", "torque"), (q, qd, qdd, torque)))

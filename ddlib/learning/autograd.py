@@ -1,9 +1,4 @@
-"""One window network in PyTorch, and its training by autograd: for reading and for small runs.
-
-Batch gradient descent with acceleration (momentum), as in 1988 (section 3.3):
-``dw(t) = -eps dE/dw + alpha dw(t-1)`` with ``E`` half the summed squared error of all cases and
-outputs (Rumelhart, Hinton & Williams 1986). `ddlib.learning.train_ensemble` does the same sums.
-"""
+"""One window network in PyTorch, and its training by autograd: for reading and for small runs."""
 
 from __future__ import annotations
 
@@ -48,11 +43,13 @@ class WindowNetwork(nn.Module):
 def train(
     network: WindowNetwork, x, y, *, rate, momentum=0.95, epochs=1000, progress=True
 ) -> History:
-    """Train one network in place by autograd: the plain reference.
+    """Train one network in place by autograd: the plain reference, as in 1988 (section 3.3).
+
+    ``dw(t) = -eps dE/dw + alpha dw(t-1)`` with E half the summed squared error of all cases and
+    outputs (Rumelhart, Hinton & Williams 1986). Errors are noted before the step of an epoch.
 
     Parameters
     ----------
-    network : WindowNetwork
     x, y : array_like, shapes (cases, joint, width) and (cases, output)
         Scaled windows and targets.
     rate : float
@@ -61,13 +58,6 @@ def train(
         The factor alpha of the previous step, 0 to 0.999.
     epochs : int
         Passes over all cases, a step each.
-    progress : bool
-        Show a progress bar.
-
-    Returns
-    -------
-    History
-        Training errors before the step of each noted epoch, since they cost nothing there.
 
     Raises
     ------

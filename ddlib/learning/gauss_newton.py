@@ -1,9 +1,7 @@
 """Error, gradient and second derivatives of a window network, for Levenberg-Marquardt.
 
-Windows vary some hundred thousand times more in one direction than in another, and a step that
-is short in all weights alike leaves most directions as they were. The parameters are therefore
-taken in coordinates in which the inputs have unit mean square in every direction ("whitened").
-The optima stay the same; the way there, and so the optimum that is reached, does not.
+Windows vary some hundred thousand times more in one direction than in another. The parameters are
+therefore taken in coordinates in which the inputs have unit mean square in every direction.
 """
 
 from __future__ import annotations

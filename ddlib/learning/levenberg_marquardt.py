@@ -1,12 +1,9 @@
 """Levenberg-Marquardt: the optimum of a window network, where the path does not matter.
 
-Each step solves ``(J'J + mu I) step = -gradient`` with J the derivatives of all residuals
-by all parameters (Levenberg 1944; Marquardt 1963; for networks Hagan & Menhaj 1994). The
-damping mu follows the ratio of the achieved to the predicted fall of the objective
-(Nielsen 1999). Near the end all second derivatives take the place of ``J'J``, if they and
-mu make a positive definite matrix (Dennis, Gay & Welsch 1981 join the two in a similar way):
-where residuals remain, ``J'J`` alone converges slowly. The parameters are those of
-`ddlib.learning.gauss_newton`.
+Each step solves ``(J'J + mu I) step = -gradient`` with J the derivatives of all residuals by all
+parameters (Hagan & Menhaj 1994); the damping mu follows Nielsen (1999). Near the end all second
+derivatives take the place of ``J'J`` (Dennis, Gay & Welsch 1981): where residuals remain, ``J'J``
+alone converges slowly.
 """
 
 from __future__ import annotations

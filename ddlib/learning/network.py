@@ -1,8 +1,4 @@
-"""The window network of section 3: sigmoid hidden units and direct input-output weights.
-
-`Weights` is the network (or many of them) as plain arrays; `TorqueModel` adds the scaling, so that
-radians go in and N m come out. Neither needs PyTorch.
-"""
+"""The window network of section 3 as arrays, and with its scaling: radians to newton metres."""
 
 from __future__ import annotations
 
@@ -26,25 +22,13 @@ def _sigmoid(x):
 
 @dataclass(frozen=True, repr=False)
 class Weights:
-    """Weights of one network, or of many with leading axes.
+    """Weights of one network, or of many with leading axes."""
 
-    Attributes
-    ----------
-    hidden_weights : ndarray, shape (..., hidden, joint, width)
-        From the input window to the hidden units; oldest sample first.
-    hidden_bias : ndarray, shape (..., hidden)
-    output_weights : ndarray, shape (..., output, hidden)
-        From the hidden to the output units.
-    direct_weights : ndarray, shape (..., output, joint, width)
-        Direct weights from the input window to the output units.
-    output_bias : ndarray, shape (..., output)
-    """
-
-    hidden_weights: np.ndarray
-    hidden_bias: np.ndarray
-    output_weights: np.ndarray
-    direct_weights: np.ndarray
-    output_bias: np.ndarray
+    hidden_weights: np.ndarray  #: (..., hidden, joint, width): from the window, oldest first.
+    hidden_bias: np.ndarray  #: (..., hidden)
+    output_weights: np.ndarray  #: (..., output, hidden): from the hidden units.
+    direct_weights: np.ndarray  #: (..., output, joint, width): from the window.
+    output_bias: np.ndarray  #: (..., output)
 
     def __post_init__(self):
         for field in fields(self):
@@ -165,22 +149,12 @@ def from_rows(first: np.ndarray, output_weights: np.ndarray, window: tuple) -> W
 
 @dataclass(frozen=True)
 class TorqueModel:
-    """Trained networks with their scaling: positions in rad to torques in N m.
+    """Trained networks with their scaling: positions in rad to torques in N m."""
 
-    Attributes
-    ----------
-    weights : Weights
-        One network or an ensemble.
-    inputs, outputs : Scaler
-        Scaling of positions to 0..1 and of torques to the output units' range.
-    step : float, optional
-        Sampling period of the windows it was trained on, s. Default: not known.
-    """
-
-    weights: Weights
-    inputs: Scaler
-    outputs: Scaler
-    step: float | None = None
+    weights: Weights  #: One network or an ensemble.
+    inputs: Scaler  #: Positions, rad, to 0..1.
+    outputs: Scaler  #: Torques, N m, to the output units' range.
+    step: float | None = None  #: Sampling period of its training windows, s, if known.
 
     def scaled(self, windows) -> np.ndarray:
         """Windows in rad, ``(cases, joint, width)``, scaled for the input units."""

@@ -1,24 +1,12 @@
 """Why descent learns smooth filters: along which directions of the window, and how fast.
 
-Let X be the matrix of all windows, a row for each case, with a column of ones for the bias, and
-``X = U S V'`` its singular value decomposition. The weights w from the window to a unit, its bias
-among them, change in an epoch of batch descent by
-
-    step(t) = alpha step(t - 1) - eps X'd(t)
-
-with d(t) the unit's back-propagated error in each case. Summed over epochs the change of w is
-``-eps X'c``, where c counts each d(t) as often as momentum repeats it, up to 1 / (1 - alpha)
-times. So the change lies in the span of the windows; along v_k, the k-th column of V, it is
-``-eps s_k u_k'c``, and it moves the net input along u_k by ``-eps s_k^2 u_k'c``. As long as d
-stands still, a direction is learnt at a rate in proportion to its squared singular value.
-
-How d changes is known for a network so large, or a time so short, that its weights hardly move
-("lazy training", Chizat, Oyallon & Bach 2019). With the network replaced by its tangent at the
-initial weights, the error is a sum of modes, the eigenvectors of the neural tangent kernel JJ'
-(Jacot, Gabriel & Hongler 2018), J being the derivatives of all outputs by all weights. Each mode
-follows a recursion of its own, which `effective_steps` solves. For one linear unit J is X itself,
-and the rates are the eigenvalues of the inputs' second moments (Widrow & Stearns 1985; LeCun,
-Kanter & Solla 1991).
+With the windows (a row each, and a one for the bias) as ``X = U S V'``, batch descent changes a
+unit's weights within the span of V: along v_k at a rate in proportion to its squared singular
+value, as long as the back-propagated error stands still. How the error changes is known for a
+network that stays near its tangent ("lazy training", Chizat, Oyallon & Bach 2019): it is a sum of
+modes of the neural tangent kernel JJ' (Jacot, Gabriel & Hongler 2018), J being the derivatives of
+all outputs by all weights, and each mode follows a recursion of its own, `effective_steps`. For
+one linear unit J is X (Widrow & Stearns 1985; LeCun, Kanter & Solla 1991).
 """
 
 from __future__ import annotations
@@ -75,7 +63,7 @@ class Directions:
 
 
 def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> np.ndarray:
-    """How many plain steps against a standing error descent has taken along each mode.
+    """How many plain steps against a standing error descent has taken: (epochs, modes).
 
     For a parameter p that starts at 0 with the slope ``g + curvature p`` of the error, p is
     ``-eps g q(t)`` after t epochs, and the share ``1 - rate q(t)`` of the slope is left. The
@@ -88,14 +76,8 @@ def effective_steps(rates, epochs, momentum: float = 0.0, warm_up: int = 0) -> n
         Step size times curvature, 0 or more. Descent is stable below ``2 (1 + momentum)``.
     epochs : sequence of int
         When; must not decrease.
-    momentum : float
-        The factor alpha of the previous step, 0 to 0.999.
-    warm_up : int
-        Epochs at the start with a momentum of `WARM_UP_MOMENTUM`, if that is smaller.
-
-    Returns
-    -------
-    ndarray, shape (epochs, modes)
+    momentum, warm_up
+        As in `train_ensemble`.
     """
     rates = shaped("rates", non_negative("rates", rates), "(modes,)")
     number("momentum", momentum, 0.0, 0.999)

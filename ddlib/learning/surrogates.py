@@ -1,17 +1,9 @@
-"""Targets that look like the torques of a recording and have nothing to do with its motion.
+"""Targets that look like torques and have nothing to do with the motion: null controls.
 
-What a network learns from such targets it would learn from any target of their kind: they are
-null controls of the filters (section 5.1). What is preserved is what the null is about:
-
-- ``"shifted"``: each run's torques moved in time by a random amount, around the run's ends
-- ``"other run"``: the torques of another run
-- ``"phases"``: each run's torques with random phases, the same for both joints: spectra and
-  cross-spectrum stay (Prichard & Theiler, Physical Review Letters 73 (1994), 951-954)
-- ``"shuffled"``: each run's torques in random order, which makes them white
-
-Runs keep their means in all kinds but "other run". Along the paper's family all runs have one
-shape: there another run's torques, and shifted ones, are not quite unrelated to the motion
-(`related` measures it).
+Kept is: in "shifted" each run, moved in time around its ends; in "other run" the runs, exchanged;
+in "phases" spectra and cross-spectrum (Prichard & Theiler, Physical Review Letters 73 (1994),
+951-954); in "shuffled" the samples. Along the paper's family all runs have one shape, so that the
+first two are not quite unrelated to the motion (`related` measures it).
 """
 
 from __future__ import annotations
@@ -28,20 +20,10 @@ _LEAST_SHIFT = 0.1  # as a share of a run: 0.3 s of the paper's 3 s, in either d
 
 
 def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
-    """One draw of surrogate torques.
+    """One draw of surrogate torques, of a kind from `MATCHED` or "shuffled".
 
-    Parameters
-    ----------
-    kind : str
-        One of `MATCHED`, or "shuffled".
-    torque : array_like, shape (runs, time, joint)
-        Torques of the motion, run by run; any unit.
-    seed : int
-        Seed of the draw.
-
-    Returns
-    -------
-    ndarray, shape (runs, time, joint)
+    `torque` holds the motion run by run, ``(runs, time, joint)``, in any unit; so do the
+    surrogates.
     """
     one_of("kind", kind, _KINDS)
     torque = finite_array("torque", torque)
@@ -75,19 +57,10 @@ def p_value(value: float, draws, side: str = "two") -> float:
 
 
 def related(target, windows) -> np.ndarray:
-    """Share of the variance of targets that a linear filter of the windows explains.
+    """Share of the variance of targets ``(cases, joint)`` that a filter of the windows explains.
 
-    Parameters
-    ----------
-    target : array_like, shape (cases, joint)
-    windows : array_like, shape (cases, joint, width)
-        Positions.
-
-    Returns
-    -------
-    ndarray, shape (joint,)
-        Nearly 1 for recorded torques. For surrogates it is what they still share with the
-        motion, and what this many taps fit to anything that is smooth.
+    Nearly 1 for recorded torques. For surrogates it is what they still share with the motion, and
+    what as many taps as ``(cases, joint, width)`` has fit to anything that is smooth.
     """
     target, windows = finite_array("target", target), finite_array("windows", windows)
     if target.ndim != 2 or windows.ndim != 3 or len(target) != len(windows):

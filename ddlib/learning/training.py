@@ -26,25 +26,13 @@ _MAX_RATE = 1e38  # step size that single precision can hold
 
 @dataclass(frozen=True)
 class TrainingSet:
-    """Scaled windows and torques, with the scaling that made them.
+    """Scaled windows and torques, with the scaling that made them."""
 
-    Attributes
-    ----------
-    x : ndarray, shape (cases, joint, width)
-        Windows scaled to a range, 0..1 by default, over the training cases.
-    y : ndarray, shape (cases, joint)
-        Torques scaled to the output units' range.
-    inputs, outputs : Scaler
-        Radians to `x` and N m to `y`.
-    step : float, optional
-        Sampling period of the windows, s, if known.
-    """
-
-    x: np.ndarray
-    y: np.ndarray
-    inputs: Scaler
-    outputs: Scaler
-    step: float | None = None
+    x: np.ndarray  #: (cases, joint, width): scaled, by default to 0..1 over the cases.
+    y: np.ndarray  #: (cases, joint): torques scaled to the output units' range.
+    inputs: Scaler  #: Radians to `x`.
+    outputs: Scaler  #: N m to `y`.
+    step: float | None = None  #: Sampling period of the windows, s, if known.
 
     @classmethod
     def from_arrays(cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0)) -> TrainingSet:

@@ -18,7 +18,7 @@ def check_width(width) -> int:
 
 
 def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
-    """The window of positions around each sample.
+    """The window of positions around each sample, ``(..., cases, joint, width)``, oldest first.
 
     Parameters
     ----------
@@ -29,11 +29,6 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
         (section 4: "a window of size 11 ... 5 time steps before and 5 time steps after").
     cases : slice, optional
         Samples to centre a window on; default: all that have a whole window.
-
-    Returns
-    -------
-    ndarray, shape (..., cases, joint, width)
-        ``[..., k, j, i]`` is joint j at the i-th sample of the k-th window, oldest first.
     """
     q = shaped("q", q, "(..., time, joint)")
     width, time = check_width(width), q.shape[-2]

@@ -1,10 +1,4 @@
-"""Arm, controller and sensors run together, each at its own rate: recordings.
-
-- ``plant``: the arm with its frictions, motors and shafts, integrated under held torques
-- ``simulate``: `record` (a pick-and-place motion), `follow` (any reference), `free_motion`
-- ``recording``: `Recording`, what the log holds; its torque beyond the rigid body's
-- ``loops``: responses of a loop, predicted and simulated; Figure 2-1; scores of a recording
-"""
+"""Arm, controller and sensors run together, each at its own rate: recordings."""
 
 import lazy_loader
 

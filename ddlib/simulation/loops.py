@@ -217,16 +217,9 @@ def run_system(
 def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     """Out and back to the same extents, from rest to rest: ``phi = -theta sin(pi s t / 3)^2``.
 
-    Unlike the paper's family its velocity does not jump, so that an arm can follow it.
-
-    Parameters
-    ----------
-    extents_deg : array_like, shape (..., 2)
-        Extents theta of shoulder and elbow, degrees.
-    t : array_like, shape (time,)
-        Times, s; the motion lasts ``3 / speed``, before and after it the reference rests.
-    speed : float
-        The s of the formula: velocities grow by it, accelerations by its square.
+    Unlike the paper's family its velocity does not jump, so that an arm can follow it. Extents
+    theta are ``(..., 2)`` in degrees; the motion lasts ``3 / speed`` s, before and after it the
+    reference rests. Velocities grow with the `speed` s, accelerations with its square.
     """
     number("speed", speed, 0.0, open_low=True)
     size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2

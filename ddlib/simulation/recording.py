@@ -96,17 +96,12 @@ class Recording:
 
 
 def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
-    """Applied torque less the torque that a rigid `arm` needs for the motion that took place.
+    """Applied torque less the torque that a rigid `arm` needs for the motion that took place, N m.
 
-    The applied torque is constant over a control period, or changes once in it, after the
-    computing time; its mean is taken. Lagrange-Euler's is taken in the middle of the period,
-    with the mean acceleration; the error of that is of second order in the period (for the
-    rigid arm of this book on trajectory 6 below 2e-6 N m).
-
-    Returns
-    -------
-    ndarray, shape (..., time - 1, joint)
-        N m, for the period that follows each sample but the last.
+    Its shape is ``(..., time - 1, joint)``, for the period that follows each sample but the last.
+    The applied torque is constant over a control period, or changes once in it, after the computing
+    time; its mean is taken. Lagrange-Euler's is taken in the middle of the period, with the mean
+    acceleration; the error of that is of second order in the period.
     """
     step, period = recording.step, recording.control_step
     if not period:

@@ -72,14 +72,9 @@ def _held(plant: Plant, x, v, tau, seconds, parts):
 
 
 def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
-    """The arm left to itself, without torque, from angles `q` (rad) and velocities `qd` (rad/s).
+    """The arm left to itself from angles `q` (rad) and velocities `qd` (rad/s): times, `q`, `qd`.
 
     Of the effects those act that are inside the plant: friction, motor, transmission.
-
-    Returns
-    -------
-    t : ndarray, shape (time,)
-    q, qd : ndarray, shape (..., time, 2)
     """
     _check_plant(arm, effects)
     q, qd = np.broadcast_arrays(finite_array("q", q, 2), finite_array("qd", qd, 2))
