@@ -56,14 +56,6 @@ def test_units_and_offsets_do_not_matter_and_errors_scale(gain, offset, sign, er
     np.testing.assert_allclose(rmss(farther, TARGET), error * rmss(GUESS, TARGET), atol=1e-12)
 
 
-def test_leading_axes_are_members():
-    many = TARGET + RNG.normal(size=(3, 4, 60, 2))
-    pooled, each = rmss(many, TARGET), rmss(many, TARGET, pooled=False)
-    assert pooled.shape == (3, 4) and each.shape == (3, 4, 2)
-    for i in np.ndindex(3, 4):
-        np.testing.assert_allclose(each[i], rmss(many[i], TARGET, pooled=False))
-
-
 @pytest.mark.parametrize(
     "arguments, scale, words",
     [

@@ -4,7 +4,6 @@ The arm and its motions are those of `book/data/characters.npz`; what is asserte
 computed by others.
 """
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
@@ -70,13 +69,6 @@ def joined(parts: list[Equations]) -> Equations:
         tuple(np.concatenate(part) for part in zip(*(p.regressor for p in parts))),
         tuple(np.concatenate(part) for part in zip(*(p.torque for p in parts))),
     )
-
-
-def test_the_file_is_what_its_page_says():
-    content, page = (DATA / "characters.npz").read_bytes(), (DATA / "README.md").read_text()
-    assert hashlib.sha256(content).hexdigest() in page and "LICENSE-characters" in page
-    licence = (DATA / "LICENSE-characters").read_text()
-    assert licence.startswith("MIT License\n\nCopyright (c) 2020 Michael Lutter\n")
 
 
 def test_both_dynamics_agree_with_the_file(characters):

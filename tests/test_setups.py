@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from ddlib import paper
-from ddlib.learning import NotConverged, Scaler, TorqueModel, Weights
+from ddlib.learning import NotConverged, Weights
 from ddlib.metrics import rmss
 from ddlib.setups import (
     JOINT_DAMPING,
     KP,
     LITERATURE,
     POSITION_FEEDBACK,
-    SETUPS,
     STATE_FEEDBACK,
     errors,
     inside_hull,
@@ -52,15 +51,6 @@ def by_loop(recording, numbers, width):
 
 
 # --- setups and the split -------------------------------------------------------------------
-
-
-def test_setups_say_what_the_paper_says():
-    assert set(SETUPS) == {"position feedback", "state feedback", "joint damping"}
-    for setup in SETUPS.values():
-        assert setup.epochs == 20_000 and setup.hidden == 10 and setup.scaling == (0, 1)
-    assert POSITION_FEEDBACK.arm == STATE_FEEDBACK.arm
-    assert POSITION_FEEDBACK.effects == STATE_FEEDBACK.effects  # only the controller differs
-    assert POSITION_FEEDBACK.controller != STATE_FEEDBACK.controller
 
 
 def test_joint_damping_is_what_provenance_says():
@@ -120,17 +110,6 @@ def test_solved_windows_stop_after_their_steps():
         solve_windows(STATE_FEEDBACK, recording, 5, 2)
 
 
-def test_the_recording_is_of_appendix_i_with_noise(recording):
-    assert recording.q.shape == (6, 400, 2)
-    wanted = pick_and_place(paper.APPENDIX_I_EXTENTS_DEG, recording.t).q
-    np.testing.assert_allclose(recording.reference.q, wanted, atol=1e-12)
-    assert not np.array_equal(recording.tau, recording.tau_true)
-    assert not np.array_equal(recording.q, recording.q_true)
-    other = replace(STATE_FEEDBACK, seed=1).record()
-    np.testing.assert_array_equal(other.q, recording.q)  # the seed is of the torque sensor
-    assert not np.array_equal(other.tau, recording.tau)
-
-
 def test_the_arm_follows_the_family_within_a_few_degrees(recording):
     for made in (recording, POSITION_FEEDBACK.record()):
         error = np.rad2deg(np.abs(made.tracking_error[:, made.motion]))
@@ -185,20 +164,6 @@ def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypa
     assert seen["epochs"] == 60 and seen["momentum"] == QUICK.momentum
 
 
-def test_a_quick_training(recording, trained):
-    model, history, kept = trained
-    assert model.weights.hidden_weights.shape == (3, 10, 2, 11)
-    assert (history.epochs[0], history.epochs[-1]) == (1, 60)
-    assert history.training.shape == history.test.shape == (len(history.epochs), 3)
-    assert set(kept) == {0, 60}
-    wanted = Weights.random(3, 11, seed=4)
-    np.testing.assert_array_equal(kept[0].output_weights, wanted.output_weights)
-    assert (history.training.min(0) < 0.9 * history.training[0]).all()  # it does learn
-    measured = errors(model, recording)
-    np.testing.assert_allclose(measured.training, history.training[-1], rtol=1e-4)
-    np.testing.assert_allclose(measured.test, history.test[-1], rtol=1e-4)
-
-
 def test_errors_are_what_their_names_say(recording, trained):
     """Each recomputed from windows made by a loop."""
     model = trained[0]
@@ -222,21 +187,6 @@ def test_errors_are_what_their_names_say(recording, trained):
         np.testing.assert_allclose(found[name], value, rtol=1e-9, err_msg=name)
     for a, b in (("test", "test shoulder"), ("test", "test by training deviation")):
         assert not np.allclose(found[a], found[b], rtol=1e-3)
-
-
-def test_errors_of_a_constant_guess_are_one(recording):
-    """A network whose outputs are stuck at the mean torque of trajectory 6."""
-    _, y6 = by_loop(recording, [5], 3)
-    inputs = Scaler([-1.0, -1.0], [1.0, 1.0])
-    outputs = Scaler(y6.mean(0) - 1.0, y6.mean(0) + 1.0)
-    still = Weights(
-        np.zeros((1, 1, 2, 3)), np.zeros((1, 1)), np.zeros((1, 2, 1)), np.zeros((1, 2, 2, 3)),
-        np.zeros((1, 2)),
-    )  # fmt: skip
-    found = errors(TorqueModel(still, inputs, outputs), recording).named()
-    for name in ("test", "test shoulder", "test elbow", "test, desired positions"):
-        assert found[name] == pytest.approx(1.0), name
-    assert found["training"] > 1.0
 
 
 def test_predict_follows_the_motion(recording, trained):
@@ -264,12 +214,6 @@ def test_bad_values_are_refused_before_training(recording):
     for name, value in {"epochs": 0, "momentum": 1.0, "initial": 0.0, "hidden": 0}.items():
         with pytest.raises(ValueError, match=f"{name} must"):
             train_windows(replace(QUICK, **{name: value}), recording, 11, 1, progress=False)
-
-
-def test_record_takes_other_extents():
-    assert STATE_FEEDBACK.record((10.0, 20.0)).q.shape == (400, 2)
-    with pytest.raises(ValueError, match="extents_deg"):
-        STATE_FEEDBACK.record((10.0,))
 
 
 # --- other extents, true states ----------------------------------------------------------

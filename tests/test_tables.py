@@ -91,12 +91,6 @@ def test_a_value_is_told_from_an_edge(value, edges, text):
     assert number_beside(value, edges) == text
 
 
-@given(st.floats(0.01, 100), st.floats(0.01, 100))
-def test_a_shown_value_is_on_its_own_side(value, edge):
-    shown = float(number_beside(value, [edge], most=17).replace(",", ""))
-    assert (shown > edge) == (value > edge) and (shown < edge) == (value < edge)
-
-
 @pytest.mark.parametrize(
     "values, text",
     [
@@ -134,13 +128,6 @@ def cells(line):
     assert line[0] == line[-1] == "|"
     bare = line[1:-1].replace(r"\|", "\0")
     return [c.strip().replace("\0", "|") for c in bare.split("|")]
-
-
-def test_markdown():
-    table = Table(("window", "RMSS"), [(11, 0.078), (np.int64(21), "about 0.03")])
-    assert table._repr_markdown_() == (
-        "| window | RMSS |\n| --- | --- |\n| 11 | 0.0780 |\n| 21 | about 0.03 |"
-    )
 
 
 texts = st.text(st.characters(codec="ascii", categories=["L", "N", "P", "S"]), max_size=12).filter(

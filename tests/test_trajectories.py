@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from ddlib.trajectories import (
-    APPENDIX_I,
     OutsideFamilyWarning,
     pick_and_place,
     random_extents,
@@ -57,22 +56,6 @@ def test_velocity_jumps_at_both_ends():
     assert round(abs(qd[1]), 2) == 0.82
 
 
-def test_reference_rests_outside_the_motion():
-    t = np.array([-5.0, -0.01, 3.0, 3.01, 100.0])
-    for array in pick_and_place([45.0, 20.0], t):
-        assert not array.any()
-
-
-def test_many_members_at_once_equal_one_by_one():
-    t = time_grid(0.01, 0.2)
-    together = pick_and_place(APPENDIX_I, t)
-    assert together.q.shape == (6, 340, 2)
-    for i, extents in enumerate(APPENDIX_I):
-        for many, one in zip(together, pick_and_place(extents, t)):
-            np.testing.assert_array_equal(many[i], one)
-    assert pick_and_place(np.zeros((2, 3, 2)), t).qdd.shape == (2, 3, 340, 2)
-
-
 @pytest.mark.parametrize("extents", [(45.1, 0), (0, -0.1), (90, 90), [[1, 2], [3, 46]]])
 def test_extents_outside_the_family_warn_and_still_work(extents):
     with pytest.warns(OutsideFamilyWarning, match="0 to 45") as caught:
@@ -104,23 +87,6 @@ def test_random_extents_fill_the_square():
     np.testing.assert_allclose(extents.mean(0), 22.5, atol=4 * 13 / np.sqrt(20_000))
     np.testing.assert_allclose(extents.std(0), 45 / np.sqrt(12), rtol=0.02)
     assert abs(np.corrcoef(extents.T)[0, 1]) < 4 / np.sqrt(20_000)  # each joint independently
-
-
-def test_random_extents_are_seeded():
-    np.testing.assert_array_equal(random_extents(5, 1), random_extents(5, 1))
-    assert not np.array_equal(random_extents(5, 1), random_extents(5, 2))
-    assert random_extents(1000, 0, max_deg=10.0).max() <= 10.0
-
-
-@pytest.mark.parametrize(
-    "step, rest, count",
-    [(0.01, 0.0, 300), (0.01, 0.5, 400), (0.1, 0.7, 44), (0.005, 0.02, 608)],
-)
-def test_time_grid_counts(step, rest, count):
-    t = time_grid(step, rest)
-    assert t.size == count and (t == 0.0).any()
-    np.testing.assert_allclose(np.diff(t), step, rtol=1e-9)
-    assert t[0] == pytest.approx(-rest) and t[-1] == pytest.approx(3 + rest - step)
 
 
 @pytest.mark.parametrize(

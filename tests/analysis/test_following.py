@@ -43,19 +43,6 @@ def test_explained_is_the_squared_correlation():
         explained(np.ones(500), a)
 
 
-def test_textbook_filters_follow_what_they_measure():
-    f = np.stack([TAPS, TAPS], 1)  # (3 filters, joint, width)
-    found = followed(f, WINDOWS, STATES)
-    assert found.alone.shape == (3, 2, 3) and found.together.shape == (3, 2)
-    np.testing.assert_array_equal(found.strongest, [[0, 0], [1, 1], [2, 2]])
-    np.testing.assert_allclose(found.together, 1, atol=1e-9)
-    for k in range(3):
-        assert (found.alone[k, :, k] > 0.999).all()
-        assert (found.unique[k, :, k] > 0.95).all()
-        others = [j for j in range(3) if j != k]
-        assert (found.alone[k][:, others] < 0.05).all()
-
-
 def test_shares_of_a_known_mixture():
     """Independent quantities of known size: shares are those of the variances."""
     rng = np.random.default_rng(1)

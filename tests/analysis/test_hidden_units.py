@@ -7,13 +7,10 @@ from ddlib.analysis import (
     ablation,
     cancellation,
     match,
-    net_inputs,
     refitted,
     saturated,
-    transition_width,
-    with_filters,
 )
-from ddlib.learning import Scaler, TorqueModel, TrainingSet, Weights
+from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.metrics import rmss
 
 RNG = np.random.default_rng(5)
@@ -39,22 +36,6 @@ def test_saturated_counts_both_ends():
     # below the margin or above its counterpart, not at them
     edges = np.array([[0.25, 0.75], [0.24, 0.76], [0.26, 0.74], [0.75, 0.25]])
     np.testing.assert_array_equal(saturated(edges, 0.25), [0.25, 0.25])
-
-
-def test_net_inputs_are_the_logits_of_the_activities(model, cases):
-    hidden, _ = model.weights.activity(model.scaled(cases[0]))
-    np.testing.assert_allclose(
-        net_inputs(model, cases[0]), np.log(hidden / (1 - hidden)), atol=1e-9
-    )
-
-
-def test_the_transition_is_narrow_where_weights_are_large(model, cases):
-    net = net_inputs(model, cases[0])
-    width = transition_width(net)
-    np.testing.assert_allclose(transition_width(10 * net), width / 10)
-    k = np.unravel_index(width.argmin(), width.shape)
-    inside = np.abs(net[k[0], :, k[1]]) < np.log(9)
-    assert inside.mean() == pytest.approx(1 - saturated(1 / (1 + np.exp(-net)))[k])
 
 
 def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
@@ -124,14 +105,3 @@ def test_refitted_layer_is_least_squares_with_a_constant():
     assert best[0] == pytest.approx(1)  # a constant guess
     with pytest.raises(ValueError, match="a row for each torque"):
         refitted(x[1:], torque, new, torque[:40])
-
-
-def test_other_filters_in_the_place_of_a_networks_own():
-    scaler = Scaler(np.zeros(2), np.ones(2))
-    model = TorqueModel(Weights.random(2, 5), scaler, scaler)
-    f = 0 * model.weights.hidden_weights
-    changed = with_filters(model, f)
-    assert not changed.weights.hidden_weights.any() and model.weights.hidden_weights.any()
-    assert changed.weights.direct_weights is model.weights.direct_weights
-    with pytest.raises(ValueError, match="hidden"):
-        with_filters(model, f[:, :3])

@@ -36,8 +36,3 @@ def test_floor_is_what_rounded_positions_give(width, bits):
     wrong = wrong + share * deviation * rng.standard_normal(wrong.shape)
     measured = np.sqrt(((wrong / deviation) ** 2).mean())
     assert noise_floor(arm, deviation, width, bits, share, 0.01) == pytest.approx(measured, rel=0.1)
-
-
-def test_without_rounding_the_torque_noise_is_left():
-    floor = noise_floor(CMU_DD_ARM_II, (7.0, 2.0), 21, 40.0, 0.02, 0.01)
-    assert floor == pytest.approx(0.02, rel=1e-3)

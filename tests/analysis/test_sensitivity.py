@@ -115,13 +115,3 @@ def test_the_shoulder_position_matters_under_gravity_only():
     vertical = shuffled(lambda states: torque(states, REYES_KELLY_ARM), STATES, SCALE)
     assert vertical[0, 0] > 0.1
     assert len(INPUTS) == changes.size and CMU_DD_ARM_II.gravity_moments == (0, 0)
-
-
-def test_shuffling_keeps_members_and_seeds(model):
-    changes = shuffled(model.torque, STATES[:300], SCALE, seed=4)
-    assert changes.shape == (2, 3, 3)
-    np.testing.assert_array_equal(changes, shuffled(model.torque, STATES[:300], SCALE, seed=4))
-    assert not np.array_equal(changes, shuffled(model.torque, STATES[:300], SCALE, seed=5))
-    np.testing.assert_allclose(shuffled(model[2].torque, STATES[:300], SCALE, 4), changes[..., 2])
-    with pytest.raises(ValueError, match="states must have shape"):
-        shuffled(model.torque, STATES[0], SCALE)

@@ -55,15 +55,6 @@ def test_torque_is_lagranges_equation_along_a_motion():
             assert float(found) == pytest.approx(float(by_time.subs(t, moment)), rel=1e-10)
 
 
-def test_source_is_the_function_that_runs():
-    two = derive(2)
-    assert two.source.startswith("def torque(q1, q2, qd1, qd2, qdd1, qdd2, A11, A12, A22):")
-    space = {"cos": np.cos, "sin": np.sin}
-    exec(two.source, space)
-    numbers = (0.3, -0.8, 1.0, 2.0, -3.0, 4.0, *two.base_values(links(2)))
-    assert space["torque"](*numbers) == pytest.approx(two.function(*numbers), rel=1e-14)
-
-
 def test_refusals():
     for wrong in (0, 7):
         with pytest.raises(ValueError, match="links must be an integer from 1 to 6"):

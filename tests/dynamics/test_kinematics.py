@@ -9,7 +9,6 @@ from ddlib.dynamics import (
     ELBOWS,
     Unreachable,
     around,
-    end_point_error,
     follow_hand,
     inverse_kinematics,
     jacobian,
@@ -60,12 +59,6 @@ def test_bad_arguments_are_refused():
         inverse_kinematics(ARM, (0.5, 0.1), "up")
     with pytest.raises(ValueError, match="velocity"):
         follow_hand(ARM, [[0.5, 0.1]], [[np.nan, 0.0]], [[0.0, 0.0]])
-
-
-def test_end_point_error_points_from_the_wanted_to_the_true_hand():
-    wanted, q = np.array([0.3, 0.8]), np.array([0.35, 0.7])
-    found = end_point_error(ARM, wanted, q)
-    np.testing.assert_allclose(found, hand_of(q) - hand_of(wanted), atol=1e-12)
 
 
 def test_circles_of_many_kinds_at_any_pace():

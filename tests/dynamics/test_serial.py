@@ -198,17 +198,6 @@ def test_pinocchio_agrees(name):
 # --- shapes and refusals ----------------------------------------------------------------
 
 
-def test_states_in_a_block_are_states_by_themselves():
-    arm = random_arm(3, seed=4)
-    block = [x.reshape(5, 4, 3) for x in states(3, n=20)]
-    for formulation in (newton_euler, lagrange_euler, recursive_lagrange):
-        tau = arm.inverse_dynamics(*block, formulation)
-        assert tau.shape == (5, 4, 3)
-        for k in np.ndindex(5, 4):
-            alone = arm.inverse_dynamics(*(x[k] for x in block), formulation)
-            np.testing.assert_allclose(tau[k], alone, rtol=1e-9, atol=1e-9)
-
-
 def test_refusals():
     good = dict(twist_deg=0.0, length=1.0, offset=0.0, mass=1.0, com=(0, 0, 0), inertia=np.eye(3))
     link, flat = SpatialLink(**good), np.triu(np.ones((3, 3)))

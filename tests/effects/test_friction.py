@@ -60,33 +60,11 @@ def test_stribeck_friction_by_numbers(kind):
     assert (np.diff(falling[falling > 0.5 + 1e-9]) < 0).all() and falling[0] > 1.4
 
 
-@settings(deadline=None)
-@given(
-    level=st.floats(0, 10),
-    excess=st.floats(0, 10),
-    speed=st.floats(1e-3, 10),
-    qd=st.floats(-100, 100),
-)
-def test_stribeck_friction_lies_between_level_and_breakaway(level, excess, speed, qd):
-    friction = StickSlipFriction((level,) * 2, (level + excess,) * 2, speed)
-    size = friction.size(np.array([qd, -qd]))
-    assert (size >= level).all() and (size <= level + excess).all() and size[0] == size[1]
-
-
 @pytest.mark.parametrize("friction", FRICTIONS[:3] + FALLING[:2], ids=repr)
 def test_slope_is_the_steepest_rise(friction):
     qd = np.linspace(-0.001, 0.001, 2_001)[:, None] * np.ones(2)
     rise = np.diff(friction.torque(qd), axis=0) / np.diff(qd, axis=0)
     np.testing.assert_allclose(rise.max(0), friction.slope, rtol=1e-3)
-
-
-def test_friction_of_many_runs_at_once():
-    strength = np.array([[0.0, 0.0], [0.5, 0.15], [2.0, 0.6]])
-    qd = np.array([1.0, -1.0])
-    np.testing.assert_allclose(ViscousFriction(strength).torque(qd), strength * qd)
-    np.testing.assert_allclose(CoulombFriction(strength).torque(qd), strength * qd)
-    for kind in (StribeckFriction, StickSlipFriction):
-        np.testing.assert_allclose(kind(strength, 2 * strength).torque(qd), strength * qd)
 
 
 def test_refusals():

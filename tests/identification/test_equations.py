@@ -112,28 +112,6 @@ def test_gravity_moments_of_a_vertical_arm():
 # --- shapes ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "way", [by_differences, by_modulation, lambda r: by_smoothing(r, 11)], ids=range(3)
-)
-def test_runs_and_repetitions_have_their_places(way):
-    arm, controller, _, effects = PLANTS["surrogate, P"]
-    many = repeat(arm, controller, APPENDIX_I[:2], effects, repetitions=2, seed=9)
-    both = least_squares(way(many))
-    assert both.values.shape == (2, 7)
-
-    def part(index, run=slice(None)):
-        reference = type(many.reference)(*(x[run] for x in many.reference))
-        arrays = {
-            f: getattr(many, f)[index][run] for f in ("q", "tau", "q_true", "qd_true", "tau_true")
-        }
-        return replace(many, reference=reference, **arrays)
-
-    np.testing.assert_allclose(least_squares(way(part(1))).values, both.values[1], rtol=1e-9)
-    single, kept = least_squares(way(part(1, 0))), least_squares(way(part(1, slice(0, 1))))
-    np.testing.assert_allclose(single.values, kept.values, rtol=1e-9)
-    assert single.values.shape == (7,)
-
-
 def test_no_equation_is_taken_where_a_joint_rests():
     """Trajectories 4 and 5 move one joint: the other's friction has no sure sign."""
     run = record(CMU_DD_ARM_II, SMOOTH, APPENDIX_I[3])

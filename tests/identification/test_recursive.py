@@ -26,19 +26,6 @@ def test_after_every_sample_it_is_the_batch_solution(seed, samples, forgetting):
     np.testing.assert_allclose(found.covariance, np.linalg.inv(square), rtol=1e-7, atol=1e-9)
 
 
-def test_runs_with_leading_axes_are_estimated_each_by_itself():
-    rng = np.random.default_rng(4)
-    first = rng.normal(size=(3, 2, 1, 4))
-    together = RecursiveLeastSquares(first, 0.1, 0.9)
-    alone = RecursiveLeastSquares(first[2, 1], 0.1, 0.9)
-    for _ in range(20):
-        features, target = rng.normal(size=(3, 2, 4)), rng.normal(size=(3, 2, 1))
-        together.update(features, target)
-        alone.update(features[2, 1], target[2, 1])
-    np.testing.assert_allclose(together.weights[2, 1], alone.weights, rtol=1e-9)
-    np.testing.assert_allclose(together.covariance[2, 1], alone.covariance, rtol=1e-9)
-
-
 def test_bad_samples_are_refused_and_not_learnt():
     found = RecursiveLeastSquares(np.zeros((2, 3)))
     for features, target in (((1.0, 2.0), (0.0, 0.0)), ((1.0, np.nan, 0.0), (0.0, 0.0))):

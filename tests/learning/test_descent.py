@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import torch
 from small_networks import WIDTH, close, parts
 
 from ddlib.learning import (
@@ -15,36 +14,6 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.learning.training import check_points
-
-
-@pytest.mark.parametrize("onednn", sorted({False, descent._ONEDNN}))
-@pytest.mark.parametrize("shape", [(96, 43, 1500), (12, 83, 1500), (84, 1500, 23), (3, 5, 7)])
-def test_products_are_those_of_plain_matrices(shape, onednn, monkeypatch):
-    monkeypatch.setattr(descent, "_ONEDNN", onednn)
-    rows, inner, columns = shape
-    torch.manual_seed(1)
-    matrix = torch.randn(inner, columns)
-    product = descent.times(matrix, rows)
-    for _ in range(2):  # what is packed stays
-        left = torch.randn(rows, inner)
-        wanted = left.double() @ matrix.double()
-        by_product = product(left)
-        assert by_product.shape == wanted.shape and by_product.dtype == torch.float32
-        assert by_product.is_contiguous()
-        bound = 2e-7 * inner * (left.abs() @ matrix.abs()).max()
-        assert (by_product - wanted).abs().max() < bound
-
-
-def test_a_large_product_goes_through_onednn_where_it_can(monkeypatch):
-    if not descent._ONEDNN:
-        pytest.skip("oneDNN is not here")
-    asked = []
-    plain = torch.mm
-    monkeypatch.setattr(torch, "mm", lambda *two: asked.append(two) or plain(*two))
-    descent.times(torch.ones(43, 1500), 96)(torch.ones(96, 43))
-    assert not asked
-    descent.times(torch.ones(6, 32), 4)(torch.ones(4, 6))
-    assert len(asked) == 1
 
 
 def by_hand(network, x, y, momenta, eps):

@@ -3,7 +3,6 @@
 import re
 import warnings
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,8 +14,6 @@ from ddlib.learning import (
     NotConverged,
     TrainingSet,
     Weights,
-    gauss_newton,
-    levenberg_marquardt,
     solve,
 )
 from ddlib.learning.gauss_newton import Objective
@@ -120,28 +117,6 @@ def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay)
             np.testing.assert_allclose(lengths, wanted, rtol=1e-9)
 
 
-@pytest.mark.parametrize("exact", [False, True])
-def test_blocks_of_cases_add_up(exact, data, start, monkeypatch):
-    whole = Objective(start[0], data)
-    vector = whole.pack(start[0])
-    monkeypatch.setattr(gauss_newton, "_BLOCK", 7)
-    monkeypatch.setattr(gauss_newton, "_HELD", 1)
-    pieces = Objective(start[0], data)
-    assert whole._products.shape[1] == len(data.x) and pieces._products.shape[1] == 7
-    for _ in range(2):
-        for one, other in zip(whole.normal(vector, exact), pieces.normal(vector, exact)):
-            np.testing.assert_allclose(one, other, atol=1e-11)
-
-
-def test_parameters_come_back_and_inputs_are_white(data, start):
-    objective = Objective(start[1], data)
-    for name in FIELDS:
-        back = getattr(objective.unpack(objective.pack(start[1])), name)
-        np.testing.assert_allclose(back, getattr(start[1], name), atol=1e-12)
-    z = objective._z.numpy()
-    np.testing.assert_allclose(z @ z.T / z.shape[1], np.eye(len(z)), atol=1e-6)
-
-
 @pytest.mark.parametrize("decay", [0.02, 1e-3])
 def test_at_the_end_the_gradient_is_zero(data, start, decay):
     solution = solve(start, data, decay=decay, steps=1000, progress=False)
@@ -174,49 +149,6 @@ def test_scipy_finds_the_same_optimum(data):
             unflat(theirs.x, starts[k]).activity(data.x)[1],
             atol=1e-4,
         )
-
-
-def test_a_linear_problem_takes_one_step(data, monkeypatch):
-    """Targets that vary by 1e-5 about a half, from a network that gives a half."""
-    shapes = Weights.random(1, WIDTH, 1)[0]
-    zero = Weights(*(0 * getattr(shapes, name) for name in FIELDS))
-    y = 0.5 + 1e-5 * (data.y - 0.5)
-    x = np.column_stack([data.x.reshape(len(y), -1), np.ones(len(y))])
-    best = x @ np.linalg.lstsq(x, y, rcond=None)[0]
-    monkeypatch.setattr(levenberg_marquardt, "_DAMPING", 0.0)
-    solution = quietly(zero, replace(data, y=y), steps=1)
-    assert solution.steps[0] == 1
-    np.testing.assert_allclose(solution.model.weights.activity(data.x)[1], best, atol=1e-9)
-    assert solution.history.training[1, 0] == pytest.approx(float(rmss(best, y)), rel=1e-4)
-
-
-@pytest.mark.parametrize(
-    "ratio, factor",
-    [(4, 1 / 3), (1, 1 / 3), (0.9, 0.488), (0.75, 7 / 8), (0.5, 1), (0.25, 9 / 8), (1e-3, 2)],
-)
-@pytest.mark.parametrize("failures, growth", [(0, 1), (1, 2), (3, 2 * 4 * 8)])
-def test_damping_follows_the_rule_of_nielsen(ratio, factor, failures, growth):
-    """Nielsen's rule, some values by hand: ``max(1/3, 1 - (2 ratio - 1)^3)`` after a step that
-    is taken, factors of 2, 4, 8 after steps that are not.
-
-    The ratio is that of the fall to what ``value + g s + h s^2 / 2`` promises.
-    """
-    value, g, h, mu = 7.0, -3.0, 2.0, 0.5
-    trials = []
-
-    def planted(vector):
-        trials.append(s := float(vector[0]) - 1.0)
-        promised = -(g * s + h * s**2 / 2)
-        return value - (ratio if len(trials) > failures else -1.0) * promised, 0.1
-
-    one = torch.ones(1, dtype=torch.float64)
-    vector, _, _, new_mu = levenberg_marquardt._step(
-        SimpleNamespace(value=planted), one, value, h * one[:, None], g * one, mu, False
-    )
-    dampings = mu * np.array([1, 2, 8, 64])[: failures + 1]
-    np.testing.assert_allclose(trials, -g / (h + dampings))
-    assert float(vector[0]) == pytest.approx(1.0 + trials[-1])
-    assert new_mu == pytest.approx(mu * growth * factor, rel=0.01 if ratio < 0.01 else 1e-9)
 
 
 def test_an_ensemble_is_its_members(data, other, start):
@@ -262,39 +194,6 @@ def test_who_has_not_converged_says_so(data, start):
     assert w[0].filename == __file__
     assert not solution.converged.any() and (solution.ended == "steps").all()
     assert (solution.gradient > 1e-6).all() and (solution.steps == 2).all()
-
-
-def test_a_tolerance_below_rounding_ends_without_descent(data, start):
-    with pytest.warns(NotConverged, match="no descent"):
-        solution = solve(start[0], data, decay=0.05, tolerance=0.0, steps=3000, progress=False)
-    assert solution.ended[0] == "no descent"
-    assert solution.gradient[0] < 1e-6
-
-
-def test_inputs_that_do_not_vary_are_no_obstacle(data, start):
-    """Only the sum of the weights from a joint at rest matters: the rest stays, or decays."""
-    x = data.x.copy()
-    x[:, 1] = 0.5
-    still = replace(data, x=x)
-    for options in (dict(), dict(decay=0.01)):
-        solution = quietly(start[0], still, steps=100, **options)
-        assert np.isfinite(flat(solution.model.weights)).all()
-        from_rest = solution.model.weights.hidden_weights[:, 1]
-        kept = 0.0 if options else np.diff(start[0].hidden_weights[:, 1])
-        np.testing.assert_allclose(np.diff(from_rest), kept, atol=1e-6)
-        predicted = solution.model.weights.activity(x)[1]
-        assert solution.history.training[-1, 0] == pytest.approx(float(rmss(predicted, data.y)))
-
-
-def test_progress_goes_to_stderr_and_threads_are_left_as_they_were(data, start, capfd):
-    before = torch.get_num_threads()
-    quietly(start, data, steps=1)
-    assert capfd.readouterr() == ("", "")
-    with pytest.warns(NotConverged):
-        solve(start, data, steps=4, label="to the optimum")
-    out, err = capfd.readouterr()
-    assert out == "" and "to the optimum: 100%" in err and "12/12" in err and "rmss=" in err
-    assert torch.get_num_threads() == before
 
 
 def test_unfit_weights_and_data_are_refused(data, start):

@@ -17,7 +17,6 @@ from ddlib.learning import (
     jacobian,
     moved,
     rows,
-    train_ensemble,
     with_ones,
 )
 
@@ -197,35 +196,6 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     turned = Lazy(weights, data).predict(rate, [200], momentum, warm_up, targets=other.y)
     own = Lazy(weights, other).predict(rate, [200], momentum, warm_up)
     np.testing.assert_allclose(turned.error, own.error)
-
-
-def test_short_training_follows_the_prediction(data):
-    """`train_ensemble`: the shorter the steps, the better its tangent tells where it goes."""
-    begun, along, missed = Weights.random(2, WIDTH, 4, seed=5), Directions.of(data), []
-    how = {"momentum": 0.9, "warm_up": 5}
-    for rate in (0.5, 0.005, 0.0005):
-        _, _, kept = train_ensemble(
-            begun, data, rate=rate, epochs=20, snapshots=(20,), progress=False, **how
-        )
-        for member in range(2):
-            course = Lazy(begun[member], data).predict(rate, [20], **how)
-            change = along.along(kept[20][member]) - along.along(begun[member])
-            predicted = along.along(course.weights[0]) - along.along(begun[member])
-            missed.append(np.linalg.norm(predicted - change) / np.linalg.norm(change))
-    first, second, third = np.reshape(missed, (3, 2))
-    assert (second < 0.3 * first).all() and (third < 0.2 * second).all()
-    assert (third < 0.002).all() and (first > 0.05).all()
-
-
-def test_moved_adds_a_change_in_the_order_of_the_jacobian(data):
-    """The outputs of a network that is moved a little: its Jacobian times the change."""
-    weights, rng = start(), np.random.default_rng(2)
-    j = flat_jacobian(weights, data)
-    change = 1e-6 * rng.normal(size=(3, j.shape[1]))
-    after = moved(weights, change)
-    assert after.hidden_weights.shape == (3, 4, 2, WIDTH)
-    difference = after.activity(data.x)[1] - weights.activity(data.x)[1]
-    np.testing.assert_allclose(difference.reshape(3, -1), change @ j.T, atol=1e-10)
 
 
 @pytest.mark.parametrize(

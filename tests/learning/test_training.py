@@ -10,7 +10,6 @@ from hypothesis import given, strategies as st
 from small_networks import WIDTH, close, parts, smooth_cases
 
 from ddlib.learning import (
-    Descent,
     History,
     TrainingDiverged,
     TrainingSet,
@@ -18,12 +17,9 @@ from ddlib.learning import (
     WindowNetwork,
     WorseThanMean,
     cases,
-    default_rate,
-    prepare,
     train,
     train_ensemble,
 )
-from ddlib.learning.network import FIELDS
 from ddlib.learning.training import check_points
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK
@@ -128,17 +124,6 @@ def test_bad_options_are_refused_before_any_work(data, change, name):
 # --- history ----------------------------------------------------------------------------
 
 
-@given(epochs=st.integers(1, 30_000), points=st.integers(2, 100))
-def test_check_points_reach_from_first_to_last(epochs, points):
-    at = check_points(epochs, points)
-    assert at[0] == 1 and at[-1] == epochs and len(at) <= points
-    assert (np.diff(at) > 0).all()
-    late = at[at > 100]
-    if len(late) > 2:  # equal ratios, but for rounding to whole epochs
-        ratios = late[1:] / late[:-1]
-        assert ratios.max() / ratios.min() < 1.03
-
-
 def test_history_and_snapshots_are_those_of_their_epochs(data, other):
     """Errors are taken after the step by `train_ensemble`, before it by `train`."""
     start = Weights.random(5, WIDTH, seed=2)
@@ -227,18 +212,6 @@ def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
         np.testing.assert_allclose(history.test[:, k], clean.test[:, k], rtol=1e-5)
 
 
-@pytest.mark.parametrize("name", FIELDS)
-def test_errors_of_members_without_finite_weights_are_nan(data, name):
-    """Also if the step that lost one weight has not reached the others yet."""
-    start = Weights.random(3, WIDTH)
-    getattr(start, name)[1].flat[0] = np.inf
-    many = Descent(start, data.x, data.y, 0.01, 0.9)
-    errors = np.sqrt(many.mean_square(*prepare(data.x, data.y)).mean(-1))
-    np.testing.assert_array_equal(np.isnan(errors), [False, True, False])
-    out = start[0].activity(data.x)[1]
-    assert errors[0] == pytest.approx(np.sqrt(((out - data.y) ** 2).mean()), rel=1e-5)
-
-
 def test_divergence_is_an_error_that_keeps_the_history_and_gives_threads_back(data):
     """Sigmoid units saturate at large steps; it takes one beyond float32 to lose the sum."""
     before = torch.get_num_threads()
@@ -273,18 +246,3 @@ def test_a_far_too_large_rate_is_told(data):
         train_ensemble(start, data, rate=[1e6, 1e6, 3.0], **options)
         train_ensemble(start, data, rate=1e6, targets=targets, **options)
         train(WindowNetwork(WIDTH), data.x, data.y, rate=3.0, **options)
-
-
-def test_the_default_rate_and_progress_that_is_shown_when_asked_for(data, capsys):
-    assert default_rate(11) == pytest.approx(3.0) and default_rate(33) == pytest.approx(1.0)
-    start = Weights.random(2, WIDTH)
-    default, *_ = train_ensemble(start, data, epochs=20, progress=False)
-    named, *_ = train_ensemble(start, data, epochs=20, rate=33.0 / WIDTH, progress=False)
-    close(default.weights, parts(named.weights), rtol=0)
-    options = dict(epochs=100, label="a cell of the table")
-    train_ensemble(Weights.random(2, WIDTH), data, progress=True, **options)
-    shown = capsys.readouterr().err
-    assert "a cell of the table: 100%" in shown and "median_rmss=" in shown
-    assert "200/200" in shown  # members times epochs
-    train_ensemble(Weights.random(2, WIDTH), data, progress=False, **options)
-    assert capsys.readouterr().err == ""

@@ -6,10 +6,6 @@ from hypothesis import given, settings, strategies as st
 from hypothesis.extra import numpy as hnp
 
 from ddlib.learning import Scaler, check_width, sliding_windows
-from ddlib.setups import STATE_FEEDBACK
-
-RNG = np.random.default_rng(11)
-
 
 def by_loop(q, width, first, end):
     """Windows of one run ``(time, joint)``, sample by sample."""
@@ -33,19 +29,6 @@ def test_windows_hold_what_a_loop_finds(data, half, joints):
     some = sliding_windows(np.stack([q, q + 1]), width, slice(first, end))  # two runs
     assert some.shape == (2, end - first, joints, width)
     np.testing.assert_array_equal(some[1], by_loop(q + 1, width, first, end))
-
-
-def test_the_recorded_rest_is_long_enough_for_a_half_width_of_50():
-    """300 samples of motion give 300 windows, as the paper counts them."""
-    recording = STATE_FEEDBACK.record((30.0, 20.0))
-    for width in (11, 101):
-        windows = sliding_windows(recording.q, width, recording.motion)
-        assert windows.shape == (300, 2, width)
-        half = width // 2
-        np.testing.assert_array_equal(windows[0], recording.q[50 - half : 51 + half].T)
-        np.testing.assert_array_equal(windows[-1], recording.q[349 - half : 350 + half].T)
-    with pytest.raises(ValueError, match="record a longer rest"):
-        sliding_windows(recording.q, 103, recording.motion)
 
 
 Q = np.zeros((20, 2))
@@ -97,19 +80,6 @@ def test_scaling_there_and_back(joints, target, data):
     middle = scaler.scale((low + high) / 2)
     np.testing.assert_allclose(middle, sum(target) / 2, atol=1e-9)  # affine
     np.testing.assert_allclose(scaler.gain, np.diff(target)[0] / (high - low))
-
-
-@pytest.mark.parametrize("axis", [-1, -2, 0])
-def test_fit_maps_the_range_of_each_joint_on_any_axis_to_the_target(axis):
-    plain = RNG.normal(size=(6, 5, 2)) * [5.0, 0.5] + [10.0, -1.0]
-    moved = np.moveaxis(plain, -1, axis)
-    scaler = Scaler.fit(moved, (0.2, 0.8), axis)
-    np.testing.assert_array_equal(scaler.low, plain.min((0, 1)))
-    np.testing.assert_array_equal(scaler.high, plain.max((0, 1)))
-    scaled = np.moveaxis(scaler.scale(moved, axis), axis, -1)
-    np.testing.assert_allclose(scaled.min((0, 1)), 0.2)
-    np.testing.assert_allclose(scaled.max((0, 1)), 0.8)
-    np.testing.assert_allclose(scaler.unscale(scaler.scale(moved, axis), axis), moved, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.control import PID, Feedforward, pd, proportional
+from ddlib.control import PID, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.setups import KD, KP
@@ -69,15 +69,6 @@ def test_prediction_and_simulation_agree_for_an_arm_with_gravity(posture, joint)
     assert abs(predicted.compliance * law.kp[joint] - 1) > 0.02  # gravity does matter
 
 
-def test_prediction_and_simulation_agree_for_a_ringing_loop():
-    law, options = proportional(KP), {"viscous": VISCOUS, "joint": 0}
-    predicted = predicted_response(ARM, law, **options)
-    simulated = simulated_response(ARM, law, **options)
-    assert simulated.overshoot == pytest.approx(predicted.overshoot, rel=0.05)
-    assert simulated.compliance == pytest.approx(predicted.compliance, rel=0.05)
-    assert predicted.overshoot > 0.8 and np.isnan(simulated.bandwidth)
-
-
 # --- the second-order model -----------------------------------------------------------
 
 
@@ -116,19 +107,6 @@ def test_interconnected_system_is_the_simulators_loop(model):
         gaps.append(np.abs(np.rad2deg(drawn.q - built.q_true)).max())
         assert np.abs(drawn.tau - built.tau_true).max() < 0.05 * np.abs(built.tau_true).max()
     assert gaps[0] < 0.05 and gaps[1] < 0.7 * gaps[0]
-
-
-def test_interconnected_system_has_the_figures_blocks():
-    system = feedforward_system(ARM, ARM, KP, KD, VISCOUS)
-    assert {"inverse_arm", "feedback", "arm"} < {block.name for block in system.syslist}
-    # one evaluation by hand: torque = inverse arm + gains * error
-    reference, x = np.array([0.1, -0.2, 0.3, 0.4, -0.5, 0.6]), np.array([0.2, 0.1, -0.3, 0.2])
-    q, qd, qdd = np.split(reference, 3)
-    tau = ARM.inverse_dynamics(q, qd, qdd) + KP * (q - x[:2]) + KD * (qd - x[2:])
-    np.testing.assert_allclose(system.output(0.0, x, reference), [*x, *tau])
-    rate = system.dynamics(0.0, x, reference)
-    left = tau - [VISCOUS[0] * -0.3, VISCOUS[1] * 0.2]
-    np.testing.assert_allclose(rate, [-0.3, 0.2, *ARM.forward_dynamics(x[:2], x[2:], left)])
 
 
 # --- references and scores ------------------------------------------------------------

@@ -19,7 +19,6 @@ from ddlib.simulation.plant import Plant, substeps
 
 ARM = CMU_DD_ARM_II
 STICKY = StickSlipFriction((0.5, 0.15), (0.65, 0.2))
-SHAFT = FlexibleJoint((2e3, 6e2), (0.4, 0.15))
 PAIR = st.tuples(st.floats(-3, 3), st.floats(-3, 3)).map(np.array)
 
 
@@ -124,33 +123,6 @@ def test_friction_never_creates_energy(arm, flexible):
     assert (energy[-1] < energy[0] - 0.1).all()
 
 
-@pytest.mark.parametrize("step", [0.002, 0.01])
-def test_a_joint_that_stops_neither_turns_round_nor_starts_again(step):
-    """Each joint holds far more than the other one's braking can put on it."""
-    friction = StickSlipFriction((2.0, 0.6), (50.0, 20.0), speed=1e-4)
-    q, qd = np.random.default_rng(0).uniform(-2, 2, (2, 60, 2))
-    plant = Plant(ARM, stick(friction))
-    _, v = march(plant, q, qd, np.zeros(2), step, round(1.2 / step))
-    assert (v[1:] * v[:-1] >= 0).all()
-    assert not v[1:][v[:-1] == 0].any()
-    assert 20 < np.count_nonzero(v[-1] == 0)  # that many have come to rest
-
-
-def test_sliding_distance_in_closed_form():
-    """One joint against constant friction stops after J v^2 / (2 F) and J v / F seconds."""
-    level = np.array([2.0, 1e6])  # the elbow cannot move
-    plant = Plant(ARM, stick(StickSlipFriction(level, level)))
-    inertia = ARM.mass_matrix([0.0, 0.4])[0, 0]
-    errors = []
-    for step in (0.002, 0.001):
-        count = round(1.2 / step)
-        x, v = march(plant, np.array([0.0, 0.4]), np.array([0.3, 0.0]), np.zeros(2), step, count)
-        assert (x[:, 1] == 0.4).all() and not v[:, 1].any()
-        assert np.count_nonzero(v[:, 0]) == pytest.approx(inertia * 0.3 / 2.0 / step, abs=1)
-        errors.append(x[-1, 0] - inertia * 0.3**2 / (2 * 2.0))
-    assert np.abs(errors).max() < 2.0 / inertia * 0.002**2
-
-
 def test_stick_slip_against_its_closed_form():
     """A spring pulled steadily: stick until the breakaway torque F_s, slip, stick again.
 
@@ -210,27 +182,6 @@ def test_no_torque_crosses_the_gap():
     assert (x[:, 0] == 0.2).all() and (x[:, 1] == 0.3).all()
 
 
-def test_a_small_twist_swings_at_the_mode_that_is_predicted():
-    shaft = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
-    q = np.array([0.2, 0.8])
-    squared, shapes = np.linalg.eig(
-        np.linalg.solve(
-            shaft.mass_matrix(ARM, q),
-            np.block([[(k := np.diag(shaft.stiffness)), -k], [-k, k]]),
-        )
-    )
-    fastest = squared.real.argmax()
-    plant = Plant(ARM, Effects(transmission=(shaft,)))
-    x, v = plant.rest(q)
-    step = 1e-4
-    x, _ = march(plant, x + 1e-6 * shapes[:, fastest].real, v, np.zeros(2), step, 2000)
-    twist = x[:, 3] - x[:, 1]
-    sign = np.flatnonzero(np.diff(np.sign(twist)) > 0)
-    crossing = sign - twist[sign] / (twist[sign + 1] - twist[sign])
-    measured = 2 * np.pi / (np.diff(crossing).mean() * step)
-    assert measured == pytest.approx(shaft.mode_frequencies(ARM, q)[1], rel=1e-4)
-
-
 # --- how many steps a control period needs ----------------------------------------------
 
 
@@ -251,14 +202,3 @@ def test_substeps_agree_with_an_implicit_solver():
     assert np.allclose(q[-1], implicit[:2], atol=1e-5)
     _, wild, _ = free_motion(IMI_ARM, start[:2], start[2:], 1.0, 0.002, effects)
     assert not np.allclose(wild[-1], implicit[:2], atol=1e-5)  # without them it chatters
-
-
-def test_substeps_follow_the_fastest_swing():
-    """A period of it takes 8 pi steps or more, whatever the posture."""
-    stiffness = np.array([[2e4, 6e3], [2e6, 6e5]])
-    effects = Effects(transmission=(FlexibleJoint(stiffness, (0.4, 0.15)),))
-    parts = substeps(ARM, effects, 0.002)
-    q = np.stack([np.zeros(9), np.linspace(-3, 3, 9)], -1)
-    for count, k in zip(parts, stiffness):
-        fastest = FlexibleJoint(tuple(k), (0.4, 0.15)).mode_frequencies(ARM, q).max()
-        assert 8 * np.pi <= 2 * np.pi / fastest / (0.002 / count) < 30 * np.pi

@@ -25,7 +25,7 @@ from ddlib.effects import (
 )
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, follow, record, residual_torque
-from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents, time_grid
+from ddlib.trajectories import APPENDIX_I, pick_and_place, time_grid
 
 ARM = CMU_DD_ARM_II
 PD = pd((200.0, 80.0), (30.0, 12.0))
@@ -79,28 +79,6 @@ def test_runs_may_differ_in_any_strength(kind):
 
 
 # --- seeds ------------------------------------------------------------------------------
-
-NOISY = (Noise((1e-4, 2e-4)),), (Noise((0.4, 0.1)),)
-
-
-def test_gains_seeds_and_references_may_differ_together():
-    """Extents, gains, friction levels and seeds, one of each for every run."""
-    n = 3
-    extents, seeds = random_extents(n, seed=0), np.array([7, 0, 2**31])
-    kp = np.linspace(100, 300, n)[:, None] * [1.0, 0.3]
-    level = np.linspace(0, 2, n)[:, None] * LEVEL
-
-    def run(extents, kp, level, seed):
-        friction = ViscousFriction(level), CoulombFriction(level)
-        effects = Effects(friction, encoder=NOISY[0], torque_sensor=NOISY[1])
-        t, reference = short(extents=extents)
-        options = dict(effects=effects, seed=seed, velocity="difference")
-        return follow(ARM, pd(kp, 0.1 * kp), reference, t, **options)
-
-    together = run(extents, kp, level, seeds)
-    assert together.q.shape == (n, 40, 2)
-    for i in range(n):
-        assert_same(together, i, run(extents[i], kp[i], level[i], int(seeds[i])), 1e-10)
 
 
 def test_noise_is_what_numpy_draws():
@@ -208,21 +186,6 @@ def test_ripple_is_what_is_left():
     middle = (run.q_true[1:] + run.q_true[:-1]) / 2
     expected = run.tau_true[:-1] - ripple.shaft_torque(run.tau_true[:-1], middle)
     np.testing.assert_allclose(residual_torque(ARM, run), expected, atol=2e-3)
-
-
-def test_a_springy_shaft_leaves_the_snap_of_the_motion():
-    """Where nothing rings: motor inertia times the second derivative of the shaft's twist."""
-    shaft = FlexibleJoint((2e4, 6e3), (0.4, 0.15), (5.0, 1.0))
-    run = drive(transmission=(shaft,))
-    left = residual_torque(ARM, run)
-    smooth = slice(550, 1700)  # 0.6 s after the start, before the end
-    twist = run.q - run.q_true
-    second = np.gradient(np.gradient(twist, CONTROL_STEP, axis=0), CONTROL_STEP, axis=0)
-    rotors = np.array([0.4, 0.15]) * second
-    rotors[:, 0] += rotors[:, 1]  # the elbow's motor rides on link 1
-    assert np.abs(shaft.spring_torque(twist, 0 * twist)).max() > 20
-    np.testing.assert_allclose(left[smooth], rotors[:-1][smooth], atol=3e-4)
-    assert np.abs(left[smooth]).max() > 2e-3
 
 
 @pytest.mark.parametrize("period", [0.001, 0.004])

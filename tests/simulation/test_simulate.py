@@ -90,14 +90,6 @@ def test_a_recording_has_300_samples_of_motion_and_whole_rests(paper_run):
         np.testing.assert_allclose(logged, formula, atol=1e-12)
 
 
-def test_the_log_takes_every_fifth_control_sample():
-    every, fifth = (run(effects=SENSORS, log_every=n) for n in (1, 5))
-    for name in ("t", "q", "q_true", "qd_true", "tau_true"):
-        np.testing.assert_array_equal(getattr(fifth, name), getattr(every, name)[::5])
-    np.testing.assert_array_equal(fifth.reference.qdd, every.reference.qdd[::5])
-    assert not np.array_equal(fifth.tau, every.tau[::5])  # each log entry draws its own noise
-
-
 @settings(deadline=None, max_examples=20)
 @given(samples=st.integers(15, 60), rest=st.integers(0, 3), step=st.floats(0.01, 0.09))
 def test_a_recording_knows_its_motion(samples, rest, step):
@@ -173,28 +165,6 @@ def test_readings_are_whole_encoder_steps_and_noise_is_in_the_log_only(paper_run
     quiet = record(ARM, PD, APPENDIX_I, effects=SENSORS.without("torque_sensor"))
     np.testing.assert_array_equal(quiet.tau_true, paper_run.tau_true)
     np.testing.assert_array_equal(quiet.q, paper_run.q)
-
-
-def test_velocity_from_encoder_readings():
-    """Quantised readings give a velocity in steps of q_step / period, so the torque shows them."""
-    kd = np.array([30.0, 12.0])
-    effects = Effects(encoder=(Quantisation.encoder(12),))
-    made = run(pd((0.0, 0.0), tuple(kd)), effects, velocity="difference", log_every=1)
-    speed = np.diff(made.q, axis=0, prepend=made.q[:1]) / 0.002
-    np.testing.assert_allclose(made.tau_true, kd * (made.reference.qd - speed), atol=1e-8)
-    assert np.abs(speed - made.qd_true).max() > 0.1
-
-
-def test_runs_are_indexed_and_sliced():
-    recording = record(ARM, proportional((60.0, 30.0)), APPENDIX_I[:3])
-    one, two = recording[1], recording[:2]
-    np.testing.assert_array_equal(two[1].tau, one.tau)
-    np.testing.assert_array_equal(one.reference.qdd, recording.reference.qdd[1])
-    assert one.motion == recording.motion and one.control_step == recording.control_step
-    with pytest.raises(IndexError, match=r"recording must have an axis of runs, got q of shape"):
-        one[0]
-    with pytest.raises(IndexError):
-        recording[3]
 
 
 def test_a_controller_may_be_a_plain_function():
