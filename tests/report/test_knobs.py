@@ -2,7 +2,6 @@
 
 from dataclasses import fields, replace
 from itertools import combinations
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,13 +18,11 @@ from workshop.report.knobs import (
     moments,
     screening,
     shares,
-    spread_evenly,
     terms,
     weigh,
     without_start,
     would_tell,
 )
-from workshop.report.studies import knobs as study
 from workshop.report.studies.table import _ablations
 
 CENTRE = {m: {n: float(k.value(0)) for n, k in knobs_of(m).items()} for m in METHODS}
@@ -139,16 +136,6 @@ def test_the_emulator_is_least_squares_when_nothing_is_known_before():
     )
 
 
-def test_what_the_design_cannot_tell_is_not_claimed():
-    """Twelve knobs have 66 products and 25 runs: away from the runs the regression is unsure."""
-    x = screening()
-    y = 0.5 * x[:, 0] * x[:, 1]
-    found = Emulator.fit(x, y, 1e-6, widths=(0.1, 0.4, 0.0))
-    at_runs, away = found.predict(x)[1], found.predict(np.ones((1, 12)))[1]
-    assert at_runs.max() < 1e-4 and away[0] > 0.01
-    np.testing.assert_allclose(found.mean[1:13], 0, atol=1e-3)  # the main effects are clear of it
-
-
 def test_what_a_polynomial_misses_makes_it_less_sure():
     """A kink is no polynomial: without noise the misfit has to stand for it."""
     x = screening()[:, :3]
@@ -182,13 +169,6 @@ def test_shares_of_the_variance():
     np.testing.assert_allclose(total, np.array([4 / 3 + 1, 4 / 45, 1]) / whole)
     x = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
     assert (terms(x) @ coefficients).var() == pytest.approx(whole, rel=0.02)
-
-
-def test_draws_of_coefficients_scatter_as_they_should():
-    found = Emulator(np.array([1.0, 2.0]), np.array([[0.04, 0.01], [0.01, 0.09]]))
-    drawn = found.draws(20_000)
-    np.testing.assert_allclose(drawn.mean(0), found.mean, atol=0.01)
-    np.testing.assert_allclose(np.cov(drawn.T), found.covariance, atol=0.003)
 
 
 # --- the posterior ------------------------------------------------------------------------------
@@ -225,17 +205,6 @@ def test_what_another_number_would_tell_against_the_conjugate_one():
     np.testing.assert_allclose(told, [np.sqrt(0.25 / 1.25), 1.0], atol=0.02)
 
 
-def test_places_fill_the_cube():
-    x = spread_evenly(1024, 3)
-    assert x.shape == (1024, 3) and x.min() >= -1 and x.max() <= 1
-    np.testing.assert_allclose(x.mean(0), 0, atol=0.01)
-    np.testing.assert_allclose(x.std(0), 1 / np.sqrt(3), rtol=0.01)
-    assert not np.array_equal(x, spread_evenly(1024, 3, seed=1))
-
-
-# --- the studies --------------------------------------------------------------------------------
-
-
 def test_each_ablation_takes_back_one_thing():
     rows = _ablations()
     whole = rows.pop("joint damping")
@@ -256,53 +225,3 @@ def test_each_ablation_takes_back_one_thing():
     for name, part in (("no Coulomb friction", "friction"), ("16 bits", "encoder")):
         differ = [p for p in parts if getattr(rows[name].effects, p) != getattr(whole.effects, p)]
         assert differ == [part]
-
-
-class Trained:
-    """Stands for `train_windows`: says what it was asked for, derails as often as it is told."""
-
-    def __init__(self, derails):
-        self.asked, self.derails = [], derails
-
-    def __call__(self, here, recording, width, members, *, seed, progress):
-        self.asked.append((here.name, width, members, seed))
-        again = sum(asked[1] == width for asked in self.asked) <= self.derails
-        history = SimpleNamespace(derailed=np.array([again]), best_test=np.array([0.5]))
-        model = SimpleNamespace(weights=SimpleNamespace(largest=np.array([2.0 * width])))
-        return model, history, {}
-
-
-@pytest.mark.parametrize("derails, tried", [(0, 1), (1, 2), (9, 3)])
-def test_a_run_begins_derailed_networks_anew(monkeypatch, derails, tried):
-    trained = Trained(derails)
-    monkeypatch.setattr(study, "train_windows", trained)
-    found_errors = SimpleNamespace(training=np.array([0.1]), test=np.array([0.2]))
-    monkeypatch.setattr(study, "errors", lambda model, recording: found_errors)
-    places = [0.0] * len(knobs_of("solver"))
-    row = study._run("solver", places, [7])
-    assert [seed for _, width, _, seed in trained.asked if width == 11] == [7, 1007, 2007][:tried]
-    assert row["derailed"] == 3 * min(derails, 3) and row["places"] == places
-    assert row["windows"]["21"] == {
-        "training": [0.1], "test": [0.2], "best test": [0.5], "largest weight": [42.0]
-    }  # fmt: skip
-    np.testing.assert_allclose(list(row["values"].values()), list(CENTRE["solver"].values()))
-
-
-def test_the_screen_has_a_day_for_every_network(monkeypatch):
-    asked = []
-
-    def swept(experiment, settings, **options):
-        asked.extend(settings)
-        return [{"number": k} for k in range(len(settings))]
-
-    monkeypatch.setattr(study, "sweep", swept)
-    found = study.screened(networks=3)
-    assert [len(rows) for rows in found["methods"].values()] == [25, 25]
-    assert found["methods"]["solver"][0] == {"number": 25}
-    for method in METHODS:
-        mine = [one for one in asked if one["method"] == method]
-        np.testing.assert_array_equal(
-            [one["places"] for one in mine], screening()[:, : len(knobs_of(method))]
-        )
-        days = [day for one in mine for day in one["seeds"]]
-        assert sorted(days) == list(range(1, 76))

@@ -86,15 +86,6 @@ def test_means_are_taken_by_draw():
     assert np.array_equal(means["a"]["b"], [[1, 2], [5, 6], [9, 10]])
 
 
-def test_a_row_holds_the_real_torques_and_every_null():
-    row = study._row(SMALL, SMALL.record(), 7, 5, 2, 1, ("shifted", "phases"))
-    assert set(row) == {"real", "real, errors", "untrained", "nulls"}
-    assert set(row["nulls"]) == {"shifted", "phases"}
-    assert row["real"]["gains"].shape == (5, 2, 2, 3)
-    assert row["nulls"]["phases"]["gains"].shape == (2, 2, 2, 3)
-    assert row["nulls"]["phases"]["related"].shape == (2, 2)
-
-
 def test_the_solver_takes_the_place_of_descent():
     setup = replace(study.JOINT_DAMPING, steps=2, hidden=2)
     trial = study._Trial(setup, setup.record(), 5)

@@ -17,13 +17,6 @@ def in_words(row) -> int:
     return 1 if "".join(str(int(b)) for b in row).count("1") % 2 == 0 else 0
 
 
-@pytest.mark.parametrize("bits", [1, 2, 3, 6])
-def test_patterns_are_all_inputs_in_binary_order(bits):
-    x = patterns(bits)
-    assert len({tuple(row) for row in x}) == 2**bits == len(x)
-    assert [int("".join(map(str, row[::-1])), 2) for row in x] == list(range(2**bits))
-
-
 def test_parity_is_the_papers_function():
     x = patterns(5)
     assert parity_networks.parity(x).tolist() == [in_words(row) for row in x]
@@ -62,7 +55,7 @@ def test_polynomial_of_three_bits_by_algebra():
     assert found.tolist() == [int(w) for w in wanted]
 
 
-@pytest.mark.parametrize("bits", range(1, 11))
+@pytest.mark.parametrize("bits", [1, 2, 3, 10])
 def test_how_many_coefficients_parity_needs(bits):
     values = parity_networks.parity(patterns(bits))
     by_bits, by_signs = monomials(values), monomials(values, "signs")
@@ -74,21 +67,12 @@ def test_how_many_coefficients_parity_needs(bits):
     assert by_signs[[0, -1]].tolist() == [0.5, 0.5]
 
 
-@pytest.mark.parametrize("name, bits", list(itertools.product(NETWORKS, range(1, 11))))
+@pytest.mark.parametrize("name, bits", list(itertools.product(NETWORKS, (1, 2, 3, 5, 10))))
 def test_networks_compute_parity_on_every_input(name, bits):
     network, x = NETWORKS[name](bits), patterns(bits)
     assert network.inputs == bits
     np.testing.assert_array_equal(network.output(x), [in_words(row) for row in x])
     assert np.abs(network.output(x, 20.0) - parity_networks.parity(x)).max() < 1e-4
-
-
-@pytest.mark.parametrize("name", NETWORKS)
-def test_sigmoid_units_get_there_as_the_gain_grows(name):
-    network, x = NETWORKS[name](7), patterns(7)
-    worst = [
-        np.abs(network.output(x, g) - parity_networks.parity(x)).max() for g in (5, 10, 20, 40)
-    ]
-    assert (np.diff(worst) < 0).all() and worst[-1] < 1e-8
 
 
 @pytest.mark.parametrize("bits", [2, 3, 4, 7, 8, 16, 33, 100])
@@ -111,21 +95,6 @@ def test_the_counters_units_are_binary_digits():
         assert row[-1] == 1 - total % 2
 
 
-def test_words_hold_the_largest_number():
-    assert parity_networks.tree(9).word == 4  # up to 2: four halves, three digits and a sign
-    for bits in (4, 9, 64):
-        network = parity_networks.one_layer(bits)
-        largest = max(np.abs(network.weights).max(), np.abs(network.bias).max())
-        assert largest <= 2.0 ** (network.word - 2) < 2 * largest + 1
-
-
-def test_activity_takes_leading_axes():
-    network, x = parity_networks.direct(4), patterns(4)
-    np.testing.assert_array_equal(
-        network.activity(x.reshape(2, 8, 4), 3.0).reshape(16, -1), network.activity(x, 3.0)
-    )
-
-
 def test_learning_finds_exclusive_or_and_says_when():
     weights, epochs = parity_networks.learn(2, 2, members=4, epochs=600, every=10)
     assert isinstance(weights, Weights) and len(weights) == 4
@@ -141,14 +110,6 @@ def test_members_are_the_same_in_any_company():
         parity_networks.learn(2, 1, members=m, seed=s, epochs=50) for m, s in ((2, 3), (1, 4))
     )
     np.testing.assert_allclose(both[0].direct_weights[1], alone[0].direct_weights[0], atol=1e-6)
-
-
-def test_learning_starts_from_the_first_seeds():
-    """Steps that are next to nothing leave what is drawn."""
-    drawn = Weights.random(3, 2, 2, 1, 1, 1.0, seed=0)
-    left, _ = parity_networks.learn(2, 2, members=3, rate=1e-9, epochs=1, every=1)
-    np.testing.assert_allclose(left.hidden_weights, drawn.hidden_weights, atol=1e-6)
-    np.testing.assert_allclose(left.output_bias, drawn.output_bias, atol=1e-6)
 
 
 def test_cases_in_both_codings():

@@ -23,6 +23,8 @@ EPOCHS = 12_000  # Passes through the training set "until it reached an asymptot
 # Assumed: the paper prints none of them. The book shows what other choices give.
 RATE, MOMENTUM, WARM_UP, INITIAL = 4.0, 0.99, 500, 0.5
 
+DESCENT = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": EPOCHS}
+
 
 def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS) -> np.ndarray:
     """States drawn uniformly from the hypercube, shape (samples, joint, 3)."""
@@ -31,12 +33,8 @@ def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS)
     return np.random.default_rng(integer("seed", seed, 0)).uniform(-radius, radius, size)
 
 
-def states_along(
-    extents_deg, samples: int = SAMPLES, duration: float = MOTION_SECONDS
-) -> np.ndarray:
-    """States of a member of the pick-and-place family, equally spaced in time, shape (samples,
-    joint, 3).
-    """
+def states_along(extents_deg, samples: int = SAMPLES, duration=MOTION_SECONDS) -> np.ndarray:
+    """States along a pick-and-place motion, equally spaced in time, shape (samples, joint, 3)."""
     step = number("duration", duration, 0.0, open_low=True) / integer("samples", samples, 2)
     return np.stack(pick_and_place(extents_deg, np.arange(samples) * step, duration), -1)
 

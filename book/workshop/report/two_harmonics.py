@@ -22,23 +22,19 @@ from ddlib.trajectories import (
     time_grid,
 )
 
+# Frequency of the second sine over that of the first. Odd: then both are symmetric about the
+# middle of the motion, where half of the paper's sine turns.
 ORDER = 5
-"""Frequency of the second sine over that of the first. Odd: then both are symmetric about the
-middle of the motion, where half of the paper's sine turns."""
 
-SHARE = 2.0
-"""Largest acceleration of the second sine over that of the first one at 45 degrees."""
+SHARE = 2.0  # Largest acceleration of the second sine over that of the first one at 45 degrees
 
-
-NEUTRAL = (-0.35, -0.55)
-"""Joint angles about which the hand's circle lies, rad: inside the family's range."""
+NEUTRAL = (-0.35, -0.55)  # Joint angles about which the hand's circle lies, rad
 
 
 def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
     """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``, shape (..., time, 2).
 
-    They rest at zero before 0 s and from 3 s on, like the paper's family, which they are for ``rho
-    = 0``.
+    They rest at zero before 0 s and from 3 s on; for ``rho = 0`` they are the paper's family.
     """
     first = pick_and_place(extents_deg, t)
     rho = np.deg2rad(shaped("second_deg", second_deg, np.shape(extents_deg)))
@@ -62,17 +58,7 @@ def record_two_harmonics(
 ) -> Recording:
     """The six runs of Appendix I with a second sine on top, recorded as the paper's are."""
     t = time_grid(CONTROL_STEP, REST)
-    reference = two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order)
-    return follow(
-        setup.arm,
-        setup.controller,
-        reference,
-        t,
-        effects=setup.effects,
-        seed=setup.seed,
-        log_every=round(LOG_STEP / CONTROL_STEP),
-        duration=MOTION_SECONDS,
-    )
+    return _followed(setup, t, two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order))
 
 
 def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
@@ -81,7 +67,7 @@ def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Rec
     half = MOTION_SECONDS / 2
     away = np.clip(np.where(t < half, t, MOTION_SECONDS - t) / half, 0, 1)
     q = np.deg2rad(degrees) * np.polyval([6, -15, 10, 0, 0, 0], away)
-    return _followed(setup, t, np.stack([q, 0.6 * q], -1))
+    return _followed(setup, t, _along(np.stack([q, 0.6 * q], -1)))
 
 
 def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
@@ -94,12 +80,15 @@ def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: in
     x, y = centre[:, None] + radius * np.stack([np.cos(angle), np.sin(angle)])
     elbow = -np.arccos((x**2 + y**2 - first**2 - second**2) / (2 * first * second))
     shoulder = np.arctan2(y, x) - np.arctan2(second * np.sin(elbow), first + second * np.cos(elbow))
-    return _followed(setup, t, np.stack([shoulder, elbow], -1))
+    return _followed(setup, t, _along(np.stack([shoulder, elbow], -1)))
 
 
-def _followed(setup: Setup, t, q) -> Recording:
+def _along(q) -> Trajectory:
     speed = np.gradient(q, CONTROL_STEP, axis=0)
-    reference = Trajectory(q, speed, np.gradient(speed, CONTROL_STEP, axis=0))
+    return Trajectory(q, speed, np.gradient(speed, CONTROL_STEP, axis=0))
+
+
+def _followed(setup: Setup, t, reference: Trajectory) -> Recording:
     return follow(
         setup.arm, setup.controller, reference, t, effects=setup.effects, seed=setup.seed,
         log_every=round(LOG_STEP / CONTROL_STEP), duration=MOTION_SECONDS,

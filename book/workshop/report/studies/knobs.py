@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ddlib.setups import WINDOWS, errors, train_windows
+from ddlib.setups import WINDOWS, train_windows
 from workshop.report.code_hash import code_hash, study
 from workshop.report.knobs import METHODS, knobs_of, screening, setup, without_start
+from workshop.report.studies.table import row
 from workshop.report.sweeps import sweep
 
 # Initial weights tried for a network at most: one that derails is begun anew, as anyone would
@@ -16,10 +17,10 @@ def _run(method: str, places: list, seeds: list) -> dict:
     values = {
         name: float(knob.value(x)) for (name, knob), x in zip(knobs_of(method).items(), places)
     }
-    here, found, derailed = setup(values, method), [], 0
+    here, rows, derailed = setup(values, method), [], 0
     for seed in seeds:
         recording = without_start(here.repeated(seed).record(), values["start left out"])
-        row = {}
+        rows.append({})
         for width in WINDOWS:
             for again in range(TRIES):
                 model, history, _ = train_windows(
@@ -28,17 +29,9 @@ def _run(method: str, places: list, seeds: list) -> dict:
                 derailed += bool(history.derailed[0])
                 if not history.derailed[0]:
                     break
-            measured = errors(model, recording)
-            row[width] = (
-                measured.training,
-                measured.test,
-                history.best_test,
-                model.weights.largest,
-            )
-        found.append(row)
-    names = ("training", "test", "best test", "largest weight")
+            rows[-1][width] = row(model, history, recording)
     cells = {
-        str(w): {name: [float(row[w][k][0]) for row in found] for k, name in enumerate(names)}
+        str(w): {name: [float(one[w][name][0]) for one in rows] for name in rows[0][w]}
         for w in WINDOWS
     }
     return {"values": values, "places": list(places), "derailed": derailed, "windows": cells}
@@ -50,11 +43,11 @@ def screened(networks=2) -> dict:
     settings = [
         {
             "method": method,
-            "places": [float(x) for x in row[: len(knobs_of(method))]],
+            "places": [float(x) for x in run[: len(knobs_of(method))]],
             "seeds": [1 + networks * k + i for i in range(networks)],
         }
         for method in METHODS
-        for k, row in enumerate(screening())
+        for k, run in enumerate(screening())
     ]
     rows = sweep(_run, settings, code=code_hash("screened"), backend="sequential", label="knobs")
     half = len(settings) // len(METHODS)

@@ -8,22 +8,20 @@ from ddlib.metrics import rmss
 from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.exact_states import (
-    EPOCHS,
+    DESCENT,
     INITIAL,
     MOMENTUM,
     RATE,
-    WARM_UP,
     random_states,
     states_along,
     torque,
 )
 
 
-def _train(states, members, hidden=paper.HIDDEN_UNITS, label="", **options):
+def _train(states, members, label="", **options):
     data = TrainingSet.from_arrays(states, torque(states))
-    weights = Weights.random(members, 3, hidden, initial=options.pop("initial", INITIAL))
-    settings = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": EPOCHS}
-    return train_ensemble(weights, data, label=f"state space{label}", **(settings | options))
+    weights = Weights.random(members, 3, initial=options.pop("initial", INITIAL))
+    return train_ensemble(weights, data, label=f"state space{label}", **(DESCENT | options))
 
 
 def _errors(model: TorqueModel, sets: dict) -> dict:

@@ -7,16 +7,7 @@ import numpy as np
 from ddlib import paper
 from ddlib.learning import TrainingSet, Weights, solve, train_ensemble
 from workshop.report.code_hash import study
-from workshop.report.exact_states import (
-    EPOCHS,
-    INITIAL,
-    MOMENTUM,
-    RATE,
-    SAMPLES,
-    WARM_UP,
-    random_states,
-    torque,
-)
+from workshop.report.exact_states import DESCENT, EPOCHS, INITIAL, SAMPLES, random_states, torque
 
 # Size and seed of the random set on which every error is measured
 TEST_SAMPLES, TEST_SEED = 5000, 1000
@@ -59,7 +50,7 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
         data, test = _data(samples, first + draw)
         weights = Weights.random(DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
         label = f"{samples:,} samples, {hidden} units, descent {draw + 1} of {draws}"
-        options = {"rate": RATE, "momentum": MOMENTUM, "warm_up": WARM_UP, "epochs": epochs}
+        options = DESCENT | {"epochs": epochs}
         histories.append(train_ensemble(weights, data, test=test, label=label, **options)[1])
     return histories
 

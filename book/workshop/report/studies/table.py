@@ -26,6 +26,17 @@ from workshop.report import results
 from workshop.report.code_hash import study
 
 
+def row(model, history, recording) -> dict:
+    """What is written of trained networks: errors in training and test, the largest weights."""
+    measured = errors(model, recording)
+    return {
+        "training": measured.training,
+        "test": measured.test,
+        "best test": history.best_test,
+        "largest weight": model.weights.largest,
+    }
+
+
 def _cell(setup, recording, width, members, snapshots=()):
     model, history, kept = train_windows(setup, recording, width, members, snapshots=snapshots)
     cell = {
@@ -106,16 +117,8 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
                 model, history, _ = train_windows(
                     setup, recording, w, members, seed=100 * day, progress=False
                 )
-                found = errors(model, recording)
-                cells[str(w)].append(
-                    {
-                        "training": found.training,
-                        "test": found.test,
-                        "best test": history.best_test,
-                        "largest weight": model.weights.largest,
-                        "saturated": _saturated(model, recording, w),
-                    }
-                )
+                ends = _saturated(model, recording, w)
+                cells[str(w)].append({**row(model, history, recording), "saturated": ends})
         rows[name] = {
             w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()
         }

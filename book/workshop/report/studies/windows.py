@@ -8,31 +8,22 @@ import numpy as np
 
 from ddlib.analysis import CLASSES, classify, roughness, savitzky_golay
 from ddlib.learning import TrainingSet, Weights, cases, solve, train_ensemble
-from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows
+from ddlib.setups import STATE_FEEDBACK, WINDOWS, split, train_windows
 from ddlib.simulation import LOG_STEP
 from workshop.report.code_hash import study
+from workshop.report.studies.table import row
 
 # Window sizes from the smallest that can see an acceleration up to 0.8 s
 SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
 
 
-def _cell(model, history, recording):
-    found = errors(model, recording)
-    return {
-        "training": found.training,
-        "test": found.test,
-        "best test": history.best_test,
-        "largest weight": model.weights.largest,
-        "derailed": history.derailed,
-    }
-
-
 def _acceleration_error(recording, width) -> float:
     """RMS error of the least-squares acceleration over that of the true one, all joints."""
-    motion = recording.motion
     taps = savitzky_golay(width, 2, LOG_STEP, degree=2)
     windows, _ = cases(recording, width)
-    true = np.gradient(recording.qd_true, LOG_STEP, axis=-2)[..., motion, :].reshape(-1, 2)
+    true = np.gradient(recording.qd_true, LOG_STEP, axis=-2)[..., recording.motion, :].reshape(
+        -1, 2
+    )
     wrong = windows @ taps - true
     return float(np.sqrt((wrong**2).mean() / true.var(0).mean()))
 
@@ -45,12 +36,12 @@ def window_sizes(members=6) -> dict:
     for width in SIZES:
         model, history, _ = train_windows(STATE_FEEDBACK, recording, width, members)
         weights = model.weights
-        row = _cell(model, history, recording)
+        cell = {**row(model, history, recording), "derailed": history.derailed}
         if width >= 5:
-            row["roughness, hidden"] = np.median(roughness(weights.hidden_weights), (-2, -1))
-            row["roughness, direct"] = np.median(roughness(weights.direct_weights), (-2, -1))
-        row["acceleration error"] = _acceleration_error(split(recording)[0], width)
-        rows.append({"width": width, **row})
+            cell["roughness, hidden"] = np.median(roughness(weights.hidden_weights), (-2, -1))
+            cell["roughness, direct"] = np.median(roughness(weights.direct_weights), (-2, -1))
+        cell["acceleration error"] = _acceleration_error(split(recording)[0], width)
+        rows.append({"width": width, **cell})
     return {"members": members, "rows": rows}
 
 
@@ -62,7 +53,8 @@ def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     for hidden in units:
         setup = replace(STATE_FEEDBACK, hidden=hidden, name=f"{hidden} hidden units")
         model, history, _ = train_windows(setup, recording, width, members)
-        rows.append({"units": hidden, **_cell(model, history, recording)})
+        cell = {**row(model, history, recording), "derailed": history.derailed}
+        rows.append({"units": hidden, **cell})
     return {"members": members, "width": width, "rows": rows}
 
 
