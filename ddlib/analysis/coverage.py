@@ -24,8 +24,7 @@ def cells_reached(samples, radius: float, cells: int) -> int:
 def log10_reachable_share(width: int, step: float) -> float:
     """Upper bound on the share of windows in a cube whose neighbours differ by at most `step`.
 
-    The first of `width` samples is free; each further one lies within `step`, a share of the
-    cube's edge, of its neighbour: an interval of length ``2 step`` at most.
+    Each of `width` samples but the first lies in an interval of ``2 step``, a share of the edge.
     """
     integer("width", width, 1)
     number("step", step, 0.0, 0.5, open_low=True)

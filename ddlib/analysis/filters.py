@@ -55,11 +55,9 @@ DERIVATIVES = ("position", "velocity", "acceleration", "jerk")
 
 
 def basis(width: int) -> np.ndarray:
-    """Orthonormal discrete polynomials of degree 0 to 3 over a window, shape (4, width).
+    """Orthonormal discrete Legendre (Gram) polynomials of degree 0 to 3, shape (4, width).
 
-    They are discrete Legendre (Gram) polynomials, each with positive leading
-    coefficient: even for degree 0 and 2, odd for 1 and 3. A weight function's component
-    along degree k is its response to the k-th derivative once lower ones are taken out.
+    A weight function's component along degree k is its response to the k-th derivative.
     """
     x = np.linspace(-1, 1, integer("width", width, 4))
     q, r = np.linalg.qr(np.vander(x, 4, increasing=True))
@@ -139,9 +137,7 @@ def purest(f, name: str) -> np.ndarray:
 def upright(f) -> np.ndarray:
     """Weight functions with the sign that lets their strongest derivative count positive.
 
-    A hidden unit and its negative are the same unit, so the sign is free: a velocity filter
-    is turned so that its weights rise with time, an acceleration filter so that they are
-    high at both ends.
+    A hidden unit and its negative are the same unit, so the sign is free.
     """
     f = odd_width(f)
     parts = content(f)[..., 1:]

@@ -82,10 +82,7 @@ def followed(f, windows, states) -> Responses:
 
 
 def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
-    """Filter that a network amounts to: the gradient of its torques, averaged over windows.
-
-    In N m/rad, ``(..., output, joint, width)``; the windows of positions are in rad.
-    """
+    """Mean gradient of networks' torques, N m/rad, shape ``(..., output, joint, width)``."""
     weights = model.weights
     hidden, output = weights.activity(model.scaled(windows))
     hidden, output = hidden * (1 - hidden), output * (1 - output)  # slopes of the sigmoids
@@ -100,8 +97,7 @@ def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
 def gains(f, step: float = LOG_STEP) -> np.ndarray:
     """Gains of filters on position, velocity and acceleration: moments of a Taylor expansion.
 
-    They are in the unit of `f`, times s for velocity and s^2 for acceleration. For the gradient of
-    a torque they are a stiffness (N m/rad), a damping (N m s/rad) and an inertia (kg m^2).
+    For the gradient of a torque: stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2).
     """
     f = odd_width(f)
     number("step", step, 0.0, open_low=True)
@@ -112,9 +108,8 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
 def summary(model: TorqueModel, windows, states) -> dict:
     """Names of an ensemble's filters and what they follow, network by network.
 
-    For each of `LAYERS` these are shares of its filters, one for each member: ``"classes"`` by
-    name, ``"follow"`` by the quantity that the output correlates best with; ``"unique"``, medians
-    of the unique shares, ``(members, 3)``. Then come the whole networks' ``"gains"``.
+    For each of `LAYERS` the shares of its filters by class and by the quantity that they follow
+    best, and medians of the unique shares, ``(members, 3)``; then the whole networks' gains.
     """
     layers: dict = {}
     for layer, attribute in LAYERS.items():

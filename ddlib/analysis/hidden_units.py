@@ -25,9 +25,7 @@ def saturated(activity, margin: float = 0.1) -> np.ndarray:
 def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
     """Width of each unit's transition region, in standard deviations of its net input.
 
-    Between activities of `margin` and ``1 - margin`` a sigmoid's net input moves by
-    ``2 ln((1 - margin) / margin)``, whatever the weights; large weights make the net input vary
-    much, so that this width becomes a small part of what the unit sees.
+    From `margin` to ``1 - margin`` a sigmoid's net input moves by ``2 ln((1 - margin) / margin)``.
     """
     net_input = finite_array("net_input", net_input)
     number("margin", margin, 0.0, 0.49, open_low=True)
@@ -84,8 +82,7 @@ def with_filters(model: TorqueModel, hidden_weights) -> TorqueModel:
 def cancellation(model: TorqueModel, windows) -> np.ndarray:
     """How much of the hidden units' influence on each output cancels, ``(..., output)``.
 
-    One minus the standard deviation of their sum over the sum of their standard deviations:
-    0 if all push the same way at the same time, near 1 if they undo each other.
+    One minus the deviation of their sum over the sum of their deviations: 0 if all push alike.
     """
     hidden, _ = model.weights.activity(model.scaled(windows))
     parts = hidden[..., None, :] * model.weights.output_weights[..., None, :, :]

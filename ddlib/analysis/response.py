@@ -27,10 +27,9 @@ def with_jerk(states) -> np.ndarray:
 
 
 def heard(outputs, states) -> Responses:
-    """What signals of units, ``(..., cases, units)``, follow of ``(cases, joint, quantities)``.
+    """R² of quantities ``(cases, joint, quantities)`` for signals ``(..., cases, units)``.
 
-    ``alone`` is R² on a quantity of both joints; ``unique``: by how much R² on all falls without
-    it (semi-partial).
+    Alone is of both joints; unique: by how much R² on all falls without it (semi-partial).
     """
     outputs, states = finite_array("outputs", outputs), finite_array("states", states)
     if states.ndim != 3 or outputs.ndim < 2 or outputs.shape[-2] != len(states):
@@ -87,9 +86,9 @@ def calibrated(model: TorqueModel, windows) -> Calibrated:
 def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
     """R² with which a linear probe of features reads quantities in cases it was not fitted on.
 
-    It is fitted to `features` and `target`, with a `ridge` on the squared factors of standardised
-    features, as a share of the cases; `held_out` and `answer` are the other cases'. Negative where
-    their mean would have been a better guess.
+    Fitted to `features` and `target`, with a `ridge` on the squared factors of standardised
+    features as a share of the cases; `held_out` and `answer` are others. Negative: worse than their
+    mean.
     """
     target, answer = finite_array("target", target), finite_array("answer", answer)
     read = _probe(features, target, held_out, ridge)
@@ -97,10 +96,7 @@ def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarr
 
 
 def decoded_sign(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:
-    """How often a linear probe tells the sign of quantities (balanced accuracy, chance 0.5).
-
-    It is the least-squares classifier, fitted to +1 and -1; arguments are those of `decoded`.
-    """
+    """How often a linear probe tells the sign of quantities (balanced accuracy, chance 0.5)."""
     target, answer = finite_array("target", target), finite_array("answer", answer)
     if ((answer > 0).all(0) | (answer <= 0).all(0)).any():
         raise ValueError("answer must have both signs in each quantity")

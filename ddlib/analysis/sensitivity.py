@@ -18,10 +18,9 @@ INPUTS = ("q1", "v1", "a1", "q2", "v2", "a2")
 
 
 def input_shares(weights: Weights) -> np.ndarray:
-    """Share of each input in the variance of each hidden unit's net input.
+    """Share of each input in the variance of each hidden unit's net input, shaped like the weights.
 
-    The squared weight over the sum of the squared weights, ``(..., hidden, joint, width)``: this
-    holds for inputs that vary independently and equally much, as in a cube of random states.
+    This holds for inputs that vary independently and equally much, as in a cube of random states.
     """
     square = finite_array("weights.hidden_weights", weights.hidden_weights) ** 2
     total = square.sum((-2, -1), keepdims=True)
@@ -31,12 +30,10 @@ def input_shares(weights: Weights) -> np.ndarray:
 
 
 def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
-    """Length of each unit's transition region along each input, the others held still.
+    """Length of each unit's transition region along each input, ``(..., hidden, joint, width)``.
 
-    A unit's activity goes from `margin` to ``1 - margin`` while an input of weight w moves by
-    ``2 ln((1 - margin) / margin) / |w|``. Inputs are scaled to 0..1, so 1 is the whole range of
-    the training set. Longer than 1: the unit responds all along the input's range, and to no
-    part of it in particular. Shape ``(..., hidden, joint, width)``.
+    Activity goes from `margin` to ``1 - margin`` while an input of weight w moves by
+    ``2 ln((1 - margin) / margin) / |w|``; 1 is the whole range of the training set.
     """
     number("margin", margin, 0.0, 0.49, open_low=True)
     size = np.abs(finite_array("weights.hidden_weights", weights.hidden_weights))
@@ -45,11 +42,7 @@ def transition_range(weights: Weights, margin: float = 0.1) -> np.ndarray:
 
 
 def transition_centre(model: TorqueModel) -> np.ndarray:
-    """Value of each input at which a hidden unit's activity is one half, the others at zero.
-
-    In the input's own unit, ``(..., hidden, joint, width)``; far outside the input's range for a
-    unit that hardly responds to it.
-    """
+    """Value of each input, in its unit, that brings a hidden unit to one half; others zero."""
     weights = model.weights.hidden_weights
     zero = model.scaled(np.zeros((1, *weights.shape[-2:])))[0]
     net = np.einsum("...hjw,jw->...h", weights, zero) + model.weights.hidden_bias
@@ -58,10 +51,7 @@ def transition_centre(model: TorqueModel) -> np.ndarray:
 
 
 def responses(model: TorqueModel, values) -> np.ndarray:
-    """Activities of hidden units while one input passes through values and the others are zero.
-
-    Shape ``(..., joint, width, points, hidden)``.
-    """
+    """Activities, ``(..., joint, width, points, hidden)``, along one input, the others at zero."""
     values = shaped("values", values, "(points,)")
     shape = model.weights.hidden_weights.shape[-2:]
     states = np.zeros((*shape, values.size, *shape))
@@ -74,10 +64,9 @@ def responses(model: TorqueModel, values) -> np.ndarray:
 def shuffled(
     predict: Callable[[np.ndarray], np.ndarray], states, scale, seed: int = 0
 ) -> np.ndarray:
-    """RMSS by which torques change when one input is shuffled among the states; 0 if it is ignored.
+    """RMSS by which torques change when one input is shuffled, ``(joint, width, ...)``.
 
-    `predict` makes torques ``(..., cases, joint)`` of states ``(cases, joint, width)``; `scale`
-    are their deviations. Shape ``(joint, width, ...)``.
+    `predict` makes torques of states ``(cases, joint, width)``; `scale` are their deviations.
     """
     states = shaped("states", states, "(cases, joint, width)")
     before = predict(states)

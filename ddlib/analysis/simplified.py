@@ -20,8 +20,7 @@ def share_of_velocity_terms(
 ) -> np.ndarray:
     """Velocity terms over the motor's torque, root mean square, for shoulder and elbow.
 
-    The error of a model that leaves them out, when the path is travelled `speed` times faster.
-    Of the effects, friction is part of the torque.
+    The path is travelled `speed` times faster; of the effects, friction is part of the torque.
     """
     number("speed", speed, 0.0, open_low=True)
     qd = speed * trajectory.qd
@@ -31,10 +30,9 @@ def share_of_velocity_terms(
 
 
 def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) -> np.ndarray:
-    """Torque due to the other joint over the motor's torque, behind gears, shape ``(gears, 2)``.
+    """RMS torque due to the other joint over the motor's, behind gears, shape ``(gears, 2)``.
 
-    Behind a gear of ratio N a rotor of inertia J (`rotor`, kg m^2) acts on the joint like an
-    inertia N^2 J. Root mean squares are divided, for shoulder and elbow.
+    Behind a gear of ratio N a rotor of inertia J (`rotor`, kg m^2) acts like an inertia N^2 J.
     """
     gears = non_negative("gears", gears)
     number("rotor", rotor, 0.0)

@@ -25,8 +25,7 @@ def difference(periods: int, step: float) -> np.ndarray:
 def end_slope(width: int, degree: int, step: float) -> np.ndarray:
     """Weights of the slope, at the newest of `width` readings, of a least-squares polynomial.
 
-    A line (degree 1) gives the velocity half a window ago; a parabola has no lag, and pays
-    for it in noise.
+    A line gives the velocity half a window ago; a parabola has no lag, and pays in noise.
     """
     integer("degree", degree, 1)
     integer("width", width, degree + 1)
@@ -56,10 +55,7 @@ def lag(weights, step: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class EstimatedVelocity:
-    """A controller that gets its velocity from readings, not from a tachometer.
-
-    Before the first reading the arm is taken to be at rest.
-    """
+    """A controller whose velocity comes from readings; before the first the arm is at rest."""
 
     feedback: Controller  #: What the estimated velocity is for.
     weights: tuple  #: Of the estimate, oldest reading first, (width,) or (runs, width).

@@ -22,9 +22,8 @@ class Operations(NamedTuple):
 class Tape:
     """A record of arithmetic.
 
-    Operations among known numbers are done off-line and are free. So is adding a known
-    zero and multiplying by a known zero, one or minus one. A change of sign is free: it
-    merges with the addition that follows. Everything else counts.
+    Operations among known numbers are free, so are adding a known zero, multiplying by a known
+    zero, one or minus one, and a change of sign: it merges with the addition that follows.
     """
 
     def __init__(self):
@@ -76,8 +75,7 @@ class Tape:
 class _Counted:
     """A number of a `Tape`. It works in ``+ - * /``, `numpy.sin` and `numpy.cos`.
 
-    Its `recipe` is the kind of operation and the operands that made it; empty for an input, None
-    for what is known off-line.
+    Its `recipe`: kind of operation and operands; empty for an input, None if known off-line.
     """
 
     __slots__ = ("index", "negated", "recipe", "tape", "value")

@@ -53,11 +53,10 @@ class DeadZone:
 
 @dataclass(frozen=True)
 class Ripple:
-    """Shaft torque that varies with the motor's angle, over `cycles` equal waves a turn.
+    """Shaft torque ``tau (1 + share sin(cycles q + phase)) + cogging sin(cycles q + phase)``.
 
-    ``tau (1 + share sin(cycles q + phase)) + cogging sin(cycles q + phase)``. The magnets of
-    a motor pull at the teeth of its iron with the `cogging` torque even without a current;
-    the `share` is what its windings add, in proportion to the current.
+    The magnets of a motor pull at the teeth of its iron (cogging) even without a current; the share
+    is what its windings add.
     """
 
     cogging: tuple[float, float] = (0.0, 0.0)  #: Amplitude, N m per joint.
@@ -82,12 +81,10 @@ class Ripple:
 
 @dataclass(frozen=True)
 class FlexibleJoint:
-    """A springy shaft, with or without play, between the motor and its link.
+    """A springy shaft, with or without play, between the motor and its link (Spong 1987).
 
-    The motor's inertia is taken out of the arm and put in front of the spring, so that a
-    stiff shaft gives back the rigid arm. The elbow's motor rides on link 1 and turns with
-    it. Friction, ripple and the encoder stay at the motor. (Spong 1987, without his
-    assumption of high gear ratios.)
+    The motor's inertia is taken out of the arm and put in front of the spring. The elbow's motor
+    rides on link 1 and turns with it. Friction, ripple and the encoder stay at the motor.
     """
 
     stiffness: tuple[float, float]  #: N m/rad per joint, (2,) or (runs, 2).

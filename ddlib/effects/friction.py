@@ -83,8 +83,7 @@ class _Stribeck:
 class StribeckFriction(_Stribeck):
     """Coulomb friction that is larger near rest, smooth through zero.
 
-    ``[level + (breakaway - level) exp(-(qd / speed)^2)] tanh(qd / smoothing)``: the torque
-    falls with speed while the lubricant film builds up.
+    ``[level + (breakaway - level) exp(-(qd / speed)^2)] tanh(qd / smoothing)``.
     """
 
     smoothing: float = 2e-3  #: rad/s, well below `speed`, or the excess never shows.
@@ -107,10 +106,8 @@ class StribeckFriction(_Stribeck):
 class StickSlipFriction(_Stribeck):
     """Stribeck friction without smoothing: a joint at rest sticks until it is broken away.
 
-    A stuck joint does not move at all; friction then is whatever torque holds it, up to
-    `breakaway` (Karnopp 1985, with a band of zero width). The plant decides at each step
-    which joints stick (`ddlib.simulation.plant`): friction's state is that the velocity is
-    exactly zero.
+    Friction then is whatever torque holds it, up to `breakaway` (Karnopp 1985, with a band of zero
+    width). `ddlib.simulation.plant` decides at each step which joints stick.
     """
 
     def torque(self, qd):

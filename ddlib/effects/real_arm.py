@@ -81,11 +81,9 @@ class Delay:
 class Backlash:
     """Play of a gear between joint and encoder: the reading follows when a tooth touches.
 
-    The play operator: with the joint at `x` the reading stays where it is as long as it is
-    within ``gap / 2`` of `x`, and is dragged along otherwise. It does not depend on the
-    speed, only on the turning points that have been passed (Krasnosel'skii & Pokrovskii 1989).
-    It stands for gears whose motor is light and held by its own friction; `FlexibleJoint`
-    has play with the motor's motion. A direct-drive joint has none.
+    The play operator (Krasnosel'skii & Pokrovskii 1989): with the joint at x the reading stays as
+    long as it is within ``gap / 2`` of x, and is dragged along otherwise. `FlexibleJoint` has play
+    with the motor's motion.
     """
 
     gap: tuple[float, float]  #: Whole play, rad per joint.
@@ -169,10 +167,7 @@ def _fits(effect, part: str) -> bool:
 
 
 def started(effects: tuple, initial) -> Callable:
-    """A signal path for one run (or a batch): a function ``path(x, rng)``, once a sample.
-
-    Memories hold `initial` at first, shape (..., 2).
-    """
+    """A signal path ``path(x, rng)``, whose memories hold `initial` (..., 2) at first."""
     steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
 
     def path(x, rng):

@@ -37,10 +37,7 @@ def by_smoothing(
     names: Sequence[str] = RIGID + FRICTION,
     smooth_torque: bool = False,
 ) -> Equations:
-    """Equations with the derivatives of parabolas in windows of `width` (odd) samples.
-
-    The filters of Savitzky & Golay (1964), for the torque too if it is to be smoothed.
-    """
+    """Equations with the derivatives of parabolas in windows (Savitzky & Golay 1964)."""
     if integer("width", width, 3) % 2 == 0:
         raise ValueError(f"width must be an odd number of samples, got {width}")
     if smooth_torque:

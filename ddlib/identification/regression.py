@@ -102,10 +102,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
 
 
 def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndarray:
-    """What an identification should find, in the order of `names`.
-
-    Of the effects' frictions the viscous and Coulomb ones are known here.
-    """
+    """What an identification should find; of the effects viscous and Coulomb friction are known."""
     _known(names)
     viscous = sum(
         np.asarray(f.coefficient) for f in effects.friction if isinstance(f, ViscousFriction)

@@ -71,8 +71,7 @@ def train_ensemble(
     test : tuple of ndarray, optional
         Scaled windows and targets (`TrainingSet.transform`) on which to follow the error.
     targets : array_like, shape (members, cases, output), optional
-        Scaled targets of each member in place of ``data.y``, to whose spread errors are
-        relative all the same.
+        Scaled targets of each member in place of ``data.y``, to whose spread errors are relative.
     rate, momentum, epochs
         As in `train`; the first two may be arrays, shape (members,). Default: `default_rate`.
     warm_up : int
@@ -80,21 +79,14 @@ def train_ensemble(
         steps before the units have found their parts saturate them for good.
     snapshots : sequence of int
         Epochs after which a copy of all weights is kept (0: the initial ones).
-    progress : bool
-        Show a progress bar with the median error and the time left.
-    label : str
-        What the bar says.
+    progress, label
+        Whether to show a progress bar, and what it says.
 
     Returns
     -------
-    model : TorqueModel
-        The trained ensemble.
-    history : History
-        Errors of every member. Those that went astray (`History.derailed`) do not disturb the
-        others: only if no error is finite, this is a `TrainingDiverged` error, and if all of
-        several end above 1, a `WorseThanMean` warning.
-    snapshots : dict
-        Weights by epoch.
+    tuple of TorqueModel, History and dict
+        The trained ensemble, the errors of every member, and weights by epoch. If no error is
+        finite: a `TrainingDiverged` error; if all of several end above 1: `WorseThanMean`.
     """
     members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
@@ -191,11 +183,10 @@ def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
 class Descent:
     """The arithmetic of `train_ensemble`: one epoch of many networks on the same inputs at once.
 
-    All members see the same inputs, so one matrix product serves them all; the rest is done
-    in place, on as few members as fit into a core's cache. The input-to-hidden and direct
-    weights of all members are the rows of one matrix: member by member the hidden units, then
-    the outputs; its last column holds the biases. Targets `y` are shared, or one set per member;
-    `eps` is the step size of the summed gradient.
+    One matrix product serves all members, the rest is done in place. The weights from the window
+    are rows of one matrix: member by member the hidden units, then the outputs; its last column
+    holds the biases. Targets `y` are shared, or one set per member; `eps` is the step of the summed
+    gradient.
     """
 
     def __init__(self, weights: Weights, x, y, eps, momentum):

@@ -138,8 +138,7 @@ class _Course(NamedTuple):
 class Lazy:
     """A network replaced by its tangent at the initial weights: its training in closed form.
 
-    `curvatures` are the eigenvalues of J'J, falling: those of the neural tangent kernel JJ' and
-    zeros.
+    `curvatures` are the eigenvalues of J'J, falling.
     """
 
     def __init__(self, weights: Weights, data: TrainingSet):
@@ -157,8 +156,7 @@ class Lazy:
     ) -> _Course:
         """Weights and errors after some epochs of batch descent with momentum.
 
-        `rate` is the step size per case, as in `ddlib.learning.train`; `epochs`, `momentum` and
-        `warm_up` are those of `effective_steps`; scaled `targets` replace the training set's.
+        `rate` is per case, as in `train`; scaled `targets` replace the training set's.
         """
         eps = number("rate", rate, 0.0, open_low=True) / len(self._output)
         error = self._output - (self._targets if targets is None else targets)

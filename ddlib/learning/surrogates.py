@@ -41,11 +41,10 @@ def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
 
 
 def p_value(value: float, draws, side: str = "two") -> float:
-    """Probability of a statistic as far out as this one, if it were another draw of the null.
+    """Probability of a value as far out as this one among `draws` from a null.
 
-    Out is "more" (as large or larger), "less", or "two": either. The value itself counts as a
-    draw, so that the probability is never zero (Phipson & Smyth 2010): of 20 draws the least that
-    can come out is 1/21, for "two" 2/21.
+    Out is "more" (as large or larger), "less", or "two": either. The value itself counts as a draw,
+    so that it is never zero (Phipson & Smyth 2010): of 20 draws 1/21 at least.
     """
     number("value", value)
     draws = finite_array("draws", draws)

@@ -106,10 +106,9 @@ class History:
         return ~(self.training[-1] < 1.0)
 
     def slope(self) -> np.ndarray:
-        """``d ln(error) / d ln(epoch)`` at the end of the run, per member.
+        """``d ln(error) / d ln(epoch)`` from half the epochs to the end, per member.
 
-        Taken from the point nearest to half its epochs on: the paper trains "to the point where
-        the derivative of the error was nearly zero".
+        The paper trains "to the point where the derivative of the error was nearly zero".
         """
         if len(self.epochs) < 2:
             raise ValueError(f"history must hold two points or more, got {len(self.epochs)}")
@@ -118,10 +117,9 @@ class History:
         return ratio / np.log(self.epochs[-1] / self.epochs[half])
 
     def settled(self, steepest: float = 0.1) -> np.ndarray:
-        """Members at their asymptote: error over epochs no steeper than `steepest`.
+        """Members whose error over epochs is no steeper than `steepest`, on a log-log scale.
 
-        The criterion is on a log-log scale (`slope`): with 0.1, twice the epochs would
-        lower the error by less than 7 %. A derailed member counts as settled if it rests.
+        With 0.1, twice the epochs would lower it by less than 7 %. A derailed member may rest, too.
         """
         number("steepest", steepest, 0.0)
         return np.abs(self.slope()) <= steepest
@@ -152,10 +150,9 @@ def warn_if_worse_than_mean(history: History, rate: float) -> None:
 
 
 def default_rate(width: int) -> float:
-    """Step size per case for a window of `width` samples: 33 / width.
+    """Step size per case for a window of `width` samples: 33 / width (the paper prints no rates).
 
-    More inputs that rise and fall together mean a steeper error surface: this keeps descent
-    stable for most initial weights. It is this book's choice: the paper prints no rates.
+    More inputs that rise and fall together mean a steeper error surface.
     """
     return 33.0 / integer("width", width, 1)
 

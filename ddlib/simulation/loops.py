@@ -35,8 +35,7 @@ class Load:
 class SecondOrderModel:
     """Inverse dynamics of linear, coupled joints: ``tau = M qdd + F qd`` with constant M and F.
 
-    The mass matrix is that of the arm in one posture, with its off-diagonal entry. It is this
-    book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
+    This book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
     section 1.1, after Asada, Kanade & Takeyama 1982). A vertical arm's weight is no part of it.
     """
 
@@ -68,8 +67,7 @@ def predicted_response(
 ) -> Response:  # fmt: skip
     """Linear analysis of the sampled loop around a posture (rad), `viscous` friction in N m s/rad.
 
-    The reference of one joint steps, and a load acts on it. Gravity's torque in the posture is
-    taken to be compensated; what it adds when the arm leaves the posture is part of the loop.
+    Gravity's torque in the posture is compensated; what it adds beside it is part of the loop.
     """
     integer("joint", joint, 0, 1)
     posture = finite_array("posture", posture, 2)
@@ -89,11 +87,10 @@ def simulated_response(
     arm: Arm, controller: PID, *, viscous, posture=(0.0, 0.0), joint=0, period=CONTROL_STEP,
     seconds=12.0, step_deg=1.0, effects: Effects = IDEAL,
 ) -> Response:  # fmt: skip
-    """The same measures from the full, non-linear simulation.
+    """The same measures from the full, non-linear simulation, held against gravity in the posture.
 
-    A constant torque holds the arm against gravity in the posture. One run steps the reference by
-    `step_deg`, a second one carries a load that would displace a spring of stiffness ``kp`` by as
-    much. A loop that rings longer than `seconds` has a bandwidth of NaN.
+    One run steps the reference by `step_deg`, a second one carries a load that would displace a
+    spring of stiffness ``kp`` by as much. A loop that rings on has a bandwidth of NaN.
     """
     integer("joint", joint, 0, 1)
     number("step_deg", step_deg, 0.0, open_low=True)
@@ -198,10 +195,9 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
 def run_system(
     system: control.InterconnectedSystem, reference: Trajectory, t, start=None
 ) -> Recording:
-    """Simulate a `feedforward_system` along a reference, with perfect sensors.
+    """Simulate a `feedforward_system` along a reference at `t` (s), with perfect sensors.
 
-    The reference is one run, ``(time, 2)``, interpolated between samples at `t` (s). The arm
-    starts with given angles (rad) and velocities (rad/s), or at rest at the first position.
+    `start` are angles (rad) and velocities (rad/s); default: at rest at the first position.
     """
     t = shaped("t", t, "(time,)")
     reference = Trajectory(*(shaped("reference", x, (t.size, 2)) for x in reference))

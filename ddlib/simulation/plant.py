@@ -199,10 +199,8 @@ def _holding(B, a, stuck):
 def substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     """Runge-Kutta steps that one control period needs, for each run by itself.
 
-    Friction acts like a first-order decay of joint speed, fastest where its curve is
-    steepest: at rest. A step of RK4 is stable up to 2.78 times the decay's time constant;
-    2 is used. Frictions without a `slope` count as smooth. Springs swing; a step covers at most
-    `_PHASE` of the fastest swing.
+    Friction acts like a first-order decay of joint speed, fastest at rest; RK4 is stable up to 2.78
+    times its time constant, 2 is used. Of the fastest swing of springs a step covers `_PHASE`.
     """
     slope = sum((np.asarray(f.slope) for f in effects.friction if hasattr(f, "slope")), np.zeros(2))
     elbow = np.linspace(0.0, np.pi, 13)

@@ -130,34 +130,29 @@ def follow(
 ) -> Recording:
     """Drive the arm along a sampled reference and log what the sensors say.
 
-    Runs may differ in their reference, the gains of the controller, the strengths of the effects
-    and the seed: leading axes of all of them are broadcast. No run depends on which others it is
-    simulated with, except through a shared noise generator (`seed`).
+    Runs may differ in their reference, the gains, the strengths of the effects and the seed:
+    leading axes of all are broadcast. No run depends on others, except through shared noise.
 
     Parameters
     ----------
     arm, controller, effects
-        Plant, control law (a controller, or a function as in `ddlib.control.as_controller`) and
-        everything the rigid-body equations leave out.
+        Plant, control law (or a function as in `ddlib.control.as_controller`) and everything the
+        rigid-body equations leave out.
     reference : Trajectory
         Sampled at the control period, shape ``(..., time, joint)``; leading axes are runs.
     t : array_like, shape (time,)
         Times of the control samples, equally spaced, s.
     seed : int or array_like of int, shape (...)
-        Seed of the sensor noise. With one number the runs of a batch share a generator and
-        the noise of a run depends on its place in the batch; with an array of the shape of
-        the runs each run has its own, the same as if it ran alone with that seed.
+        Of the sensor noise. With one number the runs of a batch share a generator; with one for
+        each run each has its own noise, the same as if it ran alone.
     log_every : int
         Control periods between two logged samples.
     velocity : {"tachometer", "difference"}
-        What the controller gets as velocity: the true one, or the difference of two
-        encoder readings.
+        What the controller gets: the true velocity, or the difference of two encoder readings.
     start : pair of array_like, each of shape (..., 2), optional
-        Angles (rad) and velocities (rad/s) with which the arm starts. Default: at rest at
-        the reference's first position.
+        Angles (rad) and velocities (rad/s). Default: at rest at the reference's first position.
     duration : float, optional
-        Length of the motion, which begins at 0 s; default: where the reference moves, as
-        `Recording` says.
+        Length of the motion from 0 s on; default: where the reference moves.
     """
     _check_plant(arm, effects)
     t = shaped("t", t, "(time,)")
