@@ -4,7 +4,6 @@ It imports what the pages need, and then waits for a line on standard input: a J
 pages that are not to be executed again. Without one it ends.
 """
 
-
 from __future__ import annotations
 
 import gc

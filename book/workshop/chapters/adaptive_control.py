@@ -75,7 +75,7 @@ def stops_map(x, y, panels: dict[str, tuple], labels: tuple[str, ...], alt: str)
             axis.grid(visible=False)
             axis.set_title(title)
         axes[0].set_ylabel(check_label(labels[1]))
-        figure.supxlabel(check_label(labels[0]), fontsize=9.5)
+        figure.supxlabel(check_label(labels[0]))
         figure.colorbar(picture, ax=list(axes), label=check_label(labels[2]), shrink=0.95)
 
     return illustrate(draw, alt, 7.0, 2.9)

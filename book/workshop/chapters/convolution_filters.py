@@ -53,7 +53,7 @@ def clusters(
 
 
 def against_nulls(
-    panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str, columns=3
+    panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str
 ) -> Illustration:
     """Shares of filters under the real torques, as bars, and under nulls, a dot for each draw."""
     if not panels:
@@ -65,10 +65,10 @@ def against_nulls(
                 if len(shape) != 1:
                     raise ValueError(f"values of {name!r} must have shape (draws,), got {shape}")
     classes = list(next(iter(panels.values())))
-    rows = -(-len(panels) // columns)
+    rows = -(-len(panels) // 3)
 
     def draw(figure: Figure):
-        axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
+        axes = figure.subplots(rows, 3, squeeze=False, sharey=True)
         for axis, (title, groups) in zip(axes.ravel(), panels.items()):
             for row, sets in enumerate(groups.values()):
                 (real, values), *nulls = sets.items()

@@ -14,10 +14,8 @@ from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, NARROW, Illustratio
 from ddlib.identification import Estimate
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
-MARKERS = "os^DvPX"
-
-
-CENTRED = dict(ha="center", va="center")
+_MARKERS = "os^DvPX"
+_CENTRED = dict(ha="center", va="center")
 
 
 def hand_paths(arm: Arm, extents_deg) -> Illustration:
@@ -39,7 +37,7 @@ def hand_paths(arm: Arm, extents_deg) -> Illustration:
             colour = COLOURS[k % len(COLOURS)]
             axis.plot(*path[:, 1].T, color=colour, ls=DASHES[k % len(DASHES)], lw=2)
             axis.plot(*path[-1, 1], "o", color=colour, ms=5)
-            axis.text(*_free_place(path[-1, 1], drawn), str(k + 1), color=colour, **CENTRED)
+            axis.text(*_free_place(path[-1, 1], drawn), str(k + 1), color=colour, **_CENTRED)
         rest = np.vstack([np.zeros(2), points[0, 0]])
         axis.plot(*rest.T, color=INK, lw=3.5, marker="o", ms=6, mfc="white", mec=INK)
         axis.set(xlabel="x, m", ylabel="y, m", aspect="equal")
@@ -74,7 +72,9 @@ def operations(
         for k, (name, by_joints) in enumerate(counts.items()):
             look = dict(color=(*COLOURS, INK)[k % 7], ls=DASHES[k % len(DASHES)])
             values = [o.multiplications for o in by_joints.values()]
-            axis.plot(list(by_joints), values, marker=MARKERS[k % len(MARKERS)], label=name, **look)
+            axis.plot(
+                list(by_joints), values, marker=_MARKERS[k % len(_MARKERS)], label=name, **look
+            )
         for k, (name, point) in enumerate(published.items()):
             axis.plot(*point, "x+1*"[k % 4], color=INK, ms=10, mew=2, ls="none", label=name)
         axis.set(xlabel="joints", ylabel="multiplications", yscale="log")

@@ -44,8 +44,8 @@ def ladders(
                 axis.vlines(size, *ends, color=look["color"], lw=1.0, alpha=0.5)
         plain_ticks(axes[0].xaxis)
         plain_ticks(axes[0].yaxis)
-        figure.supxlabel(check_label(labels[0]), fontsize=9.5)
-        figure.supylabel(check_label(labels[1]), fontsize=9.5)
+        figure.supxlabel(check_label(labels[0]))
+        figure.supylabel(check_label(labels[1]))
         legend_above(figure, [Line2D([], [], **_look(k)) for k in range(len(arms))], arms)
 
     return illustrate(draw, alt, 6.4, 2.7)
@@ -102,7 +102,7 @@ def couplings(inertia, real, unrelated, label: str, alt: str) -> Illustration:
             axis.set(title=f"torque {j + 1}", xticks=place)
             axis.grid(visible=False, axis="x")
         axes[0].set_ylabel(check_label(label))
-        figure.supxlabel("acceleration of joint", fontsize=9.5)
+        figure.supxlabel("acceleration of joint")
         legend_above(figure, *axes[0].get_legend_handles_labels())
 
     return illustrate(draw, alt, 6.4, 2.7)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 
-from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate
+from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, dots_in_one, illustrate
 
 
 def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: str) -> Illustration:
@@ -30,21 +28,18 @@ def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: st
             axis.set_title(title)
         for axis in axes[len(panels) :]:
             axis.remove()
-        figure.supxlabel(check_label(labels[0]), fontsize=9.5)
-        figure.supylabel(check_label(labels[1]), fontsize=9.5)
+        figure.supxlabel(check_label(labels[0]))
+        figure.supylabel(check_label(labels[1]))
 
     return illustrate(draw, alt, 5.4, 1.75 * -(-len(panels) // 2) + 0.3)
 
 
 def _dots(axis: Axes, x, y, cells: int, **look) -> None:
-    """Points as one path, which weighs little; of several in a cell of the plane, one."""
+    """Dots, of several in a cell of the plane one."""
     place = np.column_stack([x, y])
     step = np.ptp(place, axis=0) / cells
     _, first = np.unique(np.round(place / np.where(step > 0, step, 1)), axis=0, return_index=True)
-    ends = np.repeat(place[first], 2, axis=0)  # strokes of no length, with round ends
-    path = Path(ends, np.tile([Path.MOVETO, Path.LINETO], len(first)))
-    path.should_simplify = False
-    axis.add_patch(PathPatch(path, fill=False, capstyle="round", **look))
+    dots_in_one(axis, place[first], **look)
     axis.update_datalim(place)
     axis.autoscale_view()
 
@@ -72,7 +67,7 @@ def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustrati
             axis.set(title=title, xticks=place)
             axis.grid(visible=False, axis="x")
         axes[0].set_ylabel(check_label(label))
-        figure.supxlabel("joint", fontsize=9.5)
+        figure.supxlabel("joint")
         handles = axes[0].get_legend_handles_labels()
         figure.legend(*handles, loc="outside upper left", ncols=3)
 

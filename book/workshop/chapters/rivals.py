@@ -48,8 +48,8 @@ def costs(
             axis.minorticks_off()
         for axis in axes[len(panels) :]:
             axis.remove()
-        figure.supxlabel(check_label(labels[0]), fontsize=9.5)
-        figure.supylabel(check_label(labels[1]), fontsize=9.5)
+        figure.supxlabel(check_label(labels[0]))
+        figure.supylabel(check_label(labels[1]))
         looks = {
             "test": {"color": FAINT, "lw": 1.8, "marker": "o", "ms": 4},
             "training": {"color": FAINT, "lw": 1.0, "ls": "--"},

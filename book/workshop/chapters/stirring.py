@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import PathPatch
-from matplotlib.path import Path
 
 from ddlib.figures import (
     COLOURS,
@@ -14,6 +12,7 @@ from ddlib.figures import (
     INK,
     Illustration,
     check_label,
+    dots_in_one,
     illustrate,
     legend_above,
     plain_ticks,
@@ -67,8 +66,8 @@ def paths(wanted, panels: dict[str, np.ndarray], factor: float, alt: str) -> Ill
             axis.set_aspect("equal")
         for axis in axes.ravel()[len(panels) :]:
             axis.remove()
-        figure.supxlabel("x, m", fontsize=9.5)
-        figure.supylabel("y, m", fontsize=9.5)
+        figure.supxlabel("x, m")
+        figure.supylabel("y, m")
         legend_above(figure, *axes[0, 0].get_legend_handles_labels())
 
     return illustrate(draw, alt, 6.6, 1.7 * rows + 0.7)
@@ -80,10 +79,8 @@ def two_families(states: dict[str, np.ndarray], alt: str) -> Illustration:
     def draw(figure: Figure):
         axes = figure.subplots(1, 3)
         for k, (axis, (title, unit)) in enumerate(zip(axes, _PLANES.items())):
-            for name, x, colour in zip(states, states.values(), COLOURS):
-                dots = _dots(x[:, [k, k + 3]], colour)
-                axis.add_patch(dots)
-                dots.set_label(name)
+            for x, colour in zip(states.values(), COLOURS):
+                dots_in_one(axis, x[:, [k, k + 3]], ec=colour, lw=1.8, alpha=0.8)
             axis.autoscale_view()
             axis.set(title=title, xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
         look = {"marker": "o", "ls": "", "ms": 4.8, "mew": 0}
@@ -91,11 +88,3 @@ def two_families(states: dict[str, np.ndarray], alt: str) -> Illustration:
         figure.legend(handles=handles, loc="outside upper left", ncols=3)
 
     return illustrate(draw, alt, 7.0, 2.9)
-
-
-def _dots(places: np.ndarray, colour: str) -> PathPatch:
-    """Small dots as one shape, as thousands of markers would be as many elements of the page."""
-    path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
-    path.should_simplify = False
-    look = {"facecolor": "none", "edgecolor": colour, "lw": 1.8, "alpha": 0.8}
-    return PathPatch(path, capstyle="round", **look)

@@ -14,6 +14,7 @@ from ddlib.figures.style import (
     DASHES,
     FAINT,
     INK,
+    JOINTS,
     NARROW,
     Illustration,
     illustrate,
@@ -54,10 +55,10 @@ def side_by_side(
     return illustrate(draw, alt, 7.0, height)
 
 
-def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Illustration:
+def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
     """Torques as bars on a logarithmic axis, largest first, one bar for each joint."""
     for name, size in sizes.items():
-        if (finite_array(f"sizes[{name!r}]", size, len(joints)) <= 0).any():
+        if (finite_array(f"sizes[{name!r}]", size, 2) <= 0).any():
             raise ValueError(f"sizes must be positive, got {size} for {name!r}")
     order = sorted(sizes, key=lambda name: sizes[name][0], reverse=True)
     values = np.array([sizes[name] for name in order])
@@ -66,10 +67,10 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
     def draw(figure: Figure):
         axis = figure.subplots()
         slim = figure.get_figwidth() <= NARROW  # names above their bars, not beside them
-        height = (0.56 if slim else 0.8) / len(joints)
+        height = (0.56 if slim else 0.8) / 2
         low = 10.0 ** np.floor(np.log10(values.min()))
-        for j, joint in enumerate(joints):
-            rows = places + (j - (len(joints) - 1) / 2) * height
+        for j, joint in enumerate(JOINTS):
+            rows = places + (j - 0.5) * height
             look = dict(color=COLOURS[j], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
             bars = axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
             words = [significant(value, 2) for value in values[:, j]]
@@ -87,6 +88,6 @@ def ranking(sizes: Mapping[str, np.ndarray], joints=("shoulder", "elbow")) -> Il
     listed = "; ".join(
         f"{name} {' and '.join(significant(v, 2) for v in row)}" for name, row in zip(order, values)
     )
-    alt = f"Bars of torque in N m for {' and '.join(joints)}, largest first: {listed}."
+    alt = f"Bars of torque in N m for shoulder and elbow, largest first: {listed}."
     size = 7.0, 0.36 * len(order) + 0.9
     return illustrate(draw, alt, *size, narrow_height=0.46 * len(order) + 0.9)

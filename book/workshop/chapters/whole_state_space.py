@@ -23,16 +23,9 @@ from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import Weights
 from ddlib.tables import significant
 
-# The six inputs in their order, as labels
-SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")
-
-
-UNITS = ("rad", "rad/s", "rad/s²") * 2  # Their units
-
-
-MARKERS = "osD^v"
-
-
+_SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")  # the six inputs in their order
+_UNITS = ("rad", "rad/s", "rad/s²") * 2
+_MARKERS = "osD^v"
 _WIDTH, _BLOB = 12.0, "#8c8c8c"
 
 
@@ -76,7 +69,7 @@ def hinton_states(weights: Weights) -> Illustration:
                  weights.hidden_weights[k])  # fmt: skip
         bottom = -tall - 0.9 - step * (rows - 1) - low
         for column in range(2):
-            for k, symbol in enumerate(SYMBOLS):
+            for k, symbol in enumerate(_SYMBOLS):
                 x = column * (_WIDTH + 1.2) + 1.5 + 1.8 * k
                 axis.text(x, bottom - 0.25, symbol, ha="center", va="top", fontsize=9)
             title = f"output: {JOINTS[column]} torque"
@@ -95,29 +88,26 @@ def hinton_states(weights: Weights) -> Illustration:
     return illustrate(draw, alt, 5.6, 5.6 * height)
 
 
-def torque_along(t, exact, predicted, share: float = 0.8) -> Illustration:
+def torque_along(t, exact, predicted) -> Illustration:
     """Figure 6-2: the exact torque (fine) and networks' torque (bold) along a trajectory.
 
     The bold line is the network whose root mean square error, each joint in units of its torque's
-    standard deviation, is the median; the shade holds the middle `share` of all networks at each
+    standard deviation, is the median; the shade holds the middle 80 % of all networks at each
     time.
     """
     t = shaped("t", t, "(time,)")
     exact = shaped("exact", exact, f"({t.size}, joint)")
     predicted = shaped("predicted", predicted, f"(networks, {t.size}, {exact.shape[1]})")
-    if not 0 < share <= 1:
-        raise ValueError(f"share must lie in (0, 1], got {share:g}")
     square = ((predicted - exact) ** 2).mean(1)
     error = (square / exact.var(0)).mean(-1)
     middle = predicted[np.argsort(error)[len(error) // 2]]
-    low, high = np.quantile(predicted, [(1 - share) / 2, (1 + share) / 2], axis=0)
+    low, high = np.quantile(predicted, [0.1, 0.9], axis=0)
 
     def draw(figure: Figure):
         axes = figure.subplots(exact.shape[1], 1, sharex=True, squeeze=False)[:, 0]
         for j, axis in enumerate(axes):
-            label = f"{100 * share:.0f} % of the networks"
             axis.fill_between(t, low[:, j], high[:, j], color=COLOURS[1], alpha=0.25, lw=0,
-                              label=label)  # fmt: skip
+                              label="80 % of the networks")  # fmt: skip
             axis.plot(t, middle[:, j], color=COLOURS[1], lw=2.4, label="median network")
             axis.plot(t, exact[:, j], color=INK, lw=0.9, label="analytic model")
             axis.set_ylabel(f"{JOINTS[j]} torque, N m")
@@ -144,7 +134,7 @@ def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) 
         for axis, (label, named) in zip(axes, panels.items()):
             for name, by_size in named.items():
                 k = look[name]
-                colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
+                colour, marker = COLOURS[k % len(COLOURS)], _MARKERS[k % len(_MARKERS)]
                 for size, errors in by_size.items():
                     axis.plot([size] * len(errors), errors, ".", ms=4, color=colour, alpha=0.55)
                 medians = [float(np.median(errors)) for errors in by_size.values()]
@@ -180,7 +170,7 @@ def responses(values, activity) -> Illustration:
         axes = figure.subplots(2, 3, sharex=True, sharey=True).ravel()
         for k, axis in enumerate(axes):
             axis.plot(values, activity[k // 3, k % 3], color=COLOURS[k // 3], lw=1.1)
-            axis.set_title(f"{SYMBOLS[k]}, {UNITS[k]}")
+            axis.set_title(f"{_SYMBOLS[k]}, {_UNITS[k]}")
             axis.set_ylim(-0.04, 1.04)
         for row in (0, 3):
             axes[row].set_ylabel("activity")

@@ -25,9 +25,7 @@ from ddlib.figures.style import (
 )
 
 
-def overlay(
-    t, measured, predicted: Mapping[str, np.ndarray], joint: str = "shoulder"
-) -> Illustration:
+def overlay(t, measured, predicted: Mapping[str, np.ndarray]) -> Illustration:
     """Figure 4-1: measured torque (fine) under the networks' (bold), one panel each."""
 
     def draw(figure: Figure):
@@ -42,7 +40,7 @@ def overlay(
 
     worst = max(np.sqrt(np.mean((np.asarray(p) - measured) ** 2)) for p in predicted.values())
     alt = (
-        f"Measured {joint} torque on the test trajectory with the torque of networks "
+        f"Measured shoulder torque on the test trajectory with the torque of networks "
         f"({', '.join(predicted)}) laid over it; largest root mean square difference "
         f"{worst:.2f} N m."
     )
@@ -56,10 +54,9 @@ def plane(
     labels: tuple[str, str, str],
     alt: str,
     *,
-    levels=(),
-    training=None,
-    test=None,
-    height: float = 3.6,
+    levels,
+    training,
+    test,
 ) -> Illustration:
     """A positive quantity over a plane, as colours on a logarithmic scale, with contour lines."""
     x, y, values = (finite_array(n, v) for n, v in (("x", x), ("y", y), ("values", values)))
@@ -75,22 +72,17 @@ def plane(
         norm = LogNorm(values.min(), values.max())
         mesh = axis.pcolormesh(x, y, values, norm=norm, cmap=COLOUR_MAP, shading="nearest",
                                linewidth=0.2, edgecolor="face")  # fmt: skip
-        if len(levels):
-            lines = axis.contour(x, y, values, levels=sorted(levels), colors="white",
-                                 linewidths=1.0)  # fmt: skip
-            axis.clabel(lines, fmt="%g", fontsize=8)
-        if training is not None:
-            axis.add_patch(Polygon(_hull(training), fill=False, ec="white", ls="--", lw=1.2))
-            axis.plot(*np.transpose(training), "o", color="white", mec=INK, ms=7, label="training",
-                      clip_on=False, zorder=3)  # fmt: skip
-        if test is not None:
-            axis.plot(*np.transpose(test), "D", color=COLOURS[1], mec="white", ms=8, label="test",
-                      clip_on=False, zorder=3)  # fmt: skip
+        lines = axis.contour(x, y, values, levels=sorted(levels), colors="white", linewidths=1.0)
+        axis.clabel(lines, fmt="%g", fontsize=8)
+        axis.add_patch(Polygon(_hull(training), fill=False, ec="white", ls="--", lw=1.2))
+        look = {"ls": "", "clip_on": False, "zorder": 3}
+        axis.plot(*np.transpose(training), marker="o", color="white", mec=INK, ms=7, **look)
+        axis.plot(*np.transpose(test), marker="D", color=COLOURS[1], mec="white", ms=8, **look)
         axis.set(xlabel=labels[0], ylabel=labels[1])
         axis.grid(False)
         _finish(figure.colorbar(mesh, ax=axis, label=labels[2]))
 
-    return illustrate(draw, alt, 5.6, height)
+    return illustrate(draw, alt, 5.6, 3.6)
 
 
 def _finish(bar: Colorbar):

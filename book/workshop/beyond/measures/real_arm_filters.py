@@ -17,8 +17,8 @@ from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
 NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that the paper finds
 
+# Gains of a network, and what the identified model has in their place
 WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
-"""Gains of a network, and what the identified model has in their place."""
 
 UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
 

@@ -40,10 +40,7 @@ def better(part: str = "trajectory 6") -> Measured:
 
 
 def tested(rival: str, part: str = "torque", split: str = "loader") -> np.ndarray:
-    """Errors of a rival on the test characters, one for each seed: squares, in (N m)².
-
-    Of the mass matrix and of torques at twice the speed ("hurried") the errors are relative.
-    """
+    """Errors of a rival on the test characters, one for each seed: squares, in (N m)²."""
     rows = results.read("characters")["rivals"][split][rival]["test"]
     return np.array([row[part] for row in rows])
 

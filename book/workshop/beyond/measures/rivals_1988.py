@@ -33,11 +33,7 @@ def row(name: str, **wanted) -> dict:
 
 
 def around(over: str) -> np.ndarray:
-    """Errors of what learnt one trajectory, by day and by distance from it.
-
-    The distances are 0, 5, 10, 15 and 20 degrees in the extent that differs more; medians over the
-    trajectories there.
-    """
+    """Errors of what learnt one trajectory, by day and by distance from it."""
     errors = np.array(results.read("rivals-tables")["around"][KINDS[1]][over]["errors"])
     far = practised_distance()
     return np.stack([np.median(errors[:, far == d], axis=1) for d in (0, 5, 10, 15, 20)], 1)

@@ -61,21 +61,20 @@ from workshop import BOOK
 from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
 
-FILE = BOOK / "claims.yml"
-"""Where the claims are kept."""
+FILE = BOOK / "claims.yml"  # Where the claims are kept
 
-LEDGER = "ledger"
-"""The page of all claims, and the chapter of those that no other page deals with."""
+LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
 
+# Environment variable with a folder in which notebooks that are built together share what they
+# measured: each runs in a process of its own, which an argument does not reach. Who sets it takes
+# a new folder for other code or results.
 SHARED = "DDLIB_MEASURED"
-"""Environment variable with a folder in which notebooks that are built together share what they
-measured: each runs in a process of its own, which an argument does not reach. Who sets it takes a
-new folder for other code or results."""
 
+# As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
+# like the others, in its chapter, and is not counted among the paper's.
 OWN = "not in the paper"
-"""As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
-like the others, in its chapter, and is not counted among the paper's."""
 
+# Titles of the paper's sections; abstract and appendix are numbered so that they sort
 SECTIONS = {
     "0": "Abstract",
     "1": "1. Introduction",
@@ -87,7 +86,6 @@ SECTIONS = {
     "7": "7. Conclusion",
     "8": "Appendix I. Trajectories used",
 }
-"""Titles of the paper's sections; abstract and appendix are numbered so that they sort."""
 
 _PLACE = re.compile(
     r"(?P<abstract>Abstract)|(?P<appendix>Appendix I\b)"
@@ -150,10 +148,7 @@ class Claim:
         return bool(self.measure or self.find)
 
     def but_for_reading(self) -> tuple[str, str]:
-        """What measures it without the argument ``setup``, and that: a reading of the controller.
-
-        Claims that agree in the first are one sentence. Without ``setup`` it is state feedback.
-        """
+        """What measures it without the argument ``setup``, and that: a reading of the loop."""
         rest = {name: value for name, value in self.arguments.items() if name != "setup"}
         key = json.dumps([self.measure, self.find, rest], sort_keys=True)
         return key, self.arguments.get("setup", STATE_FEEDBACK.name)

@@ -54,6 +54,7 @@ def _furthest(*parts) -> np.ndarray:
     return np.take_along_axis(parts, np.abs(np.log(parts)).argmax(0)[None], 0)[0]
 
 
+# What makes one cell of others, member by member; cut to the fewest members
 CELLS = {
     "over": np.divide,
     "times": np.multiply,
@@ -66,8 +67,8 @@ CELLS = {
     "medians": lambda cell: np.median(cell, axis=1),  # of what each member has
     "rms": lambda cell: np.sqrt((cell**2).mean(-1)),  # of what each member has
 }
-"""What makes one cell of others, member by member; cut to the fewest members."""
 
+# What pools the members of a cell, in each draw
 POOLED = {
     "median": median,
     "mean": mean,
@@ -75,8 +76,9 @@ POOLED = {
     "max": lambda cell: cell.max(tuple(range(1, cell.ndim))),
     "min": lambda cell: cell.min(tuple(range(1, cell.ndim))),
 }
-"""What pools the members of a cell, in each draw."""
 
+# What compares pooled values. Two more need what ``for`` goes through: ``best`` tells of which of
+# it the least value is, ``rising`` whether the values rise in an ``order``.
 FORMS = {
     "ratio": lambda a, b: a / b,
     "difference": lambda a, b: a - b,
@@ -87,9 +89,9 @@ FORMS = {
     "apart": lambda *parts: np.exp(np.max(np.abs(np.log(parts)), axis=0)),  # a factor, up or down
     "excess": lambda one, *others: one - np.max(others, axis=0),
 }
-"""What compares pooled values. Two more need what ``for`` goes through: ``best`` tells of which of
-it the least value is, ``rising`` whether the values rise in an ``order``."""
 
+# What the text tells of a cell. Three more: ``spread``, the median with the range; ``all``, each
+# member; ``p``, the chance that a member is as large as the mean of the first cell.
 TOLD = {
     "median": np.median,
     "mean": np.mean,
@@ -99,27 +101,12 @@ TOLD = {
     "sum": np.sum,
     "count": np.size,
 }
-"""What the text tells of a cell. Three more: ``spread``, the median with the range; ``all``, each
-member; ``p``, the chance that a member is as large as the mean of the first cell."""
 
 _FIXED = "fixed"
 
 
 def find(expression: Mapping, arguments: Mapping | None = None) -> Measured:
-    """What an expression finds in the committed results: value, text, replicates.
-
-    Parameters
-    ----------
-    expression : mapping
-        As in ``find`` of a claim; see the module.
-    arguments : mapping, optional
-        What its placeholders stand for.
-
-    Raises
-    ------
-    ValueError
-        If a path leads nowhere, or there is no such form; tells what there is.
-    """
+    """What an expression finds in the committed results: value, text, replicates."""
     return _Expression(expression, dict(arguments or {})).measured()
 
 

@@ -17,8 +17,7 @@ import math
 from workshop.report import results
 from workshop.report.evidence.claims import Claim, load
 
-NAME = "verdicts"
-"""Name of the result that keeps the fresh verdicts."""
+NAME = "verdicts"  # Name of the result that keeps the fresh verdicts
 
 
 def distance(claim: Claim) -> float:

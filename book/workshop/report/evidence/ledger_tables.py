@@ -25,14 +25,15 @@ from workshop.report.evidence.verdicts import VERDICTS
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
 
+# What a claim's `refuted` tells, if not what would have refuted it
 HEADS = {
     "not reproduced": "What would have supported it",
     "by construction": "Why nothing could have refuted it",
     "not testable": "What a test would need",
 }
-"""What a claim's `refuted` tells, if not what would have refuted it."""
 
 
+# Ids of the claims on which the paper's theses and this book's answers hang
 FINDINGS = (
     "headline",
     "headline-damping",
@@ -50,7 +51,6 @@ FINDINGS = (
     "stirring-hand-worse",
     "joints-three-and-four",
 )
-"""Ids of the claims on which the paper's theses and this book's answers hang."""
 
 
 def findings() -> Table:

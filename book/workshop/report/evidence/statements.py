@@ -8,9 +8,9 @@ import numpy as np
 
 from workshop.report.evidence.verdicts import DRAWS, bootstrap
 
+# Share of the draws in which a statement about an ensemble has to hold. When it is written it
+# should hold in nearly all; it stands until results made anew say something else.
 SURE = 0.8
-"""Share of the draws in which a statement about an ensemble has to hold. When it is written it
-should hold in nearly all; it stands until results made anew say something else."""
 
 
 def stated(name: str, holds, share: float = SURE) -> None:
@@ -18,24 +18,6 @@ def stated(name: str, holds, share: float = SURE) -> None:
 
     `tests/support/bound_words.yml` names the sentence; a test fails on words of direction or order
     about trained outcomes that no such check stands behind.
-
-    Parameters
-    ----------
-    name : str
-        Under which `tests/support/bound_words.yml` refers to the check.
-    holds : bool, or array_like of bool
-        Whether it is so; several values are draws of `resampled` ensembles.
-    share : float
-        With several values: the share of them that must be true, over 0.5 and up to 1.
-
-    Raises
-    ------
-    AssertionError
-        If it is not so; the message has the name.
-    TypeError
-        If `holds` is not made of truth values.
-    ValueError
-        If `share` is out of range, or `holds` is empty.
     """
     found = np.asarray(holds)
     if found.dtype != bool:
@@ -52,25 +34,8 @@ def stated(name: str, holds, share: float = SURE) -> None:
 
 
 def resampled(values, statistic: Callable = np.median, seed: int = 0) -> np.ndarray:
-    """A statistic of an ensemble, in draws of as many networks with replacement (bootstrap).
-
-    Parameters
-    ----------
-    values : array_like, shape (networks,)
-        One value for each network.
-    statistic : callable
-        Takes an array and an `axis`.
-    seed : int
-        Of the draws; with the same seed, draws of two ensembles take the same members.
-
-    Returns
-    -------
-    ndarray, shape (DRAWS,)
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two values, or one is not finite.
+    """A statistic of an ensemble, in draws of as many networks with replacement (bootstrap), shape
+    (DRAWS,).
     """
     values = np.asarray(values, dtype=float)
     if values.ndim != 1 or values.size < 2:

@@ -24,6 +24,7 @@ import numpy as np
 
 from ddlib._check import integer, one_of
 
+# All verdicts. The first three are decided by bands, best first.
 VERDICTS = (
     "reproduced",
     "qualitative",
@@ -32,24 +33,20 @@ VERDICTS = (
     "by construction",
     "not testable",
 )
-"""All verdicts. The first three are decided by bands, best first."""
 
-DRAWS = 2000
-"""Draws of a bootstrap."""
+DRAWS = 2000  # Draws of a bootstrap
 
+# Members from which a bootstrap draws at least: of fewer it has hardly any draws that differ
 FEWEST = 5
-"""Members from which a bootstrap draws at least: of fewer it has hardly any draws that differ."""
 
-DECIDED = 0.95
-"""Share of the draws that makes a verdict."""
+DECIDED = 0.95  # Share of the draws that makes a verdict
 
+# Share of the draws down to which a written verdict stands: below, they exclude it as surely as
+# they had to agree before. Between two ensembles a value moves by 1.4 standard errors, so a
+# verdict at the edge of being decided falls in 1 new ensemble of 100, where 0.8 would fell 29.
 STANDS = 0.05
-"""Share of the draws down to which a written verdict stands: below, they exclude it as surely as
-they had to agree before. Between two ensembles a value moves by 1.4 standard errors, so a verdict
-at the edge of being decided falls in 1 new ensemble of 100, where 0.8 would fell 29."""
 
-CONTRADICTS = 1.0
-"""Share of the draws for one verdict that ends a written "undecided"."""
+CONTRADICTS = 1.0  # Share of the draws for one verdict that ends a written "undecided"
 
 
 class Measured(NamedTuple):
@@ -63,39 +60,7 @@ class Measured(NamedTuple):
 def bootstrap(
     statistic: Callable, *cells, draws: int = DRAWS, seed: int = 0, nested: bool = False
 ) -> np.ndarray:
-    """A statistic of members drawn with replacement, again and again.
-
-    Parameters
-    ----------
-    statistic : callable
-        ``statistic(*cells)`` for arrays that have one more leading axis, of draws; returns one
-        number for each draw. Its axes are best counted from the end.
-    *cells : array_like, shape (members, ...), or tuple of such
-        Independent groups of members, each drawn by itself. The arrays of a tuple belong to
-        the same members and are drawn together; the statistic gets them as a tuple.
-    draws, seed : int
-        Number of draws, 2,000 or more; seed of the drawing.
-    nested : bool
-        Members have members, like recordings and the networks trained on each, in the second
-        axis: those are drawn anew, too, for each member that was drawn.
-
-    Returns
-    -------
-    ndarray, shape (draws,)
-
-    Raises
-    ------
-    ValueError
-        If the arrays of a tuple differ in their members, there are fewer than `FEWEST`, or the
-        statistic returns no number for each draw.
-
-    Notes
-    -----
-    The percentile bootstrap of Efron & Tibshirani, *An Introduction to the Bootstrap* (1993),
-    chapter 13. Of a largest or least of several medians the draws are biased outwards: the noise
-    of each cell adds to it, so such a statistic is furthest from 1, or largest, too often. Where
-    a verdict hangs on it near an edge, the shares of the draws are rough.
-    """
+    """A statistic of members drawn with replacement, again and again, shape (draws,)."""
     integer("draws", draws, DRAWS)
     rng = np.random.default_rng(seed)
     drawn = _picked(cells, lambda n: rng.integers(0, n, (draws, n)), rng if nested else None)
@@ -150,15 +115,7 @@ def rank_correlation(first, second) -> np.ndarray:
 def judged(
     statistic: Callable, *cells, text: str | Callable[[float], str], nested: bool = False
 ) -> Measured:
-    """A statistic of all members with its replicates, and a text or a function of the value.
-
-    Parameters
-    ----------
-    statistic, *cells, nested
-        As in `bootstrap`.
-    text : str or callable
-        What the tables show, or ``text(value)`` that returns it.
-    """
+    """A statistic of all members with its replicates, and a text or a function of the value."""
     once = _picked(cells, lambda n: np.arange(n)[None])
     value = float(np.asarray(statistic(*once))[0])
     replicates = bootstrap(statistic, *cells, nested=nested)

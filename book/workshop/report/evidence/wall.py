@@ -30,12 +30,12 @@ from workshop.report.evidence.expressions import find
 from workshop.report.evidence.ledger_tables import HEADS, bands, page_of, window
 from workshop.report.evidence.verdicts import VERDICTS
 
+# A sign for each verdict, so that colour is not all that tells them apart
 MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
-"""A sign for each verdict, so that colour is not all that tells them apart."""
 
-CODE = "../_modules"
-"""The folder of the pages that show source, beside that of the chapters."""
+CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
 
+# Titles of the paper's subsections
 PARTS = {
     "1.1": "Motivation",
     "1.2": "Backpropagation Networks",
@@ -48,10 +48,8 @@ PARTS = {
     "5.3": "Window Size vs. Generalization",
     "7.1": "Future Work",
 }
-"""Titles of the paper's subsections."""
 
-_MIDDLE = (0.025, 0.5, 0.975)
-"""Quantiles of the draws that a tile's picture shows."""
+_MIDDLE = (0.025, 0.5, 0.975)  # Quantiles of the draws that a tile's picture shows
 
 _TABLE = 10  # a table's place among subsections
 _WIDE = 20.0  # a scale is logarithmic from this ratio of its ends on

@@ -13,8 +13,7 @@ from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, parity_networks, results
 from workshop.report.evidence.verdicts import Measured, judged, median
 
-LEVEL = 0.75
-"""Training RMSS to which runs with and without acceleration are timed."""
+LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
 
 
 @cache

@@ -28,8 +28,8 @@ from workshop.report.evidence.verdicts import Measured
 ARM = CMU_DD_ARM_II
 EXTENTS = APPENDIX_I[0]
 TIMES = np.arange(1500) * CONTROL_STEP
+# Inertia that each joint has by itself, the arm stretched, kg m^2
 OWN = np.diag(ARM.mass_matrix([0.0, 0.0]))
-"""Inertia that each joint has by itself, the arm stretched, kg m^2."""
 
 
 def _rms(x) -> np.ndarray:
@@ -136,29 +136,10 @@ def figure_2_1() -> Measured:
 
 
 def track(rotors, frozen, model, gains, speed: float = 1.0, extents=EXTENTS) -> np.ndarray:
-    """Tracking errors of changed arms under continuous PD control and feedforward.
+    """Tracking errors of changed arms under continuous PD control and feedforward, shape (runs,
+    time, 2).
 
     Several arms at once on the smooth motion, by Runge-Kutta steps of a log sample.
-
-    Parameters
-    ----------
-    rotors : array_like, shape (runs, 2)
-        Inertia added to each joint by what turns behind its gears, kg m^2.
-    frozen : array_like of bool, shape (runs,)
-        Arms with the constant mass matrix of the stretched posture and no Coriolis torque.
-    model : callable
-        ``model(q, qd, qdd) -> tau``, arrays ``(runs, time, 2)``.
-    gains : array_like, shape (runs, 2)
-        Factors on the gains of both joints.
-    speed : float
-        How many times faster than in three seconds, positive.
-    extents : array_like, shape (2,)
-        Degrees.
-
-    Returns
-    -------
-    ndarray, shape (runs, time, 2)
-        Degrees.
     """
     positive("speed", speed, 0.0, open_low=True)
     frozen = np.asarray(frozen)[:, None]

@@ -57,11 +57,10 @@ SETUP = STATE_FEEDBACK
 ARM = CMU_DD_ARM_II
 TIMES = np.arange(300) * 0.01
 LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
+# A springy shaft with modes at 36 and 38 Hz: an example, no value of the real arm
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))
-"""A springy shaft with modes at 36 and 38 Hz: an example, no value of the real arm."""
 
-SIGNIFICANT = 0.2
-"""Share of the rigid body's torque from which on an effect counts as significant."""
+SIGNIFICANT = 0.2  # Share of the rigid body's torque from which on an effect counts as significant
 
 
 def nonlinearity() -> Measured:

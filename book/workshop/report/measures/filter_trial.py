@@ -33,21 +33,17 @@ def matched(found: dict) -> dict:
 
 
 def share(found: dict, layer: str, names: Sequence[str], kind: str = "classes") -> np.ndarray:
-    """Share of a layer's filters in any of some classes, one for each network or draw.
-
-    `found` is an ensemble of a row; `kind` "classes" of weights, or "changes" by training.
-    """
+    """Share of a layer's filters in any of some classes, one for each network or draw."""
     return np.sum([found[layer][kind][name] for name in names], axis=0)
 
 
+# Gains of a network that the arm has, too: output, joint, order of the derivative
 ENTRIES = {
     "inertia": {"M₁₁": (0, 0, 2), "M₁₂": (0, 1, 2), "M₂₁": (1, 0, 2), "M₂₂": (1, 1, 2)},
     "friction": {"shoulder": (0, 0, 1), "elbow": (1, 1, 1)},
 }
-"""Gains of a network that the arm has, too: output, joint, order of the derivative."""
 
-UNITS = {"inertia": "kg m²", "friction": "N m s/rad"}
-"""Units of these gains."""
+UNITS = {"inertia": "kg m²", "friction": "N m s/rad"}  # Units of these gains
 
 
 @cache
@@ -87,11 +83,7 @@ def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
 
 
 def stiffness(width: int = 21) -> Measured:
-    """Stiffness of the trial's networks at the shoulder, which the arm has none of.
-
-    Judged as a share of what the inertia is worth along the family's motions, half a period of a
-    sine in `MOTION_SECONDS`.
-    """
+    """Stiffness of the trial's networks at the shoulder, which the arm has none of."""
     found = np.array(row(width)["real"]["gains"])[:, 0, 0, 0]
     worth = (np.pi / MOTION_SECONDS) ** 2 * arm_gains()[0, 0, 2]
     text = f"K₁₁ {spread(found, 2)} N m/rad; the inertia is worth {worth:.1f}"
@@ -113,9 +105,6 @@ def _off(gains, true) -> np.ndarray:
 
 
 def near_by_chance(null, real, true) -> float:
-    """p-value of gains as near to the arm's (`true`) as the `real` ones, in their worst entry.
-
-    `null` has a row of entries for each draw, `real` one for each network.
-    """
+    """p-value of gains as near to the arm's (`true`) as the `real` ones, in their worst entry."""
     each = np.asarray(null)[:, None]  # a draw at a time
     return p_value(_off(np.asarray(real), true), _off(each, true), "less")

@@ -172,8 +172,7 @@ def shoulder_profile(width: int) -> Measured:
     return judged(median, wrong, text=spread(wrong))
 
 
-RUNS = ("training", "trajectory 6")
-"""Where errors are taken."""
+RUNS = ("training", "trajectory 6")  # Where errors are taken
 
 
 @cache

@@ -12,11 +12,11 @@ from ddlib.setups import WINDOWS
 from workshop.report import results
 from workshop.report.knobs import Emulator, knobs_of, left_out, shares, spread_evenly, weigh
 
+# The six cells of Table 4-1
 CELLS = tuple((column, width) for column in ("training", "test") for width in WINDOWS)
-"""The six cells of Table 4-1."""
 
+# The largest weights that Figures 5-1 to 5-3 print
 WEIGHTS = tuple(("largest weight", width) for width in WINDOWS)
-"""The largest weights that Figures 5-1 to 5-3 print."""
 
 
 def printed(wanted=CELLS) -> np.ndarray:
@@ -38,10 +38,7 @@ class Screen(NamedTuple):
     scores: np.ndarray  # each run less what the others predict, in deviations, (cells, runs)
 
     def predict(self, places) -> tuple[np.ndarray, np.ndarray]:
-        """Means and their variances at some places, ``(places, cells)``.
-
-        Where runs left out were foretold worse than the emulator thought, it is made less sure.
-        """
+        """Means and their variances at some places, ``(places, cells)``."""
         pairs = [emulator.predict(places) for emulator in self.emulators]
         wider = np.maximum(1.0, (self.scores**2).mean(1))
         return np.stack([m for m, _ in pairs], -1), np.stack([v for _, v in pairs], -1) * wider

@@ -10,8 +10,8 @@ from ddlib.tables import significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
 
+# Parts of the result with the errors of window networks, by the reading of the controller
 DAMPED, FED = "windows", "windows, state feedback"
-"""Parts of the result with the errors of window networks, by the reading of the controller."""
 
 
 def read(part: str):
@@ -117,11 +117,7 @@ def growth(level: float = 0.2) -> Measured:
 
 
 def scaled(kind: str = "real") -> tuple[np.ndarray, np.ndarray]:
-    """Gains on acceleration, ``(networks, torque, joint)``, and the arm's inertia, as shares.
-
-    Both are multiplied by the joint's acceleration and divided by the torque's deviation. The
-    networks learnt "real" or "unrelated" torques.
-    """
+    """Gains on acceleration, ``(networks, torque, joint)``, and the arm's inertia, as shares."""
     pairs = read("pairs")
     unit = np.array(pairs["acceleration"]) / np.array(pairs["deviation"])[:, None]
     return np.array(pairs["gains"][kind]) * unit, np.array(pairs["inertia"]) * unit

@@ -34,11 +34,7 @@ def on(
 
 
 def family(learner: str, when: str, setup: str = "joint damping") -> np.ndarray:
-    """End-point errors on the family's test motions, one for each seed.
-
-    "before the load", "with the load" (the first trial with it, before anything was learnt of it),
-    "at the end" or "without the load again".
-    """
+    """End-point errors on the family's test motions, one for each seed."""
     found, trials = part("family", setup), results.read("learning-in-the-loop")["trials"]
     if when in ("at the end", "without the load again"):
         return np.array(found[when][learner])
@@ -46,10 +42,7 @@ def family(learner: str, when: str, setup: str = "joint damping") -> np.ndarray:
 
 
 def trials_to_half(errors, start) -> np.ndarray:
-    """Trials after which errors, ``(trials, seeds)``, stay at half of a first value or below.
-
-    Infinite for seeds that do not get there.
-    """
+    """Trials after which errors, ``(trials, seeds)``, stay at half of a first value or below."""
     above = np.asarray(errors) > 0.5 * np.asarray(start)
     last = np.array([np.flatnonzero(each)[-1] if each.any() else -1 for each in above.T])
     return np.where(last == len(above) - 1, np.inf, last + 1.0)
@@ -99,11 +92,7 @@ def multiplications(hidden: int = 10, inputs: int = 42, every: int = 5, replay: 
 
 
 def affordable(learner: str) -> Measured:
-    """Multiplications of torque and learning over what 1986 did in a control period.
-
-    A floating-point processor computed six joints in 1.2 ms (Khosla 1986, as the report cites it):
-    in 2 ms that is 5/3 of the multiplications of the Newton-Euler equations, customised.
-    """
+    """Multiplications of torque and learning over what 1986 did in a control period."""
     each = multiplications()
     total = each["torque"] + (each[learner] if learner != "torque" else 0.0)
     could = count(newton_euler, PUMA_560, "arm").multiplications * 2.0 / 1.2

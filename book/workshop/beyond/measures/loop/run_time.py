@@ -19,11 +19,11 @@ NETWORK = "network, window 21"  # the paper's best window
 
 PREDICTORS = ("RMSS", "through the loop", "planned")  # of a network's end-point error
 
+# Rivals that see the same windows of 21
 KINDS = (
     "identified", "linear filter", "Gaussian process", "Lagrangian network",
     "network, two hidden units",
 )  # fmt: skip
-"""Rivals that see the same windows of 21."""
 
 
 def reading(setup: str = JOINT_DAMPING.name) -> dict:
@@ -107,12 +107,7 @@ def unstable_at(setup: str = JOINT_DAMPING.name, late: int = 0) -> Measured:
 
 
 def onsets(line: str = "network", setup: str = JOINT_DAMPING.name) -> tuple[np.ndarray, np.ndarray]:
-    """Shares, by model, at which a loop with it inside turns: by its poles, and as simulated.
-
-    The first is where the largest pole leaves the unit circle, the second where the error doubles
-    its least value; between the shares that were tried both go in straight lines. Infinite where
-    it does not come so far.
-    """
+    """Shares, by model, at which a loop with it inside turns: by its poles, and as simulated."""
     shares, found = _inside(f"{line}, 0", setup)
     poles, error = (np.array(found[name]) for name in ("poles", "error"))
     predicted = [_crossing(shares, row, 1.0) for row in poles]

@@ -18,10 +18,7 @@ def row(setup: str = JOINT_DAMPING.name) -> dict:
 def error(
     rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name, width: int = 21
 ) -> np.ndarray:
-    """RMS torque errors of both joints together on a test, N m, one for each day.
-
-    Windows other than 21 for the network alone.
-    """
+    """RMS torque errors of both joints together on a test, N m, one for each day."""
     found = row(setup)
     rows = found["errors"][rival] if width == 21 else found["wider"][str(width)]
     return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))

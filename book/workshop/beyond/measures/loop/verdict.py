@@ -66,11 +66,7 @@ def agreement(pairs: Iterable[tuple[str, str]]) -> Agreement:
 
 
 def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
-    """How many decided verdicts rest on draws, and how many of them another draw would change.
-
-    The second number is the sum over the claims of the share of the draws that disagree: an
-    expectation needs no independence.
-    """
+    """How many decided verdicts rest on draws, and how many of them another draw would change."""
     decided = [claim for claim in sentences if claim.verdict != "undecided"]
     agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
     return len(agree), float(len(agree) - sum(agree))

@@ -3,7 +3,7 @@
 import pytest
 from pictures import words
 
-from workshop.report.evidence.chart import verdicts
+from workshop.chapters.verdict import verdicts
 
 COUNTS = {"1. One": {"yes": 3, "no": 0}, "2. Two": {"yes": 1, "no": 2}}
 

@@ -6,8 +6,9 @@ import pytest
 from book_pages import BACK_MATTER, CHAPTERS, ROOT
 
 from ddlib.tables import significant
+from workshop.chapters import ledger
 from workshop.report import results
-from workshop.report.evidence import claims, ledger, ledger_tables
+from workshop.report.evidence import claims, ledger_tables
 from workshop.report.evidence.statements import SURE, resampled
 
 BOOK = ROOT / "book"

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
 
+# How a bar's parts look, in the order of the verdicts
 _LOOKS = (
     {"color": COLOURS[2]},
     {"color": COLOURS[0], "alpha": 0.75},
@@ -16,10 +17,8 @@ _LOOKS = (
     {"facecolor": f"{COLOURS[2]}33", "edgecolor": COLOURS[2], "lw": 1},
     {"facecolor": "none", "edgecolor": FAINT, "lw": 1},
 )
-"""How a bar's parts look, in the order of the verdicts."""
 
-_DIGIT = 5.4
-"""Width of a digit in a bar, points."""
+_DIGIT = 5.4  # Width of a digit in a bar, points
 
 
 def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:

@@ -18,27 +18,21 @@ from workshop import BOOK
 from workshop.report import results
 from workshop.report.measures.filters import parts_sum_up
 
-FILE = BOOK / "errata.yml"
-"""Where the errata are kept."""
+FILE = BOOK / "errata.yml"  # Where the errata are kept
 
-QUESTIONS = FILE.with_name("questions.yml")
-"""Where the open questions are kept."""
+QUESTIONS = FILE.with_name("questions.yml")  # Where the open questions are kept
 
+# Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does
 FIELDS = ("where", "printed", "wrong", "here")
-"""Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does."""
 
+# Unit named inside a figure, window by the text of section 5.1, window by the caption
 _FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
-"""Unit named inside a figure, window by the text of section 5.1, window by the caption."""
 
-_SETS = ("random set A", "random set B", "trajectory 6")
-"""The data sets of Table 6-1."""
+_SETS = ("random set A", "random set B", "trajectory 6")  # The data sets of Table 6-1
 
 
 def unit_fits(unit: int, width: int) -> bool:
-    """Whether a unit of this number is a hidden or an output unit of a window network.
-
-    Inputs are numbered first, from 0 or from 1.
-    """
+    """Whether a unit of this number is a hidden or an output unit of a window network."""
     inputs, others = 2 * width, paper.HIDDEN_UNITS + 2
     return inputs < unit <= inputs + others
 
