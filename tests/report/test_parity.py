@@ -9,7 +9,7 @@ from hypothesis import given, settings, strategies as st
 
 from ddlib.learning import Weights
 from workshop.report import parity_networks
-from workshop.report.parity_networks import NETWORKS, UnitNetwork, monomials, patterns
+from workshop.report.parity_networks import NETWORKS, monomials, patterns
 
 
 def in_words(row) -> int:
@@ -126,27 +126,16 @@ def test_cases_in_both_codings():
     "call, words",
     [
         (lambda: patterns(0), "bits must be an integer from 1 to 16, got 0"),
-        (lambda: patterns(17), "bits must be an integer from 1 to 16, got 17"),
         (lambda: parity_networks.parity([0, 2]), "x must hold zeros and ones"),
-        (lambda: parity_networks.parity(1), "x must hold zeros and ones"),
         (lambda: monomials([1, 0, 1]), "values must have shape"),
-        (lambda: monomials([1]), "bits of values must be"),
-        (lambda: monomials([[1, 0], [0, 1]]), "values must have shape"),
         (lambda: monomials([0.5, 0]), "values must be whole numbers"),
         (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
         (lambda: parity_networks.counter(0), "bits must be an integer from 1"),
         (lambda: parity_networks.tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
         (lambda: parity_networks.tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
-        (lambda: UnitNetwork(np.ones((2, 4)), np.ones(2)), "from earlier units to later ones"),
-        (
-            lambda: UnitNetwork(np.ones((2, 2)), np.ones(2)),
-            "inputs of weights must be an integer from 1",
-        ),
-        (lambda: UnitNetwork(np.ones(3), np.ones(3)), "weights must have shape"),
         (lambda: parity_networks.learn(2, 2, rate=0.0), "rate must lie in"),
         (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
-        (lambda: parity_networks.learn(2, 0), "hidden must be an integer from 1"),
         (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),
     ],
 )

@@ -32,19 +32,11 @@ from ddlib.simulation import Recording
 
 @dataclass(frozen=True)
 class Knob:
-    """A quantity that is varied between two bounds.
+    """A quantity that is varied between two bounds."""
 
-    Parameters
-    ----------
-    low, high : float
-        Its values at -1 and at 1.
-    logarithmic : bool
-        Whether equal steps are equal factors.
-    """
-
-    low: float
-    high: float
-    logarithmic: bool = True
+    low: float  # its value at place -1
+    high: float  # and at 1
+    logarithmic: bool = True  # whether equal steps are equal factors
 
     def value(self, place):
         """Value at a coded place, -1 to 1."""

@@ -38,8 +38,7 @@ def parity(x) -> np.ndarray:
 
 
 def monomials(values, coding: str = "bits") -> np.ndarray:
-    """Coefficients of the polynomial that equals a function of bits on all its inputs, shape
-    (2**bits,).
+    """Coefficients of the polynomial that equals a function of bits on all its inputs.
 
     No variable appears squared in it, since a bit (or a sign) squared is nothing new; so the
     polynomial is unique. Its coefficients come from the Möbius transform for bits and from the
@@ -64,28 +63,12 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
 class UnitNetwork:
     """Units one after the other, each seeing the inputs and any unit before it.
 
-    That is the most general network with activity in one direction only. The last unit is the
-    output. Weights and biases are kept as small whole or half numbers; `activity` multiplies
-    them by a gain.
-
-    Attributes
-    ----------
-    weights : ndarray, shape (units, inputs + units)
-        Weight 0 means no connection.
-    bias : ndarray, shape (units,)
+    The last unit is the output. Weights and biases are small whole or half numbers; `activity`
+    multiplies them by a gain.
     """
 
-    weights: np.ndarray
-    bias: np.ndarray
-
-    def __post_init__(self):
-        bias = shaped("bias", self.bias, "(units,)")
-        weights = shaped("weights", self.weights, f"({bias.size}, inputs)")
-        integer("inputs of weights", weights.shape[1] - bias.size, 1)
-        if np.triu(weights[:, weights.shape[1] - bias.size :]).any():
-            raise ValueError("weights must lead from earlier units to later ones only")
-        object.__setattr__(self, "weights", weights)
-        object.__setattr__(self, "bias", bias)
+    weights: np.ndarray  # (units, inputs + units); 0 means no connection
+    bias: np.ndarray  # (units,)
 
     @property
     def inputs(self) -> int:
