@@ -26,7 +26,7 @@ from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 
 if TYPE_CHECKING:  # these need torch, which a page without training does without
-    from ddlib.learning import History, Solution
+    from ddlib.learning import History
 
 KP = (300.0, 90.0)
 """Gains on the position error of shoulder and elbow, N m/rad. Assumed: stiff enough to follow
@@ -176,55 +176,30 @@ def train_windows(
     `seed` is of the first network's weights; `snapshots`, `progress` and what is returned are those
     of `ddlib.learning.train_ensemble`. A set-up with Levenberg-Marquardt `steps` has no snapshots.
     """
-    from ddlib.learning import train_ensemble
+    from ddlib.learning import solve, train_ensemble
 
+    integer("members", members, 1)
+    training, test = split(recording)
+    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
+    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
+    shared = {
+        "test": data.transform(*cases(test, width)),
+        "progress": progress,
+        "label": f"{setup.name}, window {width}",
+    }
     if setup.steps:
-        solution = solve_windows(setup, recording, width, members, seed=seed, progress=progress)
+        solution = solve(weights, data, decay=setup.decay, steps=setup.steps, **shared)
         return solution.model, solution.history, {}
-    weights, data, test = _start(setup, recording, width, members, seed)
     return train_ensemble(
         weights,
         data,
-        test=test,
         rate=setup.rate / width,
         momentum=setup.momentum,
         epochs=setup.epochs,
         warm_up=setup.warm_up,
         snapshots=snapshots,
-        progress=progress,
-        label=f"{setup.name}, window {width}",
+        **shared,
     )
-
-
-def solve_windows(
-    setup: Setup, recording: Recording, width: int, members: int, *, seed=0, progress=True
-) -> Solution:
-    """`train_windows` of a set-up with Levenberg-Marquardt, with all that the solver tells.
-
-    It stops after ``setup.steps`` steps and warns of members that have not converged by then.
-    """
-    from ddlib.learning import solve
-
-    integer("setup.steps", setup.steps, 1)
-    weights, data, test = _start(setup, recording, width, members, seed)
-    return solve(
-        weights,
-        data,
-        test=test,
-        decay=setup.decay,
-        steps=setup.steps,
-        progress=progress,
-        label=f"{setup.name}, window {width}",
-    )
-
-
-def _start(setup, recording, width, members, seed) -> tuple:
-    """Initial weights, the training set, and the scaled test set."""
-    integer("members", members, 1)
-    training, test = split(recording)
-    data = TrainingSet.from_recording(training, width, scaling=setup.scaling)
-    weights = Weights.random(members, width, setup.hidden, initial=setup.initial, seed=seed)
-    return weights, data, data.transform(*cases(test, width))
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,6 @@ from ddlib.setups import (
     errors,
     inside_hull,
     predict,
-    solve_windows,
     split,
     square,
     train_windows,
@@ -96,18 +95,10 @@ def test_solved_windows_stop_after_their_steps():
     quick = replace(JOINT_DAMPING, steps=3)
     recording = quick.record()
     with pytest.warns(NotConverged):
-        solution = solve_windows(quick, recording, 5, 2, seed=3, progress=False)
-    assert (solution.steps == 3).all() and (solution.ended == "steps").all()
-    with pytest.warns(NotConverged):
         model, history, kept = train_windows(quick, recording, 5, 2, seed=3, progress=False)
     assert kept == {} and list(history.epochs) == [0, 1, 2, 3]
     np.testing.assert_allclose(errors(model, recording).training, history.training[-1], rtol=1e-6)
     np.testing.assert_allclose(errors(model, recording).test, history.test[-1], rtol=1e-6)
-    np.testing.assert_array_equal(
-        model.weights.hidden_weights, solution.model.weights.hidden_weights
-    )
-    with pytest.raises(ValueError, match=r"setup\.steps must"):
-        solve_windows(STATE_FEEDBACK, recording, 5, 2)
 
 
 def test_the_arm_follows_the_family_within_a_few_degrees(recording):

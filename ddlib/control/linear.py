@@ -11,7 +11,9 @@ from ddlib._check import finite_array, integer, non_negative, number
 
 
 def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
-    """Joints that obey ``inertia qdd + viscous qd + stiffness q = tau``, torques in.
+    """Joints that obey ``inertia qdd + viscous qd + stiffness q = tau``: torques in, state out.
+
+    The states are the angles (rad) from the posture, then the velocities (rad/s).
 
     Parameters
     ----------
@@ -20,13 +22,7 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
     viscous : float or array_like, shape (joint,)
         Viscous friction, N m s/rad.
     stiffness : float or array_like, shape (joint, joint)
-        What gravity adds to a joint's torque when it leaves its posture, N m/rad; negative
-        where the arm would fall over.
-
-    Returns
-    -------
-    control.StateSpace
-        States and outputs: the angles (rad) from the posture, then the velocities (rad/s).
+        What gravity adds to the torque away from the posture, N m/rad; negative if it would fall.
     """
     inertia = np.atleast_2d(finite_array("inertia", inertia))
     joints = len(inertia)
@@ -70,15 +66,10 @@ def closed_loop(
     kp, ki, kd : float or array_like, shape (joint,)
         Gains of `ddlib.control.PID`.
     period : float, optional
-        Control period in s: the torque is computed once a period and held. The loop is
-        then a discrete-time system, exact at the samples. Default: continuous control.
+        Control period in s, for which a torque is held: a discrete-time system, exact at the
+        samples. Default: continuous control.
     delay : int
-        Whole periods between a reading and the moment its torque acts; sampled loops only.
-
-    Returns
-    -------
-    control.StateSpace
-        Inputs: reference angles (rad), then torques (N m) that disturb the joints.
+        Whole periods between a reading and its torque; sampled loops only.
     """
     n = joints.ninputs
     A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)

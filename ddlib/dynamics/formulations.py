@@ -73,11 +73,9 @@ def lagrange_euler(constants, q, qd, qdd, zero=0.0, one=1.0) -> list:
     """The closed Lagrange-Euler form (Uicker 1965, Kahn 1969): torques, one per joint.
 
     ``tau_i = sum_j D_ij qdd_j + sum_jk D_ijk qd_j qd_k - sum_p m_p g' U_pi r_p`` with
-    ``D_ij = sum_p tr(U_pj J_p U_pi')`` and ``D_ijk = sum_p tr(U_pjk J_p U_pi')``, where
-    ``U_pi`` and ``U_pjk`` are the derivatives of link p's 4 x 4 frame ``T_p``, ``J_p`` its
-    second moments and ``r_p`` its centre of mass. Each of the products in ``D_ijk`` is done
-    anew, as in the programs that Hollerbach (1980) counts, so that the work grows with the
-    fourth power of the number of joints. Arguments are those of `newton_euler`.
+    ``D_ij = sum_p tr(U_pj J_p U_pi')`` and ``D_ijk = sum_p tr(U_pjk J_p U_pi')``; ``U_pi`` and
+    ``U_pjk`` are derivatives of link p's 4 x 4 frame, ``J_p`` its second moments and ``r_p`` its
+    centre. Each product in ``D_ijk`` is done anew, as in programs that Hollerbach (1980) counts.
     """
     links, base = constants
     first, second = _sweeps([link_frame(link, x, zero, one) for link, x in zip(links, q)], zero)

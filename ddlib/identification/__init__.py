@@ -1,10 +1,4 @@
-"""Parameters of an arm from recordings of it, with a confidence for each.
-
-- ``equations``: from a recording to linear equations: differences, smoothing, modulation
-- ``known_axes``: six joints of which only the axes are known, joint by joint
-- ``recursive``: least squares one sample at a time
-- ``regression``: weighted least squares on them, `Estimate`, and the true parameters
-"""
+"""Parameters of an arm from recordings, by linear least squares."""
 
 import lazy_loader
 

@@ -57,22 +57,17 @@ def by_modulation(
 ) -> Equations:
     """Equations of motion averaged under smooth bumps, so that no acceleration is needed.
 
-    Both sides are multiplied by a bump ``w(t)`` (a B-spline of degree 5) and integrated.
-    Integration by parts moves the derivatives from the measured position to the bump, of
-    which they are known exactly: ``int w qdd dt = int w'' q dt``. Overlapping bumps share
-    torque noise; the equations are combined so that their noise is independent. The method
-    of modulating functions is Shinbrot's (1957).
+    Both sides are multiplied by a bump ``w(t)`` (a B-spline of degree 5) and integrated (Shinbrot
+    1957). Integration by parts moves the derivatives from the measured position to the bump:
+    ``int w qdd dt = int w'' q dt``. Leading axes before those of the reference are repetitions.
 
     Parameters
     ----------
-    recording : Recording
-        Leading axes of `q` before those of the reference are repetitions.
     names : sequence of str
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     width : float
-        Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a
-        multiple of six samples, with which sums over samples are as good as integrals. Narrow
-        bumps let quantisation through, wide ones lose detail.
+        Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a multiple of
+        six samples. Narrow bumps let quantisation through, wide ones lose detail.
     hold : float, optional
         Time for which the controller holds a torque, s: a sample stands for the torque half
         of it later. Default: as the recording says, its computing time included.

@@ -63,12 +63,11 @@ def solve(
     progress: bool = True,
     label: str = "solving",
 ) -> Solution:
-    """Minimise the error of networks by Levenberg-Marquardt.
+    """Minimise the error of networks by Levenberg-Marquardt; `NotConverged` is a warning.
 
-    The objective is half the summed squared error of all cases and outputs, as in
-    `ddlib.learning.train`, plus ``decay / 2`` times the sum of the squared weights; biases are
-    free. Without decay some directions of the weights hardly matter, and hundreds of steps may
-    not reach the end.
+    The objective is half the summed squared error of all cases and outputs, plus ``decay / 2``
+    times the sum of the squared weights; biases are free. Without decay some directions of the
+    weights hardly matter, and hundreds of steps may not reach the end.
 
     Parameters
     ----------
@@ -81,15 +80,9 @@ def solve(
     steps : int
         Largest number of steps of each member.
     tolerance : float
-        A member has converged when the cosine between the residuals and each column of
-        J is at most this. The penalty counts as residuals.
+        Largest cosine, at the end, between the residuals, penalty included, and a column of J.
     target_rmss : float, optional
         Training RMSS at which a member may stop.
-
-    Warns
-    -----
-    NotConverged
-        If some member met neither the tolerance nor the target.
     """
     _check(weights, data, test)
     integer("steps", steps, 1)

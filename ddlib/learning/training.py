@@ -62,15 +62,9 @@ def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass
 class History:
-    """Errors along a training run.
+    """Errors along a training run: pooled RMSS, ``(points, members)``, at its `epochs`.
 
-    Attributes
-    ----------
-    epochs : ndarray, shape (points,)
-        Epochs at which the errors were taken.
-    training, test : ndarray, shape (points, members)
-        Pooled RMSS; `test` is normalised by the test set's own standard deviation
-        and empty if there is no test set.
+    `test` is by the test set's own standard deviation, and empty if there is no test set.
     """
 
     epochs: np.ndarray = field(default_factory=lambda: np.zeros(0, int))

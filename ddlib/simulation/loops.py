@@ -141,23 +141,17 @@ def _half_power(omega, answer) -> float:
 
 
 def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.InterconnectedSystem:
-    """Figure 2-1 of the paper as an interconnected python-control system.
+    """Figure 2-1 of the paper as an interconnected python-control system, in continuous time.
 
-    Control is continuous here; only the simulator samples.
+    Inputs are ``reference[0..5]``: positions, velocities, accelerations (shoulder, elbow); outputs
+    ``motion[0..3]``: positions and velocities, then ``tau[0..1]``.
 
     Parameters
     ----------
-    arm : Arm
-    model : callable
-        ``model(q, qd, qdd) -> tau``, the box "inverse arm"; an `Arm` is accepted too.
+    model : Arm or callable
+        ``model(q, qd, qdd) -> tau``, the box "inverse arm".
     kp, kd, viscous : array_like, shape (2,)
         Feedback gains, N m/rad and N m s/rad, and the arm's viscous friction, N m s/rad.
-
-    Returns
-    -------
-    control.InterconnectedSystem
-        Inputs ``reference[0..5]``: positions, velocities, accelerations (shoulder, elbow).
-        Outputs ``motion[0..3]``: positions and velocities, then ``tau[0..1]``. Four states.
     """
     inverse = model.inverse_dynamics if isinstance(model, Arm) else model
     kp, kd, viscous = (

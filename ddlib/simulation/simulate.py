@@ -243,7 +243,7 @@ def record(
     """Record pick-and-place motions as in section 4 of the paper.
 
     The controller reads the encoder every 2 ms and holds its torque until the next reading; the
-    log takes every fifth sample (10 ms), as on the real arm.
+    log takes every fifth sample (10 ms), as on the real arm: 300 samples of motion.
 
     Parameters
     ----------
@@ -251,19 +251,12 @@ def record(
         Plant and control law.
     extents_deg : array_like, shape (2,) or (runs, 2)
         Extents in degrees; several rows are several runs, simulated together.
-    rest : float
-        Rest before and after the motion, s.
+    rest, duration : float
+        Rest before and after the motion, and its length, s.
     control_step, log_step : float
         Periods of control and log, s; the second a multiple of the first.
-    duration : float
-        Length of the motion, s.
     **options
         ``effects``, ``seed``, ``velocity`` and ``start``, as in `follow`.
-
-    Returns
-    -------
-    Recording
-        With ``duration / log_step`` samples of motion, 300 for the paper's.
     """
     number("control_step", control_step, 1e-5, 0.1)
     number("log_step", log_step, control_step, 1.0)
