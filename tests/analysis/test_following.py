@@ -56,18 +56,6 @@ def test_shares_of_a_known_mixture():
     np.testing.assert_allclose(found.unique[0, 0], part / part.sum(), atol=5e-3)
 
 
-def test_what_two_share_belongs_to_neither():
-    """Position and acceleration in proportion: a position filter has no unique part."""
-    states = STATES.copy()
-    states[..., 2] = -2 * states[..., 0]
-    windows = states[..., :1] + states[..., 1:2] * X + states[..., 2:] * X**2 / 2
-    f = np.stack([np.stack([t, t]) for t in TAPS])
-    found = followed(f, windows, states)
-    np.testing.assert_allclose(found.alone[..., 0], found.alone[..., 2], atol=1e-9)
-    np.testing.assert_allclose(found.unique[:, :, [0, 2]], 0, atol=1e-9)
-    assert (found.alone[[0, 2], :, 0] > 0.999).all()
-
-
 def test_joints_are_kept_apart():
     f = np.zeros((1, 2, WIDTH))
     f[0, 0], f[0, 1] = TAPS[2], TAPS[1]

@@ -9,7 +9,7 @@ import warnings
 import numpy as np
 import pytest
 
-from ddlib import setups, trajectories
+from ddlib import trajectories
 from ddlib.analysis import (
     coverage,
     filters,
@@ -23,7 +23,6 @@ from ddlib.control import linear
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.identification import regression
 from ddlib.learning import autograd, levenberg_marquardt, network, training, windows
-from workshop.report import exact_states, knobs, parity_networks, two_harmonics
 
 OVER, UNDER = 1 + 1e-9, 1 - 1e-9
 JUST_BELOW = -1e-12
@@ -47,11 +46,6 @@ def solve(**options):
         return levenberg_marquardt.solve(WEIGHTS, DATA, progress=False, **{"steps": 1, **options})
 
 
-def turned(name):
-    middle = {key: knob.value(0.0) for key, knob in knobs.knobs_of("solver").items()}
-    return lambda x: knobs.setup({**middle, name: x}, "solver")
-
-
 ROWS = [
     ("radius", lambda x: coverage.cells_reached(SAMPLES, x, 3), [1e-6, 0.5], [0.0]),
     ("cells", lambda x: coverage.cells_reached(SAMPLES, 1.0, x), [1, 2], [0, 1.5]),
@@ -65,7 +59,6 @@ ROWS = [
     ("derivative", lambda x: filters.savitzky_golay(7, x, 0.1, 3), [0, 3], [-1, 4]),
     ("step", lambda x: filters.savitzky_golay(5, 1, x), [1e-6, 0.5], [0.0]),
     ("step", lambda x: filters.frequency_response(FILTERS, [1.0], x), [1e-6, 0.5], [0.0]),
-    ("order", lambda x: two_harmonics.two_harmonics((9, 9), (1, 1), T, x), [2, 5], [1, 2.0]),
     ("rounds", lambda x: regression.least_squares(EQUATIONS, x), [1, 2], [0, 1.0]),
     ("inertia", lambda x: linear.proportional_limit(x, 0.1, 1e-3), [1e-3, 0.5], [0.0]),
     ("viscous", lambda x: linear.proportional_limit(1.0, x, 1e-3), [1e-3, 0.5], [JUST_BELOW]),
@@ -82,14 +75,6 @@ ROWS = [
      [1, 40], [UNDER, 40 * OVER]),
     ("torque_noise", lambda x: noise.noise_floor(ARM, (1, 1), 5, 9, x, 0.1),
      [0.0, 0.5], [JUST_BELOW]),
-    ("bits", parity_networks.patterns, [1, 2], [0, parity_networks.MOST_BITS + 1]),
-    ("count", lambda x: knobs.spread_evenly(x, 2), [1], [0, 1.0]),
-    ("seed", lambda x: knobs.spread_evenly(2, 2, x), [0, 1], [-1, 1.0]),
-    *((name, turned(name), [knob.low, knob.high], [knob.high * 1.01 + 0.01])
-      for name, knob in knobs.knobs_of("solver").items()),
-    ("method", knobs.knobs_of, ["solver"], ["best"]),
-    ("seconds", lambda x: knobs.without_start(setups.STATE_FEEDBACK.record(), x), [0.0, 0.3],
-     [-0.01]),
     ("step", lambda x: following.gains(FILTERS, x), [1e-6, 0.5], [0.0]),
     ("margin", lambda x: sensitivity.transition_range(WEIGHTS, x),
      [1e-6, 0.49], [0.0, 0.49 * OVER]),
@@ -99,7 +84,6 @@ ROWS = [
     ("tolerance", lambda x: solve(tolerance=x), [0.0, 0.5, 1.0], [JUST_BELOW, OVER]),
     ("target_rmss", lambda x: solve(target_rmss=x), [0.0, 0.5], [JUST_BELOW]),
     ("decay", lambda x: solve(decay=x), [0.0, 0.5], [JUST_BELOW]),
-    ("radius", lambda x: exact_states.random_states(3, 0, x), [1e-6, 0.5], [0.0]),
     ("steepest", COURSE.settled, [0.0, 0.5], [JUST_BELOW]),
     ("n", lambda x: trajectories.random_extents(x, 0), [1, 2], [0, 1.0]),
     ("seed", lambda x: trajectories.random_extents(2, x), [0, 1], [-1, 1.0]),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ddlib.control import pd, proportional
-from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
@@ -20,7 +20,6 @@ from ddlib.effects import (
 )
 from ddlib.identification import (
     FRICTION,
-    GRAVITY,
     RIGID,
     by_differences,
     by_modulation,
@@ -97,16 +96,6 @@ def test_perfect_sensors_leave_the_error_of_the_method(controller):
     frictionless = record(CMU_DD_ARM_II, SMOOTH, TRAINING)
     rigid = least_squares(by_modulation(frictionless, RIGID))
     np.testing.assert_allclose(rigid.values, truth[:3], rtol=1e-5)
-
-
-def test_gravity_moments_of_a_vertical_arm():
-    names = RIGID + GRAVITY
-    sensors = Effects(encoder=(Quantisation.encoder(16),), torque_sensor=(Noise((0.2, 0.05)),))
-    many = repeat(REYES_KELLY_ARM, SMOOTH, TRAINING, sensors, repetitions=40, seed=7)
-    found = least_squares(by_modulation(many, names))
-    truth = true_parameters(REYES_KELLY_ARM, sensors, names)
-    assert found.covers(truth, 0.99).mean() > 0.95
-    assert (found.errors.mean(0) / truth)[3:].max() < 0.01
 
 
 # --- shapes ------------------------------------------------------------------------------

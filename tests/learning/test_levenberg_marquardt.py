@@ -167,17 +167,6 @@ def test_an_ensemble_is_its_members(data, other, start):
             assert (path[steps:] == path[steps]).all()
 
 
-def test_history_is_that_of_the_networks(data, other, start):
-    solution = quietly(start, data, test=other, steps=5)
-    history, weights = solution.history, solution.model.weights
-    np.testing.assert_array_equal(history.epochs, np.arange(6))
-    np.testing.assert_allclose(history.training[0], rmss(start.activity(data.x)[1], data.y))
-    np.testing.assert_allclose(history.training[-1], rmss(weights.activity(data.x)[1], data.y))
-    np.testing.assert_allclose(history.test[-1], rmss(weights.activity(other[0])[1], other[1]))
-    assert (np.diff(history.training, axis=0) < 0.1).all()
-    assert quietly(start, data, steps=2).history.test.size == 0
-
-
 def test_reaches_what_descent_reaches_in_a_few_steps():
     table = read("table-4-1")["setups"][STATE_FEEDBACK.name]["21"]
     target = float(np.median(table["errors"]["training"]))

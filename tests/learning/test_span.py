@@ -113,15 +113,6 @@ def test_directions_are_those_of_the_second_moments(data):
         assert f[np.argmax((f**2).sum(-1)), -1] > 0
 
 
-def test_energy_along_all_directions_is_the_energy_of_the_weights(data):
-    along, a, b = Directions.of(data), start(1), start(2)
-    whole = sum((w**2).sum() for w in parts(a)) - (a.output_weights**2).sum()
-    assert along.energy(a).sum() == pytest.approx(whole)
-    np.testing.assert_allclose(along.energy(b, a), ((along.along(b) - along.along(a)) ** 2).sum(0))
-    many = Weights.stack([a, b])
-    np.testing.assert_allclose(along.energy(many, a)[1], along.energy(b, a))
-
-
 # --- the recursion ------------------------------------------------------------------------
 
 

@@ -7,6 +7,7 @@ from hypothesis.extra import numpy as hnp
 
 from ddlib.learning import Scaler, check_width, sliding_windows
 
+
 def by_loop(q, width, first, end):
     """Windows of one run ``(time, joint)``, sample by sample."""
     half, joints = (width - 1) // 2, q.shape[1]
@@ -38,16 +39,10 @@ Q = np.zeros((20, 2))
     "arguments, words",
     [
         ((Q, 20), "width must be odd"),
-        ((Q, 1), "width must be an integer from 3"),
         ((Q, 21), "width must not exceed the 20 samples"),
         ((np.zeros(20), 5), "q must have shape"),
-        ((np.full((20, 2), np.inf), 5), "q must be finite"),
         ((Q, 5, slice(1, 10)), "cases must be consecutive samples from 2 to 18"),
-        ((Q, 5, slice(2, 19)), "cases must be consecutive samples from 2 to 18"),
-        ((Q, 5, slice(5, 5)), "cases must"),
         ((Q, 5, slice(4, 12, 2)), "cases must"),
-        ((Q, 5, slice(12, 4, -1)), "cases must"),
-        (([["a", "b"]] * 20, 5), "q must be an array of real numbers"),
         ((Q, 5, (3, 4)), "cases must be a slice"),
     ],
 )
@@ -86,17 +81,11 @@ def test_scaling_there_and_back(joints, target, data):
     "make, words",
     [
         (lambda: Scaler([0, 2], [1, 1]), "high must exceed low"),
-        (lambda: Scaler([0, 0], [1]), "high must exceed low"),
         (lambda: Scaler([0, np.nan], [1, 1]), "low must be finite"),
-        (lambda: Scaler([0, 0], [1, np.inf]), "high must be finite"),
         (lambda: Scaler([0], [1], (0.5, 0.5)), "target must be an increasing pair"),
-        (lambda: Scaler([0], [1], (0.0, np.nan)), "target must be finite"),
         (lambda: Scaler.fit([[0.0, 1.0], [1.0, 1.0]]), "high must exceed low"),  # a still joint
-        (lambda: Scaler.fit([[0.0, np.nan], [1.0, 1.0]]), "data must be finite"),
         (lambda: Scaler.fit(np.zeros((0, 2))), "data must hold at least one value"),
         (lambda: Scaler([0, 0], [1, 1]).scale(np.zeros((4, 1))), "data must have 2 joints along"),
-        (lambda: Scaler([0, 0], [1, 1]).unscale(1.0), "data must have 2 joints along"),
-        (lambda: Scaler([0, 0], [1, 1]).unscale([[0.0, np.nan]]), "data must be finite"),
     ],
 )
 def test_scalers_refuse_bad_values(make, words):

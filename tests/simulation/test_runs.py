@@ -180,14 +180,6 @@ def test_friction_is_what_is_left():
         np.testing.assert_allclose(left[steady], friction.torque(middle)[steady], atol=2e-4)
 
 
-def test_ripple_is_what_is_left():
-    ripple = Ripple(cogging=(0.1, 0.05), share=(0.02, 0.02))
-    run = drive(motor=(ripple,))
-    middle = (run.q_true[1:] + run.q_true[:-1]) / 2
-    expected = run.tau_true[:-1] - ripple.shaft_torque(run.tau_true[:-1], middle)
-    np.testing.assert_allclose(residual_torque(ARM, run), expected, atol=2e-3)
-
-
 @pytest.mark.parametrize("period", [0.001, 0.004])
 def test_any_control_period_will_do_and_no_other_log(period):
     options = dict(control_step=period, duration=2.0, rest=0.4)

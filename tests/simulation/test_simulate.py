@@ -103,22 +103,6 @@ def test_a_recording_knows_its_motion(samples, rest, step):
     assert made.q.shape == (samples + 2 * rest, 2)
 
 
-def test_a_motion_begins_where_the_reference_moves_first():
-    t = np.arange(200) * 0.01
-    moving = (t > 0.495) & (t < 1.205)
-    rate = np.stack([moving, 0 * t], -1)
-    reference = Trajectory(np.cumsum(rate, 0) * 0.01, rate, 0 * rate)
-    two = Trajectory(*(np.stack([x, 0 * x]) for x in reference))  # the second run rests
-    for wanted in (reference, two):
-        made = follow(ARM, PD, wanted, t, log_every=1)
-        assert made.motion == slice(50, 121)
-        assert made.span == pytest.approx((0.5, 1.21))
-    still = Trajectory(*np.zeros((3, 70, 2)))  # all from zero on, or as long as it is told
-    for duration, end in ((None, 70), (0.2, 30)):
-        made = follow(ARM, PD, still, t[:70] - 0.1, log_every=1, duration=duration)
-        assert made.motion == slice(10, end)
-
-
 def test_an_arm_may_start_anywhere_and_moving():
     """Without torque it is the free arm."""
     t = np.arange(400) * 0.002
