@@ -1,6 +1,7 @@
 from .lines import (
     by_case as by_case,
     curves as curves,
+    dots_in_one as dots_in_one,
     families as families,
 )
 from .maps import (
@@ -13,7 +14,6 @@ from .style import (
     FAINT as FAINT,
     INK as INK,
     JOINTS as JOINTS,
-    RC as RC,
     Illustration as Illustration,
     check_label as check_label,
     illustrate as illustrate,

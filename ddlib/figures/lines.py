@@ -8,8 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
 from ddlib._check import shaped
 from ddlib.figures.style import (
@@ -140,8 +143,8 @@ def families(
                     plain_ticks(getattr(axis, f"{which}axis"))
         for axis in axes[len(panels) :]:
             axis.remove()
-        figure.supxlabel(labels[0], fontsize=9.5)
-        figure.supylabel(labels[1], fontsize=9.5)
+        figure.supxlabel(labels[0])
+        figure.supylabel(labels[1])
         if len(look) > 1 and max(map(len, panels.values())) > 1:
             handles = [
                 Line2D([], [], color=COLOURS[k % len(COLOURS)], ls=DASHES[k % len(DASHES)], lw=2.2)
@@ -150,6 +153,16 @@ def families(
             figure.legend(handles, list(look), loc="outside upper left", ncols=4)
 
     return illustrate(draw, alt, 7.0, height * rows + 0.5)
+
+
+def dots_in_one(axis: Axes, places: np.ndarray, **look) -> None:
+    """Dots ``(n, 2)`` as one path, as thousands of markers would be as many elements of the page.
+
+    They are strokes of no length with round ends: their size is ``lw``, in points.
+    """
+    path = Path(np.repeat(places, 2, axis=0), [Path.MOVETO, Path.LINETO] * len(places))
+    path.should_simplify = False
+    axis.add_patch(PathPatch(path, fill=False, capstyle="round", **look))
 
 
 def by_case(

@@ -44,19 +44,14 @@ DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 JOINTS = ("shoulder", "elbow")
 """Names of joint 0 and joint 1."""
 
-UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
-"""What may follow the comma in an axis label, and never stands alone."""
+# What may follow the comma in an axis label, and never stands alone
+_UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
 
-LEAST = 6.75
-"""Size of the smallest text of a figure, in points: 9 pixels on a page."""
+LEAST = 6.75  # points, of the smallest text of a figure: 9 pixels on a page
+NARROW = 3.55  # inches, the width of a narrow form: what a screen of 390 pixels leaves it
+_HEAVIEST = 90_000  # letters of SVG up to which a narrow form is worth its weight in the page
 
-NARROW = 3.55
-"""Width of a figure's narrow form in inches: what a screen of 390 pixels leaves it."""
-
-HEAVIEST = 90_000
-"""Letters of SVG up to which a narrow form is worth its weight in the page."""
-
-RC = {
+_RC = {
     "axes.edgecolor": INK,
     "axes.grid": True,
     "axes.labelcolor": INK,
@@ -69,6 +64,7 @@ RC = {
     "axes.titlesize": 10,
     "figure.constrained_layout.use": True,
     "figure.facecolor": "none",
+    "figure.labelsize": 9.5,
     "axes.facecolor": "none",
     "font.family": ["DejaVu Sans"],
     "font.size": 9.5,
@@ -122,10 +118,10 @@ class Illustration:
             f'<div class="narrow" hidden>{self.narrow}</div></div>'
         )
 
-    def save(self, path, ink="#1a1a1a", paper="#ffffff") -> None:
-        """Write the picture to an ``.svg`` file with fixed colours."""
-        svg = self.svg.replace("currentColor", ink)
-        svg = svg.replace(' style="', f' style="background:{paper};', 1)
+    def save(self, path) -> None:
+        """Write the picture to an ``.svg`` file, dark on white."""
+        svg = self.svg.replace("currentColor", "#1a1a1a")
+        svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
         with open(path, "w", encoding="utf-8") as file:
             file.write(svg)
 
@@ -154,7 +150,7 @@ def illustrate(
     """
     if not alt.strip():
         raise ValueError("alt must describe the figure, got an empty text")
-    with mpl.rc_context({**RC, "svg.hashsalt": alt}):
+    with mpl.rc_context({**_RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
         _lay_out(figure)
@@ -206,7 +202,7 @@ class _NarrowFigure(Figure):
 def _narrow(draw: Callable[[Figure], None], alt: str, height: float) -> str:
     """A figure drawn anew for a narrow page, or nothing if its texts do not fit there."""
     look = {"svg.hashsalt": alt + " narrow", "path.simplify_threshold": 0.3}
-    with mpl.rc_context({**RC, **look}):
+    with mpl.rc_context({**_RC, **look}):
         figure = _NarrowFigure(figsize=(NARROW, height))
         draw(figure)
         rows, stacked = _stack(figure)
@@ -222,7 +218,7 @@ def _narrow(draw: Callable[[Figure], None], alt: str, height: float) -> str:
         low, high = max(drawn.y0 - 0.04, 0.0), min(drawn.y1 + 0.04, figure.get_figheight())
         svg = _written(figure, bbox_inches=Bbox([[0.0, low], [NARROW, high]]))
     svg = _inline(svg, alt)
-    return svg if len(svg) <= HEAVIEST else ""
+    return svg if len(svg) <= _HEAVIEST else ""
 
 
 def _stack(figure: Figure) -> tuple[int, int]:
@@ -299,7 +295,7 @@ def check_label(label: str) -> str:
         If it names none: a unit alone, a joint alone or with a unit, nothing.
     """
     quantity = label.partition(",")[0].strip()
-    if quantity in ("", "shoulder", "elbow", *UNITS):
+    if quantity in ("", "shoulder", "elbow", *_UNITS):
         raise ValueError(f"an axis label must be like 'torque, N m', got {label!r}")
     return label
 
@@ -355,9 +351,9 @@ def _inline(svg: str, alt: str) -> str:
     svg = svg.replace(INK, "currentColor")
     svg = re.sub(r' transform="rotate\(-0 [^"]*"', "", svg)
     svg = re.sub(r' (d|x|y|transform)="[^"]*"', _rounded, svg)
-    svg = DOT.sub(r"M\1 \2h0", svg)
+    svg = _DOT.sub(r"M\1 \2h0", svg)
     svg = re.sub(r"; font-family: 'DejaVu Sans'", "", svg)  # said once, on the whole picture
-    svg = FORMULA.sub(_in_reading_order, svg)
+    svg = _FORMULA.sub(_in_reading_order, svg)
     svg = re.sub(r"font-size: ([\d.]+)px|font: ([\d.]+)px", _legible_size, svg)
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg)
     smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)), default=None)
@@ -371,11 +367,10 @@ def _inline(svg: str, alt: str) -> str:
     return re.sub(r"\n\s*", "\n", svg)
 
 
-DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s+(?=M|\")")
-"""A line of no length, which is a dot if its ends are round."""
-
-FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
-LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')
+# A line of no length, which is a dot if its ends are round
+_DOT = re.compile(r"M (\S+) (\S+)\s+L \1 \2\s+(?=M|\")")
+_FORMULA = re.compile(r"<text>\s*(<tspan.*?)</text>", re.DOTALL)
+_LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tspan>')
 
 
 def _legible_size(size: re.Match) -> str:
@@ -388,7 +383,7 @@ def _in_reading_order(formula: re.Match) -> str:
 
     Neighbours of one font and height stand together, each at its place.
     """
-    letters = sorted(LETTER.findall(formula[1]), key=lambda letter: float(letter[0]))
+    letters = sorted(_LETTER.findall(formula[1]), key=lambda letter: float(letter[0]))
     text = ""
     for (y, style), run in itertools.groupby(letters, key=lambda letter: letter[1:3]):
         run = list(run)

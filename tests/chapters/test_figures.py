@@ -4,6 +4,7 @@ import inspect
 import pkgutil
 import re
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 
 import control
@@ -42,7 +43,7 @@ UPON_A_COLOUR = {
 
 OF_THEIR_OWN = {
     "hinton", "hinton_states", "network_diagram", "feedforward_loop", "hand_paths", "estimates",
-    "root_loci", "nyquist", "ranking", "rmss_by_window",
+    "root_loci", "nyquist", "ranking", "rmss_by_window", "verdicts",
 }  # fmt: skip
 """Figures with a test of their own, because more is drawn than was given."""
 
@@ -84,9 +85,7 @@ def test_every_figure_has_an_example():
     for package in (figures, chapters):
         names = [module.name for module in pkgutil.iter_modules(package.__path__)]
         modules += [
-            import_module(f"{package.__name__}.{name}")
-            for name in names
-            if name not in ("style", "verdict")
+            import_module(f"{package.__name__}.{name}") for name in names if name != "style"
         ]
     drawing = {
         name
@@ -287,6 +286,7 @@ def test_bars_stand_in_order_and_are_as_long_as_their_torques():
 
 
 BAD = np.nan
+PLANE = partial(windows.plane, levels=(), training=(), test=())
 NO_AXIS = [0, 1], [2, 1], [1], [1, BAD]
 ARM = CMU_DD_ARM_II
 LABELS = "x, s", "error, m"
@@ -327,9 +327,9 @@ REFUSALS = [
     (recording.tied, ({"a": {}},), "panels must"),
     (recording.tied, ({"a": {"b": np.zeros((1, 5, 3))}},), "points of 'b' must"),
     *((left_out.ranking, ({"a": bad},), "sizes") for bad in ([0, 1], [-1, 1], [BAD, 1], [1])),
-    (windows.plane, (X, X[:2], given.PLANE, (), "A."), r"values must have .* \(2, 6\), got"),
-    (windows.plane, (X, X[:1], [-X], (), "A."), "values must be above 0"),
-    (windows.plane, (X, [np.inf], [X], (), "A."), "y must be finite"),
+    (PLANE, (X, X[:2], given.PLANE, (), "A."), r"values must have .* \(2, 6\), got"),
+    (PLANE, (X, X[:1], [-X], (), "A."), "values must be above 0"),
+    (PLANE, (X, [np.inf], [X], (), "A."), "y must be finite"),
     (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
     (filters.clusters, ({}, "N m", "A."), "panels must"),
     (filters.clusters, ({"a": ({"b": [BAD]}, 1.0)}, "N m", "A."), "values of 'b' must"),

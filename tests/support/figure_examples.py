@@ -27,6 +27,7 @@ from workshop.chapters import (
     run_time,
     stirring,
     trajectories_and_recording as recording,
+    verdict,
     what_lagrange_euler_leaves_out as left_out,
     whole_state_space as states,
     why_smooth_filters as smooth,
@@ -249,6 +250,7 @@ EXAMPLES = {
     ),
     "paths": partial(stirring.paths, WANTED, {"none": OFF, "exact": WANTED}, 10, "Two paths."),
     "two_families": partial(stirring.two_families, {"first": STATES, "second": -STATES}, "Clouds."),
+    "verdicts": partial(verdict.verdicts, {"section 2": {"reproduced": 3, "refuted": 1}}),
     "maps": partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
 }  # fmt: skip
 
