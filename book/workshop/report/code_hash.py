@@ -46,11 +46,6 @@ def code_hash(result: str) -> str:
     return _hashes(result)[places()[result]][:16]
 
 
-def definitions(result: str) -> set[tuple[str, str]]:
-    """Module and name of every definition behind a result."""
-    return set(_hashes(result))
-
-
 def places() -> dict[str, tuple[str, str]]:
     """Module and function that make each result: the functions with the decorator `study`."""
     found = {}

@@ -17,6 +17,8 @@ from ddlib.learning.descent import Descent
 from ddlib.learning.network import Weights
 from ddlib.learning.training import TARGET_RANGE
 
+INITIAL, RATE = 1.0, 8.0  # Range of the initial weights, step size times cases, in `learn`
+
 MOST_BITS = 16  # Most bits for which all inputs are listed
 
 # Ways to write an input for a polynomial: 0 and 1, or 1 and -1 (-1 for a bit that is on)
@@ -203,23 +205,20 @@ def learn(
     *,
     members: int = 30,
     seed: int = 0,
-    initial: float = 1.0,
-    rate: float = 8.0,
     momentum: float = 0.9,
     epochs: int = 4000,
     every: int = 20,
-    coding: str = "bits",
 ) -> tuple[Weights, np.ndarray]:
-    """Train networks on parity by batch descent with acceleration.
+    """Train networks with a hidden layer and direct weights, like the paper's, on parity.
 
-    They have one hidden layer and direct weights, like the paper's.
+    Returns them and, for each, at which look (`every` so many epochs) it was first right on all
+    inputs; infinite if at none.
     """
-    number("rate", rate, 0.0, open_low=True)
     number("momentum", momentum, 0.0, 0.999)
     integer("epochs", epochs, integer("every", every, 1))
-    x, y = parity_cases(bits, coding)
-    start = Weights.random(members, bits, hidden, 1, 1, initial, seed)
-    descent = Descent(start, x, y, rate / len(x), momentum)
+    x, y = parity_cases(bits)
+    start = Weights.random(members, bits, hidden, 1, 1, INITIAL, seed)
+    descent = Descent(start, x, y, RATE / len(x), momentum)
     learned = np.full(members, np.inf)
     for epoch in range(1, epochs + 1):
         descent.epoch()

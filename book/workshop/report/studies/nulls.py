@@ -93,9 +93,8 @@ class _Trial:
     def described(self, weights: Weights, start: Weights, targets) -> dict:
         """What is counted and measured on networks, one value or array for each of them."""
         model = self.model(weights)
-        found: dict = {
-            "error": rmss(model.torque(self.windows), targets.reshape(len(targets), -1, 2))
-        }
+        wanted = targets.reshape(len(targets), -1, 2)
+        found: dict = {"error": rmss(model.torque(self.windows), wanted)}
         hidden = weights.activity(self.data.x)[0]
         held = weights.activity(model.scaled(self.test_windows))[0]
         inputs = unit_inputs(model, self.windows)
@@ -325,14 +324,7 @@ def null_controls(
             label=f"optimum {penalty or 'without penalty'}",
             **penalty,
         )
-        rows.append(
-            {
-                "kind": "optimum",
-                "penalty": penalty,
-                "gradient": solution.gradient,
-                "ended": list(map(str, solution.ended)),
-                "steps": solution.steps,
-                **row(solution.model.weights),
-            }
-        )
+        optimum = {"kind": "optimum", "penalty": penalty, "gradient": solution.gradient}
+        optimum |= {"ended": list(map(str, solution.ended)), "steps": solution.steps}
+        rows.append({**optimum, **row(solution.model.weights)})
     return {"members": members, "tolerance": tolerance, "few": few, "rows": rows}

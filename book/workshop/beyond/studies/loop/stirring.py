@@ -38,7 +38,7 @@ _DAYS, _MEMBERS = 10, 40  # of training; members of each family in a test
 WIDTH, _WIDER = 21, (11, 41)
 
 _NAMES = ("network", "two units", "linear filter", "identified")
-PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.beyond.widgets.stirring`
+PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.chapters.widgets.stirring`
 
 # Circles of the picker: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow.
 PLACES = {

@@ -12,7 +12,7 @@ from ddlib.widgets import Choice, CurveWidget, Panel
 from ddlib.widgets.baking.baked import MAX_BYTES
 from workshop.beyond.studies.loop.runs import adaptive as runs
 from workshop.beyond.studies.page import learner
-from workshop.beyond.widgets import loop
+from workshop.chapters.widgets import loop
 from workshop.report import results
 
 

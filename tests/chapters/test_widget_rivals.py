@@ -7,7 +7,7 @@ from traitlets import TraitError
 from ddlib.widgets.baking.baked import MAX_BYTES
 from workshop.beyond.studies.lineup import REFERENCE
 from workshop.beyond.studies.rivals import GRID
-from workshop.beyond.widgets.rivals import MEASURED, RivalPicker
+from workshop.chapters.widgets.rivals import MEASURED, RivalPicker
 
 
 def kept(path, names=("table", REFERENCE, "filter")):

@@ -9,7 +9,7 @@ from widget_pages import NEXT_FRAME, PATHS, page_of
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
 from ddlib.widgets.baking.baked import MAX_BYTES
 from workshop.beyond.studies.loop.stirring import PLACES
-from workshop.beyond.widgets.stirring import BARS, LINES, StirringPicker
+from workshop.chapters.widgets.stirring import BARS, LINES, StirringPicker
 
 SHAPE = tuple(map(len, PLACES.values()))
 

@@ -1,1 +1,0 @@
-"""Widgets of Part IV, *Rivals and beyond*."""
