@@ -124,7 +124,7 @@ def test_results_that_nothing_makes_and_places(package):
         "first-one": ("ddlib.studies.some", "first_one"),
         "second": ("ddlib.studies.some", "second"),
     }
-    reached = {name for _, name in hashes.definitions("first-one")}
+    reached = {name for _, name in hashes._hashes("first-one")}
     assert reached == {"first_one", "gain", "_turn", "LEVEL"}
     with pytest.raises(ValueError, match="result must be one of 'first-one', 'second'"):
         hashes.code_hash("third")

@@ -133,7 +133,6 @@ def test_cases_in_both_codings():
         (lambda: parity_networks.counter(0), "bits must be an integer from 1"),
         (lambda: parity_networks.tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
         (lambda: parity_networks.tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
-        (lambda: parity_networks.learn(2, 2, rate=0.0), "rate must lie in"),
         (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
         (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),
