@@ -25,7 +25,6 @@ from .filters import (
 from .following import (
     LAYERS as LAYERS,
     QUANTITIES as QUANTITIES,
-    Responses as Responses,
     explained as explained,
     followed as followed,
     gains as gains,

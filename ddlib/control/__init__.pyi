@@ -9,7 +9,6 @@ from .controllers import (
     proportional as proportional,
 )
 from .linear import (
-    Margins as Margins,
     closed_loop as closed_loop,
     late_poles as late_poles,
     loop_gain as loop_gain,

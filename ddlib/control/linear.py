@@ -82,10 +82,9 @@ def closed_loop(
 def opened_loop(
     joints: control.StateSpace, kp, ki=0.0, kd=0.0, period=None, delay=0, *, joint=0
 ) -> control.StateSpace:
-    """The PID loop cut open where one joint's torque is commanded, the other loops closed.
+    """The PID loop of `closed_loop` cut open where one joint's torque is commanded.
 
-    What goes in is that torque; what comes out is the torque with which the controller
-    answers, its sign reversed. Arguments are those of `closed_loop`.
+    In goes that torque, out comes the controller's answer with its sign reversed.
     """
     number("joint", joint, 0, joints.ninputs - 1)
     A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
@@ -197,11 +196,8 @@ def _per_joint(name, value, joints) -> np.ndarray:
 def late_poles(joints: control.StateSpace, gain, period: float, late: float) -> np.ndarray:
     """Poles of sampled state feedback with a delay between reading and torque, in the z plane.
 
-    The torque ``-gain x`` of a reading at ``k period`` is applied from ``k period + late`` on and
-    held for a period, s; the delay may be longer than that. Between two changes of the torque the
-    joints, from `plant`, are solved exactly, so the loop is a difference
-    equation; its states are those of the joints and the torques that are still on their way (Astrom
-    & Wittenmark 1997).
+    The torque ``-gain x`` of a reading is held for a `period` from `late` s on, which may be
+    longer. Between changes the joints (`plant`) are solved exactly (Astrom & Wittenmark 1997).
     """
     number("period", period, 0.0, open_low=True)
     whole, late = divmod(number("late", late, 0.0) / period + 1e-12, 1.0)

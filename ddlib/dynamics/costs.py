@@ -65,10 +65,9 @@ def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> 
 def count_closed_form(
     links: Iterable[Link], shared: bool, velocity_terms: bool = True
 ) -> Operations:
-    """Operations of one evaluation of the closed form of a planar arm, base parameters known.
+    """Operations of the closed form of a planar arm, its base parameters known.
 
-    `shared` subexpressions are computed once, or every term as printed; centrifugal and Coriolis
-    torque may be left out (Bejczy 1974).
+    `shared` subexpressions are computed once; velocity terms may be left out (Bejczy 1974).
     """
     links = list(links)
     derivation = derive(len(links))
@@ -82,11 +81,7 @@ def count_closed_form(
 
 
 def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
-    """Operations ``{formulation: {joints: ...}}`` for 1 to 6 joints.
-
-    Planar arms consist of equal links, those in space are the first joints of the `PUMA_560`;
-    "general" means that nothing is known off-line.
-    """
+    """Operations ``{formulation: {joints: ...}}`` of planar arms and of the `PUMA_560`."""
     joints = list(joints)
 
     def planar(n):

@@ -44,11 +44,9 @@ def hand(arm: SerialArm, q) -> np.ndarray:
 
 
 def inertial_parameters(link: SpatialLink) -> np.ndarray:
-    """What a link's torques are linear in, shape (10,).
+    """What a link's torques are linear in, shape (10,), about the origin of its frame.
 
-    Mass (kg), first moments x, y, z (kg m) and second moments xx, yy, zz, xy, xz, yz (kg m^2),
-    all about the origin of the link's frame; the second moments are the elements of the tensor of
-    inertia, products with their sign in it.
+    Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
     """
     com = np.array(link.com)
     tensor = np.array(link.inertia) + link.mass * _steiner(com)
@@ -111,10 +109,7 @@ def _tensor_times(x) -> np.ndarray:
 
 
 def locked(arm: SerialArm, joints: int) -> SerialArm:
-    """The arm with only its first joints free, the others locked at angle zero.
-
-    What lies beyond is one body with the last free link, which ends where the arm does.
-    """
+    """The arm with only its first joints free, what lies beyond locked at angle zero: one body."""
     integer("joints", joints, 1, arm.joints)
     if joints == arm.joints:
         return arm

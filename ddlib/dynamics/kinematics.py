@@ -89,8 +89,7 @@ def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
 def around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
     """Joint motion that moves the hand on circles about `centre` (runs, 2), m, at any pace.
 
-    `phase` is where on its circle the hand is, (runs, time), counter-clockwise from its far right,
-    rad, with its first and second derivative in time.
+    `phase`: the hand's place on them, (runs, time), rad, with its first and second derivative.
     """
     radius = finite_array("radius", radius)
     if not (radius > 0).all():

@@ -167,10 +167,7 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
 
 
 def _bumps(t, width, length) -> list[np.ndarray]:
-    """B-splines inside a motion of `length` s and their first two derivatives, (bumps, time).
-
-    The log jumps where the reference starts and stops; no bump reaches over these samples.
-    """
+    """B-splines inside a motion of `length` s and their first two derivatives, (bumps, time)."""
     knot = width / 6
     shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)
     first = knot * np.arange(int((length - width) / knot + 1e-9) + 1)

@@ -207,11 +207,7 @@ def _pair_number(size: int) -> np.ndarray:
 
 
 def _blocks(hidden: int, outputs: int) -> tuple[np.ndarray, np.ndarray]:
-    """Rows (r, s), r >= s, of weights whose block of the matrix is not zero, in `_sums`' order.
-
-    Pairs of hidden rows, each output with each hidden row, each output with itself: two outputs
-    have no case's derivative in common.
-    """
+    """Rows (r, s), r >= s, whose block of the matrix is not zero: all but two different outputs."""
     first, second = np.tril_indices(hidden)
     own = hidden + np.arange(outputs)
     mixed = np.repeat(own, hidden), np.tile(np.arange(hidden), outputs)

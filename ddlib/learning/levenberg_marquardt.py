@@ -34,8 +34,8 @@ class NotConverged(UserWarning):
 class Solution(NamedTuple):
     """What `solve` returns; but for the model, arrays of shape (members,).
 
-    A member ended by its "gradient" or at the "target" has converged; otherwise its "steps" ran
-    out, or there was "no descent": nothing nearby is lower by more than rounding.
+    A member has converged if it ended by its "gradient" or at the "target", not if its "steps" ran
+    out or there was "no descent": nothing nearby is lower by more than rounding.
     """
 
     model: TorqueModel  # in the shape of the initial weights
@@ -178,10 +178,7 @@ def _descend(objective, vector, steps, tolerance, target, tell) -> _End:
 
 
 def _step(objective, vector, value, matrix, gradient, mu, exact):
-    """The next vector, its objective and RMSS, and the next mu (Nielsen 1999).
-
-    None if nothing is lower, or if `exact` and the matrix is not positive definite.
-    """
+    """The next vector, its objective, RMSS and mu (Nielsen 1999); None if nothing is lower."""
     growth, smallest = 2.0, 1e-12 * float(matrix.diagonal().max())
     while np.isfinite(mu):
         damped = matrix.clone()

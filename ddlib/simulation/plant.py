@@ -55,10 +55,7 @@ class Plant:
         return tau
 
     def advance(self, x, v, tau, step):
-        """Positions and velocities after one Runge-Kutta step under constant torque.
-
-        Runs may have steps of their own, s, shape ``(..., 1)``.
-        """
+        """State after one Runge-Kutta step (s; runs may differ) under constant torque."""
         if self._sticking:
             return self._advance_sticking(x, v, tau, step)
         return _rk4(lambda x, v: self._response(x, v, self._shaft(x, v, tau)), x, v, step)
@@ -123,10 +120,9 @@ class Plant:
     def _directions(self, x, v, tau):
         """Which way each joint slides: -1 or 1, and 0 for joints that stick.
 
-        A joint at rest is held by up to its breakaway torque. Of all torques that could hold
-        the joints the one to choose minimises ``f' B f / 2 - a' f`` within those limits,
-        with the mobility ``B`` and the accelerations ``a`` that there would be without it
-        (Gauss's principle; for two joints the minimum is found by trying every edge).
+        Of all torques f, up to the breakaway torques, that could hold the joints the one to choose
+        minimises ``f' B f / 2 - a' f``, with the mobility B and the accelerations a without it
+        (Gauss's principle); for two joints the minimum is found by trying every edge.
         """
         way = np.sign(v[..., -2:])
         resting = way == 0
