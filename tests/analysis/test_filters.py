@@ -84,14 +84,6 @@ def test_functions_of_a_window_are_finite_and_have_a_centre(name, f):
 # --- derivatives -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("width", [5, *WIDTHS, 81])
-def test_basis_is_orthonormal_and_known(width):
-    b = basis(width)
-    np.testing.assert_allclose(b @ b.T, np.eye(4), atol=1e-12)
-    for row, known in zip(b, legendre(width).values()):
-        np.testing.assert_allclose(row, known / np.linalg.norm(known), atol=1e-12)
-
-
 @pytest.mark.parametrize("width", WIDTHS)
 def test_shares_of_a_sum_are_its_energies(width):
     x = grid(width).astype(float)
@@ -232,13 +224,3 @@ def test_frequency_response_is_scipys_without_the_delay(width):
         _, causal = freqz(weights[::-1], worN=frequencies, fs=100.0)
         delay = np.exp(-2j * np.pi * frequencies * 0.01 * (width // 2))
         np.testing.assert_allclose(gain, causal / delay, atol=1e-10)
-
-
-def test_differentiators_have_the_gain_of_a_derivative_at_low_frequency():
-    nu = np.array([0.02, 0.1])
-    omega = 2 * np.pi * nu
-    for order in (0, 1, 2, 3):
-        gain = frequency_response(savitzky_golay(21, order, 0.01), nu, 0.01)
-        np.testing.assert_allclose(gain, (1j * omega) ** order, rtol=0.02)
-    with pytest.raises(ValueError, match="frequencies must be finite"):
-        frequency_response(np.ones(11), [np.nan], 0.01)

@@ -3,7 +3,6 @@
 import control
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
 
 from ddlib.control import PID, ComputedTorque, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
@@ -26,31 +25,6 @@ def gentle(t):
 
 
 # --- the PID law itself -------------------------------------------------------------
-
-
-@settings(deadline=None, max_examples=40)
-@given(
-    kp=st.tuples(st.floats(0, 500), st.floats(0, 500)),
-    ki=st.tuples(st.floats(0, 500), st.floats(0, 500)),
-    kd=st.tuples(st.floats(0, 50), st.floats(0, 50)),
-    seed=st.integers(0, 1000),
-)
-def test_pid_is_its_difference_equation(kp, ki, kd, seed):
-    rng = np.random.default_rng(seed)
-    reference = Trajectory(*rng.normal(size=(3, 30, 2)))
-    q, qd = rng.normal(size=(2, 30, 2))
-    law = PID(kp, ki, kd).start(reference, STEP)
-    out = np.array([law(k, q[k], qd[k]) for k in range(30)])
-    e, rate = reference.q - q, reference.qd - qd
-    # u[k] - u[k-1] = kp (e[k] - e[k-1]) + ki T e[k] + kd (rate[k] - rate[k-1])
-    start = np.zeros((1, 2))
-    change = (
-        np.diff(e, axis=0, prepend=start) * kp
-        + np.array(ki) * STEP * e
-        + np.diff(rate, axis=0, prepend=start) * kd
-    )
-    np.testing.assert_allclose(out, np.cumsum(change, axis=0), rtol=1e-9, atol=1e-9)
-    assert proportional(kp) == PID(kp) and pd(kp, kd) == PID(kp, (0.0, 0.0), kd)
 
 
 def test_pid_closed_loop_agrees_with_python_control():

@@ -4,12 +4,10 @@ import control
 import numpy as np
 import pytest
 
-from ddlib.control import late_poles, linear, proportional
+from ddlib.control import late_poles, linear
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.effects import ComputingTime, Delay, Effects, ViscousFriction
 from ddlib.setups import KD, KP
-from ddlib.simulation import CONTROL_STEP, follow
-from ddlib.trajectories import Trajectory
+from ddlib.simulation import CONTROL_STEP
 
 VISCOUS = (0.5, 0.15)
 M = CMU_DD_ARM_II.mass_matrix([0.0, 0.0])
@@ -50,31 +48,6 @@ def test_a_fraction_of_a_period_by_finer_sampling():
     step = np.block([[A @ A - B @ PD, A @ B], [-PD, np.zeros((2, 2))]])
     ours = late_poles(JOINTS, PD, CONTROL_STEP, CONTROL_STEP / 2)
     np.testing.assert_allclose(sizes(ours)[:n], sizes(np.linalg.eigvals(step))[:n], atol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "late, effect", [(0.0012, ComputingTime(0.0012)), (0.002, Delay(1)), (0.004, Delay(2))]
-)
-def test_growth_of_a_late_spring_on_the_simulated_arm(late, effect):
-    """Small swing of the slower mode under P control: rate within 5 % of the pole's."""
-    z = late_poles(JOINTS, P, CONTROL_STEP, late)
-    slow = z[(np.abs(np.angle(z)) > 0) & (np.abs(z) > 0.9)]
-    slow = slow[np.abs(np.angle(slow)).argmin()]
-    rate = np.log(abs(slow)) / CONTROL_STEP
-    _, shapes = np.linalg.eig(np.linalg.solve(M, np.diag(KP)))
-    values = np.linalg.eigvals(np.linalg.solve(M, np.diag(KP)))
-    mode = shapes[:, values.argmin()]
-    t = np.arange(0, 8, CONTROL_STEP)
-    target = 1e-3 * (t > 0)[:, None] * mode
-    effects = Effects((ViscousFriction(VISCOUS),), actuator=(effect,))
-    run = follow(
-        CMU_DD_ARM_II, proportional(KP), Trajectory(target, 0 * target, 0 * target), t,
-        effects=effects, log_every=1,
-    )  # fmt: skip
-    along = np.linalg.solve(shapes, run.tracking_error.T)[values.argmin()]
-    peaks = np.flatnonzero((along[1:-1] > along[:-2]) & (along[1:-1] >= along[2:])) + 1
-    measured = np.polyfit(run.t[peaks[1:]], np.log(along[peaks[1:]]), 1)[0]
-    assert measured == pytest.approx(rate, rel=0.05)
 
 
 @pytest.mark.parametrize(

@@ -24,17 +24,6 @@ def test_every_operation_counts_once():
     assert tape.executed == tape.needed(results)
 
 
-def test_powers_are_repeated_multiplications():
-    tape, x = made(x=1.5)
-    assert (x**3).value == pytest.approx(1.5**3)
-    assert tape.executed == Operations(2, 0)
-    assert (x**1) is x
-    with pytest.raises(ValueError, match="power"):
-        x**0
-    with pytest.raises(TypeError, match="power"):
-        x**0.5
-
-
 def test_what_is_known_is_free():
     tape, x = made(x=3.0)
     c = tape.known(2.0)

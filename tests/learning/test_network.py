@@ -133,19 +133,6 @@ def test_torque_is_scaled_activity():
     np.testing.assert_allclose(trained[1].torque(windows), wanted[1], rtol=1e-10)
 
 
-@pytest.mark.parametrize(
-    "windows, words",
-    [
-        (np.full((3, 2, 11), np.nan), "windows must be finite"),
-        (np.zeros((3, 2, 21)), r"x must have shape \(cases, 2, 11\), got \(3, 2, 21\)"),
-        (np.zeros((2, 11)), r"x must have shape \(cases, 2, 11\), got \(2, 11\)"),
-    ],
-)
-def test_torque_refuses_bad_windows(windows, words):
-    with pytest.raises(ValueError, match=words):
-        model().torque(windows)
-
-
 @pytest.mark.parametrize("pick", [slice(None), 1], ids=["ensemble", "single"])
 def test_a_file_keeps_the_model(tmp_path, pick):
     saved, path = model()[pick], tmp_path / "deep" / "er" / "model.npz"

@@ -53,19 +53,6 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
     assert made.step == recording.step
 
 
-@pytest.mark.parametrize(
-    "windows, torque, words",
-    [
-        (np.zeros((5, 2)), np.zeros((5, 2)), "windows must have shape"),
-        (np.zeros((5, 2, 3)), np.zeros((4, 2)), "torque must have shape"),
-        (np.zeros((5, 2, 3)), np.zeros((5, 2)), "high must exceed low"),
-    ],
-)
-def test_training_sets_refuse_bad_values(windows, torque, words):
-    with pytest.raises(ValueError, match=words):
-        TrainingSet.from_arrays(windows, torque)
-
-
 # --- what is learnt, and what is refused ----------------------------------------------------
 
 
