@@ -11,6 +11,7 @@ import contextlib
 import io
 import multiprocessing
 import os
+import sys
 import time
 import traceback
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -59,8 +60,10 @@ def side_by_side(codes: dict[str, str], jobs: int) -> None:
     last = {name: _seconds(name) for name in codes}
     failed = {}
     bar = tqdm(total=round(sum(last.values())), desc="all results", unit="s of work")
-    fresh = multiprocessing.get_context("spawn")  # each study in a process of its own
-    with bar, ProcessPoolExecutor(jobs, fresh, max_tasks_per_child=1) as pool:
+    context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+    # All is imported now: a file that changes meanwhile does not go into a later study
+    context.set_forkserver_preload(sorted({module for module, _ in places().values()}))
+    with bar, ProcessPoolExecutor(jobs, context, max_tasks_per_child=1) as pool:
         order = sorted(codes, key=last.get, reverse=True)
         tasks = {pool.submit(_quietly, name, codes[name]): name for name in order}
         for task in as_completed(tasks):
