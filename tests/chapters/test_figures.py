@@ -126,7 +126,7 @@ def test_no_two_figures_share_an_id():
     [
         ("curves", [1, 2, 0]),
         ("side_by_side", [2, 2, 1]),  # what stands alone has the first colour
-        ("families", [8, 4, 0]),
+        ("families", [10, 5, 0]),
         ("predicted_curves", [2, 2, 0]),
         ("torque_along", [0, 2, 0]),
     ],

@@ -40,7 +40,7 @@ X = np.linspace(1.0, 10.0, 6)
 T = np.linspace(0.0, 3.0, 50)
 
 # Shared by chapters
-FAN = X[:, None] * [1.0, 2.0, 6.0]
+FAN = X[:, None] * [1.0, 2.0, 4.0, 7.0]
 CURVES = {"q, rad": {"one": X, "two": X**2}, "error": {"two": (X[1:], 1 / X[1:])}}
 CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
 FILTERS = {f"unit {k}": RNG.normal(size=21).cumsum() for k in range(3)}
@@ -273,7 +273,7 @@ JOINTS = np.arange(1, 7)
 
 SHOWN = {
     "curves": [xy(X, X, X**2), xy(X[1:], 1 / X[1:])],
-    "families": [xy(X, *FAN.T, 2 * X), xy(X, *FAN.T, 2 * X, *2 * FAN.T, 4 * X)],
+    "families": [xy(X, *FAN.T, 3 * X), xy(X, *FAN.T, 3 * X, *2 * FAN.T, 6 * X)],
     "by_case": [xy(X, case) for case in CASES.values()],
     "decomposition": [
         xy(10.0 * np.arange(-10, 11), f, (f + f[::-1]) / 2 - f.mean(), (f - f[::-1]) / 2)
