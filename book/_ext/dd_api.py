@@ -11,7 +11,11 @@ from pathlib import Path
 from docutils import nodes
 from sphinx import addnodes
 
-SHOWN = ("workshop.report.measures", "workshop.report.evidence.expressions")
+SHOWN = (
+    "workshop.report.measures",
+    "workshop.beyond.measures",
+    "workshop.report.evidence.expressions",
+)
 """Packages and modules whose source has pages."""
 
 

@@ -33,24 +33,3 @@ def test_faults_are_found(tmp_path, visit):
     found = " ".join(violations(visit(page.as_uri()).page))
     for rule in ("image-alt", "button-name", "label", "color-contrast-enhanced", "heading-order"):
         assert f"{rule} (" in found
-
-
-def test_faults_of_one_colour_scheme_are_found(tmp_path, visit):
-    """Pale text, and an image without words that is there in the dark only; nothing else."""
-    style = """
-      body { background: #fff; color: #000 } .night { display: none }
-      @media (prefers-color-scheme: dark) {
-        body { background: #111; color: #eee } .day { display: none } .night { display: block }
-        p { color: #777 }
-      }
-    """
-    page = tmp_path / "page.html"
-    images = '<img class="day" src="a.svg" alt="a"><img class="night" src="a.svg">'
-    page.write_text(
-        f'<!doctype html><html lang="en"><title>Two</title><style>{style}</style>'
-        f"<main><h1>Title</h1><p>text</p>{images}</main>"
-    )
-    found = violations_in(visit(page.as_uri()).page, "light", "dark")
-    assert {fault.split(" (")[0] for fault in found} == {
-        "dark: color-contrast", "dark: image-alt",
-    }  # fmt: skip

@@ -6,18 +6,14 @@ import os
 import shutil
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import nbformat
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
-from sphinx import builders
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-from build import build as write_pages, messages, report
-from dd_book import CELL_INPUTS, PAGE_INPUTS, deal, digest
-from dd_failures import failing_cell, last_line
+from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
 
 STAMP = "_build/html/.built-from"
 COUNTING = "from pathlib import Path\n\nwith Path('runs').open('a') as file:\n    file.write('x')"
@@ -189,138 +185,8 @@ def test_bad_chapters_do_not_take_the_book_with_them(tiny):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="kernels are forked on Linux only")
-def test_forked_kernels_are_like_others(tmp_path):
-    """Fresh, in their folder, with the given surroundings; one that ends takes nothing with it."""
-    tell = "import os, sys; print(os.getcwd(), os.environ['TOLD'], __name__, 'book' in dir());"
-    tell += "print('torch' in sys.modules, 'nbformat' in sys.modules, os.getpid() == os.getsid(0));"
-    tell += "from workshop.report.evidence import claims;"
-    tell += "print('held', claims._parsed.cache_info().currsize)"
-    sources = [(tell, "book = 1"), (tell,), ("import os; os._exit(1)",), ("1 / 0",)]
-    for k, cells in enumerate(sources):
-        (tmp_path / "book").mkdir(exist_ok=True)
-        write_page(tmp_path, "# Title", *cells, name=str(k))
-    ask = f"""if True:
-        import os, sys
-        from pathlib import Path
-        sys.path.insert(0, {str(ROOT / "book" / "_ext")!r})
-        import ahead
-        from jupyter_cache import get_cache
-        ahead.FEW = 0
-        cache = get_cache("cache")
-        paths = [Path("book", f"{{k}}.ipynb").resolve() for k in range({len(sources)})]
-        done, ended = ahead.execute(cache, paths)
-        print([path.stem for path in done], [path.stem for path in ended])
-        print(ahead.execute(cache, paths[:2]))
-        for record in cache.list_cache_records():
-            cells = cache.get_cache_bundle(record.pk).nb.cells
-            print("TOLD", *(o.text for c in cells for o in c.outputs if "text" in o))
-    """
-    answer = subprocess.run(
-        [sys.executable, "-c", ask], capture_output=True, text=True, cwd=tmp_path,
-        env={**os.environ, "TOLD": "here", "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
-    assert answer.returncode == 0, answer.stderr
-    first, again, *told = answer.stdout.splitlines()
-    assert first == "['0', '1'] ['2']" and again == "([], [])"
-    said = " ".join(told)
-    assert said.count(f"{tmp_path / 'book'} here __main__ False") == 2
-    assert said.count("True False True") == 2
-    assert said.count("held 1") == 2  # claims are read before the fork: see `warm`
-
-
-@pytest.mark.slow
 def test_jupyter_book_ends_if_nobody_waits_for_it(tmp_path):
     """An interrupted build leaves no process behind that writes pages."""
     command = [sys.executable, str(ROOT / "book" / "_ext" / "pages.py"), "build", str(tmp_path)]
     ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
     assert ended.returncode == 0 and not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("ended", [[], ["book/a"] * 20_000], ids=["few", "many"])
-def test_jupyter_book_that_has_ended_is_told(tmp_path, ended):
-    """What it said last is its complaint, whether or not the list still fits into the pipe."""
-    (tmp_path / "_build").mkdir()
-    command = [sys.executable, "-c", "raise SystemExit('Theme error:\\nno theme')"]
-    pipes = {"stdin": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with subprocess.Popen(command, **pipes) as process:
-        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
-        assert write_pages(tmp_path, process, ended) == (1, ["Theme error:\nno theme\n"])
-    assert "no theme" in (tmp_path / "_build" / "build.log").read_text()
-
-
-@pytest.mark.parametrize("jobs", [2, 4])
-def test_pages_that_take_long_are_dealt_out(tmp_path, jobs):
-    """Of 40 pages 8 document much: no batch has more than its share of them."""
-    names = [f"{k:02}" for k in range(40)]
-    for k, name in enumerate(names):
-        (tmp_path / name).write_text("automodule " * (k < 8) + "x" * k)
-    env = SimpleNamespace(doc2path=lambda name: tmp_path / name)
-    app, dealt = SimpleNamespace(parallel=jobs), names.copy()
-    deal(app, env, dealt)
-    assert sorted(dealt) == names
-    batches = builders.make_chunks(dealt, jobs)
-    heavy = [sum(int(name) < 8 for name in batch) for batch in batches]
-    assert len(batches) >= jobs and max(heavy) <= -(-8 // len(batches)) + 1
-
-
-CAUGHT = """\
-nbclient.exceptions.CellExecutionError: An error occurred while executing the following cell:
-------------------
-x = 1
-assert x > 1, "too
-  small"
-------------------
-
-
----------------------------------------------------------------------------
-AssertionError                            Traceback (most recent call last)
-Cell In[2], line 2
-      1 x = 1
-----> 2 assert x > 1, "too
-      3   small"
-
-AssertionError: too
-  small
-"""
-
-
-def test_the_failing_cell_is_found_and_its_exception():
-    cells = ["x = 0", 'x = 1\nassert x > 1, "too\n  small"', "y"]
-    assert failing_cell(CAUGHT, cells) == (2, cells[1])
-    assert failing_cell(CAUGHT, ["y"])[0] == failing_cell("", cells)[0] == 0
-    long = "-------------------\nx = 0\n...\nz\n-------------------\n"
-    assert failing_cell(long, cells) == (1, "x = 0")
-    assert last_line(CAUGHT) == "AssertionError: too"
-    late = f"nbclient.exceptions.CellTimeoutError: A cell timed out\n{'-' * 19}\nx\n{'-' * 19}\n"
-    assert last_line(late) == "CellTimeoutError: A cell timed out"
-    assert last_line("nothing known\nat all\n") == "at all"
-
-
-def test_tracebacks_of_the_machinery_are_no_messages():
-    own = "Traceback (most recent call last):\n  File a\nRuntimeError: \n\n===\nLook above\n===\n"
-    notebook = "a.ipynb: WARNING: Executing notebook failed: CellExecutionError\n" + own
-    plain = "/b.md:3: WARNING: undefined label: 'x'\n"
-    lines = f"{notebook}{plain}{own}".splitlines(keepends=True)
-    assert messages(lines) == [notebook, plain]
-    assert messages(own.splitlines(keepends=True)) == []
-
-
-CRASH = """
-Exception occurred:
-  File "/book/_ext/dd_runtime.py", line 33, in chapter_times
-    seconds = times["runtime"]
-KeyError: 'runtime'
-The full traceback has been saved in /tmp/sphinx-err-4os053ah.log, if you want to report it.
-Traceback (most recent call last):
-RuntimeError:
-"""
-
-
-def test_a_crash_of_the_machinery_is_told_in_a_line(tmp_path, capsys):
-    (tmp_path / "_build").mkdir()
-    (tmp_path / "_build" / "failures.json").write_text("[]")
-    report(tmp_path, messages(CRASH.splitlines(keepends=True)), strict=False)
-    assert capsys.readouterr().err.strip() == (
-        "==> FAILED: not all pages could be written: KeyError: 'runtime'"
-    )

@@ -67,15 +67,6 @@ def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     assert shown(again) == len(PAPER) and "#" not in again.url
 
 
-def test_a_subsection_and_a_table_can_be_chosen(ledger):
-    page = ledger()
-    for value, name in (("7.1", "7.1. Future Work"), ("Table 4-1", "Table 4-1")):
-        page.locator('.claim-filter [name="s"]').select_option(value)
-        wanted = [c for c in PAPER if wall.part(c) == name]
-        assert wanted and shown(page) == len(wanted)
-    assert shown(ledger("#s=7.1")) == len([c for c in PAPER if wall.part(c).startswith("7.1")])
-
-
 def test_code_leads_to_the_lines_that_measure(ledger, visit):
     page = ledger()
     for claim in (next(c for c in PAPER if c.measure), next(c for c in PAPER if c.find)):
@@ -84,14 +75,6 @@ def test_code_leads_to_the_lines_that_measure(ledger, visit):
         assert where.endswith(wall.source(claim).removeprefix(".."))
         name = where.partition("#")[2]
         assert f"def {name}" in visit(where).page.locator(f'[id="{name}"]').inner_text()
-
-
-def test_words_filter_too_and_empty_sections_go(ledger):
-    page = ledger()
-    page.locator('.claim-filter [name="q"]').fill("parity")
-    parity = [c for c in PAPER if "parity" in f"{c.claim} {c.why} {c.refuted}".lower()]
-    assert 0 < len(parity) <= shown(page) < 20
-    assert not page.get_by_role("heading", name="Abstract").is_visible()
 
 
 def test_a_hidden_claim_is_shown_when_its_sign_is_followed(ledger):

@@ -47,18 +47,6 @@ def test_every_widget_has_its_place_in_the_lessons():
     assert not {name: place for name, place in found.items() if place not in asked}
 
 
-def test_exercises_are_read_with_their_kind(tmp_path):
-    cells = [
-        "# A page\n**1. Before** (a design). Not yet.",
-        "## On your own\n\n**1. By hand** (a derivation). Show it.",
-        "**2. Look.** Without a kind.\n\n**3. An egg** (an experiment). Try.",
-    ]
-    text = json.dumps({"cells": [{"cell_type": "markdown", "source": c} for c in cells]})
-    (tmp_path / "page.ipynb").write_text(text, encoding="utf-8")
-    found = dd_lessons.exercises(tmp_path / "page.ipynb")
-    assert [(e.number, e.kind) for e in found] == [(1, "derivation"), (2, ""), (3, "experiment")]
-
-
 def test_the_recipe_is_short_and_needs_nothing_of_the_book():
     cells = json.loads(source(RECIPE).read_text(encoding="utf-8"))["cells"]
     code = [cell for cell in cells if cell["cell_type"] == "code"]

@@ -151,12 +151,6 @@ def test_stills_stand_in_where_there_is_no_script(site, browser):
     context.close()
 
 
-def test_there_is_one_search_field(site, visit):
-    opened = visit(f"{site}/{PAGES[1]}.html")
-    fields = opened.page.locator("button.search-button-field")
-    assert sum(fields.nth(i).is_visible() for i in range(fields.count())) == 1
-
-
 # --- the script that mounts widgets ----------------------------------------------------------
 
 ESM = """
@@ -211,10 +205,3 @@ def test_widgets_have_their_data_and_react_and_a_failing_one_says_so(tmp_path, v
     assert labels.all_inner_texts() == ["true true 2.5"] * 2  # both views share the model
     _, run, absent = opened.page.locator("[role=alert]").all_inner_texts()
     assert "nope is not defined" in run and "its state is not in the page" in absent
-
-
-def test_damaged_state_is_reported(tmp_path, visit):
-    for state in ("", "{", "null", '{"state": {"good": {}}}'):
-        page = visit(widget_page(tmp_path, state, ["good"])).page
-        assert page.locator("[role=alert]").count() == 1, state
-        assert page.locator("#end").is_visible()

@@ -6,10 +6,9 @@ import sys
 
 import pytest
 from book_pages import ROOT, WITH_WIDGETS
-from reactions import FRAMES, PICTURE, Handle, handles
+from reactions import Handle, handles
 
 sys.path.insert(0, str(ROOT / "benchmarks"))
-import redraw
 
 pytestmark = pytest.mark.browser
 
@@ -49,32 +48,3 @@ def test_touch_changes_the_picture(name, site, visit):
         handle.tap()
         assert handle.picture() != before
     assert not opened.problems
-
-
-def test_the_benchmark_times_each_way_of_moving(site, visit):
-    opened = visit(f"{site}/{WITH_WIDGETS[0]}.html")
-    widget = opened.page.locator(".ddlib-widget").first
-    before = handles(widget)[0].picture()
-    rows = redraw.of_widget(widget, "first", moves=20)
-    assert len(rows) == len(handles(widget))
-    assert handles(widget)[0].picture() != before
-    for row in rows:
-        assert row["moves"] == 20
-        assert 0 < row["median, ms"] <= row["p95, ms"]
-        assert row["ratio"] == pytest.approx(row["most, ms"] / row["p95, ms"])
-    assert not opened.problems
-
-
-def test_the_arm_of_the_first_page_moves_by_itself(site, visit):
-    page = visit(f"{site}/{WITH_WIDGETS[0]}.html").page
-    widget = page.locator(".ddlib-widget").first
-    widget.scroll_into_view_if_needed()
-    run = widget.locator("button[data-runs]")
-    run.click()
-    if run.inner_text() == "Play":  # it was greeting the reader
-        run.click()
-    pictures = set()
-    for _ in range(10):
-        pictures.add(widget.evaluate(PICTURE))
-        page.evaluate(FRAMES)
-    assert len(pictures) > 5

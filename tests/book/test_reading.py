@@ -7,7 +7,6 @@ import sys
 
 import chromium
 import pytest
-from axe import violations_in
 from book_pages import CHAPTERS, ROOT, source
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
@@ -41,11 +40,6 @@ def sources(page: str) -> list[str]:
 )
 def test_tags_of_a_page(tags, page):
     assert dd_reading.page_tags(tags) == page
-
-
-def test_a_fold_says_how_much_it_hides():
-    assert dd_reading.lines("a = 1") == "1 line of plumbing"
-    assert dd_reading.lines("a = 1\n\nb = 2\n") == "2 lines of plumbing"
 
 
 @browser_test
@@ -83,14 +77,6 @@ def test_one_switch_shows_all_code(kind, built, site, visit):
     assert abs(page.evaluate(look) - before) < 2
     assert page.evaluate(SEEN) == taught
     assert not opened.problems
-
-
-@browser_test
-def test_the_page_with_all_its_code_is_accessible(site, visit):
-    opened = visit(f"{site}/{CHAPTERS[0]}.html")
-    opened.page.locator(BUTTON).click()
-    assert not opened.problems  # before axe asks for style sheets itself
-    assert not violations_in(opened.page, "light", "dark")
 
 
 @browser_test

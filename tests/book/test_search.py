@@ -93,11 +93,3 @@ It brakes.
 def test_texts_are_prose_by_section():
     texts = dd_search.texts_of(publish_doctree(PAGE, settings_overrides={"doctitle_xform": False}))
     assert texts == {"arms": "An arm of mass … moves.", "friction": "It brakes."}
-
-
-def test_no_long_word_of_a_page_is_lost():
-    known = set()
-    first = dd_search.shortened("Here. There. It oscillates. So.", known)
-    assert first == "Here. There. It oscillates. …"
-    again = dd_search.shortened("One. Two. No oscillation. None. Saturated?", known)
-    assert again == "One. Two. … Saturated?"

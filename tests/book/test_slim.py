@@ -4,12 +4,9 @@ import base64
 import json
 import re
 import sys
-from pathlib import Path
 
-import pydata_sphinx_theme
 import pytest
 from book_pages import ROOT
-from bs4 import BeautifulSoup
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import slim
@@ -60,18 +57,6 @@ def test_data_in_styles_becomes_a_file_and_no_other_address_is_opened(tmp_path):
     assert list(folder.iterdir()) == before
 
 
-def test_icons_are_drawn_in_the_page():
-    theme = Path(pydata_sphinx_theme.__file__).parent
-    icons = slim.Icons(next(theme.rglob(Path(slim.ICON_FONT).name)))
-    tag = '<i class="theme-switch fa-solid  fa-sun fa-lg" data-mode="light" title="Light"></i>'
-    made = BeautifulSoup(slim.ICON.sub(icons.inline, tag), "html.parser").svg
-    assert made["class"] == ["icon", "theme-switch", "fa-solid", "fa-sun", "fa-lg"]
-    assert made["data-mode"] == "light" and made["aria-hidden"] == "true"
-    assert len(made.path["d"]) > 100
-    unknown = '<i class="fa-solid fa-nothing-like-it"></i>'
-    assert slim.ICON.sub(icons.inline, unknown) == unknown
-
-
 SCRIPTS = [
     ("scripts/fontawesome.js?digest=1", 'class="highlight"', False),
     ("searchtools.js", "", False),
@@ -91,21 +76,6 @@ def test_a_page_loads_the_scripts_it_uses():
     for script, body, stays in SCRIPTS:
         made = page(f'<script defer src="_static/{script}"></script>{body}')
         assert ("<script" in made) is stays, (script, body)
-
-
-def test_the_page_that_leads_on_has_a_head():
-    leads = '<meta http-equiv="Refresh" content="0; url=book/index.html" />'
-    made = page(leads)
-    assert made.startswith("<!doctype html>") and made.endswith(leads)
-    assert 'rel="icon"' in made and page(made) == made
-
-
-def test_a_table_that_scrolls_is_a_section():
-    table = '<div class="pst-scrollable-table-container"><table><tr><td>1</td></tr></table>\n</div>'
-    made = page(f"<div>{table}</div>")
-    assert (
-        made == "<div>" + table.replace("<div", "<section").replace("</div", "</section") + "</div>"
-    )
 
 
 def test_stills_become_files_for_pages_without_script():

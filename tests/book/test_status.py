@@ -44,16 +44,6 @@ def plain(rows) -> list[list[str]]:
     return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
 
 
-def test_durations_have_the_unit_that_suits_them():
-    shown = {120.0: "120 s", 1.0: "1.00 s", 0.0251: "25.1 ms", 2.5e-5: "25.0 µs", 3e-7: "0.300 µs"}
-    assert {s: " ".join(status.duration(s).split()) for s in shown} == shown
-    spoken = {0.4: "a second", 3.6: "4 seconds", 24.1: "25 seconds", 88: "90 seconds"}
-    spoken[130] = "2 minutes"
-    assert {s: dd_runtime.spoken_time(s) for s in spoken} == {
-        s: f"about {words}" for s, words in spoken.items()
-    }
-
-
 @pytest.mark.parametrize(
     ("row", "shown"),
     [
@@ -111,20 +101,6 @@ def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, ver
     assert told.endswith(verdict) and "before results were added" in told
     (tmp_path / "reproduce.json").unlink()
     assert not status.made_results().rows[-1][0].startswith("make reproduce")
-
-
-def test_words_of_prose_are_counted(tmp_path):
-    path = tmp_path / "page.ipynb"
-
-    def write(*cells):
-        made = [{"cell_type": kind, "source": source} for kind, source in cells]
-        path.write_text(json.dumps({"cells": made}))
-
-    write(("markdown", ["# One two\n", "three"]), ("code", ["four = 5"]))
-    assert dd_runtime.words(path) == 3
-    assert dd_runtime.minutes([path]) == "5 minutes"
-    write(("markdown", ["word " * 12 * dd_runtime.WORDS_A_MINUTE]))
-    assert dd_runtime.minutes([path]) == "10 minutes"
 
 
 # --- on the built pages -------------------------------------------------------------------

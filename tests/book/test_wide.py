@@ -78,11 +78,3 @@ def test_formulas_fit_a_phone(site, visit):
         page = visit(f"{site}/book/{name}.html", width=390).page
         formulas = page.evaluate(BEYOND, ["article div.math > mjx-container", ""])
         assert formulas and all(over <= 1 and size >= 10.5 for over, size in formulas), name
-
-
-def test_tables_that_are_a_little_too_wide_fit_a_screen(site, visit):
-    for name in ("convolution-filters", "learning-in-the-loop", "rivals"):
-        page = visit(f"{site}/book/{name}.html", width=1280).page
-        tables = page.evaluate(BEYOND, [".pst-scrollable-table-container", "table"])
-        sizes = [size for _, size in tables]
-        assert 11 <= min(sizes) < max(sizes) and all(over <= 1 for over, _ in tables), name

@@ -1,7 +1,5 @@
 """The foreign machines: each really differs from this one."""
 
-import os
-import platform
 import re
 import subprocess
 import sys
@@ -9,8 +7,6 @@ import sys
 import foreign_machines as foreign
 import nbformat
 import pytest
-
-from ddlib.learning.descent import _ONEDNN
 
 DRAWS = """
 import numpy as np
@@ -47,36 +43,6 @@ def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path
 def test_jogs_reach_the_package(tmp_path):
     for a, b in zip(*both(PACKAGE, foreign.environment("jog-7", tmp_path)), strict=True):
         assert a != b and float(b) == pytest.approx(float(a), rel=1e-7)
-
-
-@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="a core type of x86")
-def test_other_libraries_take_another_core(tmp_path):
-    env = {**foreign.environment("other-libraries", tmp_path), "OPENBLAS_VERBOSE": "2"}
-    assert "Core: Nehalem" in ask("import numpy", env)
-
-
-@pytest.mark.skipif(not _ONEDNN, reason="products do not go through oneDNN here")
-@pytest.mark.parametrize("name", ["plain-kernels", "other-libraries"])
-def test_products_of_descent_take_older_instructions(name, tmp_path):
-    code = (
-        "import torch; from ddlib.learning.descent import times;"
-        "torch.manual_seed(0); x = torch.rand(43, 1500); a = torch.rand(96, 43);"
-        "times(x, 96)(a)"
-    )
-    told = ask(code, {**foreign.environment(name, tmp_path), "ONEDNN_VERBOSE": "1"})
-    (product,) = re.findall(r"exec,cpu,(?:inner_product|matmul),([^,]*)", told)
-    assert "isa:Intel" in told and "avx512" not in product and "avx10" not in product
-
-
-@pytest.mark.parametrize(
-    "name, threads, capability",
-    [("plain-kernels", 1, "DEFAULT"), ("one-thread", 1, ""), ("two-threads", 2, "")],
-)
-def test_torch_takes_other_kernels_and_threads(name, threads, capability, tmp_path):
-    code = "import torch; print(torch.get_num_threads(), torch.backends.cpu.get_cpu_capability())"
-    count, kernels = ask(code, foreign.environment(name, tmp_path)).split()
-    assert int(count) == min(threads, os.cpu_count() or 1)
-    assert kernels == (capability or kernels)
 
 
 def test_what_holds_and_what_fails_is_told(monkeypatch, capfd):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import re
+import json
 from pathlib import Path
 
 import yaml
+from needed import needed
 
 ROOT = Path(__file__).resolve().parents[2]
 TOC = yaml.safe_load((ROOT / "_toc.yml").read_text(encoding="utf-8"))
@@ -31,11 +32,8 @@ def has_widgets(page: str) -> bool:
     path = source(page)
     if path is None or path.suffix != ".ipynb":
         return False
-    return bool(
-        re.search(
-            r"from (?:ddlib|workshop\.beyond)\.widgets|\bwidgets\.[A-Z]", path.read_text("utf-8")
-        )
-    )
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return bool(needed(["".join(c["source"]) for c in cells if c["cell_type"] == "code"]))
 
 
 WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

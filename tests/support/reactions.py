@@ -87,14 +87,3 @@ class Handle:
         plus = self.handle.locator("xpath=following-sibling::*//button").last
         if self.handle.get_attribute("role") == "spinbutton" and plus.is_visible():
             plus.tap()
-
-
-def first_answers(root, touch: bool) -> None:
-    """The first handle of a widget changes its picture: by a finger, or by mouse and keys."""
-    handle = handles(root)[0]
-    before = handle.picture()
-    for act in (handle.tap,) if touch else (handle.drag, handle.press):
-        act()
-        after = handle.picture()
-        assert after != before
-        before = after

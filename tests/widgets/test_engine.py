@@ -25,7 +25,6 @@ from ddlib.effects import (
 from ddlib.learning import TrainingSet, Weights, descent, sliding_windows
 from ddlib.setups import JOINT_DAMPING, KP, SETUPS, STATE_FEEDBACK, split
 from ddlib.simulation import follow
-from ddlib.simulation.plant import substeps
 from ddlib.trajectories import pick_and_place, time_grid
 from ddlib.widgets.engine import plain
 from workshop.report import results
@@ -68,18 +67,6 @@ def test_equations_of_the_arm(engine, arm):
         turned = q + small * np.eye(2)[j], q - small * np.eye(2)[j]
         moved = np.subtract(*(arm.forward_kinematics(x)[:, 1] for x in turned)) / (2 * small)
         np.testing.assert_allclose(np.array(got)[:, j], moved @ force, atol=1e-8)
-
-
-@pytest.mark.browser
-def test_friction_and_encoder_are_those_of_the_effects(engine):
-    v = np.concatenate([np.linspace(-3, 3, 101), np.linspace(-0.01, 0.01, 101)])
-    got = engine("(v) => v.map((v) => frictionTorque(5.3, 1.5, 0.002, v))", v.tolist())
-    effects = Effects(friction=(ViscousFriction((5.3, 0)), CoulombFriction((1.5, 0))))
-    wanted = effects.friction_torque(np.stack([v, v], -1))[:, 0]
-    np.testing.assert_allclose(got, wanted, atol=1e-12)
-    ties = np.concatenate([np.arange(-9, 10) / 2, np.linspace(-7, 7, 301)])
-    got = engine("(x) => x.map((x) => encoderReading(0.5, 0.5 * x))", ties.tolist())
-    np.testing.assert_array_equal(got, Quantisation(0.5).apply(0.5 * ties))
 
 
 # Motions
@@ -134,21 +121,6 @@ def test_controllers_on_each_arm(engine, arm, velocity):
     ]
     for law in laws:
         assert_same_motion(engine, arm, effects, law, (20.0, 40.0), velocity)
-
-
-@pytest.mark.browser
-def test_substeps_are_those_of_the_simulator(engine):
-    rng = np.random.default_rng(5)
-    seen = set()
-    for arm in (CMU_DD_ARM_II, IMI_ARM):
-        for scale in rng.uniform(0, 8, 12):
-            viscous, coulomb = rng.uniform(0, scale, (2, 2))
-            friction = (ViscousFriction(tuple(viscous)), CoulombFriction(tuple(coulomb)))
-            effects = Effects(friction=friction)
-            got = engine("([p, step]) => substeps(p, step)", [plain.plant(arm, effects), STEP])
-            assert got == substeps(arm, effects, STEP)
-            seen.add(got)
-    assert len(seen) > 3
 
 
 # Networks

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, alerts, copied, cut, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
 
 from ddlib.analysis import followed, frequency_response
 from ddlib.simulation import LOG_STEP
@@ -55,15 +55,6 @@ def test_nothing_beats_least_squares_here():
             assert builder.score(best + far * size * rng.normal(size=21)) > least
     elsewhere = [builder.score(best, zero) for zero in builder.zeros()[1:]]
     assert np.median(elsewhere) > 1.05 * least
-
-
-def test_starting_points_are_what_they_are_called():
-    for name, f in builder.starts().items():
-        tall = 0 if name == "Zero" else builder.TALL
-        assert f.shape == (21,) and np.abs(f).max() == pytest.approx(tall)
-        low, high = np.abs(frequency_response(f, [0.2, 0.4], LOG_STEP))
-        if name != "Zero":
-            assert high / low == pytest.approx(2 if name == "Velocity" else 4, rel=0.05)
 
 
 def test_bad_filters_are_refused():
@@ -196,9 +187,3 @@ def test_a_link_restores_what_was_drawn_and_code_gives_its_error(tmp_path, visit
         assert printed == pytest.approx(here.evaluate(SCORE), abs=1e-9)
     wrong = opened(tmp_path, visit, widget, "?builder=f:zz").page
     assert heights(wrong)[10] == pytest.approx(-0.9)
-
-
-@pytest.mark.browser
-def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    (said,) = alerts(tmp_path, visit, widget, cut("motion", 80))
-    assert "bytes of motion in place of" in said

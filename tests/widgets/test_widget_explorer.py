@@ -7,14 +7,13 @@ import re
 import numpy as np
 import pytest
 from scipy.signal import freqz
-from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import FLOOR, FREQUENCIES, FilterExplorer
-from ddlib.widgets.hinton import diagram, zero_padded
+from ddlib.widgets.hinton import diagram
 from workshop.report import results
 
 CELLS = "weights of all units"
@@ -109,24 +108,6 @@ def test_diagram_holds_every_weight_once(models):
     hidden = cells[2 * (1 + 10 + 34) :].reshape(10, 1 + 2 + 34)
     np.testing.assert_array_equal(hidden[:, 1:3], weights.output_weights.T)
     np.testing.assert_array_equal(hidden[3, 3 + 3 : 3 + 14], weights.hidden_weights[3, 0])
-
-
-def test_bad_arguments_are_refused(explorer, models):
-    for name, bad in (("width", 13), ("seed", 0), ("unit", "hidden 10"), ("joint", "wrist")):
-        with pytest.raises(TraitError, match=f"{name} must be one of"):
-            setattr(explorer, name, bad)
-    with pytest.raises(TypeError, match="two window sizes or more"):
-        FilterExplorer({21: models[21]})
-    with pytest.raises(TypeError, match="models must hold TorqueModels"):
-        FilterExplorer({21: models[21], 41: 3})
-    with pytest.raises(ValueError, match=r"an ensemble of that size.* for 11"):
-        FilterExplorer({11: models[21], 21: models[21]})
-    with pytest.raises(ValueError, match="an ensemble of that size"):
-        FilterExplorer({w: model[0] for w, model in models.items()})
-    with pytest.raises(ValueError, match="members must be an integer from 0 to 24, got 25"):
-        FilterExplorer(models, (0, 25))
-    with pytest.raises(ValueError, match="reach must be 10 samples or more, got 9"):
-        zero_padded(np.ones(21), 9)
 
 
 # In a page without a kernel

@@ -19,13 +19,14 @@ def widget():
 # Damage
 
 
-def buffer(name, change):
+def buffer(change):
+    """Damage of the table of curves."""
+
     def damage(entry):
-        where = next(b for b in entry["buffers"] if b["path"] == [name])
+        where = next(b for b in entry["buffers"] if b["path"] == ["baked"])
         data = bytearray(base64.b64decode(where["data"]))
         where["data"] = base64.b64encode(change(data)).decode()
 
-    damage.__name__ = f"{name} {change.__name__}"
     return damage
 
 
@@ -34,67 +35,33 @@ def flipped(data):
     return data
 
 
-def shortened(data):
-    return data[:-2]
-
-
-def emptied(data):
-    return b""
-
-
-def with_value(value, *path):
-    """Damage of the state: another value at a place, or none with `without`."""
+def state(value, *path):
+    """Damage of the state: another value at a place, or none."""
 
     def damage(entry):
         node = entry["state"]
         for key in path[:-1]:
             node = node[key]
-        if value is GONE:
-            del node[path[-1]]
-        else:
-            node[path[-1]] = value
+        node.pop(path[-1]) if value is GONE else node.update({path[-1]: value})
 
-    damage.__name__ = f"{'none' if value is GONE else repr(value)} at {'.'.join(map(str, path))}"
     return damage
 
 
 GONE = object()
 
 
-def without(*path):
-    return with_value(GONE, *path)
-
-
-def no_buffer(name):
-    def damage(entry):
-        entry["buffers"] = [b for b in entry["buffers"] if b["path"] != [name]]
-
-    damage.__name__ = f"no {name}"
-    return damage
-
-
-def damages(widget) -> list:
+def damages(spec) -> list:
     """Everything that is broken one at a time; each must be reported."""
-    spec = widget.spec
-    found = [buffer("baked", change) for change in (flipped, shortened, emptied)]
-    found += [
-        no_buffer("baked"),
-        without("spec"),
-        *(with_value(v, "spec") for v in (None, 3, [], "x")),
-    ]
-    found += [without("spec", key) for key in spec]
-    for part in ("parameters", "curves", "panels", "scalars", "groups"):
-        found += [without("spec", part, 0, key) for key in spec[part][0] if key != "digits"]
-        found += [with_value(v, "spec", part) for v in (None, 3)]
-    found += [without("spec", "pad", key) for key in spec["pad"]]
-    found += [with_value([["no such curve", "x"]], "spec", "panels", 0, "curves")]
-    found += [without("gain"), *(with_value(v, "gain") for v in (None, "10", 101, [10], True))]
-    return found
+    broken = [buffer(change) for change in (flipped, lambda data: data[:-2], lambda data: b"")]
+    broken += [lambda entry: entry.update(buffers=[])]
+    broken += [state(value, "spec") for value in (GONE, None, 3, [], "x")]
+    broken += [state(GONE, "spec", key) for key in spec]
+    return broken + [state(value, "gain") for value in (GONE, None, "10", 101, [10], True)]
 
 
 def test_any_damage_is_reported_in_place(tmp_path, visit, widget):
-    broken = damages(widget)
-    assert len(broken) > 60
+    broken = damages(widget.spec)
+    assert len(broken) > 20
     opened = visit(page_of(tmp_path / "page.html", widget, damages=broken))
     page = opened.page
     page.evaluate(NEXT_FRAME)
@@ -104,8 +71,8 @@ def test_any_damage_is_reported_in_place(tmp_path, visit, widget):
     )
     assert views.count() == 1 + len(broken)
     quiet = [
-        damage.__name__
-        for damage, (name, text) in zip(broken, texts[1:])
+        place
+        for place, (name, text) in enumerate(texts[1:])
         if "ddlib-widget-error" not in name or "are damaged: " not in text
     ]
     assert not quiet
@@ -176,16 +143,6 @@ def test_kernel_that_is_silent_and_then_answers(live):
     assert live.locator(".note").inner_text() == SILENCE
     assert live.locator(".ddlib-widget").get_attribute("data-values") == "interpolated"
     assert usable(live)
-    assert answers(live)
-
-
-def test_closed_connection_is_noted_at_once(live):
-    assert answers(live)
-    live.evaluate("kernel.closed = true")
-    live.get_by_label("Gain").press("ArrowLeft")
-    assert live.locator(".note").inner_text() == SILENCE
-    assert usable(live) and usable(live)
-    live.wait_for_selector("[data-values=interpolated]")
     assert answers(live)
 
 

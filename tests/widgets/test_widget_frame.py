@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import pytest
 from traitlets import TraitError
-from widget_pages import LIVE, NEXT_FRAME, Finger, copied, page_of, phone, shown_values
+from widget_pages import NEXT_FRAME, Finger, copied, page_of, phone, shown_values
 from widget_samples import make, make_kinds
-
-from ddlib import widgets
-from ddlib.widgets import CurveWidget, Panel, Parameter
-from ddlib.widgets.parts import common
 
 CODE = "result = {gain} * {decay} + {other}"
 PRESETS = {"fast": {"gain": 50, "decay": 2.0}, "slow": {"decay": 0.25}}
@@ -34,24 +30,6 @@ def test_code_has_the_values_as_they_stand():
     assert widget.code.startswith("result = 1.33333 * 0.5")
     kinds = make_kinds(code="{shape}, {twice}, {bits}")
     assert kinds.code == '"sine", False, 5'
-
-
-def test_code_of_a_class_without_arguments_makes_it(monkeypatch):
-    class Line(CurveWidget):
-        def __init__(self, **options):
-            gain = Parameter("gain", "Gain", 0, 10, 1, grid=2)
-            panel = Panel("y", "y", "x", [0, 1, 2])
-            super().__init__(lambda gain: {"y": [0, gain, 1]}, [gain], [panel], alt="a", **options)
-
-    monkeypatch.setattr(widgets, "Line", Line, raising=False)
-    Line.__module__ = "ddlib.widgets.line"
-    line = Line()
-    line.gain = 2.5
-    assert line.spec["key"] == "line"
-    names = {}
-    exec(line.code.replace("import Line", "import CurveWidget"), {"Line": Line}, names)
-    assert names["widget"].values == {"gain": 2.5}
-    assert make().code == "" and common.key_of(widgets.TrajectoryPicker) == "trajectory-picker"
 
 
 def test_presets_are_checked():
@@ -129,17 +107,6 @@ def test_link_and_code_are_copied(tmp_path, visit, widget):
     assert "Ctrl+C" in page.locator(".said").inner_text()
     press(page, "Reset")
     assert not field.is_visible()
-
-
-@browser_test
-def test_with_a_kernel_the_address_is_left_alone(tmp_path, visit, widget):
-    page = visit(page_of(tmp_path / "page.html", widget, extra=LIVE) + "?curve-widget=gain:50").page
-    assert shown_values(page)[0] == 10 and not page.get_by_role("button", name="Link").count()
-    page.get_by_label("Gain").press("End")
-    page.wait_for_timeout(500)
-    assert page.url.endswith("?curve-widget=gain:50")
-    press(page, "Reset")
-    assert shown_values(page)[0] == 10
 
 
 @browser_test

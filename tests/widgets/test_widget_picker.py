@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from traitlets import TraitError
 from widget_pages import (
     LIVE,
     NEXT_FRAME,
@@ -20,8 +19,6 @@ from widget_pages import (
     shown_values,
 )
 
-from ddlib.control import Feedforward, pd
-from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, predict
 from ddlib.trajectories import APPENDIX_I
@@ -66,26 +63,6 @@ def test_extents_and_sliders_follow_each_other():
     assert picker.extents_deg == (20, 40)
     picker.extents_deg = np.array([1.5, 2.5])
     assert picker.values == {"shoulder_deg": 1.5, "elbow_deg": 2.5}
-
-
-@pytest.mark.parametrize(
-    "bad, message",
-    [
-        ((20, 46), r"extents_deg must lie in \[0, 45\], got 46"),
-        ((1, np.nan), "extents_deg must be finite, got NaN"),
-        (3, r"extents_deg must have a last axis of length 2, got shape \(\)"),
-        ([[1, 2]], r"extents_deg must have shape \(2,\), got \(1, 2\)"),
-        ("ab", "extents_deg must be an array of real numbers, got 'ab'"),
-        ((True, 2), "extents_deg must be a single number, got True"),
-    ],
-)
-def test_bad_extents_name_value_and_range(picker, bad, message):
-    before = picker.extents_deg
-    with pytest.raises(TraitError, match=message):
-        picker.extents_deg = bad
-    assert picker.extents_deg == before == (picker.shoulder_deg, picker.elbow_deg)
-    with pytest.raises(TraitError, match=r"elbow_deg must lie in \[0, 45\], got 45.1"):
-        picker.elbow_deg = 45.1
 
 
 def test_recording_is_the_experiments_or_ones_own():
@@ -133,19 +110,6 @@ def test_the_map_is_of_the_exact_errors(full, picker):
         for name, curve in exact.items():  # axes and decimals follow the whole square
             wide = 0.02 * (high[name] - low[name])
             assert low[name] - wide <= curve.min() and curve.max() <= high[name] + wide
-
-
-def test_unfit_arguments_are_refused(networks):
-    setup = replace(STATE_FEEDBACK, controller=Feedforward(CMU_DD_ARM_II, pd((1, 1), (1, 1))))
-    with pytest.raises(TypeError, match="controller must be a PID"):
-        TrajectoryPicker(networks, setup)
-    for bad in (lambda e: 0, 3, results.networks(11)):
-        with pytest.raises(TypeError, match="models must be single networks by name, got mine"):
-            TrajectoryPicker({"mine": bad})
-    with pytest.raises(TypeError, match="models must be single networks by name, got recorded"):
-        TrajectoryPicker({"recorded": networks["window 11"]})
-    with pytest.raises(TypeError, match="on_record must be callable, got 3"):
-        TrajectoryPicker(on_record=3)
 
 
 # In a page without a kernel
@@ -210,68 +174,6 @@ def test_drag_keys_and_sliders(tmp_path, visit, full):
     assert page.locator(".record button").is_disabled()
     assert "kernel" in page.locator(".record p").inner_text()
     assert not opened.problems
-
-
-@browser_test
-def test_a_drag_near_a_trajectory_ends_on_it(tmp_path, visit, full):
-    page = visit(page_of(tmp_path / "page.html", full)).page
-    box = page.locator(".pad .frame").bounding_box()
-
-    def drag_to(shoulder, elbow):
-        drag(page, box, (0.5, 0.5), (shoulder / 45, 1 - elbow / 45))
-        return shown_values(page)[:2]
-
-    for k, extents in enumerate(APPENDIX_I.tolist(), 1):
-        inward = [x - 0.9 if x > 22 else x + 0.9 for x in extents]
-        assert drag_to(*inward) == [round(x, 1) for x in extents]
-        button = page.get_by_role("button", name=str(k), exact=True)
-        assert button.get_attribute("aria-pressed") == "true"
-    near = drag_to(extents[0] - 3, extents[1])
-    assert near[0] == pytest.approx(extents[0] - 3, abs=0.4)
-    page.get_by_role("button", name="3", exact=True).click()
-    page.evaluate(NEXT_FRAME)
-    assert shown_values(page)[:2] == [round(x, 1) for x in APPENDIX_I[2]]
-
-
-@browser_test
-def test_the_map_shows_the_errors_of_one_network(tmp_path, visit, full):
-    page = visit(page_of(tmp_path / "page.html", full)).page
-    at = """([x, y]) => {
-      const [frame, svg] = [document.querySelector('.pad .frame'), document.querySelector('.pad')];
-      const get = (name) => Number(frame.getAttribute(name));
-      const point = svg.createSVGPoint();
-      point.x = get('x') + x * get('width');
-      point.y = get('y') + (1 - y) * get('height');
-      return [...svg.querySelectorAll('.under .level')].findIndex((p) => p.isPointInFill(point));
-    }"""
-    for name in ("window 11", "window 41"):
-        page.get_by_role("button", name=name).click()
-        levels = []
-        for extents in ([40.3, 5.1], [22.3, 41.2], [10.3, 30.1]):
-            values = dict(zip(("shoulder_deg", "elbow_deg"), extents))
-            error = full.interpolate(**values)[f"RMSS, {name}"][0]
-            got = page.evaluate(at, [x / 45 for x in extents])
-            assert abs(got + 0.5 - min(error / 0.1, 9.5)) <= 0.75, (name, extents)
-            levels.append(got)
-        assert len(set(levels)) > 1
-    page.wait_for_function("location.search.includes('map:window%252041')")
-    page.get_by_role("button", name="none").click()
-    assert page.evaluate(at, [0.5, 0.5]) == -1
-
-
-@browser_test
-def test_player_moves_the_arm(tmp_path, visit, picker):
-    url = page_of(tmp_path / "page.html", picker)
-    page = visit(url).page
-    hand, button = page.locator(".arm .hand"), page.locator(".player button")
-    page.locator("input[id$=time]").press("Home")
-    assert float(hand.get_attribute("cx")) == pytest.approx(230, abs=0.1)  # stretched out
-    button.click()
-    page.wait_for_function("Number(document.querySelector('.arm .hand').getAttribute('cx')) < 229")
-    button.click()
-    assert button.inner_text() == "Play"
-    page.locator("input[id$=time]").press("End")
-    assert page.locator("output[for$=time]").inner_text() == "3.00\u00a0s"
 
 
 @browser_test

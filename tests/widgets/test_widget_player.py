@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from traitlets import TraitError
 from widget_pages import NEXT_FRAME, assert_curves, drag, page_of, settings
 
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
@@ -77,34 +74,6 @@ def test_errors_are_those_of_every_recorded_epoch(player, rmss):
     low, high = panel["y_range"]
     everything = [*rmss["training"], *rmss["test"]]
     assert low <= min(everything) < 10 * low and high / 10 < max(everything) <= high
-
-
-def test_bad_arguments_are_refused(player, model, recording):
-    for name, bad in (("epoch", 3), ("epoch", np.nan), ("unit", "hidden 10")):
-        with pytest.raises(TraitError, match=f"{name} must be one of"):
-            setattr(player, name, bad)
-    with pytest.raises(ValueError, match="member must be an integer from 0 to 1, got 2"):
-        TrainingPlayer(EPOCHS, model, recording, member=2)
-    with pytest.raises(ValueError, match=r"leading axes \(9 epochs, members\), got \(10, 2\)"):
-        TrainingPlayer(EPOCHS[:-1], model, recording)
-    with pytest.raises(ValueError, match=r"leading axes \(10 epochs, members\), got \(10,\)"):
-        TrainingPlayer(EPOCHS, model[:, 0], recording)
-    with pytest.raises(ValueError, match="epochs must increase"):
-        TrainingPlayer(EPOCHS[::-1], model, recording)
-    with pytest.raises(ValueError, match="epochs must be finite"):
-        TrainingPlayer(EPOCHS * np.nan, model, recording)
-    with pytest.raises(ValueError, match="recording must hold the six runs"):
-        TrainingPlayer(EPOCHS, model, split(recording)[1])
-
-
-def test_the_film_begins_where_the_weights_have_moved(model, recording):
-    """A run that stands still until epoch 100 and then goes straight to its end."""
-    start, end = model.weights[0], model.weights[-1]
-    way = [0, 0, 0, 0, 0, 0.01, 0.04, 0.06, 0.5, 1]
-    ways = {name: (a, getattr(end, name) - a) for name, a in vars(start).items()}
-    points = [Weights(**{name: a + x * b for name, (a, b) in ways.items()}) for x in way]
-    player = TrainingPlayer(EPOCHS, replace(model, weights=Weights.stack(points)), recording)
-    assert player.begin == player.epoch == 300
 
 
 # In a page without a kernel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, Finger, alerts, copied, cut, functions, page_of, phone
+from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
 
 from ddlib.analysis import savitzky_golay, shares
 from ddlib.control import Feedforward, pd
@@ -89,20 +89,6 @@ def test_a_throw_is_the_pull_and_then_friction_alone(evaluate, widget):
 
 
 @pytest.mark.browser
-def test_the_button_throws_within_the_training(evaluate, widget):
-    """From the start and back: the network's error stays well below the torque."""
-    throws = [["stand", [0, 0], 150], ["toss", None, 900], ["toss", None, 650]]
-    seen = moved(evaluate, widget, *throws)
-    q, net = seen("q"), seen("net")
-    assert np.ptp(q, axis=0).min() > np.deg2rad(20)
-    low, high = results.networks(21, JOINT_DAMPING.name).inputs.low, np.deg2rad(6)
-    assert (q > low).all() and (q < high).all()
-    tau = seen("tau")[-10 - len(net) : -10]
-    spread = np.sqrt((tau**2).mean(0))
-    assert (np.sqrt(((net - tau) ** 2).mean(0)) < 0.5 * spread).all()
-
-
-@pytest.mark.browser
 def test_weights_fold_into_a_line_and_a_parabola(evaluate):
     n = np.arange(-10, 11)
     for f in results.networks(21).weights.hidden_weights[2, :, 0]:
@@ -151,23 +137,6 @@ def handle_at(page):
 
 
 @pytest.mark.browser
-def test_it_stands_still_until_asked_or_greets(tmp_path, visit, widget):
-    url = page_of(tmp_path / "page.html", widget)
-    opened = visit(url, **CALM)
-    page = opened.page
-    before = page.evaluate(STATE)
-    page.wait_for_timeout(300)
-    assert page.evaluate(STATE) == before and "Paused on trajectory 6" in said(page)
-    press(page, "Play")
-    until(page, f"world.mode === 'play' && world.count > {before['count'] + 20}")
-    press(page, "Pause")
-    paused = page.evaluate(STATE)
-    page.wait_for_timeout(200)
-    assert page.evaluate(STATE) == paused and said(page) == "Paused." and not opened.problems
-    until(visit(url).page, "world.mode === 'play'")  # once in view, where motion is welcome
-
-
-@pytest.mark.browser
 def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     opened = visit(page_of(tmp_path / "page.html", widget), **CALM)
     page = opened.page
@@ -192,19 +161,6 @@ def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     page.keyboard.down("ArrowLeft")
     page.keyboard.press("Tab")  # leaves the hand
     assert page.evaluate(STATE)["mode"] == "free" and not opened.problems
-
-
-@pytest.mark.browser
-def test_touch_pulls_the_hand_and_scrolls_elsewhere(tmp_path, browser, widget):
-    with phone(browser, page_of(tmp_path / "page.html", widget), **CALM) as page:
-        finger = Finger(page)
-        finger.hold(*handle_at(page), 0, -100)
-        assert page.evaluate(STATE)["mode"] == "held" and page.evaluate("scrollY") == 0
-        finger.send("touchEnd")
-        press(page, "Reset")
-        box = page.locator(".stage").bounding_box()
-        finger.swipe(box["x"] + 60, box["y"] + box["height"] / 2, 0, -150)
-        assert page.evaluate(STATE)["mode"] == "free" and page.evaluate("scrollY") > 50
 
 
 @pytest.mark.browser
@@ -255,9 +211,3 @@ def test_link_and_code_take_the_motion_along(tmp_path, visit, widget):
     assert link == f"{url}?other=1&thrown-arm=motion:2,inside:1" and said(page) == "Link copied."
     again = visit(link, **CALM).page
     assert again.evaluate(shown) == 2 and again.locator(".inside").is_visible()
-
-
-@pytest.mark.browser
-def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    (said,) = alerts(tmp_path, visit, widget, cut("weights", 80))
-    assert "weights in place of" in said

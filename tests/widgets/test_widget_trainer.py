@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 import torch
-from widget_pages import CALM, NEXT_FRAME, alerts, code_of, copied, cut, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
 
 from ddlib.analysis import CLASSES, classify
 from ddlib.learning import Descent, default_rate
@@ -59,12 +59,6 @@ def flat(weights):
 # The training
 
 
-def test_the_chapter_passes_what_its_study_has():
-    assert (trainer.WIDTH, trainer.EVERY) == (study.WIDTH, study.EVERY)
-    with pytest.raises(ValueError, match="momentum must be one of"):
-        NetworkTrainer(momentum=0.97)
-
-
 @pytest.mark.browser
 def test_first_weights_are_the_pages(evaluate, widget):
     for seed in (1, 2, 50):
@@ -108,19 +102,6 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     for layer in ("direct", "hidden"):
         f = getattr(weights, f"{layer}_weights")
         assert page["names"][layer] == [CLASSES.index(name) for name in classify(f).ravel()]
-
-
-@pytest.mark.browser
-def test_copied_code_trains_the_same_network(evaluate, widget, capsys):
-    page = taught(evaluate, widget, 40, seed=5, shift=0)
-    values = {"scaling": "(-1, 1)", "shifted": 0, "seed": 5, "momentum": 0.98, "epochs": 40}
-    code = code_of("window-networks", "TRAINER_CODE")
-    for name, value in (values | {"rate": default_rate(21)}).items():
-        code = code.replace(f"{{{name}}}", str(value))
-    exec(code, {})
-    training, test = map(float, capsys.readouterr().out.split())
-    assert page["training"][-1] == pytest.approx(training, rel=1e-3)
-    assert page["error"] == pytest.approx(test, rel=1e-3)
 
 
 @pytest.mark.browser
@@ -219,9 +200,3 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     again.get_by_role("button", name="Reset").click()
     first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
     assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}
-
-
-@pytest.mark.browser
-def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    (said,) = alerts(tmp_path, visit, widget, cut("positions", 80))
-    assert "positions and" in said

@@ -7,7 +7,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from traitlets import TraitError
 from widget_pages import CALM, NEXT_FRAME, PATHS, drag, functions, page_of
 
 from ddlib.control import PID, Feedforward, closed_loop, plant
@@ -17,7 +16,6 @@ from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.engine import loops
 from ddlib.widgets.tuner import (
-    MOST_DEG,
     QUESTIONS,
     START,
     TIMES,
@@ -115,15 +113,6 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     np.testing.assert_allclose(answer[stable], wanted[stable], rtol=1e-5, atol=1e-5)
 
 
-def test_a_stopped_run_has_no_end_and_no_margin():
-    run = known_run(**QUESTIONS[4].change)
-    error = np.abs([run["shoulder error"], run["elbow error"]])
-    ends = np.searchsorted(TIMES, run["stopped"])
-    assert np.isfinite(error[:, : ends + 1]).all() and np.isnan(error[:, ends + 1 :]).all()
-    assert error[:, ends].max() > MOST_DEG > error[:, :ends].max()
-    assert np.isnan([run["shoulder RMS"], run["elbow phase margin"]]).all()
-
-
 # The answers to what is asked
 
 
@@ -155,22 +144,6 @@ def test_what_happens_if():
         off, on = (x[6][f"{joint} error"] for x in (before, after))
         assert rms(on[LATE]) < rms(off[LATE]) / 4
         assert np.abs(on).max() == pytest.approx(np.abs(off).max(), rel=0.1)
-
-
-def test_bad_values_are_refused_and_the_ghost_is_the_setting_before(tuner):
-    wrong = {"kp": [49, np.nan], "kd": [81, "x"], "late": [2], "feedforward": ["on", 1]}
-    wrong["before"] = [{"kd": 99}, {"gain": 1}]
-    for name, values in wrong.items():
-        for bad in values:
-            with pytest.raises((TraitError, ValueError), match="must"):
-                setattr(tuner, name, bad)
-    assert tuner.values == tuner.before == START
-    now, last = {**START, "kp": 200.0}, {**START, "kd": 60.0}
-    tuner.before = last
-    shown = tuner.interpolate(**now)
-    tuner.before = START
-    for setting, name in ((now, "elbow error"), (last, "elbow error before")):
-        np.testing.assert_array_equal(shown[name], tuned(ARM, **setting)["elbow error"])
 
 
 # In a page without a kernel

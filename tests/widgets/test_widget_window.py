@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from traitlets import TraitError
-from widget_pages import alerts, assert_curves, cut, drag, page_of, settings
+from widget_pages import assert_curves, drag, page_of, settings
 
 from ddlib.learning import sliding_windows
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
-from ddlib.simulation import Recording
 from ddlib.widgets.window import SlidingWindow
 from workshop.report import results
 
@@ -29,17 +27,6 @@ def models():
 @pytest.fixture(scope="module")
 def widget(models, test_run):
     return SlidingWindow(models, test_run)
-
-
-def test_ranges_are_those_of_all_windows(widget):
-    low, high = ({c["name"]: c[end] for c in widget.spec["curves"]} for end in ("low", "high"))
-    for width in WINDOWS:
-        rows = [widget.interpolate(width=width, sample=k) for k in range(0, 300, 23)]
-        for name in rows[0]:
-            if name in ("from", "to", "first", "last"):
-                continue
-            values = np.concatenate([row[name] for row in rows])
-            assert low[name] <= values.min() and values.max() <= high[name], name
 
 
 def test_truths_at_every_sample(widget, models, test_run):
@@ -66,29 +53,6 @@ def test_truths_at_every_sample(widget, models, test_run):
         back = model.outputs.unscale(shown["activity"][-2:])
         np.testing.assert_allclose(back, torque[sample], atol=0.02)
         assert shown["last"][0] - shown["first"][0] == pytest.approx(10 * width, abs=0.02)
-
-
-def test_shade_ends_with_the_motion(widget):
-    start, middle, end = (widget.interpolate(width=41, sample=k) for k in (0, 150, 299))
-    assert [start["from"][0], start["to"][0]] == pytest.approx([0, 0.205], abs=1e-3)
-    assert [middle["from"][0], middle["to"][0]] == pytest.approx([1.295, 1.705], abs=1e-3)
-    assert [end["from"][0], end["to"][0]] == pytest.approx([2.785, 2.99], abs=1e-3)
-
-
-def test_bad_arguments_are_refused(widget, models, test_run):
-    for name, bad in (("width", 31), ("sample", 300), ("sample", 1.5), ("sample", np.nan)):
-        with pytest.raises(TraitError, match=f"{name} must be one of"):
-            setattr(widget, name, bad)
-    with pytest.raises(ValueError, match="one network of that size"):
-        SlidingWindow({11: models[21], 21: models[21]}, test_run)
-    with pytest.raises(TypeError, match="two window sizes or more"):
-        SlidingWindow({}, test_run)
-    several = STATE_FEEDBACK.record()
-    with pytest.raises(ValueError, match="recording must be one run"):
-        SlidingWindow(models, several)
-    damaged = Recording(**{**vars(test_run), "q": test_run.q * np.nan})
-    with pytest.raises(ValueError, match=r"recording\.q must be finite"):
-        SlidingWindow(models, damaged)
 
 
 # In a page without a kernel
@@ -118,12 +82,3 @@ def test_the_page_computes_what_ddlib_does(tmp_path, visit, widget):
     slider.press("Home")
     shows(11, 0)
     assert not opened.problems
-
-
-@pytest.mark.browser
-def test_damage_is_reported_in_place(tmp_path, visit, widget):
-    def gone(entry):
-        del entry["state"]["layouts"]
-
-    damages = (cut("recorded", 8), cut("weights", 8), gone)
-    assert len(alerts(tmp_path, visit, widget, *damages)) == len(damages)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from traitlets import TraitError
 from widget_pages import saved
-from widget_samples import T, make, make_kinds, options, oscillation, wave
+from widget_samples import T, make, make_kinds, oscillation
 
-from ddlib.widgets import CurveWidget, Pad, Panel, Parameter, Scalar
+from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter, Scalar
 
 
 @pytest.fixture(scope="module")
@@ -93,74 +93,45 @@ def test_bad_values_name_parameter_value_and_range(widget):
     assert widget.gain == 10
 
 
-def test_a_still_is_a_picture_in_its_own_address(widget):
-    before = widget.still
-    for address in ("https://example.org/still.svg", "data:image/svg+xml;base64,<svg/>"):
-        with pytest.raises(TraitError, match="still must be an address that begins with 'data:im"):
-            widget.set_trait("still", address)
-    assert widget.still == before
+BAD_PARAMETERS = [
+    ({"name": "two words"}, "identifier.*'two words'"),
+    ({"low": 5, "high": 5}, r"high of k must lie in \(5"),
+    ({"value": 11}, r"k must lie in \[1, 10\], got 11"),
+    ({"low": 0, "scale": "log"}, r"low of k must lie in \(0"),
+]
+BAD_WIDGETS = [
+    ({"tolerance": 1e-6}, "tolerance|interpolate to 1e-06"),
+    ({"scalars": [Scalar("square", "Square")]}, "square must be one number"),
+    ({"pad": Pad("decay", "nothing")}, "parameter of the pad"),
+    ({"alt": " "}, "alt must describe"),
+]
+BAD_PANELS = [
+    ({"kind": "pie"}, "kind of 'y, m'"),
+    ({"kind": "bars", "y_scale": "log"}, "y_scale of 'y, m'"),
+    ({"x": [0, 0, 1]}, "x of 'y, m' must increase"),
+    ({"fixed": {"f": [1, 2]}}, r"f of 'y, m' must have shape \(3,\)"),
+    ({"y_range": (2, 1)}, "y_range of 'y, m' must increase"),
+]
+BAD_CHOICES = [
+    ({"options": [1]}, "options of k must be two or more"),
+    ({"options": [1, 1]}, "options of k must differ"),
+    ({"value": 3}, "k must be one of 1, 2, got 3"),
+]
 
 
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"name": "two words"}, "identifier.*'two words'"),
-        ({"low": 5, "high": 5}, r"high of k must lie in \(5"),
-        ({"value": 11}, r"k must lie in \[1, 10\], got 11"),
-        ({"low": 0, "scale": "log"}, r"low of k must lie in \(0"),
-        ({"grid": 1}, "grid of k"),
-        ({"scale": "cubic"}, "scale of k"),
-    ],
-)
-def test_bad_parameters(changes, message):
-    with pytest.raises(ValueError, match=message):
-        Parameter(**{"name": "k", "label": "k", "low": 1, "high": 10, "value": 2, **changes})
-
-
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"tolerance": 1e-6}, "tolerance|interpolate to 1e-06"),
-        ({"scalars": [Scalar("final!", "Final")]}, "curve must be one of"),
-        ({"scalars": [Scalar("square", "Square")]}, "square must be one number"),
-        ({"pad": Pad("decay", "nothing")}, "parameter of the pad"),
-        ({"alt": " "}, "alt must describe"),
-    ],
-)
-def test_arguments_that_do_not_fit(changes, message):
-    with pytest.raises(ValueError, match=message):
-        make(**changes)
-
-
-@pytest.mark.parametrize(
-    "changes, message",
-    [
-        ({"kind": "pie"}, "kind of 'y, m'"),
-        ({"kind": "bars", "y_scale": "log"}, "y_scale of 'y, m'"),
-        ({"kind": "bars", "x_scale": "log"}, "x_scale of 'y, m'"),
-        ({"x": [0, 0, 1]}, "x of 'y, m' must increase"),
-        ({"x_scale": "log"}, r"x of 'y, m' must lie in \(0"),
-        ({"fixed": {"f": [1, 2]}}, r"f of 'y, m' must have shape \(3,\)"),
-        ({"cursor": ("a", "b", "c")}, "cursor of 'y, m' must be one or two"),
-        ({"ticks": [(np.inf, "far")]}, "ticks of 'y, m'"),
-        ({"y_range": (2, 1)}, "y_range of 'y, m' must increase"),
-        ({"y_range": (0, 1), "y_scale": "log"}, "y_range of 'y, m' must be positive"),
-        ({"limits": (1, 0)}, "limits of 'y, m' must be a pair that increases"),
-    ],
-)
-def test_bad_panels(changes, message):
-    with pytest.raises(ValueError, match=message):
-        Panel(**{"y_label": "y, m", "curves": "y", "x_label": "x", "x": [0, 1, 2], **changes})
-
-
-def test_numbers_of_panels_must_be_numbers_of_the_function():
-    for bad in ({"cursor": "y"}, {"y_range": ("y", 1)}):
-        with pytest.raises(ValueError, match="y must be one number, got 41"):
-            CurveWidget(wave, options(), [Panel("y", "y", "x", T, **bad)], alt="a", tolerance=1)
-    with pytest.raises(ValueError, match="curve must be one of"):
-        CurveWidget(wave, options(), [Panel("y", "y", "x", T, cursor="z")], alt="a", tolerance=1)
-    with pytest.raises(ValueError, match="digits of y"):
-        Scalar("y", "y", digits=-1)
+def test_what_does_not_fit_is_refused_by_name():
+    parameter = {"name": "k", "label": "k", "low": 1, "high": 10, "value": 2}
+    panel = {"y_label": "y, m", "curves": "y", "x_label": "x", "x": [0, 1, 2]}
+    choice = {"name": "k", "label": "k", "options": [1, 2], "value": 1}
+    for kind, given, faults in (
+        (Parameter, parameter, BAD_PARAMETERS),
+        (make, {}, BAD_WIDGETS),
+        (Panel, panel, BAD_PANELS),
+        (Choice, choice, BAD_CHOICES),
+    ):
+        for changes, message in faults:
+            with pytest.raises(ValueError, match=message):
+                kind(**{**given, **changes})
 
 
 # What is saved
