@@ -58,17 +58,6 @@ def test_a_section_about_it_and_the_glossary_by_its_words(built, visit):
     assert any("proportional to velocity" in hit["excerpt"] for hit in words.values())
 
 
-@pytest.mark.browser
-def test_a_module_of_the_package_is_listed_once(built, visit):
-    """Sphinx finds its section and the module itself, at one place."""
-    opened = visit((built / "search.html").as_uri() + "?q=regressor")
-    hits(opened)
-    links = "[...document.querySelectorAll('#search-results li a')].map((a) => a.hash)"
-    name = "#module-workshop.beyond.control.adaptive.regressor"
-    assert opened.page.evaluate(links).count(name) == 1
-    assert not opened.problems
-
-
 PAGE = """
 Arms
 ====

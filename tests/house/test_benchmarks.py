@@ -1,4 +1,4 @@
-"""The benchmarks compare like with like: the same maths, the same arm, the same loop."""
+"""The benchmarks: python-control is asked for our loop, and a failure writes nothing."""
 
 from __future__ import annotations
 

@@ -7,8 +7,6 @@ import ast
 import subprocess
 import sys
 from functools import cache
-from graphlib import CycleError, TopologicalSorter
-from itertools import pairwise
 from pathlib import Path
 
 from book_pages import ROOT
@@ -76,35 +74,11 @@ def may_import(module: str, name: str) -> bool:
     return free or ORDER.index(other) <= ORDER.index(room)
 
 
-def test_the_reader_of_imports_reads():
-    source = "import torch.nn as nn\nfrom ddlib.dynamics import Arm\ndef f():\n    from . import x"
-    names = imported(source, "ddlib.effects")
-    assert {"torch.nn", "ddlib.dynamics", "ddlib.dynamics.Arm", "ddlib.effects.x"} <= names
-    assert "ddlib.simulation" in imported("from ..simulation import record", "ddlib.widgets")
-    down = ["ddlib.dynamics.arm", "ddlib.widgets.base", "workshop.report.claims"]
-    down += ["workshop.beyond.rivals", "workshop.chapters.stirring"]
-    for before, after in pairwise(down):
-        assert may_import(after, before) and not may_import(before, after)
-    assert may_import("ddlib.dynamics.arm", "numpy.linalg")
-
-
 def test_nothing_imports_against_the_order():
     assert {room_of(module) for module in MODULES} == set(ORDER)
     pairs = [(module, name) for module in MODULES for name in sorted(imports_of(module))]
     against = [f"{module} imports {name}" for module, name in pairs if not may_import(module, name)]
     assert not against, "\n".join(against)
-
-
-def test_modules_of_a_package_import_each_other_one_way():
-    circles = []
-    for package in {module.rpartition(".")[0] for module in MODULES} - {""}:
-        own = [m for m in MODULES if m.rpartition(".")[0] == package]
-        needs = {m: {n for n in own if n != m and imports_of(m) & {n}} for m in own}
-        try:
-            tuple(TopologicalSorter(needs).static_order())
-        except CycleError as error:
-            circles.append(error.args[1])
-    assert not circles
 
 
 def test_only_learning_imports_torch():

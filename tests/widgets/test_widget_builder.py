@@ -57,14 +57,6 @@ def test_nothing_beats_least_squares_here():
     assert np.median(elsewhere) > 1.05 * least
 
 
-def test_bad_filters_are_refused():
-    for f in (np.zeros(20), [np.nan] * 21):
-        with pytest.raises(ValueError, match="f must"):
-            builder.score(f)
-        with pytest.raises(ValueError, match="unit must"):
-            FilterBuilder(f)
-
-
 @pytest.mark.browser
 def test_the_page_computes_the_same(evaluate):
     q, truth, step = builder.readings()

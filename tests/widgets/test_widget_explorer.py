@@ -89,13 +89,6 @@ def test_gains_are_scipys(explorer, models):
             np.testing.assert_allclose(got[shown_], expected[shown_], atol=0.01)
 
 
-def test_named_filters_have_their_names(explorer, models):
-    presets = dict(explorer.spec["presets"]["options"])
-    assert {"velocity", "acceleration"} <= set(presets) and "not analysable" not in presets
-    for name, values in presets.items():
-        assert classify(weights_of(models, **values)) == name
-
-
 def test_diagram_holds_every_weight_once(models):
     weights = models[11].weights[6]
     cells = diagram(weights, 8).reshape(-1)

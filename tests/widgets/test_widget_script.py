@@ -11,7 +11,7 @@ import subprocess
 import numpy as np
 import pytest
 from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings, shown_values
-from widget_samples import T, axes, make, make_kinds, parameters, parts, wave
+from widget_samples import T, make, make_kinds, parameters, wave
 
 from ddlib.widgets import CurveWidget, Pad, Panel, Parameter
 
@@ -95,19 +95,14 @@ def test_script_interpolates_as_python_does(node, tmp_path):
     assert out["around"] == [[-5, 10], [0, 0.25], [4, 6], [0.1, 100]]
 
 
-def test_script_reads_choices_dependencies_and_numbers_of_one_byte(node, tmp_path, waves):
-    depends = {"a": ["a"], "k": ["k"], "c": []}
-    some = CurveWidget(parts, axes(), [Panel("a", "a", "x", T)], alt="a", depends=depends)
-    b = np.arange(30)
-
-    def function(a):
-        return {"y": np.cos(b * a) @ np.exp(-0.3 * b[:, None] * (1 + T)), "end": a}
-
-    a = Parameter("a", "a", 0, 3, 1, grid=60)
-    faint = CurveWidget(function, [a], [Panel("y", "y", "x", T)], alt="a")
+def test_script_reads_choices_and_numbers_of_one_byte(node, tmp_path, waves):
+    a, b = Parameter("a", "a", 0, 3, 1, grid=60), np.arange(30)
+    fading = np.exp(-0.3 * b[:, None] * (1 + T))
+    panel = Panel("y", "y", "x", T)
+    faint = CurveWidget(lambda a: {"y": np.cos(b * a) @ fading}, [a], [panel], alt="a")
     (group,) = faint.spec["groups"]
     assert 0 < group["wide"] < group["rank"]
-    for widget in (waves, some, faint):
+    for widget in (waves, faint):
         chosen = list(settings(widget, 40))
         assert_same(run_script(node, tmp_path, widget, chosen), widget, chosen)
 

@@ -179,22 +179,14 @@ def test_looking_inside(tmp_path, visit, widget):
     assert titles.nth(2).inner_text() == f"a line: {line} %"
     press(page, "closest to a parabola")
     assert titles.nth(4).inner_text() == f"a parabola: {parabola} %"
-    slider, painted = (
-        page.get_by_label("Fold"),
-        "document.querySelectorAll('canvas')[7].toDataURL()",
-    )
+    slider = page.get_by_label("Fold")
     slider.press("Home")
-    flat = page.evaluate(painted)
     assert titles.first.inner_text() == "weights"
-    slider.press("End")
-    assert page.evaluate(painted) != flat
-    assert not hint.is_visible()  # paused in the middle of a motion
     press(page, "Reset")
     hint.wait_for(state="visible")  # at rest, with a way on
     hint.get_by_role("button").press("Enter")
     hint.wait_for(state="hidden")
     assert page.evaluate(STATE)["mode"] == "tossed"
-    assert page.evaluate("document.activeElement.textContent") == "Look inside"
     assert not opened.problems
 
 

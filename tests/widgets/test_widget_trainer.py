@@ -60,18 +60,6 @@ def flat(weights):
 
 
 @pytest.mark.browser
-def test_first_weights_are_the_pages(evaluate, widget):
-    for seed in (1, 2, 50):
-        page = taught(evaluate, widget, 0, seed)
-        ours = flat(trainer.first_weights(seed))
-        np.testing.assert_allclose(page["all"], ours, atol=1e-12)
-        assert np.abs(ours).max() < 0.3 and np.abs(ours.mean()) < 0.03
-        assert np.quantile(ours, [0.25, 0.75]) == pytest.approx([-0.15, 0.15], abs=0.04)
-    with pytest.raises(ValueError, match="seed must"):
-        trainer.first_weights(-1)
-
-
-@pytest.mark.browser
 @pytest.mark.parametrize(
     "inputs, shift, momentum",
     [("centred", None, 0.98), ("printed", None, 0.9), ("centred", 3, 0.0)],
