@@ -22,10 +22,6 @@ built_test = pytest.mark.built
 NOTEBOOKS = [page for page in PAGES if source(page).suffix == ".ipynb"]
 
 
-def plain(html: str) -> BeautifulSoup:
-    return BeautifulSoup(html, "html.parser")
-
-
 # --- links --------------------------------------------------------------------------------
 
 
@@ -74,18 +70,6 @@ def test_links_resolve_and_nothing_comes_from_outside(built, parsed):
     assert not {name: links for name, links in broken.items() if links}
     outside = {name: loaded_from_outside(parsed(name)) for name in PAGES}
     assert not {name: links for name, links in outside.items() if links}
-
-
-def test_broken_links_and_outside_ones_are_seen(tmp_path):
-    page = tmp_path / "page.html"
-    page.write_text(
-        '<p id="here"><a href="#here">a</a><a href="#gone">b</a><a href="no.html">c</a>'
-        '<a href="https://example.org">d</a><img src="no.png"><img src="//example.org/x.png">'
-    )
-    assert broken_links(page, lambda path: plain(path.read_text())) == [
-        "#gone", "no.html", "no.png",
-    ]  # fmt: skip
-    assert loaded_from_outside(plain(page.read_text())) == ["//example.org/x.png"]
 
 
 # --- prose --------------------------------------------------------------------------------
@@ -153,20 +137,6 @@ def test_code_in_the_open_teaches_and_none_is_lost(parsed):
 def test_no_answer_stands_in_the_open(parsed):
     assert not {name: found for name in CHAPTERS if (found := open_answers(parsed(name)))}
     assert all(parsed(name).select("#on-your-own details") for name in CHAPTERS)
-
-
-def test_faults_of_a_page_are_seen():
-    cell = '<div class="cell"><div class="cell_input"><pre>{}</pre></div></div>'
-    folded = cell.replace("<pre>", "<details><pre>").replace("</pre>", "</pre></details>")
-    html = f"<article>{cell.format('f(x)')}{folded.format('import x')}</article>"
-    assert open_code(plain(html)) == ["f(x)"]
-    asked = "<p><strong>1. So?</strong> How many?</p>"
-    fold = '<div class="cell"><details>code</details></div><details>It is 5.</details>'
-    section = '<article><section id="on-your-own"><h2>On your own</h2>{}</section></article>'
-    assert open_answers(plain(section.format(asked + fold + asked + fold))) == []
-    assert open_answers(plain(section.format(asked + fold + "<p>It is 5.</p>"))) == ["It is 5."]
-    prose = "<article><p>3 N m and -2<code>-1</code></p><pre><p>4 kg</p></pre></article>"
-    assert badly_set(plain(prose)) == ["3 N m", " -2"]
 
 
 # --- weight -------------------------------------------------------------------------------

@@ -109,24 +109,3 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
         wrong += [(name, "behind no sentence", check) for check in set(known) - used]
     assert not wrong
     assert set(BOUND) <= set(NAMES) and sum(map(len, BOUND.values())) > 200
-
-
-# --- the reader of pages ------------------------------------------------------------------
-
-
-def test_what_is_prose_of_a_page(tmp_path):
-    """Sentences outside fences and exercises; captions and alternative texts, without values."""
-    path = tmp_path / "page.md"
-    plain = "# Errors of 0.4\n\n```\nerror 0.5\n```\n\nAll is well.\n\n**1. Error.** Reach 0.6.\n"
-    path.write_text(plain + "\nHere the error is 0.7. It falls.\n")
-    assert [n for one in prose.sentences(path) for n in prose.typed_numbers(one)] == ["0.7"]
-    code = (
-        "figures.curves(x, 'The training error falls from 0.36 to the end.',"
-        " f'The test error falls from {a:.2f} to 0.25 in the end.')"
-    )
-    cell = nbformat.v4.new_code_cell(code)
-    cell.metadata["mystnb"] = {"figure": {"caption": "The error is 0.47.\n"}}
-    path = tmp_path / "page.ipynb"
-    nbformat.write(nbformat.v4.new_notebook(cells=[cell]), path)
-    numbers = [n for one in prose.sentences(path) for n in prose.typed_numbers(one)]
-    assert sorted(numbers) == ["0.25", "0.36", "0.47"]

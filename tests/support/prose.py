@@ -16,6 +16,7 @@ from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.studies.windows import SIZES
 
+# Words near which a number may be a result.
 RESULT_WORDS = re.compile(
     r"\b(?:errors?|RMSS|torques?|times|per ?cent|factors?|medians?|correlations?|roughness|"
     r"shares?|ratios?|residuals?|deviations?|weights?|verdicts?|faster|slower|noise|gap|"
@@ -23,17 +24,17 @@ RESULT_WORDS = re.compile(
     r"better|worse|R²)\b|%|‰|\bdB\b|\bN m\b|°",
     re.IGNORECASE,
 )
-"""Words near which a number may be a result."""
 
+# A number that is not part of a name, an exponent or an index.
 NUMBER = re.compile(r"(?<![\w.,^_\\-])[-−±]?\d+(?:,\d{3})*(?:\.\d+)?(?:e-?\d+)?")
-"""A number that is not part of a name, an exponent or an index."""
 
+# Fences, directives and displayed equations.
 BLOCKS = [
     re.compile(pattern, re.MULTILINE | re.DOTALL)
     for pattern in (r"^(`{3,}|:{3,}).*?^\1`*", r"^\$\$.*?^\$\$.*?$")
 ]
-"""Fences, directives and displayed equations."""
 
+# What is computed, quoted or no sentence.
 NO_PROSE = [
     re.compile(pattern, re.MULTILINE)
     for pattern in (
@@ -48,7 +49,6 @@ NO_PROSE = [
         r"^\s*(?:\d+\.|\*\*\d+\.)\s",  # numbers of items
     )
 ]
-"""What is computed, quoted or no sentence."""
 
 NAMES = re.compile(
     r"\b(?:Figures?|Fig\.|Tables?|sections?|chapters?|Appendix|pages?|pp\.|exercises?|joints?|"

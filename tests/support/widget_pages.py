@@ -89,6 +89,18 @@ def phone(browser, url, **options):
     context.close()
 
 
+def opened(tmp_path, visit, widget, query="", **options):
+    """A page with a widget, for a reader who wants no motion."""
+    here = visit(f"{page_of(tmp_path / 'page.html', widget, **options)}{query}", **CALM)
+    here.page.evaluate(NEXT_FRAME)
+    return here
+
+
+def flat(weights) -> np.ndarray:
+    """A network's weights in the page's order."""
+    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain.FIELDS])
+
+
 def drag(page, box, *places):
     """With the mouse, through places in parts of a box's width and height."""
     points = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
@@ -148,22 +160,10 @@ def saved(*widgets) -> dict:
 
 
 def page_of(path: Path, *widgets, change=None, extra="", mount=MOUNT, damages=()) -> str:
-    """Write a page that shows the widgets; returns its address.
+    """Write a page with the widgets, one below the other; its address.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    *widgets
-        Shown one below the other.
-    change : callable, optional
-        Changes the first widget's saved entry in place.
-    extra : str
-        Markup before the script that mounts.
-    mount : str
-        Address of that script.
-    damages : sequence of callables
-        Each changes a copy of the first widget's entry; the copies are shown after the widgets.
+    `change` changes the first widget's saved entry in place, and each of the `damages` a copy of
+    it, shown after the widgets. `extra` is markup before the script at `mount`.
     """
     state = saved(*widgets)
     ids = [widget.model_id for widget in widgets]

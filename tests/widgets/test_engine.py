@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from widget_pages import functions
+from widget_pages import flat, functions
 
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
@@ -165,10 +165,6 @@ def double(monkeypatch):
     torch.set_default_dtype(torch.float64)
     yield
     torch.set_default_dtype(torch.float32)
-
-
-def flat(weights: Weights) -> np.ndarray:
-    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain.FIELDS])
 
 
 @pytest.mark.browser

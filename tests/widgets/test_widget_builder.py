@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
+from widget_pages import NEXT_FRAME, copied, functions, opened
 
 from ddlib.analysis import followed, frequency_response
 from ddlib.simulation import LOG_STEP
@@ -82,12 +82,6 @@ def test_the_page_computes_the_same(evaluate):
 
 
 # In a page without a kernel
-
-
-def opened(tmp_path, visit, widget, query=""):
-    here = visit(f"{page_of(tmp_path / 'page.html', widget)}{query}", **CALM)
-    here.page.evaluate(NEXT_FRAME)
-    return here
 
 
 def place(page, k, v):

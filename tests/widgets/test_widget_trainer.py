@@ -7,13 +7,13 @@ import re
 import numpy as np
 import pytest
 import torch
-from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
+from widget_pages import copied, flat, functions, opened
 
 from ddlib.analysis import CLASSES, classify
 from ddlib.learning import Descent, default_rate
 from ddlib.metrics import rmss
 from ddlib.widgets import NetworkTrainer
-from ddlib.widgets.engine import plain, trainer
+from ddlib.widgets.engine import trainer
 from workshop.report import results
 from workshop.report.studies.page import training as study
 
@@ -50,10 +50,6 @@ def taught(evaluate, widget, epochs, seed=1, inputs="centred", shift=None, step=
     torques = np.frombuffer(widget.torques, "<f4").astype(float).tolist()
     choice = {"seed": seed, "inputs": inputs, "shift": shift, "step": step, "momentum": momentum}
     return evaluate(SCHOOL, [widget.spec, positions, torques, choice, epochs])
-
-
-def flat(weights):
-    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain.FIELDS])
 
 
 # The training
@@ -108,13 +104,6 @@ def test_names_follow_the_rule(evaluate, widget):
 
 
 # In a page without a kernel
-
-
-def opened(tmp_path, visit, widget, query="", **options):
-    url = page_of(tmp_path / "page.html", widget, **options)
-    here = visit(f"{url}{query}", **CALM)
-    here.page.evaluate(NEXT_FRAME)
-    return here
 
 
 @pytest.mark.browser
