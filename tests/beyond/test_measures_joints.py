@@ -37,15 +37,3 @@ def test_a_planted_law_is_found(plant, power):
     joints, motions, _ = measures.law(0.2)
     np.testing.assert_allclose(joints, [2, 4, 7])
     np.testing.assert_allclose(motions[0], 4 * joints**power)
-
-
-def test_couplings_leave_out_a_joint_by_itself(plant):
-    inertia = np.array([[5.0, 1.0, 0.2], [1.0, 2.0, 0.3], [0.2, 0.3, 1.0]])
-    gains = {"real": [inertia * (1 + 9 * np.eye(3))] * 5, "unrelated": [1 - inertia] * 5}
-    pairs = {"inertia": inertia, "gains": gains, "acceleration": np.ones(3), "deviation": [1.0] * 3}
-    plant(pairs=pairs)
-    assert measures.couplings().value == pytest.approx(1)
-    assert measures.couplings("unrelated").value == pytest.approx(-1)
-    plant(pairs=pairs | {"acceleration": [3.0, 5.0, 1.0], "deviation": [1.0, 2.0, 1.0]})
-    wanted = inertia * [[3, 5, 1], [1.5, 2.5, 0.5], [3, 5, 1]]  # shares of each torque
-    np.testing.assert_allclose(measures.scaled()[1], wanted)

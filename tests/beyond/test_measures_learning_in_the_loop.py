@@ -44,9 +44,3 @@ def test_multiplications_step_by_step(hidden, window):
         covariance = 2 * size**2  # outer product, over the forgetting
         total = before + seen + weight + gain + predicted + moved + covariance
         assert found[name] == pytest.approx(total / 5)
-
-
-def test_what_1986_could_afford():
-    alone, least = (learning.affordable(name) for name in ("torque", "last layer"))
-    assert alone.value == pytest.approx(524 / (277 * 2 / 1.2))
-    assert least.value > alone.value

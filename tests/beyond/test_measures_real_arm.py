@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib.analysis import CLASSES
-from workshop.beyond.measures import real_arm, real_arm_filters as filters
+from workshop.beyond.measures import real_arm_filters as filters
 from workshop.report import results
 
 TRUE = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
@@ -46,17 +46,6 @@ def ensemble(factor, velocity=0.5):
         "curved": gain / gain.max() if np.any(gain) else gain,
         "classes": {"hidden": hidden, "direct": np.zeros_like(hidden)},
     }  # fmt: skip
-
-
-def test_errors_are_pooled_over_blocks_and_networks(plant):
-    errors = np.arange(15.0).reshape(5, 3)
-    plant(grid=[
-        {"rate": 100, "width": w, "network": errors**2, "largest weight": x * np.ones((5, 3))}
-        for w, x in ((21, 4.0), (41, 1.0))
-    ])  # fmt: skip
-    assert real_arm.error().value == pytest.approx(np.sqrt(np.mean(errors**2)))
-    assert real_arm.error().text.startswith("blocks: 1.3, 4.1, ")
-    assert real_arm.magnitudes().value == pytest.approx(0.25)
 
 
 def test_names_beside_the_null_that_gives_most(ensembles):

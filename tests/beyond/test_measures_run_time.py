@@ -49,21 +49,6 @@ def test_rank_correlation_is_scipys():
     np.testing.assert_allclose(rank_correlation(a, b), wanted, atol=1e-12)
 
 
-def test_predictors_in_order_and_against_it():
-    assert measured.predicts("RMSS", 21).value == pytest.approx(1)
-    assert measured.predicts("through the loop", 41).value == pytest.approx(-1)
-    assert len(measured.scatter("planned")[0]) == 75
-    assert measured.predicts_better().value == pytest.approx(-2)
-    assert measured.predicts_better("planned").value == pytest.approx(0, abs=1e-12)
-
-
-def test_kinds_by_their_medians(plant):
-    wanted = spearmanr([60, 70, 80, 90, 100, 16], [6, 7, 8, 9, 10, 4])[0]
-    assert measured.predicts_kind().value == pytest.approx(wanted)
-    plant["readings"][JD]["square"]["identified"]["whole"] = 50 * SPREAD
-    assert measured.predicts_kind().value < 0.7 < measured.predicts_kind(SF).value
-
-
 def test_where_a_loop_turns(plant):
     assert measured.unstable_at().value == 4 and measured.unstable_at(late=5).value == 1
     predicted, simulated = measured.onsets()

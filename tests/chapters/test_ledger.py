@@ -1,9 +1,8 @@
 """The ledger's tables: their numbers against the results and the paper's own counts."""
 
-import nbformat
 import numpy as np
 import pytest
-from book_pages import BACK_MATTER, CHAPTERS, ROOT
+from book_pages import CHAPTERS, ROOT
 
 from ddlib.tables import significant
 from workshop.chapters import ledger
@@ -86,52 +85,6 @@ def test_open_questions_quote_the_results(questions):
     assert row[2].endswith(significant(np.median(six["deviation of set A"]), 2))
 
 
-def changed(monkeypatch, name, change):
-    """Let `results.read` return a changed result."""
-    read = results.read
-    monkeypatch.setattr(results, "read", lambda asked: change() if asked == name else read(asked))
-
-
-def test_a_changed_result_changes_the_table(monkeypatch, questions):
-    question = "How many hidden units (window 21)?"
-    content = results.read("hidden-units")
-    content["rows"][0]["test"] = [12.5]
-    changed(monkeypatch, "hidden-units", lambda: content)
-    now = {row[0]: row[1:] for row in ledger.open_questions().rows}
-    assert "test 12" in now[question][2]
-    assert "test 12" not in questions[question][2]
-
-
-def test_one_network_of_many_is_the_median(monkeypatch):
-    content = results.read("table-4-1")
-    errors = content["setups"]["state feedback"]["21"]["errors"]
-    count = len(errors["test"])
-    errors["test"] = [0.2] * (count - 2) + [7.0, 0.1]
-    changed(monkeypatch, "table-4-1", lambda: content)
-    (row,) = [row for row in ledger.open_questions().rows if "one network worth" in row[0]]
-    assert row[1:] == (
-        f"the median of {count} counts", "test 0.20", f"one of the {count}: test 0.10 to 7.0"
-    )  # fmt: skip
-
-
-def test_all_knobs_turned(monkeypatch):
-    def run(best):
-        return {"windows": {str(w): {"test": [abs(w - best)] * 2} for w in (11, 21, 41)}}
-
-    methods = {"descent": [run(21), run(21)], "solver": [run(41)]}
-    damping = {str(w): {"training": [[0.1, 0.3]], "test": [[w, w]]} for w in (11, 21, 41)}
-    changed(monkeypatch, "screened", lambda: {"methods": methods})
-    changed(monkeypatch, "recordings", lambda: {"setups": {"joint damping": damping}})
-    rows = {row[0]: row[3] for row in ledger.open_questions().rows}
-    (knobs,) = [text for question, text in rows.items() if "gains" in question]
-    assert (
-        knobs == "of 3 runs with all knobs turned, test least at window 11 in 0, 21 in 2, 41 in 1"
-    )
-    (readings,) = [text for question, text in rows.items() if "controller" in question]
-    tuned = "tuned to Table 4-1: training 0.20 · 0.20 · 0.20; test 11 · 21 · 41, least at 11"
-    assert readings.startswith("position alone: ") and readings.endswith(tuned)
-
-
 def test_direct_filters_follow_position_after_two_sines_too():
     """The reason of the claim acceleration-by-output says so; chapter 9 has the control."""
     (claim,) = [one for one in claims.load() if one.id == "acceleration-by-output"]
@@ -155,15 +108,6 @@ def test_main_findings_good_and_bad():
         assert row[0] == f"{claim.claim} ({{doc}}`{claim.chapter}`)"
         assert row[1] == claims.printed(claim) and claims.sure(claim) == row[3]
         assert row[4] == claim.why
-
-
-def test_the_page_shows_every_section_and_comes_first():
-    notebook = nbformat.read(BOOK / "ledger.ipynb", as_version=4)
-    source = "\n".join(cell.source for cell in notebook.cells)
-    for key, title in claims.SECTIONS.items():
-        assert f'wall.Tiles(claims.of_section("{key}"))' in source
-        assert f"### {title}" in source
-    assert BACK_MATTER[0] == "book/ledger"
 
 
 def test_claims_under_both_readings_are_counted():

@@ -86,15 +86,3 @@ def test_networks_of_the_table_are_judged_by_gains_that_finite_differences_confi
         moved[..., joint] = ((there - back) / 2e-1).mean(-2)
     worst = np.abs(np.median(moved, 0) / true - 1).max()
     assert found.value == pytest.approx(worst, rel=1e-2)
-
-
-def test_stiffness_is_a_share_of_what_the_inertia_is_worth(planted):
-    wanted = trial.arm_gains()
-    worth = (np.pi / 3) ** 2 * wanted[0, 0, 2]
-    gains = wanted.copy()
-    gains[0, 0, 0] = -worth / 2
-    planted(row({"gains": [gains.tolist()] * 5}, None))
-    found = trial.stiffness()
-    assert found.value == pytest.approx(0.5) and found.replicates == pytest.approx(0.5)
-    planted(row({"gains": [wanted.tolist()] * 5}, None))
-    assert trial.stiffness().value == 0

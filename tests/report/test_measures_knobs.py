@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from ddlib.setups import WINDOWS
-from workshop.report import results
 from workshop.report.knobs import screening, spread_evenly, weigh
 from workshop.report.measures import knobs
 
@@ -60,24 +58,3 @@ def test_the_posterior_finds_the_knobs_behind_the_numbers():
     low, middle, high = knobs.Posterior(places, weights, 0.0).quantiles()
     np.testing.assert_allclose(middle[:2], truth[:2], atol=0.1)
     assert (high - low)[:2].max() < 0.3 and (high - low)[2] > 1.3  # the third knob does nothing
-
-
-def test_committed_runs_are_read_as_they_lie(monkeypatch):
-    cells = {
-        str(w): {c: [1.0 * w, 2.0 * w] for c in ("training", "test", "best test", "largest weight")}
-        for w in WINDOWS
-    }
-    content = {"methods": {"solver": [{"places": [0.0] * 9, "windows": cells}] * 3}}
-    monkeypatch.setattr(results, "read", {"screened": content}.__getitem__)
-    found = knobs.logarithms("solver")
-    assert found.shape == (3, 2, 6)
-    np.testing.assert_allclose(np.exp(found[1, 1]), [22, 42, 82, 22, 42, 82])
-    np.testing.assert_allclose(
-        np.exp(knobs.logarithms("solver", [("test", 41)])[0, :, 0]), [41, 82]
-    )
-
-
-def test_printed_numbers_are_the_papers():
-    found = np.exp(knobs.printed(knobs.CELLS + knobs.WEIGHTS))
-    wanted = [0.078, 0.027, 0.024, 0.22, 0.10, 0.13, 18.9, 11.7, 4.2]
-    np.testing.assert_allclose(found, wanted)

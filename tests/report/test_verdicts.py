@@ -14,7 +14,6 @@ from workshop.report.evidence.verdicts import (
     fresh,
     judged,
     mean,
-    median,
     shares,
     stands,
     turns_at,
@@ -119,22 +118,9 @@ def test_what_a_written_verdict_bears():
         stands("fine", {"reproduced": 1.0})
 
 
-def test_how_often_a_new_ensemble_ends_a_verdict():
-    """Two draws of a normal statistic, the first one just decided; numbers in the source."""
-    for limit, wanted in ((STANDS, 1), (0.8, 29)):
-        apart = stats.norm.ppf(limit) - stats.norm.ppf(DECIDED)
-        assert round(float(100 * stats.norm.cdf(apart / np.sqrt(2)))) == wanted
-
-
 def test_where_a_share_reaches_a_level():
     values = np.array([1.0, 2.0, 4.0])
     assert turns_at(values, 0.05 * values, 0.15) == pytest.approx(3.0)
     assert turns_at(values, 0.4 / values**2, 0.2) == pytest.approx(np.sqrt(2))  # falling
     with pytest.raises(ValueError, match=r"shares must reach across 0\.5"):
         turns_at(values, 0.05 * values, 0.5)
-
-
-def test_median_and_mean_take_all_that_is_a_members():
-    x = np.arange(12.0).reshape(1, 3, 4) ** 2
-    assert median(x) == [np.median(x)] and mean(x) == [np.mean(x)]
-    assert median(np.stack([x[0], x[0] + 1])).tolist() == [np.median(x), np.median(x) + 1]

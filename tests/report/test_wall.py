@@ -61,20 +61,6 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
             assert re.search(rf"\b{width}\b", text), claim.id
 
 
-def test_parts_of_a_section(make):
-    for where, expected in (
-        ("section 7.1", "7.1. Future Work"),
-        ("section 7", ""),
-        ("Abstract", ""),
-        ("Appendix I", ""),
-        ("Table 4-1", "Table 4-1"),
-        ("Figure 5-6", "Figure 5-6"),
-        ("section 4, footnote", ""),
-    ):
-        assert wall.part(make({"to": 1}, where=where)) == expected
-    assert {wall.part(claim)[:3] for claim in ALL} >= set(wall.PARTS)
-
-
 def test_signs_differ_and_lead_to_tiles():
     assert len(set(wall.MARKS.values())) == len(VERDICTS) == len(wall.MARKS)
     of_the_paper = claims.of_the_paper()
