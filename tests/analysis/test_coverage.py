@@ -62,14 +62,3 @@ def test_shares_are_counted_in_cells_of_the_first():
     assert shared_cells(right, -right, 4) == 0.0
     assert shared_cells(right, -right, 1) == 1.0  # one cell holds all
     assert shared_cells(np.repeat(right, 9, 0), right[:1], 4) == 0.25  # points do not count
-
-
-def test_what_makes_no_sense_is_refused():
-    with pytest.raises(ValueError, match="points must hold points within -1 to 1"):
-        shared_cells(2 * GRID, GRID, 4)
-    with pytest.raises(ValueError, match="among must hold"):
-        shared_cells(GRID, GRID[:0], 4)
-    with pytest.raises(ValueError, match="among must have shape"):
-        nearest_distances(GRID, [[0.0]])
-    with pytest.raises(ValueError, match="number of points"):
-        nearest_distances(GRID[:0], GRID)
