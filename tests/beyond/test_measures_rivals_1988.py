@@ -7,8 +7,7 @@ from workshop.beyond.measures import rivals_1988 as measures
 from workshop.beyond.studies.rivals_1988 import practised_distance
 from workshop.report import results
 
-FIVE = np.ones(5)  # days
-EXACT, POSITIONS = measures.KINDS
+POSITIONS = measures.KINDS[1]
 
 
 @pytest.fixture

@@ -16,23 +16,6 @@ from workshop.report.measures import backpropagation, filters, networks, windows
 RNG = np.random.default_rng(0)
 
 
-@pytest.fixture
-def plant_filters(monkeypatch):
-    """``plant_filters(trained, before)`` in place of weights, ``{layer: {width: filters}}``.
-
-    Every filter is a network's only one.
-    """
-
-    def put(trained, before=None):
-        def read(width, layer, model=committed.networks, setup=None):
-            from_ = before if model is committed.untrained else trained
-            return np.asarray((from_ or trained)[layer][width])[:, None]
-
-        monkeypatch.setattr(committed, "filters", read)
-
-    return put
-
-
 # --- the unit, the rule, parity ------------------------------------------------------------------
 
 
@@ -105,17 +88,22 @@ def test_derivatives_from_windows(monkeypatch, order):
 # --- weights as filters --------------------------------------------------------------------------
 
 
-def test_middle_between_two_crossings(plant_filters):
+def test_middle_between_two_crossings(monkeypatch):
     x = np.arange(-10.0, 11)
     parabolas = [(x - s) ** 2 - 9.3 for s in (0.0, 0.4, 0.6, -0.7)]  # crossings at s ± 3.05
     trained = [*parabolas, x - 0.5, x**3 - 20 * x + 3]
-    plant_filters({"direct": {21: trained}}, {"direct": {21: [x - 0.3, *parabolas[:2]]}})
+    planted = {committed.networks: trained, committed.untrained: [x - 0.3, *parabolas[:2]]}
+    monkeypatch.setattr(
+        committed,
+        "filters",
+        lambda width, layer, model=committed.networks: np.array(planted[model])[:, None],
+    )
     found = networks.asymmetric(21)
     assert found.value == pytest.approx(0.5)
     assert found.text == "2 of 4 filters with two crossings; before training 2 have two"
     assert networks.asymmetric(21, 0.3).value == pytest.approx(0.75)
     # the crossings are between samples: a parabola has its middle where it has
-    plant_filters({"direct": {21: [(x - 0.5) ** 2 - 9.3]}})
+    planted[committed.networks] = [(x - 0.5) ** 2 - 9.3] * 5
     assert networks.asymmetric(21, 0.499).value == 1 and networks.asymmetric(21, 0.501).value == 0
 
 
