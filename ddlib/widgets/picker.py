@@ -93,8 +93,6 @@ class TrajectoryPicker(LiveWidget):
         Extents of shoulder and elbow in degrees; starts as the test trajectory.
     recording : object
         What `on_record` returned last, or None.
-    interpolates : bool
-        Whether the extents lie in the hull of the training trajectories.
     numbers : dict
         The numbers beside the pad over the whole square: name -> ndarray, shape
         ``(shoulder, elbow)``, at the extents `AXIS` of both joints.
