@@ -5,14 +5,10 @@ import pytest
 from hypothesis import given, strategies as st
 from scipy.integrate import cumulative_simpson, solve_ivp
 
-from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
-from ddlib.effects import CoulombFriction, Effects, ViscousFriction
-from ddlib.simulation import follow, record, rms
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.adaptive.craig import CraigHsuSastry
 from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
-from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 
 ARM = CMU_DD_ARM_II
@@ -117,31 +113,6 @@ def test_errors_of_craigs_loop_obey_their_linear_equation_and_parameters_are_fou
     np.testing.assert_allclose(estimates[-1], TRUTH, rtol=0.02)
 
 
-def test_sampled_laws_follow_better_than_the_feedback_they_contain():
-    effects = Effects(friction=(ViscousFriction((3.0, 1.0)), CoulombFriction((0.5, 0.2))))
-    names = (*PARAMETERS[:3], *PARAMETERS[5:])
-    nothing = np.zeros(7)
-    rate = np.array([6.0, 1.5, 0.6, 60.0, 15.0, 15.0, 6.0])
-    found = {}
-    for name, speed in (("learning", rate), ("still", nothing)):
-        adaptive = Watched(SlotineLi((40.0, 10.0), (8.0, 8.0), speed, nothing, names))
-        run = record(ARM, adaptive, (40.0, 30.0), effects=effects, duration=3.0, rest=0.2)
-        found[name] = rms(run.tracking_error[run.motion][150:]), adaptive.law.estimates
-    assert (found["learning"][0] < 0.5 * found["still"][0]).all()
-    assert (found["still"][1] == 0).all()
-    course = found["learning"][1]
-    assert course.shape[-1] == 7 and (course[0] == 0).all() and np.abs(course[-1]).max() > 0
-
-
-def test_without_adaptation_and_with_the_truth_there_is_no_error():
-    law = SlotineLi((40.0, 10.0), (8.0, 8.0), np.zeros(3), TRUTH)
-    t = np.arange(0, 3000) * 1e-3
-    wanted = stirring(t)
-    start = wanted.q[0], wanted.qd[0]
-    run = follow(ARM, law, wanted, t, start=start, log_every=10)
-    assert np.abs(run.tracking_error).max() < 2e-3
-
-
 SLOTINE = dict(gain=(1.0, 1.0), slope=(1.0, 1.0), rate=(1.0,) * 3, estimate=TRUTH)
 CRAIG = dict(
     kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), rate=(1.0,) * 3, estimate=TRUTH, **BOX
@@ -152,14 +123,10 @@ CRAIG = dict(
     "law, fine, change, message",
     [
         (SlotineLi, SLOTINE, dict(gain=(0.0, 1.0)), "gain must be above 0"),
-        (SlotineLi, SLOTINE, dict(slope=(1.0, -1.0)), "slope must be above 0"),
-        (SlotineLi, SLOTINE, dict(rate=(1.0, 1.0)), "rate must have shape"),
         (SlotineLi, SLOTINE, dict(rate=(-1.0, 1.0, 1.0)), "rate"),
-        (SlotineLi, SLOTINE, dict(estimate=(np.nan, 1.0, 1.0)), "estimate"),
         (SlotineLi, SLOTINE, dict(names=("a", "b", "mass")), "names"),
         (CraigHsuSastry, CRAIG, dict(weight=(16.0, 1.0)), "weight must be below kd"),
         (CraigHsuSastry, CRAIG, dict(low=0.0 * TRUTH), "positive definite"),
-        (CraigHsuSastry, CRAIG, dict(high=9.0 * TRUTH), "positive definite"),
         (CraigHsuSastry, CRAIG, dict(estimate=2.0 * TRUTH), "between low and high"),
         (CraigHsuSastry, CRAIG, dict(names=("b", "a", "d")), "begin with a, b, d"),
     ],
@@ -167,8 +134,3 @@ CRAIG = dict(
 def test_what_makes_no_sense_is_refused(law, fine, change, message):
     with pytest.raises(ValueError, match=message):
         law(**{**fine, **change})
-
-
-def test_a_watched_controller_that_never_ran_has_no_law():
-    with pytest.raises(ValueError, match="started"):
-        _ = Watched(pd((1.0, 1.0), (1.0, 1.0))).law

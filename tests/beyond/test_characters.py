@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-import torch
 
-from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies import characters, intervals
 
@@ -27,32 +25,12 @@ def test_the_parts_of_the_exact_arm_are_those_of_the_file(drawn):
     assert max(characters._errors(found, drawn).values()) < 1e-12
 
 
-def test_errors_sum_the_joints_and_average_the_samples(drawn):
-    found = characters._parts(exact, characters.states(drawn).x)
-    found["torque"] = drawn.tau + np.array([0.3, 0.4])
-    found["mass_matrix"] = 1.1 * drawn.mass_matrix
-    errors = characters._errors(found, drawn)
-    assert errors["torque"] == pytest.approx(0.25) and errors["mass_matrix"] == pytest.approx(0.1)
-
-
 def test_at_twice_the_speed_torques_follow_the_square_of_time(drawn):
     x = characters.states(drawn).x
     assert characters._hurried(exact, x) < 1e-12
     still = characters._hurried(lambda fast: exact(fast) + np.array([0.3, 0.4]), x)
     moved = 4 * (drawn.tau - drawn.gravity) + drawn.gravity
     assert still == pytest.approx(0.5 / np.sqrt(moved.var(0).sum()))
-
-
-def test_a_dead_joint_is_seen(drawn):
-    cases = characters.states(drawn, 0.0)
-    rival = LagrangianNetwork(**AS_PUBLISHED, epochs=0).fit(cases)
-    with torch.no_grad():
-        rival.network.head.weight[:2] = 0.0
-        rival.network.head.bias[:2] = torch.tensor([-1.0, 1.0])
-    assert characters._dead(rival, drawn.q) == [True, False]
-    with torch.no_grad():
-        rival.network.head.weight[0] = 1.0  # positive somewhere: alive
-    assert characters._dead(rival, drawn.q) == [False, False]
 
 
 def test_a_row_has_all_seeds(monkeypatch):

@@ -12,7 +12,6 @@ from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.control.feedback_error import (
     FeedbackErrorLearning,
-    GenericTerms,
     MotionMemory,
     RigidBodyTerms,
 )
@@ -67,20 +66,6 @@ def test_bad_shapes_are_refused():
         record(ARM, bad, (10.0, 10.0), duration=0.5, rest=0.1)
 
 
-def test_generic_terms_do_not_hold_the_arm():
-    rng = np.random.default_rng(0)
-    q, qd, qdd = rng.uniform(-0.8, 0.8, (3, 400, 2))
-    terms = GenericTerms()
-    found = terms(q, qd, qdd)
-    assert found.shape == (400, 2, terms.count) and terms.count == 56
-    assert not np.any((found[:, 0] != 0) & (found[:, 1] != 0))
-    columns = found[:, 0, : terms.count // 2]
-    for exact in (np.cos(q[:, 1]) * qdd[:, 0], np.sin(q[:, 1]) * qd[:, 0] * qd[:, 1],
-                  np.sign(qd[:, 0])):  # fmt: skip
-        left = exact - columns @ np.linalg.lstsq(columns, exact, rcond=None)[0]
-        assert left.std() > 1e-4 * exact.std()
-
-
 def test_a_memory_learns_its_motion_and_no_other():
     extents, errors = np.array([[40.0, 30.0]]), []
     memory = MotionMemory(pd((300.0, 90.0), (35.0, 10.0)), 0.3, lead=25, smoothing=5)
@@ -92,22 +77,3 @@ def test_a_memory_learns_its_motion_and_no_other():
     assert errors[-1] < 0.35 * errors[0]
     other = record(ARM, memory, [[10.0, 45.0]]).tracking_error
     assert np.abs(other).mean() > np.abs(bare).mean()
-
-
-def test_a_memory_without_trials_is_the_feedback_alone():
-    memory = MotionMemory(TEACHER, 0.0)
-    runs = [record(ARM, law, (40.0, 30.0), duration=1.0) for law in (memory, TEACHER)]
-    np.testing.assert_array_equal(runs[0].tau_true, runs[1].tau_true)
-    watched = Watched(memory)
-    record(ARM, watched, (40.0, 30.0), duration=1.0)
-    memory.learn(watched.law)
-    assert not memory.torque.any()
-
-
-def test_a_memory_is_stretched_to_another_length():
-    memory = MotionMemory(TEACHER, 1.0)
-    memory.torque = np.stack([np.linspace(0, 1, 101), np.linspace(2, 0, 101)], -1)
-    wanted = Trajectory(*(np.zeros((51, 2)) for _ in range(3)))
-    played = memory.start(wanted, 0.002).played
-    np.testing.assert_allclose(played[:, 0], np.linspace(0, 1, 51), atol=1e-12)
-    np.testing.assert_allclose(played[25], [0.5, 1.0], atol=1e-12)

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial.distance import cdist
-from scipy.stats import multivariate_normal
-from sklearn.decomposition import PCA
 
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.identification import GRAVITY, RIGID
@@ -57,53 +55,6 @@ def test_a_gaussian_process_is_the_closed_form():
         np.testing.assert_allclose(rival.deviation(x)[:, joint], deviation, rtol=1e-5)
 
 
-def test_hyperparameters_maximise_the_marginal_likelihood():
-    cases = data(80)
-    rival = GaussianProcess("states", subset=80, restarts=1).fit(cases)
-    flat = cases.x.reshape(80, -1)
-    a = (flat - flat.mean(0)) / flat.std(0)
-
-    def likelihood(lengths, size, noise, y):
-        kernel = size * np.exp(-0.5 * cdist(a / lengths, a / lengths, "sqeuclidean"))
-        return multivariate_normal(cov=kernel + noise * np.eye(len(a))).logpdf(y)
-
-    for joint, process in enumerate(rival.processes):
-        y = cases.torque[:, joint]
-        y = (y - y.mean()) / y.std()
-        lengths, size = process.kernel_.k1.k2.length_scale, process.kernel_.k1.k1.constant_value
-        noise = process.kernel_.k2.noise_level
-        best = likelihood(lengths, size, noise, y)
-        for factor in (0.7, 1.4):
-            assert likelihood(lengths * factor, size, noise, y) < best
-            assert likelihood(lengths, size * factor, noise, y) < best
-            assert likelihood(lengths, size, noise * factor, y) < best
-            for k in np.flatnonzero(lengths < 10):
-                other = lengths.copy()
-                other[k] *= factor
-                assert likelihood(other, size, noise, y) < best + 1e-3
-
-
-def test_an_input_that_does_not_matter_gets_a_long_length():
-    rival = GaussianProcess("states", subset=120, restarts=0).fit(data(noise=0.02))
-    lengths = rival.lengths.reshape(2, 2, 3)  # joint, joint of the input, row
-    assert lengths[0, 0, 0] > 20 * lengths[0, 1, 0]  # two vertical axes: the shoulder's angle
-    assert lengths[1, 1, 1] > 20 * lengths[1, 0, 1]  # the elbow's own velocity, at the elbow
-
-
-def test_directions_of_windows_are_uncorrelated_and_of_unit_size():
-    x = np.cumsum(np.random.default_rng(0).standard_normal((200, 2, 11)), -1)
-    cases = Cases(x, x[..., 5], "windows", STEP)
-    inputs = RandomFeatures(features=1, directions=5).fit(cases).inputs
-    features, flat = inputs(x), x.reshape(200, -1)
-    np.testing.assert_allclose(features.T @ features / 200, np.eye(5), atol=1e-9)
-    np.testing.assert_allclose(features.mean(0), 0, atol=1e-9)
-    assert inputs.count() == 22 + 22 * 5
-    leading = PCA(5).fit_transform(flat)
-    np.testing.assert_allclose(np.abs(features), np.abs(leading / leading.std(0)), atol=1e-8)
-    with pytest.raises(ValueError, match="directions"):
-        RandomFeatures(directions=23).fit(cases)
-
-
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM])
 def test_known_structure_leaves_nothing_of_clean_torques(arm):
     rival, x = SemiParametric((*RIGID, *GRAVITY)).fit(data(noise=0.0, arm=arm)), states(40, 8, 0.9)
@@ -149,15 +100,6 @@ def test_many_random_features_are_kernel_ridge_regression():
         assert np.sqrt(np.mean(error**2)) < 0.05 * y.std()
 
 
-def test_random_features_choose_their_length_by_the_error_of_left_out_cases():
-    cases, x = data(150, noise=0.05), states(60, 4, 0.9)
-    truth = CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0))
-    chosen = RandomFeatures("states", 200).fit(cases)
-    each = [RandomFeatures("states", 200, lengths=(n,)).fit(cases) for n in chosen.lengths]
-    least, *_, largest = sorted(np.mean((rival.torque(x) - truth) ** 2) for rival in each)
-    assert np.mean((chosen.torque(x) - truth) ** 2) < 2 * least < 0.2 * largest
-
-
 def test_counts():
     cases = data(50)
     process = GaussianProcess("states", restarts=0).fit(cases)
@@ -171,9 +113,7 @@ def test_counts():
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda: GaussianProcess("images"), "kind"),
         (lambda: GaussianProcess(subset=1), "subset"),
-        (lambda: RandomFeatures(features=0), "features"),
         (lambda: RandomFeatures(lengths=(0.0,)), "lengths"),
         (lambda: GaussianProcess("states", directions=7).fit(data(20)), "directions"),
     ],

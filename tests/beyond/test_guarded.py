@@ -7,7 +7,6 @@ from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from workshop.beyond.control.adaptive.running import Watched
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
 from workshop.beyond.control.guarded import REASONS, Guarded
 
 STABLE, WILD = (300.0, 90.0), (8e5, 2e5)
@@ -50,25 +49,6 @@ def test_the_first_limit_that_is_passed_is_the_reason_with_its_time():
     assert stops.time == pytest.approx(log.t[late][0] - log.t[0], abs=0.011)
     assert not stops.running(log.t)[late].any()
     assert stops.running(log.t)[: late.argmax() - 1].all()
-
-
-def test_a_learner_has_nothing_to_learn_from_after_a_stop():
-    learner = SlotineLi((30, 10), (5, 5), (5.0, 1.0, 1.0), (0.0, 0.0, 0.0))
-    watched = Watched(Guarded(learner, angles=(0.3, 2.0)))
-    record(ARM, watched, [40, 20], rest=0.1)
-    k = round(float(watched.law.stops.time) / 0.002)
-    estimates = watched.law.inner.estimates
-    assert np.abs(np.diff(estimates[: k - 1], axis=0)).max() > 0
-    moved = np.abs(estimates[k + 2 :] - estimates[k + 2]).max()
-    assert moved == 0
-
-
-def test_a_speed_that_is_no_number_stops():
-    law = Guarded(proportional(STABLE)).start(
-        record(ARM, pd(STABLE, DAMPING), [30, 20], rest=0.1).reference, 0.002
-    )
-    tau = law(3, np.zeros(2), np.array([np.nan, 0.0]))
-    assert (tau == 0).all() and law.stops.time == pytest.approx(0.006)
 
 
 @pytest.mark.parametrize("name", ["angles", "speeds"])

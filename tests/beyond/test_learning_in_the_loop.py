@@ -16,24 +16,6 @@ def draw():
     return learners.Draw(STATE_FEEDBACK, first=2000, seeds=2)
 
 
-def test_motions_go_from_rest_to_rest_and_are_their_own_derivatives(draw):
-    for t, motion in learners.motions(draw).values():
-        q, qd, qdd = (np.asarray(x) for x in motion)
-        assert q.shape == (2, t.size, 2)
-        np.testing.assert_allclose(qd[:, [0, -1]], 0, atol=1e-12)
-        np.testing.assert_allclose(np.gradient(q, t, axis=-2), qd, atol=0.01)
-        inside = np.abs(np.gradient(qd, t, axis=-2) - qdd)
-        assert np.median(inside) < 1e-3 and (inside > 0.05).mean() < 0.02
-
-
-def test_draws_do_not_depend_on_how_many_there_are(draw):
-    more = learners.Draw(STATE_FEEDBACK, first=1999, seeds=3)
-    np.testing.assert_array_equal(more.learnt[1:], draw.learnt)
-    np.testing.assert_array_equal(more.untrained.weights.hidden_weights[:, 1:],
-                                  draw.untrained.weights.hidden_weights)  # fmt: skip
-    assert not np.array_equal(draw.learnt[0], draw.learnt[1])
-
-
 def test_learners_from_nothing_give_no_torque(draw):
     t, motion = learners.motions(draw)["the same"]
     one = Trajectory(*(x[None] for x in motion))

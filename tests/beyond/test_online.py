@@ -13,7 +13,6 @@ from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.online import (
     Abreast,
     LastLayer,
-    LinearFilter,
     OnlineDescent,
     OnlineFeedforward,
 )
@@ -33,14 +32,6 @@ def model(members=3, seed=0):
 
 def windows(seed=1, cases=6):
     return np.random.default_rng(seed).uniform(-0.8, 0.2, (cases, 2, WIDTH))
-
-
-def test_it_is_the_network_of_the_learning_package():
-    networks, each = model(), np.stack([windows(k) for k in range(3)])
-    online = OnlineDescent(networks, 0.0)
-    np.testing.assert_allclose(online.torque(windows()), networks.torque(windows()), rtol=1e-12)
-    for k, torque in enumerate(online.torque(each)):  # windows of its own for every run
-        np.testing.assert_allclose(torque, networks[k].torque(each[k]), rtol=1e-12)
 
 
 @pytest.mark.parametrize("part", ["hidden", "output"])
@@ -66,40 +57,6 @@ def test_a_step_of_descent_is_the_gradient_by_differences(part):
         assert -(ends[0] - ends[1]) / 2e-5 == pytest.approx(step[place], rel=1e-5, abs=1e-9)
 
 
-def test_feedback_is_an_error_like_any_other():
-    one, other = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5)
-    each = np.stack([windows(k)[0] for k in range(3)])
-    missing = np.random.default_rng(5).normal(size=(3, 2))
-    other.learn(each, other.torque(each[:, None])[:, 0] + missing)
-    one.correct(each, missing)
-    np.testing.assert_allclose(one.hidden, other.hidden, rtol=1e-12)
-    np.testing.assert_allclose(one.output, other.output, rtol=1e-12)
-
-
-def test_a_rate_for_each_run_and_momentum():
-    rates = np.array([0.0, 0.1, 0.3])
-    together = OnlineDescent(model(), rates, momentum=0.5)
-    alone = OnlineDescent(model()[2:], 0.3, momentum=0.5)
-    each = np.stack([windows(k) for k in range(3)])
-    for k in range(4):
-        torque = np.full((3, 2), 3.0 * k)
-        together.learn(each[:, k], torque)
-        alone.learn(each[2:, k], torque[2:])
-    np.testing.assert_allclose(together.output[2], alone.output[0], rtol=1e-12)
-    np.testing.assert_array_equal(together.hidden[0], OnlineDescent(model(), 0.0).hidden[0])
-
-
-def test_replay_learns_earlier_samples_again():
-    plain, again = OnlineDescent(model(), 0.5), OnlineDescent(model(), 0.5, replay=8)
-    each = np.stack([windows(k, 40) for k in range(3)])
-    wanted = 20 * each.mean(-1)
-    for k in range(40):
-        for learner in (plain, again):
-            learner.learn(each[:, k], wanted[:, k])
-    off = [np.abs(x.torque(each) - wanted).mean() for x in (plain, again)]
-    assert off[1] < off[0]
-
-
 @pytest.mark.parametrize("forgetting", [1.0, 0.97])
 def test_recursive_least_squares_on_line_is_batch_least_squares(forgetting):
     networks, rng = model(2), np.random.default_rng(0)
@@ -120,23 +77,11 @@ def test_recursive_least_squares_on_line_is_batch_least_squares(forgetting):
         np.testing.assert_allclose(learner.output[k], wanted.T, rtol=1e-6, atol=1e-8)
 
 
-def test_a_linear_filter_learns_what_is_linear():
-    rng = np.random.default_rng(0)
-    truth, each = rng.normal(size=(2, 2 * WIDTH)), rng.uniform(-0.8, 0.2, (200, 2, WIDTH))
-    torque = each.reshape(200, -1) @ truth.T + [1.0, -2.0]
-    nothing = np.zeros((2, 2 * WIDTH + 1))
-    learner = LinearFilter(INPUTS, nothing, lambda w: RecursiveLeastSquares(w, 1e-6))
-    for x, y in zip(each, torque):
-        learner.learn(x, y)
-    np.testing.assert_allclose(learner.torque(each), torque, atol=1e-4)
-
-
-@pytest.mark.parametrize("teacher", ["torque", "feedback", "nobody"])
-def test_with_rate_0_it_is_the_plain_feedforward(teacher):
+def test_with_rate_0_it_is_the_plain_feedforward():
     network = model(1)
     plain = Feedforward(WindowFeedforward(lambda w: network.torque(w)[0], WIDTH), FEEDBACK)
     learner = OnlineDescent(network[0], 0.0)
-    online = OnlineFeedforward(learner, FEEDBACK, WIDTH, teacher)
+    online = OnlineFeedforward(learner, FEEDBACK, WIDTH)
     runs = [record(ARM, law, EXTENTS, **SHORT) for law in (plain, online)]
     np.testing.assert_allclose(runs[1].tau_true, runs[0].tau_true, rtol=1e-9, atol=1e-9)
 
@@ -175,19 +120,6 @@ def test_desired_windows_are_learnt_with_the_feedback():
     wanted = run.reference.q[centre - 2 : centre + 3].T
     np.testing.assert_allclose(window, wanted, atol=1e-12)
     np.testing.assert_allclose(feedback, run.tau_true[centre], rtol=1e-9)
-
-
-def test_it_learns_in_the_loop_and_goes_on_in_the_next_run():
-    w = model(1).weights
-    rest = w.hidden_bias, w.output_weights, w.direct_weights, w.output_bias
-    unlearnt = Weights(w.hidden_weights, *(0 * each for each in rest))
-    learner = LastLayer(
-        TorqueModel(unlearnt, INPUTS, OUTPUTS), lambda w: RecursiveLeastSquares(w, 0.01)
-    )
-    online = OnlineFeedforward(learner, FEEDBACK, WIDTH)
-    runs = [record(ARM, online, np.array([EXTENTS])) for _ in range(4)]
-    errors = [np.sqrt((run.tracking_error**2).mean()) for run in runs]
-    assert errors[-1] < 0.7 * errors[0]
 
 
 def test_several_controllers_run_abreast():

@@ -39,19 +39,6 @@ def test_characters_add_up():
     np.testing.assert_allclose(steps, found.STEP, atol=1e-9)
 
 
-def test_characters_are_split_by_character():
-    found = others.characters()
-    training, test = found.split()
-    assert sorted(test.labels) == sorted(others.PUBLISHED_TEST)
-    assert len(training) == 17 and len(training.t) + len(test.t) == len(found.t)
-    assert not set(training.labels) & set(test.labels)
-    ends = np.cumsum(found.length)
-    place = list(found.labels).index("q")
-    own = slice(ends[place] - found.length[place], ends[place])
-    for name in ("t", "q", "tau", "mass_matrix"):
-        np.testing.assert_array_equal(getattr(found.of("q"), name), getattr(found, name)[own])
-
-
 # --- the real arm -----------------------------------------------------------------------
 
 
@@ -75,11 +62,6 @@ def test_fewer_samples_are_means():
     again = slow.at(100)
     np.testing.assert_allclose(again.q, found.at(100).q, rtol=1e-12)
     assert found.at(1000).q.shape == found.q.shape
-
-
-def test_reductions_and_frictions_are_one_for_each_joint():
-    assert len(others.REDUCTION) == len(others.COULOMB) == 6
-    assert f"{', '.join(f'{r:g}' for r in others.REDUCTION)}" in PAGE
 
 
 @pytest.mark.parametrize(

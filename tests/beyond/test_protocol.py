@@ -9,7 +9,6 @@ import pytest
 from sklearn.neighbors import KNeighborsRegressor
 
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
-from ddlib.setups import STATE_FEEDBACK, true_states
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
 from workshop.beyond.rivals.protocol import Cases, Estimating, NotFitted, Rival, trial
 
@@ -73,15 +72,6 @@ def test_states_estimated_from_windows_are_those_of_the_motion():
     assert within.operations() == (12 + 2 * 3 * 11, 10 + 2 * 3 * 10, 0, 0)
 
 
-def test_recordings_become_cases():
-    five = STATE_FEEDBACK.record()[:5]
-    data = Cases.windows(five, 21)
-    exact = Cases.states(five, true_states(five, STATE_FEEDBACK))
-    assert data.x.shape == (1500, 2, 21) and exact.x.shape == (1500, 2, 3)
-    np.testing.assert_array_equal(data.torque, exact.torque)
-    assert np.abs(data.x[..., 10] - exact.x[..., 0]).max() < 1e-3
-
-
 def test_a_trial_measures_errors_by_each_sets_own_deviation():
     _, exact = windows()
     half = Cases(exact.x[:70], exact.torque[:70], "states", STEP)
@@ -132,8 +122,6 @@ BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
         (lambda: Linear().fit(SEEN), "data must be states for Linear, got windows"),
         (lambda: Linear("windows").fit(Cases(SEEN.x[:0], SEEN.torque[:0], "windows", STEP)), "one"),
         (lambda: Linear("windows").fit(SEEN).torque(SEEN.x[:, :1]), r"shape \(cases, 2, 11\)"),
-        (lambda: Cases(SEEN.x, SEEN.torque, "images", STEP), "kind"),
-        (lambda: Cases(SEEN.x, SEEN.torque, "windows", 0.0), "step"),
         (lambda: Cases(SEEN.x, SEEN.torque, "states", STEP), r"x must have .* \(cases, joint, 3\)"),
         (lambda: Cases(SEEN.x, SEEN.torque[:-1], "windows", STEP), "torque"),
         (lambda: EXACT.estimated(), "kind must be 'windows'"),

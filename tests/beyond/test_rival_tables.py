@@ -57,17 +57,6 @@ def test_a_full_table_is_scipys_interpolation_of_the_same_nodes():
     np.testing.assert_allclose(full_table(torques, x, BOX, 3, interpolated=False), nearest)
 
 
-def test_a_grid_with_a_case_at_every_node_is_scipys_interpolation():
-    grid, edge = nodes(2)
-    rival = GridTable(2, ridge=1e-12, limits=BOX).fit(cases(grid))
-    x = states(50, seed=4)
-    values = torques(grid).reshape(3, 3, 3, 3, 3, 3, 2)
-    scipys = RegularGridInterpolator([edge] * 6, values)(x.reshape(50, 6))
-    np.testing.assert_allclose(rival.torque(x), scipys, rtol=1e-6, atol=1e-6)
-    assert not rival.empty(x).any()
-    assert rival.full() == table_size(3) and rival.count() == 3**6 * 3 + 2 + 12
-
-
 def test_a_grid_fitted_to_scattered_cases_is_the_ridge_of_its_hat_functions():
     x = states(80)
     data = cases(x)
@@ -79,32 +68,12 @@ def test_a_grid_fitted_to_scattered_cases_is_the_ridge_of_its_hat_functions():
     np.testing.assert_allclose(rival.values, data.torque.mean(0) + dense, rtol=1e-8, atol=1e-9)
 
 
-def test_nodes_far_from_all_cases_have_the_mean():
-    x = states(40)
-    x[..., 0] = x[..., 0] * 0.1 - 1.8
-    rival = GridTable(6, limits=BOX).fit(cases(x))
-    far = states(3)
-    far[..., 0] = 2.9
-    assert rival.empty(far).all() and not rival.empty(x).any()
-    with pytest.warns(OutsideFamilyWarning):
-        np.testing.assert_allclose(rival.torque(far), np.tile(torques(x).mean(0), (3, 1)))
-
-
 def test_nearest_is_brute_force():
     x, asked = states(300), states(40, seed=7) * 0.9
     rival = Nearest().fit(cases(x))
     away = (((asked[:, None] - x) / x.std(0)) ** 2).sum((2, 3))
     np.testing.assert_array_equal(rival.torque(asked), torques(x)[away.argmin(1)])
     assert rival.count() == 300 * 8 + 6
-
-
-def test_cells_of_states_hold_means():
-    x = states(500)
-    rival = CellTable(2, limits=BOX).fit(cases(x))
-    place = ((x.reshape(500, 6) + 2) / 5 * 2).astype(int)
-    chosen = (place == place[0]).all(1)
-    np.testing.assert_allclose(rival.torque(x[:1])[0], torques(x)[chosen].mean(0), rtol=1e-9)
-    assert rival.full().numbers == 2 * 2**6
 
 
 def test_cells_of_configurations_and_of_motions_hold_the_arm():
@@ -123,17 +92,6 @@ def test_cells_of_configurations_and_of_motions_hold_the_arm():
     x[..., 1] = asked[..., 1] = [1.0, -1.5]  # at one motion only accelerations are left
     rival = CellTable(4, "motions", ridge=1e-9, limits=BOX).fit(cases(x))
     np.testing.assert_allclose(rival.torque(asked), torques(asked), rtol=1e-5, atol=1e-5)
-
-
-def test_an_empty_cell_answers_as_the_nearest_that_is_not():
-    x = np.zeros((2, 2, 3))
-    x[0, 0, 0], x[1, 0, 0] = -1.9, 2.9
-    rival = CellTable(10, limits=BOX).fit(cases(x, np.array([[1.0, 2.0], [3.0, 4.0]])))
-    asked = np.zeros((3, 2, 3))
-    asked[:, 0, 0] = -1.9, -0.9, 1.9
-    np.testing.assert_array_equal(rival.torque(asked), [[1, 2], [1, 2], [3, 4]])
-    assert rival.empty(asked).tolist() == [False, True, True]
-    assert rival.count() == 2 * 6 + 4 + 12
 
 
 @pytest.mark.parametrize("make", [Nearest, CellTable, GridTable])
@@ -161,9 +119,7 @@ THREE = Cases(np.zeros((5, 3, 3)), np.zeros((5, 3)), "states", 0.01)
 @pytest.mark.parametrize(
     "make, message",
     [
-        (lambda: table_size(0), "cells"),
         (lambda: CellTable(4, "tasks"), "over must be one of"),
-        (lambda: CellTable(ridge=0), "ridge"),
         (lambda: Nearest(BOX[::-1]), "limits must have least values below"),
         (lambda: Nearest(BOX).fit(THREE), r"limits must be of shape \(2, 3, 3\)"),
         (lambda: GridTable().fit(THREE), "at most 2 joints for a multilinear table, got 3"),

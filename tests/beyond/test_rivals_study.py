@@ -4,21 +4,10 @@ import numpy as np
 import pytest
 
 from ddlib.learning import Weights
-from ddlib.setups import JOINT_DAMPING
-from ddlib.trajectories import APPENDIX_I
 from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.protocol import Rival
 from workshop.beyond.rivals.tables import Nearest
 from workshop.beyond.studies import lineup, rivals
 from workshop.report import results
-
-
-def test_everybody_can_be_made_at_all_sizes():
-    for name, line in lineup.LINES.items():
-        made = [line.make(size, 1) for size in line.sizes]
-        assert all(isinstance(rival, Rival) for rival in made) and line.varied, name
-        assert len({rival.kind for rival in made}) == 1
-    assert lineup.REFERENCE in lineup.LINES
 
 
 def test_the_budget_is_the_papers_network():
@@ -31,20 +20,6 @@ def test_the_budget_is_the_papers_network():
 @pytest.fixture(scope="module")
 def recorded():
     return rivals.recorded(2)
-
-
-def test_what_is_learnt_and_asked(recorded):
-    sets, asked = recorded
-    for inputs, kind in zip(rivals._INPUTS, ("windows", "states")):
-        assert {cases.kind for cases in sets[inputs].values()} == {kind}
-        assert len(sets[inputs]["training"]) == 1500 and len(sets[inputs]["trajectory 6"]) == 300
-        square = len(sets[inputs]["inside"]) + len(sets[inputs]["outside"])
-        assert square == 300 * rivals.GRID**2 / rivals._EVERY
-    assert asked.x.shape == (30 * rivals.GRID**2, 2, rivals._WIDTH)
-    alone = JOINT_DAMPING.repeated(2).record(APPENDIX_I[5])
-    np.testing.assert_allclose(
-        sets["positions"]["trajectory 6"].x[..., 10], alone.q[alone.motion], atol=2e-3
-    )
 
 
 def test_floors_are_below_what_is_measured(recorded):

@@ -9,11 +9,10 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup, square
+from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import Trajectory, pick_and_place
 from workshop.beyond.studies.loop import run_time_parts as parts
-from workshop.report import results
 
 WHEELS = Arm("two wheels", 2.0, 0.0, 1.0, (0.4, 0.3))
 """An arm whose mass matrix is constant and that has no centrifugal torques: a linear one."""
@@ -68,14 +67,6 @@ def test_the_linear_loop_is_python_controls():
     np.testing.assert_allclose(found[1], 2 * found[0], atol=1e-12)
 
 
-def test_the_prediction_needs_no_simulation():
-    """Of the linear arm it is what the simulation finds, but for the hand's small angles."""
-    plan = pick_and_place([2.0, 1.5], T)
-    wrong = parts.with_impulse(LINEAR)(*plan) + np.sin(np.outer(T, [4.0, 9.0])) * 0.1
-    guess = parts.predicted(LINEAR, wrong, plan)
-    assert parts.score(WHEELS, driven(wrong, plan)).whole == pytest.approx(guess, rel=0.05)
-
-
 def test_the_error_along_the_path_and_across_it():
     """A hand that is late on its path errs along it; one link alone shows both by hand."""
     plan = pick_and_place([30.0, 0.0], T)
@@ -90,27 +81,6 @@ def test_the_error_along_the_path_and_across_it():
     assert turned.whole == pytest.approx(gap, rel=1e-9)
 
 
-def test_the_square_is_in_the_order_of_its_recording():
-    np.testing.assert_allclose(parts.square_extents(3), square(STATE_FEEDBACK, 3).extents_deg)
-
-
-def test_rounded_corners_keep_the_motion_and_its_derivatives():
-    extents = parts.EXTENTS[[10, 40]]
-    plain, round_ = parts.rounded(extents, 0.0), parts.rounded(extents, 0.1)
-    np.testing.assert_array_equal(plain.q, pick_and_place(extents, T).q)
-    middle = (T > 0.1) & (T < 2.9)
-    assert np.abs(round_.q - plain.q)[:, middle].max() < 1e-3
-    np.testing.assert_allclose(
-        np.gradient(round_.q, CONTROL_STEP, axis=-2)[:, 1:-1], round_.qd[:, 1:-1], atol=0.02
-    )
-    gained = np.cumsum(round_.qdd, axis=-2) * CONTROL_STEP
-    np.testing.assert_allclose(gained[:, 1:-1], round_.qd[:, 1:-1], atol=0.02)
-    jump = np.abs(np.diff(plain.qd, axis=-2)).max()
-    assert np.abs(np.diff(round_.qd, axis=-2)).max() < 0.1 * jump
-    with pytest.raises(ValueError, match="seconds"):
-        parts.rounded(extents, -0.1)
-
-
 def test_the_impulse_changes_the_momentum_by_the_jump():
     plan = pick_and_place([30.0, 20.0], T)
     extra = parts.with_impulse(JOINT_DAMPING)(*plan) - parts.exact(JOINT_DAMPING)(*plan)
@@ -120,38 +90,6 @@ def test_the_impulse_changes_the_momentum_by_the_jump():
         M = JOINT_DAMPING.arm.mass_matrix(plan.q[k])
         wanted = M @ -np.deg2rad([30.0, 20.0]) * np.pi / 3
         np.testing.assert_allclose(extra[k] * CONTROL_STEP, wanted, rtol=1e-4)
-
-
-def test_equations_behind_a_window_see_what_happens_within_it():
-    """Far from the corners they are the equations; at a corner they push before it."""
-    plan = pick_and_place([30.0, 20.0], T)
-    seen = parts.through_window(parts.exact(STATE_FEEDBACK))(*plan)
-    known = parts.exact(STATE_FEEDBACK)(*plan)
-    far = (T > 0.3) & (T < 1.2)
-    np.testing.assert_allclose(seen[far], known[far], atol=0.05)
-    before = (T > -0.1) & (T < 0)
-    assert np.abs(seen[before]).max() > 5 > np.abs(known[before]).max()
-
-
-def test_networks_run_as_they_were_trained():
-    made = parts.networks(JOINT_DAMPING, 2)
-    model = results.networks(21, JOINT_DAMPING.name)
-    plan = pick_and_place([30.0, 20.0], T)
-    windows = np.stack([plan.q[k - 50 : k + 51 : 5].T for k in (400, 900)])
-    found = parts.planned(made, plan)
-    assert found.shape == (2, T.size, 2)
-    np.testing.assert_allclose(found[1][[400, 900]], model[1].torque(windows), atol=1e-12)
-    with pytest.raises(ValueError, match="count"):
-        parts.networks(JOINT_DAMPING, 26)
-
-
-def test_days_differ_in_the_encoders_zero_only():
-    plan, law = pick_and_place(parts.EXTENTS[:2], T), STATE_FEEDBACK.controller
-    log = parts.drive(STATE_FEEDBACK, law, plan, (1, 2))
-    today = STATE_FEEDBACK.repeated(2).effects
-    alone = parts.follow(ARM, law, plan, T, effects=today, duration=3.0)
-    np.testing.assert_allclose(log.q_true[1], alone.q_true, atol=1e-12)
-    assert np.abs(log.q_true[1] - log.q_true[0]).max() > 1e-7
 
 
 def test_computed_torque_of_the_right_arm_follows_and_of_a_wrong_one_does_not():
@@ -164,20 +102,3 @@ def test_computed_torque_of_the_right_arm_follows_and_of_a_wrong_one_does_not():
         log = parts.follow(ARM, law, plan, T, effects=calm.effects, duration=3.0)
         errors.append(parts.score(ARM, log).whole[0])
     assert errors[0] < 0.15 < 5 * errors[0] < errors[1]
-
-
-def test_the_error_of_a_log_goes_through_the_loop():
-    """A model that is wrong by a constant displaces the hand like a load."""
-    six = STATE_FEEDBACK.record()[5]
-
-    class Off:
-        weights = results.networks(21).weights
-
-        def torque(self, windows):
-            return six.tau[six.motion] + np.array([3.0, 0.0])
-
-    found = parts.logged_error(STATE_FEEDBACK, Off(), six)
-    q = six.q[six.motion]
-    radius = np.linalg.norm(ARM.forward_kinematics(q)[..., 1, :], axis=-1)
-    kp = STATE_FEEDBACK.controller.kp[0]
-    assert found == pytest.approx(1e3 * np.sqrt((radius**2).mean()) * 3 / kp, rel=0.1)

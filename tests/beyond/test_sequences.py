@@ -7,7 +7,6 @@ from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.learning import Weights, sliding_windows
-from ddlib.metrics import rmss
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.rivals.sequences import Convolution, Recurrent, as_convolution
 
@@ -88,23 +87,6 @@ def test_the_recurrent_unit_is_gated():
     products = 11 * (4 * 12 + 4 * 12) + 8
     assert rival.operations().multiplications == products + 11 * 3 * 4
     assert rival.operations().functions == 11 * 3 * 4
-
-
-@pytest.mark.parametrize("rival", [Convolution(6, 150), Recurrent(8, 120)], ids=repr)
-def test_they_learn(rival):
-    data, other = windows(), windows(seed=1)
-    rival.fit(data)
-    assert rmss(rival.torque(data.x), data.torque) < 0.2
-    with np.errstate(all="ignore"), pytest.warns(UserWarning):
-        assert rmss(rival.torque(other.x), other.torque) < 0.5
-
-
-def test_nobody_elses_random_numbers_are_touched():
-    torch.manual_seed(1)
-    wanted = torch.rand(3)
-    torch.manual_seed(1)
-    Convolution(2, epochs=1).fit(windows(20))
-    assert torch.equal(torch.rand(3), wanted)
 
 
 def test_what_makes_no_sense_is_refused():
