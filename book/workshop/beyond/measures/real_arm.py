@@ -9,10 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib.analysis import savitzky_golay
-from ddlib.tables import significant
 from workshop.report import results
-from workshop.report.evidence.verdicts import Measured, judged, median
 
 RATE = 100  # samples a second of the paper, and of all rows that name no other
 
@@ -38,24 +35,3 @@ def of(cell) -> np.ndarray:
 def variant(name: str, side: str = "test") -> np.ndarray:
     """Mean squared errors of window 21 with one thing changed, ``(blocks, networks)``."""
     return np.array(results.read("real-arm")["variants"][name][side])
-
-
-def error(width: int = 21) -> Measured:
-    """Test error of the networks at the paper's rate, told block by block."""
-    blocks = squares(width)
-    told = ", ".join(significant(float(of(block[None])), 2) for block in blocks)
-    return judged(of, blocks, text=f"blocks: {told}", nested=True)
-
-
-def magnitudes() -> Measured:
-    """Largest weight of window 41 over that of window 21, medians over networks."""
-    weights = tuple(np.array(cell(w)["largest weight"]) for w in (41, 21))
-    taps = [np.abs(savitzky_golay(w, 2, 1 / RATE, degree=2)).max() for w in (41, 21)]
-    a, b = (significant(np.median(x), 2) for x in weights)
-    text = f"{a} at 41, {b} at 21; the ratio of acceleration filters is "
-    return judged(
-        lambda drawn: median(drawn[0]) / median(drawn[1]),
-        weights,
-        text=text + significant(taps[0] / taps[1], 2),
-        nested=True,
-    )
