@@ -5,8 +5,7 @@ import pytest
 
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
-from ddlib.simulation import follow, record
-from ddlib.trajectories import Trajectory
+from ddlib.simulation import record
 from workshop.beyond.control.adaptive.regressor import PARAMETERS
 from workshop.beyond.control.adaptive.running import Watched
 from workshop.beyond.control.adaptive.slotine_li import SlotineLi
@@ -41,19 +40,6 @@ def test_it_is_slotine_and_li_at_the_desired_state_with_another_gain():
     np.testing.assert_allclose(runs[0].tau_true, runs[1].tau_true, rtol=1e-12, atol=1e-11)
     _, weights, estimates = both((40.0, 30.0), at="measured")
     assert np.abs(weights - estimates).max() > 1e-3
-
-
-def test_with_the_right_terms_it_finds_the_arm():
-    truth = np.array([ARM.a, ARM.b, ARM.d])
-    t = np.arange(0.0, 20.0, 0.002)
-    phase = np.multiply.outer(t, [[2.0, 5.0], [3.0, 4.0]])
-    speed = np.array([[2.0, 5.0], [3.0, 4.0]])
-    size = np.array([[0.5, 0.2], [0.6, 0.3]])
-    sine, cosine = size * np.sin(phase), size * np.cos(phase)
-    wanted = Trajectory(*(x.sum(-1) for x in (sine, speed * cosine, -(speed**2) * sine)))
-    taught = Watched(learner(np.array([0.3, 0.05, 0.03]), 0.5 * truth, PARAMETERS[:3]))
-    follow(ARM, taught, wanted, t, start=(wanted.q[0], wanted.qd[0]))
-    assert np.abs(taught.law.weights[-1] / truth - 1).max() < 0.15
 
 
 def test_bad_shapes_are_refused():

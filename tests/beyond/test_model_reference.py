@@ -47,13 +47,6 @@ def test_the_model_is_the_linear_system_that_scipy_integrates():
     model, expected = law(MATCHED).model(reference(t), 0.002), by_scipy(t)
     np.testing.assert_allclose(model.q, expected[..., 0], atol=1e-9)
     np.testing.assert_allclose(model.qd, expected[..., 1], atol=1e-9)
-    moved = Trajectory(*(np.stack([x, x]) for x in reference(t)))
-    moved = moved._replace(q=moved.q + np.array([0.0, 1.0])[:, None, None])
-    both = law(MATCHED).model(moved, 0.002)
-    np.testing.assert_allclose(both.q[1] - both.q[0], 1.0, atol=1e-9)
-    np.testing.assert_allclose(
-        both.qdd[:, 1:-1], np.gradient(both.qd, 0.002, axis=-2)[:, 1:-1], atol=0.05
-    )
 
 
 def joints(adaptive, seconds, q0):
@@ -111,12 +104,10 @@ def test_a_dead_zone_stops_learning_and_leakage_forgets():
     fine = ((30.0, 9.0), (2.0, 2.0), (1.0, 1.0, 1.0), TRUTH)  # s = 0.3, 0.5
     free = SlotineLi(*fine).output(1.5 * TRUTH, wanted, q, qd)
     zoned = SlotineLi(*fine, dead_zone=(0.3, 0.5)).output(1.5 * TRUTH, wanted, q, qd)
-    half = SlotineLi(*fine, dead_zone=(0.15, 0.25)).output(1.5 * TRUTH, wanted, q, qd)
     leaky = SlotineLi(*fine, leakage=0.2).output(1.5 * TRUTH, wanted, q, qd)
-    for other in (zoned, half, leaky):
+    for other in (zoned, leaky):
         np.testing.assert_array_equal(other[0], free[0])
     np.testing.assert_allclose(zoned[1], 0, atol=1e-12)
-    np.testing.assert_allclose(half[1], free[1] / 2)
     np.testing.assert_allclose(leaky[1], free[1] - 0.2 * 0.5 * TRUTH)
 
 

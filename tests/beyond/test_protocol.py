@@ -1,18 +1,14 @@
 """The protocol of rivals: what is refused, what is warned of, what a trial measures."""
 
-import json
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
-from sklearn.neighbors import KNeighborsRegressor
 
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
 from workshop.beyond.rivals.protocol import Cases, Estimating, NotFitted, Rival, trial
 
-CHAPTER = Path(__file__).parents[2] / "book" / "rivals.ipynb"
 STEP = 0.01
 TIMES = np.arange(-20, 321) * STEP
 
@@ -34,22 +30,6 @@ class Linear(Rival):
 
     def operations(self):
         return Operations(self.matrix.size, self.matrix.size - 2)
-
-
-@pytest.fixture(scope="module")
-def added():
-    """The rival that a reader adds in the chapter."""
-    cells = {c["id"]: "".join(c["source"]) for c in json.loads(CHAPTER.read_text())["cells"]}
-    source = cells["rival-add-class"]
-    assert len(source.splitlines()) <= 30
-    names = {
-        "Rival": Rival,
-        "Operations": Operations,
-        "KNeighborsRegressor": KNeighborsRegressor,
-    }
-    exec(source, names)
-    (kind,) = (x for x in names.values() if isinstance(x, type) and x.__base__ is Rival)
-    return kind
 
 
 def windows(extents=(30.0, 20.0), width=11):
@@ -97,21 +77,6 @@ def test_inputs_beyond_the_training_box_are_told_and_counted():
         trial(Linear(), exact, {"far": Cases(far, exact.torque[:3], "states", STEP)})
 
 
-def test_the_rival_of_the_chapter_learns_and_tells_its_cost(added):
-    def cases(n, seed):
-        x = np.random.default_rng(seed).uniform(-1, 1, (n, 2, 3))
-        return Cases(x, CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0)), "states", STEP)
-
-    data = cases(2000, 0)
-    found = trial(added(), data, {"training": data, "other": cases(200, 1)})
-    assert found.rmss["training"] < 1e-6 < found.rmss["other"] < 0.5
-    assert found.count == 6 + 2000 * 8
-    assert found.operations.multiplications >= 2000 * 6
-    assert Estimating(added()).kind == "windows"
-    with pytest.raises(NotFitted):
-        added().torque(np.zeros((1, 2, 3)))
-
-
 SEEN, EXACT = windows()
 BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
 
@@ -132,3 +97,5 @@ BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
 def test_what_makes_no_sense_is_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
+    with pytest.raises(NotFitted):
+        Linear().torque(EXACT.x)

@@ -72,14 +72,6 @@ def test_estimates_begin_at_the_unloaded_arm_and_nobody_learns_without_a_learner
     assert curves["a"][0] == pytest.approx(runs.TRUTH[0] / truths(5)[0])
 
 
-def test_what_goes_beyond_the_charts_is_cut_off(widget):
-    limits = [panel["limits"] for panel in widget.spec["panels"]]
-    assert limits == [[None, loop.MOST_ERROR], list(loop.BOUNDS)]
-    for curve in widget.spec["curves"]:
-        low, high = limits[curve["name"] not in ("error", "nobody")]
-        assert curve["high"] <= high + 1e-9 and (low is None or curve["low"] >= low - 1e-9)
-
-
 @pytest.mark.browser
 def test_a_triangle_marks_what_was_cut_off(tmp_path, visit):
     """On a small figure with known values: one beyond above, one below, the others within."""
@@ -104,11 +96,3 @@ def test_a_triangle_marks_what_was_cut_off(tmp_path, visit):
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(drawn) == 0
     assert not opened.problems
-
-
-@pytest.mark.parametrize("limits", [(1, 1), (2, 1), (0,), (np.nan, 1)])
-def test_bad_limits_are_refused(limits):
-    with pytest.raises(ValueError, match="limits of 'y, m' must"):
-        Panel("y, m", "y", "x", [0, 1], limits=limits)
-    with pytest.raises(ValueError, match="must be of lines"):
-        Panel("y, m", "y", "x", [0, 1], kind="bars", limits=(0, 1))

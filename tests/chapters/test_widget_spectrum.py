@@ -1,13 +1,11 @@
-"""The widget of directions that are learnt, in Python and in a page without a kernel."""
+"""The widget of directions that are learnt: its curves are those of the study."""
 
 from __future__ import annotations
-
-import copy
 
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import assert_curves, drag, page_of, settings
+from widget_pages import settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
@@ -96,43 +94,3 @@ def test_bad_arguments_are_refused(widget, study, along):
         SpectrumExplorer(study, along[:3])
     with pytest.raises(ValueError, match="directions must be of window 7 like its cell, got 11"):
         SpectrumExplorer(study, along[::-1])
-    broken = copy.deepcopy(study)
-    broken["cells"][0]["width"] = 2
-    with pytest.raises(ValueError, match="width must be an integer from 3"):
-        SpectrumExplorer(broken, along)
-
-
-# In a page without a kernel
-
-
-@pytest.mark.browser
-def test_sliders_and_menus(tmp_path, visit, widget, study):
-    widget.case, widget.width, widget.direction, widget.epoch = 0, 7, 1, 1
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page = opened.page
-    direction, epoch = page.get_by_role("slider").all()
-
-    def shows(**changes):
-        values.update(changes)
-        known = widget.interpolate(**values)
-        assert_curves(page, known, 5e-3)
-        texts = page.locator(".scalars output").all_inner_texts()[1:]
-        numbers = [float(text.replace("−", "-").replace(",", "")) for text in texts]
-        assert numbers == pytest.approx([10 ** known[f"now {w}"][0] for w in WHO], rel=0.011)
-
-    values = dict(widget.values)
-    shows()
-    epoch.press("End")
-    shows(epoch=20_000)
-    direction.press("ArrowRight")
-    shows(direction=2)
-    drag(page, direction.bounding_box(), (0.3, 0.5), (0.99, 0.5))
-    shows(direction=5)
-    page.get_by_label("Window size").select_option(label="11 samples")
-    shows(width=11)
-    page.get_by_label("Recording").select_option(label="quiet, inputs -1 to 1")
-    shows(case=1)
-    epoch.press("Home")
-    page.get_by_role("button", name="Play").click()
-    page.wait_for_function("document.querySelector('output[for$=epoch]').textContent === '20,000'")
-    assert not opened.problems
