@@ -132,10 +132,6 @@ def test_several_controllers_run_abreast():
     run = follow(ARM, watched, both, t, duration=1.0)
     for k in range(2):
         np.testing.assert_allclose(run.q_true[k], alone[k].q_true, atol=1e-12)
-    with pytest.raises(ValueError, match="rows"):
-        Abreast([FEEDBACK], [1, 2])
-    with pytest.raises(ValueError, match="reference must have 3 rows"):
-        follow(ARM, Abreast([FEEDBACK], [3]), both, t)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,6 @@ from workshop.beyond.rivals.tables import (
     GridTable,
     Nearest,
     full_table,
-    table_size,
 )
 
 BOX = np.stack([np.full((2, 3), -2.0), np.full((2, 3), 3.0)])
@@ -34,12 +33,6 @@ def nodes(cells, axes=6):
     """All nodes of a grid over `BOX`, the last axis fastest: as states ``(nodes, 2, 3)``."""
     edge = np.linspace(-2.0, 3.0, cells + 1)
     return np.stack(np.meshgrid(*[edge] * axes, indexing="ij"), -1).reshape(-1, 2, 3), edge
-
-
-def test_several_hundred_megabytes_are_twenty_cells_an_axis():
-    assert table_size(20) == (20**6, 2 * 20**6, 512_000_000)
-    assert table_size(15).bytes < 100e6 < 999e6 < table_size(23).bytes
-    assert table_size(100, axes=2, numbers=11, width=8).bytes == 100**2 * 11 * 8
 
 
 def test_a_full_table_is_scipys_interpolation_of_the_same_nodes():

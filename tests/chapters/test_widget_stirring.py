@@ -8,37 +8,18 @@ from widget_pages import NEXT_FRAME, PATHS, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
 from ddlib.widgets.baking.baked import MAX_BYTES
-from workshop.beyond.studies.loop.stirring import PLACES
-from workshop.chapters.widgets.stirring import BARS, LINES, StirringPicker
-
-SHAPE = tuple(map(len, PLACES.values()))
-
-
-def kept(path):
-    rng = np.random.default_rng(0)
-    distance, _, radius, *_ = np.meshgrid(
-        *PLACES.values(), indexing="ij"
-    )  # elbows are texts: all of one kind then
-    near, far = reach(ARM)
-    reached = distance.astype(float) + radius.astype(float) < far
-    assert near < 0.29 and 0 < reached.mean() < 1
-    hand = rng.uniform(1, 30, (5, *SHAPE)).astype(np.float32) * reached
-    low = rng.normal(size=(3, *SHAPE, 1, 2)) * np.sin(np.arange(60) / 9)[:, None]
-    torque = (low * reached[..., None, None]).astype(np.float16)
-    with open(path, "wb") as file:
-        np.savez(file, names=list(BARS), reached=reached, hand=hand, torque=torque)
-    return reached, hand, torque.astype(float)
+from workshop.beyond.studies.loop.stirring import PICKER, PLACES
+from workshop.chapters.widgets.stirring import LINES, StirringPicker
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    path = tmp_path_factory.mktemp("stirring") / "picker.npz"
-    values = kept(path)
-    return StirringPicker(path), *values
+def picker():
+    return StirringPicker()
 
 
-def test_curves_are_those_of_the_place(made):
-    picker, _, hand, torque = made
+def test_curves_are_those_of_the_place(picker):
+    with np.load(PICKER) as file:
+        hand, torque = file["hand"].astype(float), file["torque"].astype(float)
     place = {"distance": 0.55, "bearing": -75, "radius": 0.08, "period": 3.0, "elbow": "positive"}
     for name, value in place.items():
         setattr(picker, name, value)
@@ -58,19 +39,16 @@ def test_curves_are_those_of_the_place(made):
         np.testing.assert_allclose(baked[name], values, atol=0.02 * max(1, np.abs(values).max()))
 
 
-def test_what_cannot_be_reached_is_zero_and_marked(made):
-    picker, reached, *_ = made
+def test_what_cannot_be_reached_is_zero_and_marked(picker):
     picker.distance, picker.radius = 0.85, 0.16
-    assert not reached[4, :, 3].any() and not any(x.any() for x in picker.curves.values())
+    assert not any(x.any() for x in picker.curves.values())
     assert picker.workspace["reach"] == list(reach(ARM))
     with pytest.raises(TraitError, match="radius must be one of"):
         picker.radius = 0.1
 
 
-def test_what_was_committed_fits():
-    picker = StirringPicker()
+def test_what_was_committed_fits(picker):
     assert picker.baked_bytes < MAX_BYTES
-    assert (picker.curves["hand"] > 0).all()
     near, far = reach(ARM)
     for at, there in np.ndenumerate(picker._reached):
         distance, radius = PLACES["distance"][at[0]], PLACES["radius"][at[2]]
@@ -79,8 +57,7 @@ def test_what_was_committed_fits():
 
 
 @pytest.mark.browser
-def test_a_page_without_kernel_refuses_in_words(tmp_path, visit, made):
-    picker, *_ = made
+def test_a_page_without_kernel_refuses_in_words(tmp_path, visit, picker):
     picker.distance, picker.radius, picker.bearing = 0.65, 0.12, -60
     page = visit(page_of(tmp_path / "page.html", picker)).page
     page.evaluate(NEXT_FRAME)
