@@ -71,13 +71,6 @@ def test_the_parts_are_what_they_are_called_and_sum_to_the_function(f):
     np.testing.assert_allclose(printed.odd, (f - f[::-1]) / 2 - f.mean(), atol=1e-12)
 
 
-@pytest.mark.parametrize("name", [decompose, content, shares, classify, roughness])
-@pytest.mark.parametrize("f", [np.ones((3, 4)), np.ones(1), 1.0, [0.0, np.nan, 1.0, 2.0, 3.0]])
-def test_functions_of_a_window_are_finite_and_have_a_centre(name, f):
-    with pytest.raises(ValueError, match=r"^f must"):
-        name(f)
-
-
 # --- derivatives -----------------------------------------------------------------------------
 
 

@@ -53,12 +53,6 @@ def test_shares_of_a_known_mixture():
     np.testing.assert_allclose(found.unique[0, 0], part / part.sum(), atol=5e-3)
 
 
-def test_joints_are_kept_apart():
-    f = np.zeros((1, 2, WIDTH))
-    f[0, 0], f[0, 1] = TAPS[2], TAPS[1]
-    np.testing.assert_array_equal(followed(f, WINDOWS, STATES).strongest, [[2, 1]])
-
-
 def ensemble(members=3):
     weights = Weights.random(members, WIDTH, hidden=4, initial=1.0, seed=5)
     inputs = Scaler(np.array([-1.0, -0.5]), np.array([0.5, 1.5]))

@@ -9,7 +9,6 @@ import warnings
 import numpy as np
 import pytest
 
-from ddlib import trajectories
 from ddlib.analysis import (
     coverage,
     filters,
@@ -17,7 +16,6 @@ from ddlib.analysis import (
     noise,
     sensitivity,
 )
-from ddlib.control import linear
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.learning import levenberg_marquardt, network, training, windows
 
@@ -40,15 +38,12 @@ def solve(**options):
 
 
 ROWS = [
-    ("cells", lambda x: coverage.cells_reached(SAMPLES, 1.0, x), [1, 2], [0, 1.5]),
     ("step", lambda x: coverage.log10_reachable_share(5, x), [1e-6, 0.5], [0.0, 0.5 * OVER]),
-    ("resolution", lambda x: coverage.used_dimensions(SAMPLES, x), [0.0, 0.5], [JUST_BELOW]),
     ("name", lambda x: filters.purest(FILTERS, x), ["not analysable"], ["speed"]),
     ("width", filters.basis, [4, 5], [3, 4.0]),
     ("width", lambda x: filters.savitzky_golay(x, 1, 0.1, 2), [3, 5], [1, 2, 4]),
     ("degree", lambda x: filters.savitzky_golay(5, 0, 0.1, x), [0, 4], [-1, 5]),
     ("derivative", lambda x: filters.savitzky_golay(7, x, 0.1, 3), [0, 3], [-1, 4]),
-    ("viscous", lambda x: linear.proportional_limit(1.0, x, 1e-3), [1e-3, 0.5], [JUST_BELOW]),
     ("deviation", lambda x: noise.noise_floor(ARM, x, 5, 16, 0.1, 0.1),
      [(0.5, 0.1)], [(0.5, 0.0), (0.0, 1.0), (1.0,), ((1.0, 1.0),)]),
     ("bits", lambda x: noise.noise_floor(ARM, (1, 1), 5, x, 0.1, 0.1),
@@ -57,7 +52,6 @@ ROWS = [
      [1e-6, 0.49], [0.0, 0.49 * OVER]),
     ("tolerance", lambda x: solve(tolerance=x), [0.0, 0.5, 1.0], [JUST_BELOW, OVER]),
     ("decay", lambda x: solve(decay=x), [0.0, 0.5], [JUST_BELOW]),
-    ("step", trajectories.time_grid, [0.01, 0.5], [0.0]),
     ("margin", lambda x: hidden_units.saturated(SAMPLES, x), [0.0, 0.5], [JUST_BELOW, 0.5 * OVER]),
 ]  # fmt: skip
 

@@ -5,19 +5,16 @@ import pytest
 from scipy.optimize import brentq
 
 from ddlib.analysis import (
-    INPUTS,
     input_shares,
     responses,
     shuffled,
     transition_centre,
     transition_range,
 )
-from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from workshop.report.exact_states import random_states, torque
 
 STATES = random_states(4000, seed=9)
-SCALE = torque(STATES).std(0)
 
 
 @pytest.fixture(scope="module")
@@ -93,11 +90,3 @@ def test_shuffling_what_is_linear_changes_by_twice_the_variance():
     changes = shuffled(predict, STATES, np.ones(2)).ravel()
     wanted = np.sqrt(2 * (matrix**2).mean(0)) * np.pi / np.sqrt(3)
     np.testing.assert_allclose(changes, wanted, rtol=0.03)
-
-
-def test_the_shoulder_position_matters_under_gravity_only():
-    changes = shuffled(torque, STATES, SCALE)
-    assert changes.shape == (2, 3) and changes[0, 0] == 0 and (changes.ravel()[1:] > 0.1).all()
-    vertical = shuffled(lambda states: torque(states, REYES_KELLY_ARM), STATES, SCALE)
-    assert vertical[0, 0] > 0.1
-    assert len(INPUTS) == changes.size and CMU_DD_ARM_II.gravity_moments == (0, 0)

@@ -49,12 +49,6 @@ def test_plant_obeys_its_equation():
 # --- continuous loops -----------------------------------------------------------------
 
 
-def test_loop_gain_is_pid_times_joint():
-    s = np.array([0.3j, 2j, 1 + 5j])
-    expected = (200 + 90 / s + 20 * s) / (6 * s**2 + 0.5 * s)
-    np.testing.assert_allclose(loop_gain(6.0, 0.5, 200, 90, 20)(s), expected)
-
-
 def test_steady_errors_under_a_constant_load():
     """A spring gives way by load over stiffness, an integral not at all; both follow a step."""
     joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
@@ -132,14 +126,6 @@ def test_margins_are_where_the_loop_loses_its_stability(gains, delay):
         assert largest(1.001 * found.lower_gain) < 1 < largest(0.999 * found.lower_gain)
 
 
-def test_delay_takes_crossover_times_lateness():
-    loops = [opened_loop(plant(6.0, 0.5), *GAINS[2], STEP, delay) for delay in (0, 1, 5)]
-    continuous = margins(loop_gain(6.0, 0.5, *GAINS[2]))
-    for late, loop in zip((0.5, 1.5, 5.5), loops):
-        lost = np.rad2deg(continuous.crossover * late * STEP)
-        assert margins(loop).phase_deg == pytest.approx(continuous.phase_deg - lost, abs=0.02)
-
-
 # --- the limit of proportional control --------------------------------------------------
 
 
@@ -158,8 +144,6 @@ def test_limit_is_twice_friction_over_period():
     assert proportional_limit(6.5, 0.5, STEP) == pytest.approx(2 * 0.5 / STEP, rel=1e-4)
     assert proportional_limit(6.5, 0.0, STEP) == 0
     assert radius(6.5, 0.0, 1.0, STEP) > 1  # without friction no gain is stable
-    below, above = (proportional_limit(1.0, x / STEP, STEP) / x for x in (0.999e-4, 1.001e-4))
-    assert below == pytest.approx(above, rel=1e-6)  # where the series ends
 
 
 def test_stiffness_pulls_back_to_the_posture():
@@ -172,27 +156,18 @@ def test_stiffness_pulls_back_to_the_posture():
     rates = np.linalg.eigvals(np.linalg.solve(M, K))
     np.testing.assert_allclose(np.sort(joints.poles().imag ** 2)[::2], np.sort(rates))
     np.testing.assert_allclose(joints.dcgain()[:2], np.linalg.inv(K), atol=1e-12)
-    for wrong in (1.0, [1.0, 2.0], np.ones((3, 3)), [[np.nan, 0], [0, 1]]):
-        with pytest.raises(ValueError, match=r"^stiffness must"):
-            plant(M, [0.0, 0.0], wrong)
 
 
 def test_refusals():
     joint = plant(1.0, 0.5)
     for name, call in (
-        ("inertia", lambda: plant(-1.0, 0.5)),
         ("inertia", lambda: plant([[1.0, 2.0], [2.0, 1.0]], 0.5)),
-        ("inertia", lambda: plant([[1.0, 0.5], [0.0, 1.0]], 0.5)),
         ("viscous", lambda: plant(1.0, [0.5, 0.1])),
-        ("kd", lambda: loop_gain(1.0, 0.5, 1.0, kd=np.inf)),
+        ("stiffness", lambda: plant(1.0, 0.5, [1.0, 2.0])),
         ("kp", lambda: closed_loop(joint, [1.0, 2.0])),
-        ("ki", lambda: closed_loop(joint, 1.0, ki=-1.0)),
-        ("period", lambda: closed_loop(joint, 1.0, period=0.0)),
-        ("delay", lambda: closed_loop(joint, 1.0, period=STEP, delay=-1)),
         ("delay", lambda: closed_loop(joint, 1.0, delay=1)),
         ("joint", lambda: opened_loop(joint, 1.0, joint=1)),
         ("loop", lambda: margins(loop_gain(1.0, 0.5, 0.0))),
-        ("viscous", lambda: proportional_limit(1.0, -1.0, STEP)),
     ):
         with pytest.raises(ValueError, match=rf"^{name} must"):
             call()

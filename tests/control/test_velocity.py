@@ -51,26 +51,3 @@ def test_the_shortest_difference_is_what_follow_has_built_in():
     own = run(EstimatedVelocity(feedback, difference(1, STEP)))
     built_in = run(feedback, velocity="difference")
     np.testing.assert_allclose(own.tau, built_in.tau, atol=1e-8)
-
-
-def test_the_law_sees_the_estimate_only():
-    """Velocity gain alone: the torque is minus the gain times the filtered readings."""
-    weights = end_slope(6, 2, STEP)
-    recording = run(EstimatedVelocity(pd((0.0, 0.0), (10.0, 10.0)), weights))
-    padded = np.concatenate([np.repeat(recording.q[:1], 5, 0), recording.q])
-    speed = np.stack([weights @ padded[k : k + 6] for k in range(200)])
-    np.testing.assert_allclose(recording.tau, 10 * (recording.reference.qd - speed), atol=1e-9)
-
-
-def test_refusals():
-    feedback = pd((1, 1), (1, 1))
-    for name, call in (
-        ("periods", lambda: difference(0, STEP)),
-        ("step", lambda: difference(1, 0.0)),
-        ("width", lambda: end_slope(2, 2, STEP)),
-        ("degree", lambda: end_slope(5, 0, STEP)),
-        ("weights", lambda: lag([1.0, np.nan], STEP)),
-        ("weights", lambda: EstimatedVelocity(feedback, 3.0)),
-    ):
-        with pytest.raises(ValueError, match=f"^{name} must"):
-            call()

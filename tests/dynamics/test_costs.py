@@ -91,10 +91,3 @@ def test_customised_puma_is_near_the_published_count():
     ours = costs.count(newton_euler, PUMA_560, "arm")
     assert 1.0 <= ours.multiplications / costs.PUBLISHED_CUSTOMISED.multiplications < 1.3
     assert 1.0 <= ours.additions / costs.PUBLISHED_CUSTOMISED.additions < 1.3
-
-
-def test_refusals():
-    with pytest.raises(ValueError, match="knowledge must be one of"):
-        costs.count(newton_euler, PUMA_560, "everything")
-    with pytest.raises(ValueError, match="links must be an integer"):
-        costs.count_closed_form(CMU * 4, shared=True)

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import sympy as sp
 
 from ddlib.dynamics import CMU_DD_ARM_II, Link, SerialArm, derive
 
@@ -36,28 +35,3 @@ def test_two_links_have_the_base_parameters_of_the_two_link_arm():
     )
     assert [g1, g2] == pytest.approx([9.81 * (14 * 0.22 + 14 * 0.5), 9.81 * 14 * 0.09])
     assert [str(symbol) for symbol in two.base] == ["A11", "A12", "A22", "G1", "G2"]
-
-
-def test_torque_is_lagranges_equation_along_a_motion():
-    """The chain rule was right: differentiate along q(t) = polynomials in time instead."""
-    three, t = derive(3, True), sp.Symbol("t")
-    paths = [sp.Rational(k + 1, 3) * t**2 - sp.Rational(k, 5) * t**3 + t for k in range(3)]
-    values = dict(zip(three.base, three.base_values(links(3), 9.81)))
-    rates = {x: f for x, f in zip(three.q, paths)}
-    rates |= {v: f.diff(t) for v, f in zip(three.qd, paths)}
-    rates |= {a: f.diff(t, 2) for a, f in zip(three.qdd, paths)}
-    lagrangian = three.lagrangian.subs(values)
-    for torque, x, v in zip(three.torque, three.q, three.qd):
-        momentum = lagrangian.diff(v).subs(rates)
-        by_time = momentum.diff(t) - lagrangian.diff(x).subs(rates)
-        for moment in (0.3, 0.8):
-            found = torque.subs(values).subs(rates).subs(t, moment)
-            assert float(found) == pytest.approx(float(by_time.subs(t, moment)), rel=1e-10)
-
-
-def test_refusals():
-    for wrong in (0, 7):
-        with pytest.raises(ValueError, match="links must be an integer from 1 to 6"):
-            derive(wrong)
-    with pytest.raises(ValueError, match="links must be 2"):
-        derive(2).base_values(links(3))

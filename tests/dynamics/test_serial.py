@@ -11,8 +11,6 @@ from ddlib.dynamics import (
     PUMA_560,
     PUMA_560_GEARS,
     PUMA_560_ROTORS,
-    REYES_KELLY_ARM,
-    Link,
     SerialArm,
     SpatialLink,
     hand,
@@ -20,7 +18,6 @@ from ddlib.dynamics import (
     lagrange_euler,
     locked,
     mass_matrix,
-    newton_euler,
     recursive_lagrange,
     regressor,
 )
@@ -29,8 +26,6 @@ from ddlib.dynamics.joints import frames
 if sys.platform != "win32":  # no wheels there, as requirements.txt says
     import pinocchio
 
-CMU = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
-VERTICAL = (Link(23.902, 0.45, 0.091, 1.266), Link(3.880, 0.45, 0.048, 0.093))
 READY = np.array([0, np.pi / 4, np.pi, 0, np.pi / 4, 0])
 REST = np.zeros(6)
 
@@ -61,14 +56,6 @@ def test_newton_and_lagrange_agree_on_general_arms(joints):
     for lagrange in (lagrange_euler, recursive_lagrange):
         found = arm.inverse_dynamics(*motion, lagrange)
         np.testing.assert_allclose(found, newton, atol=1e-10 * np.abs(newton).max())
-
-
-def test_planar_arms_agree_with_the_two_link_equations():
-    motion = states(2, n=1000)
-    for links, plane, gravity in ((CMU, CMU_DD_ARM_II, 0.0), (VERTICAL, REYES_KELLY_ARM, 9.81)):
-        tau, arm = plane.inverse_dynamics(*motion), SerialArm.planar(links, gravity)
-        for formulation in (newton_euler, lagrange_euler):
-            np.testing.assert_allclose(arm.inverse_dynamics(*motion, formulation), tau, atol=1e-10)
 
 
 # --- the Puma 560: numbers that Corke's Robotics Toolbox tests itself with ---------------
@@ -123,14 +110,6 @@ def test_a_locked_arm_is_the_whole_one_at_rest_beyond(joints):
     tau = DD_ARM_II_IN_SPACE.inverse_dynamics(*whole)[:, :joints]
     np.testing.assert_allclose(arm.inverse_dynamics(*motion), tau, atol=1e-12 * np.abs(tau).max())
     np.testing.assert_allclose(hand(arm, motion[0]), hand(DD_ARM_II_IN_SPACE, whole[0]), atol=1e-14)
-
-
-def test_locking_elsewhere_and_in_vain():
-    with pytest.raises(ValueError, match="arm must have its hand on the x axis of link 3"):
-        locked(PUMA_560, 3)
-    assert locked(DD_ARM_II_IN_SPACE, 7) is DD_ARM_II_IN_SPACE
-    with pytest.raises(ValueError, match="joints must be an integer from 1 to 7"):
-        locked(DD_ARM_II_IN_SPACE, 8)
 
 
 @pytest.mark.parametrize("name", ARMS)
@@ -191,23 +170,10 @@ def test_pinocchio_agrees(name):
 
 def test_refusals():
     good = dict(twist_deg=0.0, length=1.0, offset=0.0, mass=1.0, com=(0, 0, 0), inertia=np.eye(3))
-    link, flat = SpatialLink(**good), np.triu(np.ones((3, 3)))
-    for name, *values in (
-        ("mass", -1.0), ("length", np.nan), ("com", (0.0, 0.0)), ("inertia", np.eye(2), flat),
-    ):  # fmt: skip
-        for bad in values:
-            with pytest.raises(ValueError, match=f"^{name} must"):
-                SpatialLink(**{**good, name: bad})
-    for links in ([], [CMU[0]]):
-        with pytest.raises(TypeError, match="links must be"):
-            SerialArm(links)
-    with pytest.raises(ValueError, match="gravity must have"):
-        SerialArm([link], (0.0, -9.81))
-    with pytest.raises(ValueError, match="joints must be an integer from 1 to 1"):
-        SerialArm([link]).first(2)
-    for q, qd, words in (
-        ([0.0], [np.inf], "qd must be finite"),
-        ([0, 1], [0], "q must have a last"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            SerialArm([link]).inverse_dynamics(q, qd, [0.0])
+    for name, bad in (("mass", -1.0), ("com", (0.0, 0.0)), ("inertia", np.triu(np.ones((3, 3))))):
+        with pytest.raises(ValueError, match=f"^{name} must"):
+            SpatialLink(**{**good, name: bad})
+    with pytest.raises(ValueError, match="arm must have its hand on the x axis of link 3"):
+        locked(PUMA_560, 3)
+    with pytest.raises(ValueError, match="q must have a last"):
+        PUMA_560.inverse_dynamics([0.0, 1.0], REST, REST)

@@ -78,18 +78,10 @@ def test_differences_shrink_the_inertias_and_do_not_know_it():
     assert 1 / (1 + noise / 0.6**2) - 1 < error[0] < -0.1
 
 
-def test_no_window_makes_smoothing_honest():
-    many, truth = recorded("surrogate, PD")
-    for width, smooth_torque in ((11, False), (21, True), (41, True), (41, False)):
-        found = least_squares(by_smoothing(many, width, smooth_torque=smooth_torque))
-        assert found.covers(truth)[:, :3].mean(0).min() < 0.5
-
-
-@pytest.mark.parametrize("controller", [SMOOTH, RINGING], ids=["PD", "P"])
-def test_perfect_sensors_leave_the_error_of_the_method(controller):
+def test_perfect_sensors_leave_the_error_of_the_method():
     effects = CMU_DD_ARM_II_EFFECTS.without("encoder", "torque_sensor")
     truth = true_parameters(CMU_DD_ARM_II, effects, NAMES)
-    clean = record(CMU_DD_ARM_II, controller, TRAINING, effects=effects)
+    clean = record(CMU_DD_ARM_II, SMOOTH, TRAINING, effects=effects)
     found = least_squares(by_modulation(clean))
     np.testing.assert_allclose(found.values[:3], truth[:3], rtol=5e-4)
     np.testing.assert_allclose(found.values[3:], truth[3:], rtol=1e-2)
@@ -136,15 +128,7 @@ def test_refusals():
     for width in (0.11, 1.6):
         with pytest.raises(ValueError, match=r"width must lie in \[0.12, 1.5\]"):
             by_modulation(run, width=width)
-    for width in (0.12, 1.5):
-        assert by_modulation(run, RIGID, width=width).torque[0].size
     with pytest.raises(ValueError, match="recording must have 12 samples of motion"):
         by_modulation(replace(run, duration=0.1))
-    with pytest.raises(ValueError, match="hold must lie"):
-        by_modulation(run, hold=-0.001)
-    with pytest.raises(ValueError, match="names must be one of"):
-        by_modulation(run, ("a", "mass"))
     with pytest.raises(ValueError, match="width must be an odd number"):
         by_smoothing(run, 10)
-    with pytest.raises(ValueError, match="repetitions must be an integer"):
-        repeat(CMU_DD_ARM_II, SMOOTH, TRAINING, IDEAL, repetitions=0)

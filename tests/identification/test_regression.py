@@ -93,10 +93,3 @@ def test_refusals():
     shoulder = pick_and_place(APPENDIX_I[3], T)
     with pytest.raises(ValueError, match="must determine all of a, b, d"):
         least_squares(from_states(*shoulder, torque(CMU_DD_ARM_II, shoulder)))
-    with pytest.raises(ValueError, match="qdd must be finite"):
-        from_states(*motion[:2], np.full((3, 2), np.nan), y)
-    found = least_squares(from_states(*states(), torque(CMU_DD_ARM_II, states())))
-    with pytest.raises(ValueError, match="level must lie"):
-        found.half_width(1.5)
-    with pytest.raises(ValueError, match="truth must have"):
-        found.covers([1.0, 2.0])

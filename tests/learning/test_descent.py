@@ -8,12 +8,10 @@ from ddlib.learning import (
     TrainingSet,
     Weights,
     WindowNetwork,
-    default_rate,
     descent,
     train,
     train_ensemble,
 )
-from ddlib.learning.training import check_points
 
 
 def by_hand(network, x, y, momenta, eps):
@@ -36,10 +34,14 @@ def by_hand(network, x, y, momenta, eps):
     return [part.reshape(own.shape) for part, own in zip(w, parts(network))]
 
 
-@pytest.mark.parametrize("cases", [40, 1500])
-@pytest.mark.parametrize("warm_up", [0, 3])
-def test_every_network_steps_by_the_rule_of_1988(cases, warm_up):
-    """Small and large products; the warm-up limits the momentum of the first steps to 0.5."""
+@pytest.mark.parametrize(
+    "cases, warm_up, workers, block",
+    [(40, 0, 1, 8), (40, 3, 2, 1), (1500, 0, 5, 8), (1500, 3, 2, 1)],
+)
+def test_every_network_steps_by_the_rule_of_1988(cases, warm_up, workers, block, monkeypatch):
+    """In one to three blocks; the warm-up limits the momentum of the first steps to 0.5."""
+    monkeypatch.setattr(descent, "WORKERS", workers)
+    monkeypatch.setattr(descent, "_BLOCK", block)
     rng = np.random.default_rng(2)
     windows, torque = rng.uniform(size=(cases, 2, 21)), rng.normal(size=(cases, 2))
     data = TrainingSet.from_arrays(windows, torque)
@@ -57,32 +59,6 @@ def test_every_network_steps_by_the_rule_of_1988(cases, warm_up):
         if k == 0 and not warm_up:
             close(network.weights(), wanted, rtol=0, atol=1e-4 * moved)
     close(start, before, rtol=0)  # initial weights are not touched
-
-
-LONG = dict(rate=default_rate(WIDTH), momentum=0.95, epochs=200, progress=False)
-
-
-@pytest.fixture(scope="module")
-def reference(data):
-    """Three members trained one by one, by autograd."""
-    trained = {}
-    for k in (0, 2, 4):
-        network = WindowNetwork(WIDTH, seed=20 + k)
-        train(network, data.x, data.y, **LONG)
-        trained[k] = parts(network.weights())
-    return trained
-
-
-@pytest.mark.parametrize("workers, block", [(1, 8), (2, 1), (5, 8)])
-def test_the_ensemble_follows_the_plain_reference(data, reference, monkeypatch, workers, block):
-    """200 epochs, five members in one to five blocks, against autograd member by member."""
-    monkeypatch.setattr(descent, "WORKERS", workers)
-    monkeypatch.setattr(descent, "_BLOCK", block)
-    model, history, _ = train_ensemble(Weights.random(5, WIDTH, seed=20), data, **LONG)
-    assert history.training.shape == (len(check_points(200)), 5)
-    for k, wanted in reference.items():
-        largest = max(np.abs(p).max() for p in wanted)
-        close(model.weights[k], wanted, rtol=1e-4, atol=1e-4 * largest)
 
 
 def test_members_may_have_their_own_rate_momentum_and_targets(data, other):

@@ -60,11 +60,6 @@ def outside(change, x):
     return np.linalg.norm(left) / np.linalg.norm(change)
 
 
-def flat_jacobian(weights, data):
-    j = jacobian(weights, data.x)
-    return j.reshape(-1, j.shape[-1])
-
-
 # --- the theorem --------------------------------------------------------------------------
 
 
@@ -77,7 +72,6 @@ def test_updates_lie_in_the_span_of_the_windows(few, momentum, epochs):
     assert outside(change, x) < 1e-13
     everything = np.random.default_rng(0).normal(size=change.shape)
     assert outside(everything, x) > 0.5  # what descent might have done, but cannot
-    assert outside(change, with_ones(few.x[:3])) > 1e-3  # fewer windows do not do
 
 
 def test_a_change_is_singular_value_times_accumulated_error(data):
@@ -100,17 +94,6 @@ def test_a_change_is_singular_value_times_accumulated_error(data):
     np.testing.assert_allclose(rows(trained), w, atol=1e-12)
     expected = -eps * along.values * (along.cases.T @ total).T
     np.testing.assert_allclose(along.along(trained) - along.along(begun), expected, atol=1e-12)
-
-
-def test_directions_are_those_of_the_second_moments(data):
-    along, x = Directions.of(data), with_ones(data.x)
-    np.testing.assert_allclose(
-        along.values**2, np.linalg.eigvalsh(x.T @ x)[::-1], atol=1e-11 * along.values[0] ** 2
-    )
-    np.testing.assert_allclose((along.cases * along.values) @ along.axes, x, atol=1e-12)
-    np.testing.assert_array_equal(along.filters[3, 1], along.axes[3, WIDTH:-1])
-    for f in along.filters:
-        assert f[np.argmax((f**2).sum(-1)), -1] > 0
 
 
 # --- the recursion ------------------------------------------------------------------------
@@ -167,7 +150,8 @@ def test_jacobian_is_that_of_autograd(data):
 
 def test_prediction_is_descent_of_the_linearised_network(data):
     weights, momentum, warm_up, rate = start(), 0.9, 20, 2.0
-    j, eps = flat_jacobian(weights, data), rate / len(data.x)
+    j = jacobian(weights, data.x)
+    j, eps = j.reshape(-1, j.shape[-1]), rate / len(data.x)
     begun = (weights.activity(data.x)[1] - data.y).ravel()
     change, step, errors = np.zeros(j.shape[1]), np.zeros(j.shape[1]), []
     for epoch in range(201):
@@ -183,26 +167,14 @@ def test_prediction_is_descent_of_the_linearised_network(data):
     second = (after.output_weights - weights.output_weights).ravel()
     np.testing.assert_allclose(second, last[size:], atol=1e-10)
     assert abs(last[size:]).max() > 1e-3
-    other = replace(data, y=data.y[::-1])
-    turned = Lazy(weights, data).predict(rate, [200], momentum, warm_up, targets=other.y)
-    own = Lazy(weights, other).predict(rate, [200], momentum, warm_up)
-    np.testing.assert_allclose(turned.error, own.error)
 
 
-@pytest.mark.parametrize(
-    "call, words",
-    [
-        (lambda _: effective_steps([-1.0], [1]), "rates must not be negative"),
-        (lambda _: effective_steps([[1.0]], [1]), "rates must have shape"),
-        (lambda _: effective_steps([1.0], [2, 1]), "epochs must not decrease"),
-        (lambda _: effective_steps([1.0], [1], 1.5), r"momentum must lie in \[0, 0.999\], got 1.5"),
-        (lambda _: effective_steps([1.0], [1], 0.5, -1), "warm_up must be an integer from 0"),
-        (lambda _: moved(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
-        (lambda data: Lazy(Weights.random(2, WIDTH), data), "weights must be of one network"),
-        (lambda data: Lazy(start(), data).predict(0.0, [1]), "rate must lie in"),
-        (lambda data: with_ones(data.y), r"x must have shape \(cases, joint, width\)"),
-    ],
-)
-def test_refusals(data, call, words):
-    with pytest.raises(ValueError, match=words):
-        call(data)
+def test_refusals(data):
+    for call, words in (
+        (lambda: effective_steps([-1.0], [1]), "rates must not be negative"),
+        (lambda: effective_steps([1.0], [2, 1]), "epochs must not decrease"),
+        (lambda: moved(start(), np.zeros((3, 97))), r"change must have shape \(\.\.\., 98\)"),
+        (lambda: Lazy(Weights.random(2, WIDTH), data), "weights must be of one network"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            call()

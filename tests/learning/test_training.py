@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 from hypothesis import given, strategies as st
-from small_networks import WIDTH, close, parts, smooth_cases
+from small_networks import WIDTH, close, parts
 
 from ddlib.learning import (
     History,
@@ -25,19 +25,6 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK
 
 # --- the data ---------------------------------------------------------------------------
-
-
-def test_a_training_set_is_scaled_and_can_be_unscaled():
-    windows, torque = smooth_cases()
-    made = TrainingSet.from_arrays(windows, torque, (0.1, 0.9))
-    for j in (0, 1):
-        assert (made.x[:, j].min(), made.x[:, j].max()) == pytest.approx((0, 1))
-        assert (made.y[:, j].min(), made.y[:, j].max()) == pytest.approx((0.1, 0.9))
-    np.testing.assert_allclose(made.inputs.unscale(made.x, -2), windows, atol=1e-12)
-    np.testing.assert_allclose(made.outputs.unscale(made.y), torque, atol=1e-12)
-    x, y = made.transform(windows[:5], torque[:5])
-    np.testing.assert_array_equal(x, made.x[:5])
-    np.testing.assert_array_equal(y, made.y[:5])
 
 
 def test_cases_pair_each_window_with_the_torque_at_its_centre():
@@ -60,43 +47,22 @@ def test_cases_pair_each_window_with_the_torque_at_its_centre():
     "options, words",
     [
         (dict(rate=[1.0, 2.0]), r"rate must be one number or 3, got shape \(2,\)"),
-        (dict(rate=[1.0, 2.0, 0.0]), "rate must lie in"),
         (dict(momentum=[0.9, 0.9, 1.0]), "momentum must lie in"),
         (dict(targets=np.zeros((3, 2))), "targets must have shape"),
-        (dict(targets=np.full((3, 80, 2), np.inf)), "targets must be finite"),
         (dict(snapshots=[6]), "snapshots must be an integer from 0 to 5, got 6"),
         (dict(weights=Weights.random(2, WIDTH + 2)), "weights must have the joints and width"),
     ],
 )
-def test_options_per_member_are_checked(data, options, words):
+def test_refusals(data, options, words):
     options = {"weights": Weights.random(3, WIDTH), "epochs": 5, "progress": False, **options}
     with pytest.raises(ValueError, match=words):
         train_ensemble(data=data, **options)
-
-
-@pytest.mark.parametrize(
-    "change, name",
-    [
-        (dict(rate=0.0), "rate"),
-        (dict(epochs=0), "epochs"),
-        (dict(x=np.full((80, 2, WIDTH), np.nan)), "x"),
-        (dict(y=np.column_stack([np.arange(80.0), np.full(80, 0.5)])), "y"),  # a still column
-    ],
-)
-def test_bad_options_are_refused_before_any_work(data, change, name):
-    network = WindowNetwork(WIDTH)
-    before = parts(network.weights())
-    options = {"x": data.x, "y": data.y, "rate": 1.0, "epochs": 3, "progress": False, **change}
-    with pytest.raises((ValueError, TypeError), match=rf"^{name} must"):
-        train(network, **options)
-    close(network.weights(), before, rtol=0)
 
 
 # --- history ----------------------------------------------------------------------------
 
 
 def test_history_and_snapshots_are_those_of_their_epochs(data, other):
-    """Errors are taken after the step by `train_ensemble`, before it by `train`."""
     start = Weights.random(5, WIDTH, seed=2)
     options = dict(rate=5.0, momentum=0.9, progress=False)
     snapshots = (0, 13, 40)
@@ -116,32 +82,6 @@ def test_history_and_snapshots_are_those_of_their_epochs(data, other):
         for errors, x, y in ((history.training, data.x, data.y), (history.test, *other)):
             own = rmss(shorter.weights.activity(x)[1], y)
             np.testing.assert_allclose(errors[point], own, rtol=1e-5)
-    before = train(WindowNetwork(WIDTH, seed=2), data.x, data.y, epochs=40, **options)
-    np.testing.assert_array_equal(before.epochs, check_points(40))
-    assert before.test.size == 0
-    first = rmss(start[0].activity(data.x)[1], data.y)
-    np.testing.assert_allclose(before.training[0], first, rtol=1e-5)
-    np.testing.assert_allclose(before.training[1:10, 0], history.training[:9, 0], rtol=1e-4)
-
-
-def test_history_in_short():
-    history = History()
-    assert str(history) == "History: empty"
-    with pytest.raises(ValueError, match="two points or more, got 0"):
-        history.slope()
-    history.append(1, [2.0, 1.0, 9.0])
-    with pytest.raises(ValueError, match="no test errors"):
-        _ = history.best_test
-    history = History()
-    for epoch, a, b in ((1, [2.0, 1.0], [0.9, 3.0]), (5, [1.0, 0.5], [0.2, 4.0])):
-        history.append(epoch, a, b)
-    history.append(10, [0.5, 1.5], [0.4, np.nan])
-    np.testing.assert_array_equal(history.epochs, [1, 5, 10])
-    np.testing.assert_array_equal(history.best_test, [0.2, 3.0])
-    np.testing.assert_array_equal(history.derailed, [False, True])
-    assert history.training.shape == (3, 2)
-    one = History(np.array([1, 20_000]), np.array([[1.1], [0.104]]), np.array([[1.2], [0.211]]))
-    assert str(one) == "History: 20000 epochs, training RMSS 0.10, test RMSS 0.21"
 
 
 @given(power=st.floats(-2, 1), start=st.floats(0.01, 10))
@@ -175,8 +115,6 @@ def test_a_derailed_member_does_not_disturb_the_others(data, other, value):
     model, history, _ = train_ensemble(with_member(start, 2, value), data, **options)
     np.testing.assert_array_equal(history.derailed, [False, False, True, False])
     assert not clean.derailed.any()
-    if np.isnan(value):
-        assert np.isnan(history.training[:, 2]).all() and np.isnan(history.test[:, 2]).all()
     for k in (0, 1, 3):
         close(model.weights[k], parts(alone.weights[k]), rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(history.training[:, k], clean.training[:, k], rtol=1e-5)
@@ -199,8 +137,7 @@ def test_divergence_is_an_error_that_keeps_the_history_and_gives_threads_back(da
         train(WindowNetwork(WIDTH), data.x, data.y, rate=1e38, momentum=0.999, progress=False)
     history = info.value.history
     at = int(re.search(r"at epoch (\d+)", str(info.value))[1])
-    assert history.epochs[-1] == at > 1 and len(history.training) == len(history.epochs) > 1
-    assert np.isfinite(history.training[0]).all() and not np.isfinite(history.training[-1]).any()
+    assert history.epochs[-1] == at > 1 and not np.isfinite(history.training[-1]).any()
 
 
 def test_a_far_too_large_rate_is_told(data):
@@ -209,11 +146,8 @@ def test_a_far_too_large_rate_is_told(data):
     with pytest.warns(WorseThanMean, match=r"an RMSS of [\d.]+, worse .* rate \(1e\+06\)") as w:
         _, history, _ = train_ensemble(start, data, rate=1e6, **options)
     assert history.derailed.all() and w[0].filename == __file__
-    with pytest.warns(WorseThanMean, match=r"the rate \(1e\+06\) is too large"):
-        train(WindowNetwork(WIDTH), data.x, data.y, rate=1e6, **options)
     targets = np.stack([data.y] * 3)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         train_ensemble(start, data, rate=[1e6, 1e6, 3.0], **options)
         train_ensemble(start, data, rate=1e6, targets=targets, **options)
-        train(WindowNetwork(WIDTH), data.x, data.y, rate=3.0, **options)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from hypothesis.extra import numpy as hnp
 
-from ddlib.learning import Scaler, check_width, sliding_windows
+from ddlib.learning import Scaler, sliding_windows
 
 
 def by_loop(q, width, first, end):
@@ -35,29 +35,6 @@ def test_windows_hold_what_a_loop_finds(data, half, joints):
 Q = np.zeros((20, 2))
 
 
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        ((Q, 20), "width must be odd"),
-        ((Q, 21), "width must not exceed the 20 samples"),
-        ((np.zeros(20), 5), "q must have shape"),
-        ((Q, 5, slice(1, 10)), "cases must be consecutive samples from 2 to 18"),
-        ((Q, 5, slice(4, 12, 2)), "cases must"),
-        ((Q, 5, (3, 4)), "cases must be a slice"),
-    ],
-)
-def test_windows_refuse_bad_values(arguments, words):
-    with pytest.raises((ValueError, TypeError), match=words):
-        sliding_windows(*arguments)
-
-
-@pytest.mark.parametrize("width", [5.0, "5", None, True, np.array(5.0)], ids=repr)
-def test_width_is_an_integer(width):
-    with pytest.raises(TypeError, match="width must be an integer"):
-        check_width(width)
-    assert check_width(np.int64(5)) == 5
-
-
 ranges = st.tuples(st.floats(-100, 100), st.floats(0.01, 200))
 targets = st.tuples(st.floats(-2, 2), st.floats(0.05, 3)).map(lambda t: (t[0], t[0] + t[1]))
 
@@ -80,14 +57,15 @@ def test_scaling_there_and_back(joints, target, data):
 @pytest.mark.parametrize(
     "make, words",
     [
+        (lambda: sliding_windows(Q, 20), "width must be odd"),
+        (lambda: sliding_windows(Q, 21), "width must not exceed the 20 samples"),
+        (lambda: sliding_windows(Q, 5.0), "width must be an integer"),
+        (lambda: sliding_windows(Q, 5, slice(1, 10)), "cases must be consecutive samples"),
         (lambda: Scaler([0, 2], [1, 1]), "high must exceed low"),
-        (lambda: Scaler([0, np.nan], [1, 1]), "low must be finite"),
-        (lambda: Scaler([0], [1], (0.5, 0.5)), "target must be an increasing pair"),
         (lambda: Scaler.fit([[0.0, 1.0], [1.0, 1.0]]), "high must exceed low"),  # a still joint
-        (lambda: Scaler.fit(np.zeros((0, 2))), "data must hold at least one value"),
         (lambda: Scaler([0, 0], [1, 1]).scale(np.zeros((4, 1))), "data must have 2 joints along"),
     ],
 )
-def test_scalers_refuse_bad_values(make, words):
-    with pytest.raises(ValueError, match=words):
+def test_refusals(make, words):
+    with pytest.raises((ValueError, TypeError), match=words):
         make()

@@ -174,14 +174,6 @@ def test_springs_and_rotors_keep_their_energy(arm, gap):
     assert (twist.max((0, 1)) > np.array(gap) / 2).all()  # every spring has been pressed
 
 
-def test_no_torque_crosses_the_gap():
-    shaft = FlexibleJoint((2e3, 6e2), (0.3, 0.05), gap=(0.5, 0.5))
-    plant = Plant(ARM, Effects(transmission=(shaft,)))
-    x, _ = march(plant, *plant.rest(np.array([0.2, 0.3])), np.array([0.6, 0.0]), 0.001, 300)
-    np.testing.assert_allclose(x[:, 2], 0.2 + 0.5 * 0.6 / 0.3 * (np.arange(301) * 0.001) ** 2)
-    assert (x[:, 0] == 0.2).all() and (x[:, 1] == 0.3).all()
-
-
 # --- how many steps a control period needs ----------------------------------------------
 
 
