@@ -5,7 +5,7 @@ import pytest
 
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error
 from ddlib.effects import IDEAL
-from ddlib.setups import JOINT_DAMPING, KD, STATE_FEEDBACK
+from ddlib.setups import KD, STATE_FEEDBACK
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 from workshop.beyond.control.adaptive.regressor import mixed_regressor
@@ -39,15 +39,6 @@ def test_what_is_learnt_is_taken_along():
     errors = runs.by_law(found, laws)["learning"]
     assert errors.shape == (3, 2) and (errors[-1] < 0.3 * errors[0]).all()
     assert (np.abs(after["learning"].estimate / runs.TRUTH - 1) < 0.2).all()
-
-
-def test_all_laws_have_one_linear_loop_when_they_know_the_arm():
-    for setup in (JOINT_DAMPING, STATE_FEEDBACK):
-        slope, (a0, a1) = runs.gains(setup)
-        np.testing.assert_allclose(slope * KD, setup.controller.kp)
-        for j in range(2):  # Slotine & Li's: the poles are the slope and K / m
-            poles = sorted(np.roots([1.0, a1[j], a0[j]]))
-            assert poles == pytest.approx(sorted([-slope[j], -KD[j] / runs._INERTIA[j]]))
 
 
 def test_excitation_is_what_sums_of_squared_torques_say():

@@ -95,9 +95,6 @@ def test_what_makes_no_sense_is_refused(change, message):
         ModelReference(**{**fine, **change})
 
 
-# --- options of the others ------------------------------------------------------------------
-
-
 def test_a_dead_zone_stops_learning_and_leakage_forgets():
     wanted = Trajectory(np.array([0.1, 0.2]), np.array([1.0, -0.5]), np.array([0.3, 0.4]))
     q, qd = np.zeros(2), np.array([0.9, -0.6])

@@ -21,9 +21,6 @@ from workshop.beyond.studies.tx40 import (
 RNG = np.random.default_rng(0)
 
 
-# --- cases and blocks -------------------------------------------------------------------
-
-
 def test_windows_surround_the_same_moments():
     rate, width = 500, 81
     data, arm = Windowed.of(rate, width), staubli()
@@ -48,9 +45,6 @@ def test_no_window_reaches_from_one_side_to_the_other():
         apart = np.abs(np.flatnonzero(training)[:, None] - np.flatnonzero(test)).min() / 100
         assert apart > 2 * half - 1e-9
     assert (seen == 1).all()
-
-
-# --- models -----------------------------------------------------------------------------
 
 
 def test_ridge_is_the_closed_form():
@@ -84,9 +78,6 @@ def test_identified_finds_what_was_planted():
     np.testing.assert_allclose(told, current[test], atol=1e-5)
     without = known_structure(states[training], current[training], states[test], friction=False)
     assert np.abs(without - current[test]).max() > 0.1
-
-
-# --- networks ---------------------------------------------------------------------------
 
 
 def test_decayed_networks_are_at_an_optimum_of_what_is_said():

@@ -7,9 +7,8 @@ import pytest
 
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Unreachable
 from ddlib.setups import JOINT_DAMPING
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
+from ddlib.trajectories import MOTION_SECONDS
 from workshop.beyond.studies.loop import motions, stirring
-from workshop.beyond.studies.loop.runs import days
 
 T = motions.times()
 INSIDE = (T >= 0) & (T < MOTION_SECONDS)
@@ -95,11 +94,3 @@ def test_errors_of_the_hand_are_distances_in_millimetres():
     np.testing.assert_allclose(stirring.off(JOINT_DAMPING, log), gap)
     alone = motions.recorded(JOINT_DAMPING, reference)
     np.testing.assert_allclose(log.q_true[0], alone.q_true, atol=1e-9)  # no torque, no change
-
-
-def test_a_day_is_recorded_as_alone():
-    today = JOINT_DAMPING.repeated(3)
-    batch = days.training(JOINT_DAMPING, [3])[0]["pick and place"]
-    single = today.record(APPENDIX_I[:5])
-    np.testing.assert_array_equal(batch.q_true, single.q_true)
-    np.testing.assert_array_equal(batch.q, single.q)

@@ -64,14 +64,6 @@ def test_errors_of_many_runs_are_those_of_one_run_alone():
     np.testing.assert_allclose(estimates[friction, rate, 2], last, rtol=1e-4, atol=1e-9)
 
 
-def test_estimates_begin_at_the_unloaded_arm_and_nobody_learns_without_a_learner(widget):
-    widget.load, widget.friction, widget.learner = 5, True, "none"
-    curves = widget.curves
-    np.testing.assert_array_equal(curves["error"], curves["nobody"])
-    assert np.ptp(curves["a"]) == 0 and curves["F_v1"][0] == 0
-    assert curves["a"][0] == pytest.approx(runs.TRUTH[0] / truths(5)[0])
-
-
 @pytest.mark.browser
 def test_a_triangle_marks_what_was_cut_off(tmp_path, visit):
     """On a small figure with known values: one beyond above, one below, the others within."""
