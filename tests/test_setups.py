@@ -9,7 +9,6 @@ from ddlib import paper
 from ddlib.metrics import rmss
 from ddlib.setups import (
     JOINT_DAMPING,
-    POSITION_FEEDBACK,
     STATE_FEEDBACK,
     errors,
     inside_hull,
@@ -62,12 +61,6 @@ def test_another_day_rounds_otherwise():
         miss = made.q - made.q_true
         assert np.abs(miss).max() <= 0.5001 * step and np.abs(miss).max() > 0.45 * step
     assert not np.array_equal(first.tau - first.tau_true, other.tau - other.tau_true)
-
-
-def test_the_arm_follows_the_family_within_a_few_degrees(recording):
-    for made in (recording, POSITION_FEEDBACK.record()):
-        error = np.rad2deg(np.abs(made.tracking_error[:, made.motion]))
-        assert 0.1 < error.max() < 10
 
 
 def test_split_is_by_trajectory(recording):

@@ -10,6 +10,7 @@ from ddlib.analysis import (
     decoded_sign,
     heard,
     savitzky_golay,
+    unit_inputs,
     with_jerk,
 )
 from ddlib.learning import Scaler, TorqueModel, Weights
@@ -102,3 +103,13 @@ def test_signs_are_judged_by_both_classes_alike():
     assert 0.35 < coin < 0.65
     rare = np.where(np.arange(200) < 10, 1.0, -1.0)[:, None]  # always "no" would be right in 95 %
     assert decoded_sign(0 * x + 1.0, x[:, :1], 0 * new + 1.0, rare)[0] == pytest.approx(0.5)
+
+
+def test_unit_inputs_are_the_nets_of_the_activities():
+    model, windows = _network(), RNG.normal(size=(6, 2, 7))
+    w = model.weights
+    w.output_weights[:] = 0
+    logits = [np.log(y / (1 - y)) for y in w.activity(model.scaled(windows))]
+    nets = unit_inputs(model, windows)
+    np.testing.assert_allclose(nets["hidden"], logits[0])
+    np.testing.assert_allclose(nets["direct"] + w.output_bias, logits[1])

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings, strategies as st
 
 from ddlib.effects import (
-    IDEAL,
     Backlash,
     ComputingTime,
     Delay,
@@ -13,8 +12,6 @@ from ddlib.effects import (
     FlexibleJoint,
     Noise,
     Quantisation,
-    Ripple,
-    Saturation,
     ViscousFriction,
 )
 
@@ -99,25 +96,6 @@ def test_play_by_hand_per_joint_and_without_gap():
 # --- the collection -----------------------------------------------------------------------
 
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
-FULL = Effects(
-    friction=(ViscousFriction((0.5, 0.15)),),
-    actuator=(Saturation((100.0, 30.0)),),
-    encoder=(Quantisation.encoder(16),),
-    torque_sensor=(Noise((0.1, 0.1)),),
-    motor=(Ripple((0.1, 0.1)),),
-    transmission=(SHAFT,),
-)
-PARTS = ("friction", "actuator", "encoder", "torque_sensor", "motor", "transmission")
-
-
-def test_without_switches_off_parts_and_leaves_the_rest():
-    for part in PARTS:
-        less = FULL.without(part)
-        assert getattr(less, part) == () and getattr(FULL, part) != ()
-        assert all(getattr(less, other) == getattr(FULL, other) for other in set(PARTS) - {part})
-    assert FULL.without(*PARTS) == IDEAL
-    with pytest.raises(ValueError, match="torque_sensor"):
-        FULL.without("friction", "gears")
 
 
 def test_refusals():

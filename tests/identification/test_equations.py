@@ -132,3 +132,10 @@ def test_refusals():
         by_modulation(replace(run, duration=0.1))
     with pytest.raises(ValueError, match="width must be an odd number"):
         by_smoothing(run, 10)
+
+
+def test_no_window_makes_smoothing_honest():
+    many, truth = recorded("surrogate, PD")
+    for width, smooth_torque in ((11, False), (21, True), (41, True), (41, False)):
+        found = least_squares(by_smoothing(many, width, smooth_torque=smooth_torque))
+        assert found.covers(truth)[:, :3].mean(0).min() < 0.5

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ddlib.dynamics import SerialArm, SpatialLink
-from ddlib.identification import joint_columns
+from ddlib.identification import joint_columns, joint_terms
 
 RNG = np.random.default_rng(0)
 GRAVITY = (0.0, 0.0, -9.81)
@@ -66,3 +66,14 @@ def test_weight_at_rest_on_all_six(joint):
         assert left(columns, torque) < 1e-9 < np.abs(torque).max()
     else:  # the wrist's own weight is not among the terms of joints 2 and 3
         assert left(columns, torque) < 0.1
+
+
+def test_friction_is_of_the_joint_and_of_motor_six():
+    states = moving()
+    terms, v = joint_terms(states), states[..., 1]
+    for j, row in enumerate(terms):
+        np.testing.assert_array_equal(row["velocity"], v[:, j])
+        whole, bare = joint_columns(states, j), joint_columns(states, j, friction=False)
+        assert whole.shape[1] - bare.shape[1] == (4 if j in (4, 5) else 2)
+    for row in terms[4:]:
+        assert (np.sign(row["sign, motor 6"]) == np.sign(v[:, 4] + v[:, 5])).all()

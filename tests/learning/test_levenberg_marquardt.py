@@ -171,3 +171,11 @@ def test_unfit_weights_and_data_are_refused(data, start):
     ):
         with pytest.raises(ValueError, match=re.escape(message)):
             solve(weights, cases, progress=False)
+
+
+def test_a_saturated_network_does_not_pass_for_an_optimum(data, start):
+    """Its gradient is zero, as are all derivatives."""
+    weights = replace(start, output_bias=start.output_bias + 1e4)
+    solution = quietly(weights, data, steps=20)
+    assert (solution.ended == "no descent").all() and not solution.converged.any()
+    assert np.isfinite(flat(solution.model.weights)).all()

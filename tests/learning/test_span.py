@@ -114,13 +114,6 @@ def test_recursion_is_descent_epoch_by_epoch(rates, momentum, warm_up):
         p = p + step
 
 
-def test_a_flat_mode_gathers_one_over_one_minus_momentum():
-    (q,) = effective_steps([0.0], [5000], 0.98)
-    assert q[0] == pytest.approx(50 * (5000 - 49), rel=1e-9)  # less what gathering has cost
-    (q,) = effective_steps([0.0, 1e-30, 0.1], [20_000], 0.98)
-    np.testing.assert_allclose(q[1:], [q[0], 10.0])
-
-
 # --- the linearised network ---------------------------------------------------------------
 
 
