@@ -25,14 +25,16 @@ TEST_TRAJECTORY = 6
 """Number of the trajectory that tests generalisation, Appendix I."""
 
 
-class Rmss(NamedTuple):
+class _Rmss(NamedTuple):
     """A pair of printed errors: on the training data and on trajectory 6."""
 
     training: float
     test: float
 
 
-TABLE_4_1 = MappingProxyType({11: Rmss(0.078, 0.22), 21: Rmss(0.027, 0.10), 41: Rmss(0.024, 0.13)})
+TABLE_4_1 = MappingProxyType(
+    {11: _Rmss(0.078, 0.22), 21: _Rmss(0.027, 0.10), 41: _Rmss(0.024, 0.13)}
+)
 """RMSS error by window size, Table 4-1."""
 
 TABLE_6_1 = MappingProxyType({"random set A": 0.068, "random set B": 0.083, "trajectory 6": 0.067})
@@ -41,7 +43,7 @@ TABLE_6_1 = MappingProxyType({"random set A": 0.068, "random set B": 0.083, "tra
 LARGEST_WEIGHT = MappingProxyType({11: 18.9, 21: 11.7, 41: 4.2})
 """Magnitude of the largest weight by window size, captions of Figures 5-1 to 5-3."""
 
-LARGEST_WEIGHT_SIMULATION = 9.63
+_LARGEST_WEIGHT_SIMULATION = 9.63
 """Magnitude of the largest weight of the simulation network, caption of Figure 6-1."""
 
 HIDDEN_UNITS = 10

@@ -203,7 +203,7 @@ def train_windows(
 
 
 @dataclass(frozen=True)
-class Errors:
+class _Errors:
     """RMSS on an Appendix I recording, in each way the paper may have meant."""
 
     training: np.ndarray  #: Pooled, divided by the training set's own deviation.
@@ -226,10 +226,10 @@ NAMES = {
     "elbow": "test elbow",
     "desired": "test, desired positions",
 }
-"""What results and tables call the fields of `Errors`."""
+"""What results and tables call the fields of `_Errors`."""
 
 
-def errors(model: TorqueModel, recording: Recording) -> Errors:
+def errors(model: TorqueModel, recording: Recording) -> _Errors:
     """RMSS of a model on an Appendix I recording, one value per member each."""
     width = model.weights.width
     training, test = split(recording)
@@ -237,7 +237,7 @@ def errors(model: TorqueModel, recording: Recording) -> Errors:
     desired = sliding_windows(test.reference.q, width, test.motion)
     predicted = model.torque(x6)
     by_joint = rmss(predicted, y6, pooled=False)
-    return Errors(
+    return _Errors(
         training=rmss(model.torque(x), y),
         test=rmss(predicted, y6),
         by_training_deviation=rmss(predicted, y6, scale=y.std(0)),
@@ -271,7 +271,7 @@ def inside_hull(extents_deg) -> np.ndarray:
     return (distances <= 1e-9).all(-1)
 
 
-class Square(NamedTuple):
+class _Square(NamedTuple):
     """Recordings of a grid of trajectories; in `extents_deg` the elbow's changes fastest."""
 
     extents_deg: np.ndarray  # shape (runs, 2), shoulder and elbow
@@ -279,7 +279,7 @@ class Square(NamedTuple):
     recording: Recording
 
 
-def square(setup: Setup, points: int = 9) -> Square:
+def square(setup: Setup, points: int = 9) -> _Square:
     """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
 
     `points` are extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that
@@ -288,7 +288,7 @@ def square(setup: Setup, points: int = 9) -> Square:
     integer("points", points, 2)
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
     extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
-    return Square(extents, inside_hull(extents), setup.record(extents))
+    return _Square(extents, inside_hull(extents), setup.record(extents))
 
 
 def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:

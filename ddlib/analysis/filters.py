@@ -13,7 +13,7 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, one_of
 
 
-class Decomposition(NamedTuple):
+class _Decomposition(NamedTuple):
     """The parts of a weight function; ``constant + even + odd`` is the function itself."""
 
     constant: np.ndarray  # of shape (..., 1)
@@ -25,7 +25,7 @@ class Decomposition(NamedTuple):
         return self.constant + self.even + self.odd
 
 
-def odd_width(f) -> np.ndarray:
+def _odd_width(f) -> np.ndarray:
     """Weight functions with a centre; a ValueError if the last axis has an even length or 1."""
     f = finite_array("f", f)
     if f.ndim == 0 or f.shape[-1] < 3 or f.shape[-1] % 2 == 0:
@@ -33,21 +33,21 @@ def odd_width(f) -> np.ndarray:
     return f
 
 
-def decompose(f, convention: str = "symmetric") -> Decomposition:
+def decompose(f, convention: str = "symmetric") -> _Decomposition:
     """Split weight functions ``(..., width)`` into constant, even and odd parts about x = 0.
 
     With the "symmetric" `convention` the mean is taken out of the even part, so that the odd part
     is odd. "paper": as printed in section 5.1, where it is taken out of the *odd* part: the sum is
     the same, but "odd" is then not odd and "even" keeps the mean.
     """
-    f = odd_width(f)
+    f = _odd_width(f)
     one_of("convention", convention, ("symmetric", "paper"))
     mirrored = f[..., ::-1]
     constant = f.mean(-1, keepdims=True)
     even, odd = (f + mirrored) / 2, (f - mirrored) / 2
     if convention == "paper":
-        return Decomposition(constant, even, odd - constant)
-    return Decomposition(constant, even - constant, odd)
+        return _Decomposition(constant, even, odd - constant)
+    return _Decomposition(constant, even - constant, odd)
 
 
 DERIVATIVES = ("position", "velocity", "acceleration", "jerk")
@@ -66,7 +66,7 @@ def basis(width: int) -> np.ndarray:
 
 def content(f) -> np.ndarray:
     """Components of weight functions of 5 samples or more along `basis`, ``(..., 4)``."""
-    f = odd_width(f)
+    f = _odd_width(f)
     if f.shape[-1] < 5:
         raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
     return f @ basis(f.shape[-1]).T
@@ -82,7 +82,7 @@ def shares(f) -> np.ndarray:
 
     Position, velocity, acceleration, jerk, and the rest, which no cubic explains; they sum to 1.
     """
-    f = odd_width(f)
+    f = _odd_width(f)
     energy = (f**2).sum(-1, keepdims=True)
     if (energy == 0).any():
         raise ValueError("f must not be zero everywhere")
@@ -123,7 +123,7 @@ def classify(f) -> np.ndarray:
 def purest(f, name: str) -> np.ndarray:
     """The weight function of a class with the largest share of the named derivatives."""
     one_of("name", name, CLASSES)
-    f = odd_width(f)
+    f = _odd_width(f)
     f = f.reshape(-1, f.shape[-1])
     share = np.moveaxis(shares(f), -1, 0)
     named = [share[DERIVATIVES.index(n)] for n in name.split(" + ") if n in DERIVATIVES]
@@ -139,7 +139,7 @@ def upright(f) -> np.ndarray:
 
     A hidden unit and its negative are the same unit, so the sign is free.
     """
-    f = odd_width(f)
+    f = _odd_width(f)
     parts = content(f)[..., 1:]
     strongest = np.take_along_axis(parts, np.abs(parts).argmax(-1)[..., None], -1)
     return np.where(strongest < 0, -f, f)
@@ -150,7 +150,7 @@ def roughness(f) -> np.ndarray:
 
     0 for a straight line, about 1 for white noise, more for an alternating one.
     """
-    f = odd_width(f)
+    f = _odd_width(f)
     centred = f - f.mean(-1, keepdims=True)
     energy = (centred**2).mean(-1)
     second = (np.diff(f, 2, axis=-1) ** 2).mean(-1)
@@ -181,7 +181,7 @@ def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) ->
 
 def frequency_response(f, frequencies, step: float) -> np.ndarray:
     """Complex gain of filters for ``exp(i 2 pi nu t)``, with nu in Hz and the period in s."""
-    f, frequencies = odd_width(f), finite_array("frequencies", frequencies)
+    f, frequencies = _odd_width(f), finite_array("frequencies", frequencies)
     number("step", step, 0.0, open_low=True)
     half = f.shape[-1] // 2
     times = np.arange(-half, half + 1) * step

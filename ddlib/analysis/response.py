@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import orth
 
 from ddlib._check import finite_array, number
-from ddlib.analysis.following import Responses, gains, mean_gradient
+from ddlib.analysis.following import _Responses, gains, mean_gradient
 from ddlib.analysis.hidden_units import net_inputs
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
@@ -26,7 +26,7 @@ def with_jerk(states) -> np.ndarray:
     return np.concatenate([states, jerk[..., None]], -1)
 
 
-def heard(outputs, states) -> Responses:
+def heard(outputs, states) -> _Responses:
     """R² of quantities ``(cases, joint, quantities)`` for signals ``(..., cases, units)``.
 
     Alone is of both joints; unique: by how much R² on all falls without it (semi-partial).
@@ -54,7 +54,7 @@ def heard(outputs, states) -> Responses:
     less = np.stack([share([i for i in range(count) if i != k]) for k in range(count)], -1)
     unique = np.clip(together[:, None] - less, 0, 1)
     shape = np.moveaxis(outputs, -2, 0).shape[1:]
-    return Responses(
+    return _Responses(
         alone.reshape(*shape, count), unique.reshape(*shape, count), together.reshape(shape)
     )
 
@@ -66,21 +66,21 @@ def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
     return {"hidden": net_inputs(model, windows), "direct": direct}
 
 
-class Calibrated(NamedTuple):
+class _Calibrated(NamedTuple):
     """Stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2), ``(..., output, joint, 3)``."""
 
     direct: np.ndarray  # through the direct weights alone
     whole: np.ndarray  # through all of the network, averaged over cases
 
 
-def calibrated(model: TorqueModel, windows) -> Calibrated:
+def calibrated(model: TorqueModel, windows) -> _Calibrated:
     """Gains of networks in physical units, from their torques' gradient averaged over windows."""
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
     scale = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
     direct = slope[..., None, None] * weights.direct_weights * scale
-    return Calibrated(gains(direct), gains(mean_gradient(model, windows)))
+    return _Calibrated(gains(direct), gains(mean_gradient(model, windows)))
 
 
 def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:

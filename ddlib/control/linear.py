@@ -132,7 +132,7 @@ def _parts(joints, kp, ki, kd, period, delay):
     return F, command, torque, of_law, (kp + at_once, reference)
 
 
-class Margins(NamedTuple):
+class _Margins(NamedTuple):
     """How far a stable loop is from instability."""
 
     phase_deg: float  #: Angle in degrees that the loop may lose at its crossover.
@@ -141,7 +141,7 @@ class Margins(NamedTuple):
     lower_gain: float  #: Factor to which the gain may fall; 0 without a limit.
 
 
-def margins(loop) -> Margins:
+def margins(loop) -> _Margins:
     """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control."""
     period = loop.dt or 0.0
     if period:
@@ -163,7 +163,7 @@ def margins(loop) -> Margins:
     if period:
         crossover = 2 / period * np.arctan(crossover * period / 2)
     upper, lower = min(gains[gains > 1], default=np.inf), max(gains[gains < 1], default=0.0)
-    return Margins(float(phases[k]), float(crossover), float(upper), float(lower))
+    return _Margins(float(phases[k]), float(crossover), float(upper), float(lower))
 
 
 def proportional_limit(inertia, viscous, period) -> float:

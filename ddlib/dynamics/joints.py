@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib._check import finite_array, integer
-from ddlib.dynamics.arm import STANDARD_GRAVITY, checked_state
-from ddlib.dynamics.formulations import link_frame
-from ddlib.dynamics.serial import SerialArm, SpatialLink
+from ddlib.dynamics.arm import STANDARD_GRAVITY, _checked_state
+from ddlib.dynamics.formulations import _link_frame
+from ddlib.dynamics.serial import SerialArm, _SpatialLink
 
 _PER_LINK = 10  # inertial parameters of a link: mass, three first moments, six second moments
 _SECOND = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # xx, yy, zz, xy, xz, yz
@@ -27,12 +27,12 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
     return np.stack(columns, -1)
 
 
-def frames(arm: SerialArm, q) -> np.ndarray:
+def _frames(arm: SerialArm, q) -> np.ndarray:
     """Homogeneous matrices (..., joints + 1, 4, 4) of all links' frames, base first, m."""
     q = finite_array("q", q, arm.joints)
     placed = [np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))]
     for link, angle in zip(arm.constants().links, np.moveaxis(q, -1, 0)):
-        rows = link_frame(link, angle, 0.0, 1.0)
+        rows = _link_frame(link, angle, 0.0, 1.0)
         step = [np.stack(np.broadcast_arrays(*row, angle)[:4], -1) for row in rows]
         placed.append(placed[-1] @ np.stack(step, -2))
     return np.stack(placed, -3)
@@ -40,10 +40,10 @@ def frames(arm: SerialArm, q) -> np.ndarray:
 
 def hand(arm: SerialArm, q) -> np.ndarray:
     """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
-    return frames(arm, q)[..., -1, :3, 3]
+    return _frames(arm, q)[..., -1, :3, 3]
 
 
-def inertial_parameters(link: SpatialLink) -> np.ndarray:
+def inertial_parameters(link: _SpatialLink) -> np.ndarray:
     """What a link's torques are linear in, shape (10,), about the origin of its frame.
 
     Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
@@ -61,8 +61,8 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     columns depend on others, or are zero: only some combinations of parameters move a joint (Khosla
     1986).
     """
-    q, qd, qdd = checked_state(q, qd, qdd, arm.joints)
-    placed = frames(arm, q)
+    q, qd, qdd = _checked_state(q, qd, qdd, arm.joints)
+    placed = _frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
     matrix = np.zeros((*q.shape, _PER_LINK * arm.joints))
     spin, spin_rate = np.zeros((2, *q.shape[:-1], 3))
@@ -113,7 +113,7 @@ def locked(arm: SerialArm, joints: int) -> SerialArm:
     integer("joints", joints, 1, arm.joints)
     if joints == arm.joints:
         return arm
-    placed = frames(arm, np.zeros(arm.joints))[1:]
+    placed = _frames(arm, np.zeros(arm.joints))[1:]
     last = placed[joints - 1]
     bodies = [_moved(link, np.linalg.inv(last) @ f) for link, f in zip(arm.links, placed)]
     bodies = bodies[joints - 1 :]
@@ -137,7 +137,7 @@ def locked(arm: SerialArm, joints: int) -> SerialArm:
     return SerialArm((*arm.links[: joints - 1], whole), arm.gravity)
 
 
-def _moved(link: SpatialLink, place) -> tuple:
+def _moved(link: _SpatialLink, place) -> tuple:
     """Mass, centre and tensor of inertia about it of a link, seen from another frame."""
     turn = place[:3, :3]
     com = turn @ link.com + place[:3, 3]
@@ -164,11 +164,11 @@ def _arm_in_space() -> SerialArm:
     about_axis = inertia + whole * centre**2 - (own + mass * middle**2).sum()
     about_com = about_axis - left * com**2
     twists = (-90.0, 90.0, -90.0, 90.0, 0.0)
-    first = SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
+    first = _SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
     place = com - to_third_axis, 0.0, 0.0
-    second = SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
+    second = _SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
     rest = [
-        SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
+        _SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
         for twist, a, m, i in zip(twists, length, mass, own)
     ]
     return SerialArm((first, second, *rest), (0.0, 0.0, -STANDARD_GRAVITY))

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import finite_array, integer, number, shaped
-from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, checked_state
-from ddlib.dynamics.formulations import Constants, LinkConstants, newton_euler
+from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, _checked_state
+from ddlib.dynamics.formulations import _Constants, _LinkConstants, newton_euler
 
 
 @dataclass(frozen=True)
-class SpatialLink:
+class _SpatialLink:
     """A rigid link with a revolute joint, in Denavit-Hartenberg's parameters."""
 
     twist_deg: float  #: Angle from its joint's axis to the next joint's, degrees.
@@ -37,7 +37,7 @@ class SpatialLink:
         object.__setattr__(self, "com", tuple(com.tolist()))
         object.__setattr__(self, "inertia", tuple(map(tuple, inertia.tolist())))
 
-    def constants(self) -> LinkConstants:
+    def constants(self) -> _LinkConstants:
         """What the formulations of inverse dynamics need of the link."""
         cos_twist, sin_twist = _cos_sin(self.twist_deg)
         tip = [self.length, self.offset * sin_twist, self.offset * cos_twist]
@@ -46,20 +46,20 @@ class SpatialLink:
         moments = self.mass * np.outer(point, point)
         moments[:3, :3] += np.trace(inertia) / 2 * np.eye(3) - inertia
         place = (cos_twist, sin_twist, self.length, self.offset, tip)
-        return LinkConstants(*place, self.mass, self.com, self.inertia, moments.tolist())
+        return _LinkConstants(*place, self.mass, self.com, self.inertia, moments.tolist())
 
 
 @dataclass(frozen=True)
 class SerialArm:
     """A chain of links, each turning about the axis at its near end."""
 
-    links: tuple[SpatialLink, ...]  #: From the base outwards.
+    links: tuple[_SpatialLink, ...]  #: From the base outwards.
     #: Acceleration of free fall in the base's frame, m/s^2.
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
         links = tuple(self.links)
-        if not links or not all(isinstance(link, SpatialLink) for link in links):
+        if not links or not all(isinstance(link, _SpatialLink) for link in links):
             raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
         object.__setattr__(self, "links", links)
         object.__setattr__(self, "gravity", tuple(shaped("gravity", self.gravity, (3,)).tolist()))
@@ -68,7 +68,7 @@ class SerialArm:
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
         """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
         spatial = (
-            SpatialLink(
+            _SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
             )
             for k in links
@@ -91,16 +91,16 @@ class SerialArm:
         `formulation` is `newton_euler`, `lagrange_euler` or `recursive_lagrange`: they agree, at
         different cost.
         """
-        state = checked_state(q, qd, qdd, self.joints)
+        state = _checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))
         return np.stack([t + np.zeros(state[0].shape[:-1]) for t in tau], -1)
 
-    def constants(self, make: Callable = float) -> Constants:
+    def constants(self, make: Callable = float) -> _Constants:
         """What the formulations need of the arm, every number made by `make`."""
         links = [_each(make, link.constants()) for link in self.links]
         # under gravity the base accelerates upwards, instead of every link falling
         base = _each(make, [-g for g in self.gravity])
-        return Constants([LinkConstants(*values) for values in links], base)
+        return _Constants([_LinkConstants(*values) for values in links], base)
 
 
 def _each(make, x):
@@ -125,7 +125,7 @@ _PUMA_560_LINKS = (  # twist (degrees), length, offset, mass, centre, diagonal o
     (0.0, 0.0, 0.0, 0.09, (0.0, 0.0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3)),
 )
 PUMA_560 = SerialArm(
-    tuple(SpatialLink(*place, np.diag(moments)) for *place, moments in _PUMA_560_LINKS),
+    tuple(_SpatialLink(*place, np.diag(moments)) for *place, moments in _PUMA_560_LINKS),
     gravity=(0.0, 0.0, -STANDARD_GRAVITY),
 )
 """The most studied geared arm, without its motors (Corke & Armstrong-Helouvry 1994)."""

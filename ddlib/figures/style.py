@@ -24,9 +24,9 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from ddlib.tables import SUPERSCRIPT
+from ddlib.tables import _SUPERSCRIPT
 
-FONT = "'DejaVu Sans',Verdana,sans-serif"
+_FONT = "'DejaVu Sans',Verdana,sans-serif"
 """Fonts of text in figures: the one they are laid out with, one as wide, the reader's own."""
 
 INK = "#010203"
@@ -47,7 +47,7 @@ JOINTS = ("shoulder", "elbow")
 # What may follow the comma in an axis label, and never stands alone
 _UNITS = ("rad", "rad/s", "rad/s²", "°", "°/s", "m", "mm", "s", "ms", "Hz", "N m", "J", "dB", "%")
 
-LEAST = 6.75  # points, of the smallest text of a figure: 9 pixels on a page
+_LEAST = 6.75  # points, of the smallest text of a figure: 9 pixels on a page
 NARROW = 3.55  # inches, the width of a narrow form: what a screen of 390 pixels leaves it
 _HEAVIEST = 90_000  # letters of SVG up to which a narrow form is worth its weight in the page
 
@@ -163,7 +163,7 @@ class _Powers(ticker.LogFormatterSciNotation):
 
     def __call__(self, x, pos=None):
         label = super().__call__(x, pos).removeprefix(r"$\mathdefault{").removesuffix("}$")
-        label = re.sub(r"\^{(.*)}", lambda power: power[1].translate(SUPERSCRIPT), label)
+        label = re.sub(r"\^{(.*)}", lambda power: power[1].translate(_SUPERSCRIPT), label)
         return label.replace(r"\times", " · ")
 
 
@@ -359,7 +359,7 @@ def _inline(svg: str, alt: str) -> str:
     smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)), default=None)
     least = f"--least:{float(size[1]) / smallest * 9:.0f}px;" if smallest else ""
     style = f"width:{float(size[1]) / 72:.2f}in;{least}max-width:100%;height:auto;"
-    style += f"font-family:{FONT};"
+    style += f"font-family:{_FONT};"
     style += "text-rendering:geometricPrecision;stroke-linejoin:round;stroke-linecap:butt"
     label = html.escape(alt, quote=True)
     attributes = f'role="figure" aria-label="{label}" style="{style}"'
@@ -374,8 +374,8 @@ _LETTER = re.compile(r'<tspan x="([^"]*)" y="([^"]*)" style="([^"]*)">(.*?)</tsp
 
 
 def _legible_size(size: re.Match) -> str:
-    """A size of text, at least `LEAST`."""
-    return size[0].replace(size[1] or size[2], f"{max(float(size[1] or size[2]), LEAST):g}")
+    """A size of text, at least `_LEAST`."""
+    return size[0].replace(size[1] or size[2], f"{max(float(size[1] or size[2]), _LEAST):g}")
 
 
 def _in_reading_order(formula: re.Match) -> str:

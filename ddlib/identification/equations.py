@@ -18,7 +18,7 @@ from ddlib.identification.regression import (
     RIGID,
     SIGN_SPEED,
     Equations,
-    columns,
+    _columns,
     from_states,
 )
 from ddlib.simulation import Recording, record
@@ -87,7 +87,7 @@ def by_modulation(
     regressors, torques = [], []
     for j in range(2):
         torque = recording.tau[..., j] @ later.T
-        a = columns(rows[j], names, torque)
+        a = _columns(rows[j], names, torque)
         parts = []
         for run, keep in enumerate(steady[j]):
             # bumps overlap: the inverse Cholesky factor makes their torque noise independent

@@ -97,7 +97,7 @@ def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
     for j in range(2):
         row = dict(zip((*RIGID, *GRAVITY), np.moveaxis(rigid[..., j, :], -1, 0)))
         row |= {f"F_v{j + 1}": qd[..., j], f"F_c{j + 1}": sign[..., j]}
-        regressors.append(columns(row, names, qd[..., j]))
+        regressors.append(_columns(row, names, qd[..., j]))
     return Equations(tuple(names), tuple(regressors), (torque[..., 0], torque[..., 1]))
 
 
@@ -134,7 +134,7 @@ def _known(names) -> None:
         one_of("names", name, (*RIGID, *GRAVITY, *FRICTION))
 
 
-def columns(row: dict, names: Sequence[str], like) -> np.ndarray:
+def _columns(row: dict, names: Sequence[str], like) -> np.ndarray:
     """The regressor (..., parameters) of one joint from columns by name, zeros `like` if unfelt."""
     _known(names)
     return np.stack([row.get(name, np.zeros_like(like)) for name in names], -1)

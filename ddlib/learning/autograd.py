@@ -8,13 +8,13 @@ from torch import nn
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array
-from ddlib.learning.network import FIELDS, Weights
+from ddlib.learning.network import _FIELDS, Weights
 from ddlib.learning.training import (
     History,
     TrainingDiverged,
-    check_descent,
-    check_points,
-    warn_if_worse_than_mean,
+    _check_descent,
+    _check_points,
+    _warn_if_worse_than_mean,
 )
 
 
@@ -24,7 +24,7 @@ class WindowNetwork(nn.Module):
     def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=0.3, seed=0):
         super().__init__()
         draw = Weights.random(1, width, hidden, joints, outputs, initial, seed)[0]
-        for name in FIELDS:
+        for name in _FIELDS:
             tensor = torch.tensor(getattr(draw, name), dtype=torch.float32)
             self.register_parameter(name, nn.Parameter(tensor))
 
@@ -37,7 +37,7 @@ class WindowNetwork(nn.Module):
 
     def weights(self) -> Weights:
         """The weights as plain arrays."""
-        return Weights(*(getattr(self, name).detach().numpy().copy() for name in FIELDS))
+        return Weights(*(getattr(self, name).detach().numpy().copy() for name in _FIELDS))
 
 
 def train(
@@ -64,7 +64,7 @@ def train(
     TrainingDiverged
         If the error is no longer finite; if it is, but ends above 1: a `WorseThanMean` warning.
     """
-    check_descent(rate, momentum, epochs)
+    _check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)
     if y.ndim != 2 or len(y) != len(x) or (np.ptp(y, axis=0) == 0).any():
         raise ValueError(
@@ -73,7 +73,7 @@ def train(
     x, y = (torch.as_tensor(array, dtype=torch.float32) for array in (x, y))
     spread = y.std(0, correction=0)
     optimiser = torch.optim.SGD(network.parameters(), lr=rate / len(x), momentum=momentum)
-    history, points = History(), set(check_points(epochs))
+    history, points = History(), set(_check_points(epochs))
     bar = tqdm(range(1, epochs + 1), desc="epochs", disable=not progress)
     for epoch in bar:
         optimiser.zero_grad()
@@ -89,5 +89,5 @@ def train(
                 raise TrainingDiverged(
                     f"the error is not finite at epoch {epoch}: lower the rate ({rate:g})", history
                 )
-    warn_if_worse_than_mean(history, rate)
+    _warn_if_worse_than_mean(history, rate)
     return history

@@ -12,16 +12,16 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, shaped
-from ddlib.learning.network import TorqueModel, Weights, from_rows, rows
+from ddlib.learning.network import TorqueModel, Weights, _from_rows, rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
     History,
     TrainingDiverged,
     TrainingSet,
-    check_descent,
-    check_points,
+    _check_descent,
+    _check_points,
+    _warn_if_worse_than_mean,
     default_rate,
-    warn_if_worse_than_mean,
 )
 
 WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
@@ -130,7 +130,7 @@ def train_ensemble(
             history,
         )
     if targets is None and members > 1:  # a few networks saturate early at any rate
-        warn_if_worse_than_mean(history, rate.min())
+        _warn_if_worse_than_mean(history, rate.min())
     model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
     return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in sorted(kept[0])}
 
@@ -142,14 +142,14 @@ def _per_member(rate, momentum, epochs, members):
         if array.shape not in ((), (members,)):
             raise ValueError(f"{name} must be one number or {members}, got shape {array.shape}")
     for pair in np.broadcast(*arrays):
-        check_descent(*map(float, pair), epochs)
+        _check_descent(*map(float, pair), epochs)
     return [np.broadcast_to(array, members) for array in arrays]
 
 
 def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
     """Train some members in this thread; `bar` is told how far they are."""
     torch.set_num_threads(1)
-    history, points = History(), set(check_points(epochs))
+    history, points = History(), set(_check_points(epochs))
     kept = {0: initial} if 0 in snapshots else {}
     spread = data.y.std(0)
     if test is not None:
@@ -208,8 +208,8 @@ class Descent:
         cases = self.inputs.shape[1]
         self.back = torch.empty(n, self.hidden, cases)
         self.delta = torch.empty(n, self.rows - self.hidden, cases)
-        self._net = times(self.inputs, len(self.first))
-        self._gradient = times(self.inputs.t().contiguous(), len(self.first))
+        self._net = _times(self.inputs, len(self.first))
+        self._gradient = _times(self.inputs.t().contiguous(), len(self.first))
 
     def _activities(self, net):
         """Activities of the hidden and output units, in place, as views of `net`."""
@@ -261,10 +261,10 @@ class Descent:
     def weights(self) -> Weights:
         """All members as plain arrays."""
         first = self.first.numpy().astype(float).reshape(self.members, self.rows, -1)
-        return from_rows(first, self.second.numpy().astype(float), self.shape)
+        return _from_rows(first, self.second.numpy().astype(float), self.shape)
 
 
-def times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
+def _times(matrix: torch.Tensor, rows: int) -> Callable[[torch.Tensor], torch.Tensor]:
     """Products of left-hand matrices of some `rows` with one that stays the same, packed once."""
     if not _ONEDNN or rows * matrix.numel() < _LEAST:
         return lambda left: torch.mm(left, matrix)

@@ -19,7 +19,7 @@ from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning.descent import WORKERS
-from ddlib.learning.gauss_newton import Objective
+from ddlib.learning.gauss_newton import _Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import History, TrainingSet
 
@@ -101,7 +101,7 @@ def solve(
 
     def work(member: Weights):
         torch.set_num_threads(1)  # of this thread: one core for each member
-        objective = Objective(member, data, decay, test)
+        objective = _Objective(member, data, decay, test)
         end = _descend(objective, objective.pack(member), steps, tolerance, target_rmss, tell)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import finite_array, integer, non_negative, number, shaped
-from ddlib.learning.network import Weights, from_rows, rows
+from ddlib.learning.network import Weights, _from_rows, rows
 from ddlib.learning.training import WARM_UP_MOMENTUM, TrainingSet
 
 
@@ -125,7 +125,7 @@ def moved(weights: Weights, change) -> Weights:
     shaped("change", change, f"(..., {start.size + weights.output_weights.size})")
     first = start + change[..., : start.size].reshape(*change.shape[:-1], *start.shape)
     second = change[..., start.size :].reshape(*change.shape[:-1], *weights.output_weights.shape)
-    return from_rows(first, weights.output_weights + second, weights.hidden_weights.shape[-2:])
+    return _from_rows(first, weights.output_weights + second, weights.hidden_weights.shape[-2:])
 
 
 class _Course(NamedTuple):

@@ -131,7 +131,7 @@ class WorseThanMean(UserWarning):
     """All networks of a run ended worse than a guess of the mean, which has an RMSS of 1."""
 
 
-def warn_if_worse_than_mean(history: History, rate: float) -> None:
+def _warn_if_worse_than_mean(history: History, rate: float) -> None:
     """Name rate and error where every network ended with a training RMSS above 1."""
     least = np.nanmin(history.training[-1])
     if least > 1:
@@ -151,12 +151,12 @@ def default_rate(width: int) -> float:
     return 33.0 / integer("width", width, 1)
 
 
-def check_points(epochs: int, points: int = 60) -> np.ndarray:
+def _check_points(epochs: int, points: int = 60) -> np.ndarray:
     """Epochs at which errors are recorded: about `points`, equally spaced on a log scale."""
     return np.unique(np.round(np.geomspace(1, epochs, points)).astype(int))
 
 
-def check_descent(rate: float, momentum: float, epochs: int) -> None:
+def _check_descent(rate: float, momentum: float, epochs: int) -> None:
     """Refuse options of descent that are out of range."""
     number("rate", rate, 0.0, _MAX_RATE, open_low=True)
     number("momentum", momentum, 0.0, 0.999)

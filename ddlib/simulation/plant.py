@@ -18,7 +18,7 @@ from ddlib.effects import IDEAL, Effects, StickSlipFriction
 _PHASE = 0.25
 
 
-class Plant:
+class _Plant:
     """An arm with those effects that act inside it: friction, motor, transmission."""
 
     def __init__(self, arm: Arm, effects: Effects = IDEAL):
@@ -192,7 +192,7 @@ def _holding(B, a, stuck):
     return np.stack([np.where(s1, f1, 0.0), np.where(s2, f2, 0.0)], -1)
 
 
-def substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
+def _substeps(arm: Arm, effects: Effects, step: float) -> np.ndarray:
     """Runge-Kutta steps that one control period needs, for each run by itself.
 
     Friction acts like a first-order decay of joint speed, fastest at rest; RK4 is stable up to 2.78

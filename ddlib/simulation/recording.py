@@ -12,7 +12,7 @@ from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
 
-def equal_steps(t) -> float:
+def _equal_steps(t) -> float:
     """The step of equally spaced times."""
     step = float(t[1] - t[0])
     if step <= 0 or not np.allclose(np.diff(t), step, rtol=1e-6, atol=0.0):
@@ -54,7 +54,7 @@ class Recording:
     @property
     def step(self) -> float:
         """Sampling period of the log, s; a ValueError if the samples are not equally spaced."""
-        return equal_steps(self.t)
+        return _equal_steps(self.t)
 
     @property
     def motion(self) -> slice:

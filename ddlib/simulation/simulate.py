@@ -8,8 +8,8 @@ from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, started
-from ddlib.simulation.plant import Plant, substeps
-from ddlib.simulation.recording import Recording, equal_steps
+from ddlib.simulation.plant import _Plant, _substeps
+from ddlib.simulation.recording import Recording, _equal_steps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 
 # The page Provenance shows these notes.
@@ -57,7 +57,7 @@ def _generator(seed):
     return _Streams(seeds)
 
 
-def _held(plant: Plant, x, v, tau, seconds, parts):
+def _held(plant: _Plant, x, v, tau, seconds, parts):
     """Positions and velocities after `seconds` under constant torque, in `parts` steps a run."""
     most = int(np.max(parts))
     if np.min(parts) == most:
@@ -84,7 +84,7 @@ def free_motion(arm: Arm, q, qd, seconds, step=0.001, effects: Effects = IDEAL):
     if abs(count - round(count)) > 1e-6:
         raise ValueError(f"seconds must be a whole number of steps, got {count:g}")
     t = np.arange(round(count) + 1) * step
-    plant = Plant(arm, effects)
+    plant = _Plant(arm, effects)
     x, v = _moving(plant, q, qd)
     states = [(x, v)]
     zero = np.zeros_like(q)
@@ -109,7 +109,7 @@ def _check_plant(arm, effects) -> None:
         )
 
 
-def _moving(plant: Plant, q, qd):
+def _moving(plant: _Plant, q, qd):
     """Positions and velocities of a plant whose motors turn like the joints behind them."""
     x, v = plant.rest(q)
     return x, v + (np.concatenate([qd, qd], -1) if v.shape[-1] == 4 else qd)
@@ -161,7 +161,7 @@ def follow(
     names = ("reference.qd", "reference.qdd")
     reference = Trajectory(q, *(shaped(n, x, q.shape) for n, x in zip(names, reference[1:])))
     controller = as_controller(controller)
-    step = equal_steps(t)
+    step = _equal_steps(t)
     integer("log_every", log_every, 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
     late = effects.computing_time
@@ -175,7 +175,7 @@ def follow(
     start = _initial_state(first, (first, np.zeros(2)) if start is None else start)
     rng = _generator(seed)
     law = controller.start(reference, step)
-    plant, parts = Plant(arm, effects), substeps(arm, effects, step)
+    plant, parts = _Plant(arm, effects), _substeps(arm, effects, step)
     x, v = _moving(plant, *start)
     tau = np.zeros_like(start[0])
     encoder = started(effects.encoder, x[..., -2:])

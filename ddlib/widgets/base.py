@@ -16,19 +16,19 @@ from ddlib.widgets.parts.common import checked_presets, default_code, filled, ke
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-STATIC = Path(__file__).with_name("static")
+_STATIC = Path(__file__).with_name("static")
 
 # Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
 # its style sheet. A class of its own kind adds its own after them.
-FRAME = ("elements.js", "frame.js")
-SCRIPT = ("baked.js", *FRAME, "reading.js", "charts.js", "dragging.js", "controls.js", "curves.js")
+_FRAME = ("elements.js", "frame.js")
+SCRIPT = ("baked.js", *_FRAME, "reading.js", "charts.js", "dragging.js", "controls.js", "curves.js")
 STYLE = ("curves.css",)
-CHECKS = 200  # random settings at which the interpolation is compared with the function
+_CHECKS = 200  # random settings at which the interpolation is compared with the function
 
 
 def module(*names: str | Path) -> str:
     """Files of the folder `static`, or by full paths, as one text: a script must stand alone."""
-    return "\n".join((STATIC / name).read_text(encoding="utf-8") for name in names)
+    return "\n".join((_STATIC / name).read_text(encoding="utf-8") for name in names)
 
 
 class _Checked(t.TraitType):
@@ -45,7 +45,7 @@ class _Checked(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
-class PageWidget(anywidget.AnyWidget):
+class _PageWidget(anywidget.AnyWidget):
     """What every widget has: a description for the page, and a picture for pages without script."""
 
     spec = t.Dict(help="everything that stays as it is", read_only=True).tag(sync=True)
@@ -58,7 +58,7 @@ class PageWidget(anywidget.AnyWidget):
             self.set_trait(name, value)
 
 
-class CurveWidget(PageWidget):
+class CurveWidget(_PageWidget):
     """Curves of a function of a few parameters, with a control for each.
 
     Every parameter is a trait of its own name, to set, observe and link. With a kernel the
@@ -144,7 +144,7 @@ class CurveWidget(PageWidget):
                 raise ValueError(f"name must not be an attribute of widgets, got {name!r}")
         self._baked = self._bake(function, parameters, tolerance, depends)
         self._check_names(scalars)
-        error = self._baked.error(CHECKS)
+        error = self._baked.error(_CHECKS)
         if error > tolerance:
             raise ValueError(
                 f"grid must interpolate to {tolerance:g} of each curve's range, got {error:.2g}: "
@@ -241,7 +241,7 @@ class CurveWidget(PageWidget):
             "groups": baked.groups,
             "checksum": baked.checksum(),
             "error": error,
-            "checks": CHECKS,
+            "checks": _CHECKS,
         }
 
     def _on_change(self, change):

@@ -27,22 +27,22 @@ from ddlib.widgets.hinton import (
     CENTRE,
     EXACT,
     JOINTS,
-    HintonWidget,
-    check_models,
-    diagram,
+    _check_models,
+    _diagram,
+    _HintonWidget,
+    _unit_names,
+    _weight_functions,
     share_panel,
-    unit_names,
-    weight_functions,
     width_choice,
     zero_padded,
 )
 from ddlib.widgets.parts.parameters import Choice
 
-FREQUENCIES = np.geomspace(0.5, 20.0, 31)  # where the gain is shown, Hz
-FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
+_FREQUENCIES = np.geomspace(0.5, 20.0, 31)  # where the gain is shown, Hz
+_FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
 
 
-class FilterExplorer(HintonWidget):
+class FilterExplorer(_HintonWidget):
     """Choose a weight function on a Hinton diagram; see its parts, shares and gain.
 
     Filters of different windows share one axis: a filter of 11 samples is one of 41 samples
@@ -67,7 +67,7 @@ class FilterExplorer(HintonWidget):
     def __init__(
         self, models: Mapping[int, TorqueModel], members: Sequence[int] = (0, 1, 2), **options
     ):
-        self._weights = {width: model.weights for width, model in check_models(models, 1).items()}
+        self._weights = {width: model.weights for width, model in _check_models(models, 1).items()}
         for weights in self._weights.values():
             for member in members:
                 integer("members", member, 0, len(weights) - 1)
@@ -86,7 +86,7 @@ class FilterExplorer(HintonWidget):
             [
                 width_choice(self._weights),
                 Choice("seed", "Network", {k: f"seed {k}" for k in members}, members[0]),
-                Choice("unit", "Unit", unit_names(some[0]), unit_names(some[0])[0]),
+                Choice("unit", "Unit", _unit_names(some[0]), _unit_names(some[0])[0]),
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
             ],
             [
@@ -97,7 +97,7 @@ class FilterExplorer(HintonWidget):
                     "Gain",
                     gains,
                     "frequency, Hz",
-                    FREQUENCIES,
+                    _FREQUENCIES,
                     x_scale="log",
                     y_scale="power",
                     y_range=("lowest gain", "highest gain"),
@@ -126,7 +126,7 @@ class FilterExplorer(HintonWidget):
 
     def _filter(self, width, seed, unit, joint):
         weights = self._weights[width][seed]
-        return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
+        return _weight_functions(weights)[_unit_names(weights).index(unit), JOINTS.index(joint)]
 
     def _curves(self, width, seed, unit, joint) -> dict:
         f = self._filter(width, seed, unit, joint)
@@ -141,7 +141,7 @@ class FilterExplorer(HintonWidget):
             "class": CLASSES.index(classify(f)),
             "first": -half,
             "last": half,
-            "weights of all units": diagram(self._weights[width][seed], self._reach),
+            "weights of all units": _diagram(self._weights[width][seed], self._reach),
         }
 
 
@@ -166,16 +166,16 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, 
 
 def _gains(f) -> dict[str, np.ndarray]:
     """Gains as powers of ten: of a filter, of its varying part, of its main derivative; ends."""
-    gain = np.abs(frequency_response([f, f - f.mean()], FREQUENCIES, LOG_STEP))
+    gain = np.abs(frequency_response([f, f - f.mean()], _FREQUENCIES, LOG_STEP))
     highest = gain.max()
-    gain = np.log10(np.maximum(gain, FLOOR * highest))
+    gain = np.log10(np.maximum(gain, _FLOOR * highest))
     main = 1 + np.argmax(np.abs(content(f)[1:]))
     samples = np.arange(f.size) - f.size // 2
     moment = (samples * LOG_STEP) ** main @ basis(f.size)[main] * content(f)[main]
-    ideal = np.abs(moment) / math.factorial(main) * (2 * np.pi * FREQUENCIES) ** main
+    ideal = np.abs(moment) / math.factorial(main) * (2 * np.pi * _FREQUENCIES) ** main
     return {
         **dict(zip(("gain", "gain, varying"), gain)),
-        "gain, ideal": np.log10(np.maximum(ideal, FLOOR * highest)),
+        "gain, ideal": np.log10(np.maximum(ideal, _FLOOR * highest)),
         "lowest gain": np.floor(gain.min()),
         "highest gain": np.ceil(np.log10(highest)),
     }

@@ -20,13 +20,13 @@ EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold
 CENTRE = "time from the centre, ms"
 
 
-def unit_names(weights: Weights) -> tuple[str, ...]:
+def _unit_names(weights: Weights) -> tuple[str, ...]:
     """Names of a network's units: the outputs, then the hidden ones, counted from 0."""
     outputs = [f"{joint} torque" for joint in JOINTS]
     return (*outputs, *(f"hidden {k}" for k in range(weights.hidden_bias.shape[-1])))
 
 
-def weight_functions(weights: Weights) -> np.ndarray:
+def _weight_functions(weights: Weights) -> np.ndarray:
     """Weights from both windows to all units, ``(..., unit, joint, width)``, outputs first."""
     return np.concatenate([weights.direct_weights, weights.hidden_weights], axis=-3)
 
@@ -40,7 +40,7 @@ def zero_padded(f, reach: int) -> np.ndarray:
     return np.pad(f, [(0, 0)] * (f.ndim - 1) + [(zeros, zeros)])
 
 
-def check_models(models, axes: int) -> dict[int, TorqueModel]:
+def _check_models(models, axes: int) -> dict[int, TorqueModel]:
     """`models` if it maps two window sizes or more to models, otherwise an error.
 
     Their weights have no leading axis (``axes=0``, one network) or one (an ensemble).
@@ -73,23 +73,23 @@ def share_panel(title: str, x_label: str, parts: Mapping[float, str]) -> Panel:
     return Panel(title, "shares", x_label, list(parts), kind="bars", ticks=ticks, y_range=ends)
 
 
-def diagram(weights: Weights, reach: int) -> np.ndarray:
+def _diagram(weights: Weights, reach: int) -> np.ndarray:
     """All weights of one network, unit by unit, as `hinton.js` draws them.
 
     Bias, weights on top (an output's from the hidden units, a hidden unit's to the outputs), and
     the zero-padded window of each joint.
     """
-    windows = zero_padded(weight_functions(weights), reach)
+    windows = zero_padded(_weight_functions(weights), reach)
     biases = [*weights.output_bias, *weights.hidden_bias]
     tops = [*weights.output_weights, *weights.output_weights.T]
     units = [np.concatenate([[b], u, *w]) for b, u, w in zip(biases, tops, windows)]
     return np.concatenate(units)
 
 
-class HintonWidget(CurveWidget):
+class _HintonWidget(CurveWidget):
     """A `CurveWidget` with a Hinton diagram on which a unit, or one of its windows, is chosen.
 
-    The function's result has `diagram` under the name "weights of all units".
+    The function's result has `_diagram` under the name "weights of all units".
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ class HintonWidget(CurveWidget):
     def __init__(self, weights: Weights, reach: int, *args, largest: str = "now", **options):
         one_of("largest", largest, ("now", "ever"))
         layout = {
-            "units": list(unit_names(weights)),
+            "units": list(_unit_names(weights)),
             "outputs": weights.output_bias.shape[-1],
             "joints": list(JOINTS),
             "reach": reach,

@@ -40,7 +40,7 @@ _NOTE = (
     f"computed beforehand, at {AXIS.size} × {AXIS.size} places."
 )
 
-MOTION = """\
+_MOTION = """\
 import numpy as np
 
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -145,7 +145,7 @@ class TrajectoryPicker(LiveWidget):
             },
             presets_title="Trajectory",
             ranges={name: (x.min(), x.max()) for name, x in square.items()},
-            **{"code": MOTION, **options},
+            **{"code": _MOTION, **options},
         )
         errors = {name: self.numbers[f"RMSS, {name}"] for name in models}
         # in hundredths, the shoulder's extents fastest

@@ -14,10 +14,10 @@ from ddlib.widgets.hinton import (
     CENTRE,
     EXACT,
     JOINTS,
-    HintonWidget,
-    diagram,
-    unit_names,
-    weight_functions,
+    _diagram,
+    _HintonWidget,
+    _unit_names,
+    _weight_functions,
 )
 from ddlib.widgets.parts.parameters import Choice
 
@@ -25,7 +25,7 @@ _MOVED = 0.05  # the film begins where the weights have gone this part of their 
 _ERRORS = {"training": "training", "test": "trajectory 6"}
 
 
-class TrainingPlayer(HintonWidget):
+class TrainingPlayer(_HintonWidget):
     """Play a training run: from random weights to smooth filters.
 
     The slider steps over the recorded epochs, which are equally spaced on a log scale.
@@ -67,9 +67,9 @@ class TrainingPlayer(HintonWidget):
         self._weights = model.weights[:, member]
         every = errors(model[:, member], recording).named()
         self._errors = {name: every[name] for name in _ERRORS}
-        self._names = unit_names(self._weights[0])
+        self._names = _unit_names(self._weights[0])
         self._reach = self._weights.width // 2
-        self._functions = weight_functions(self._weights)
+        self._functions = _weight_functions(self._weights)
         begin = int(epochs[_moved(self._weights)])
         self.set_trait("begin", begin)
         places = np.log10(np.maximum(epochs, 1))
@@ -136,8 +136,8 @@ class TrainingPlayer(HintonWidget):
             "highest": self._functions[:, u].max(),
             **{f"{n} RMSS": errors[k] for n, errors in self._errors.items()},
             "place": self._places[k],
-            "largest": np.abs(diagram(self._weights[k], self._reach)).max(),
-            "weights of all units": diagram(self._weights[k], self._reach),
+            "largest": np.abs(_diagram(self._weights[k], self._reach)).max(),
+            "weights of all units": _diagram(self._weights[k], self._reach),
         }
 
 

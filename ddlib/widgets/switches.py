@@ -30,25 +30,25 @@ from ddlib.widgets.engine.plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 
-SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
+_SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
 
 # Strengths at the shoulder.
-FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
-DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
-SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
-QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
-DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
+_FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
+_DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
+_SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
+_QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
+_DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
 
 _STEPS = np.arange(round(3.5 / CONTROL_STEP) + 1)
 _T = _STEPS * CONTROL_STEP
 _WHOLE = _STEPS[::16]
 _CLOSE = _STEPS[725:801]
 
-TIMES = _T[_WHOLE]  # of the whole motion, s: every 16th control period, not smoothed
-CLOSE_UP = _T[_CLOSE]  # of the close-up, s: every control period around the turn
+_TIMES = _T[_WHOLE]  # of the whole motion, s: every 16th control period, not smoothed
+_CLOSE_UP = _T[_CLOSE]  # of the close-up, s: every control period around the turn
 
 # Axes of the charts: they stay, whatever is switched on. All combinations lie within.
-RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
+_RANGES = {"error": (-10, 5), "torque": (-40, 20), "close-up": (-10, 15)}
 
 _CODE = """\
 from ddlib.widgets import RealArmSwitches
@@ -86,9 +86,9 @@ class RealArmSwitches(LiveWidget):
             lambda **levels: _curves(arm, **levels),
             _choices(),
             [
-                _panel("Shoulder error, °", "error", TIMES, ideal),
-                _panel("Shoulder torque, N m", "torque", TIMES, ideal),
-                _panel("Torque around the turn, N m", "close-up", CLOSE_UP, ideal),
+                _panel("Shoulder error, °", "error", _TIMES, ideal),
+                _panel("Shoulder torque, N m", "torque", _TIMES, ideal),
+                _panel("Torque around the turn, N m", "close-up", _CLOSE_UP, ideal),
             ],
             title="Real-arm switches",
             alt=(
@@ -108,17 +108,17 @@ class RealArmSwitches(LiveWidget):
             ),
             **options,
         )
-        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in QUANTISATION.items()}
+        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in _QUANTISATION.items()}
         loop = {
             "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
             "gains": gains(pd(KP, KD)),
-            "share": SHARE.tolist(),
+            "share": _SHARE.tolist(),
             "levels": {
-                "friction": FRICTION,
-                "dead_zone": DEAD_ZONE,
-                "saturation": SATURATION,
+                "friction": _FRICTION,
+                "dead_zone": _DEAD_ZONE,
+                "saturation": _SATURATION,
                 "quantisation": steps,
-                "delay": DELAY,
+                "delay": _DELAY,
             },
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
@@ -131,12 +131,12 @@ class RealArmSwitches(LiveWidget):
 
 
 def _choices() -> list[Choice]:
-    milliseconds = {key: 1e3 * CONTROL_STEP * periods for key, periods in DELAY.items()}
+    milliseconds = {key: 1e3 * CONTROL_STEP * periods for key, periods in _DELAY.items()}
     switches = {
-        "friction": ("Friction", "{:g} N m", FRICTION),
-        "dead_zone": ("Dead zone", "{:g} N m", DEAD_ZONE),
-        "saturation": ("Torque limit", "±{:g} N m", SATURATION),
-        "quantisation": ("Encoder", "{} bits", QUANTISATION),
+        "friction": ("Friction", "{:g} N m", _FRICTION),
+        "dead_zone": ("Dead zone", "{:g} N m", _DEAD_ZONE),
+        "saturation": ("Torque limit", "±{:g} N m", _SATURATION),
+        "quantisation": ("Encoder", "{} bits", _QUANTISATION),
         "delay": ("Delay", "{:g} ms", milliseconds),
     }
     choices = []
@@ -149,17 +149,17 @@ def _choices() -> list[Choice]:
 
 
 def _panel(title, what, times, ideal) -> Panel:
-    lines = {"fixed": {"ideal": ideal[what]}, "y_range": RANGES[what]}
+    lines = {"fixed": {"ideal": ideal[what]}, "y_range": _RANGES[what]}
     return Panel(title, {what: "real"}, "time, s", times, **lines)
 
 
 def _effects(friction, dead_zone, saturation, quantisation, delay) -> Effects:
     """Effects of the named strengths."""
-    lost, limit = DEAD_ZONE[dead_zone] * SHARE, SATURATION[saturation] * SHARE
-    slowing, bits = FRICTION[friction] * SHARE, QUANTISATION[quantisation]
+    lost, limit = _DEAD_ZONE[dead_zone] * _SHARE, _SATURATION[saturation] * _SHARE
+    slowing, bits = _FRICTION[friction] * _SHARE, _QUANTISATION[quantisation]
     return Effects(
         friction=(ViscousFriction(slowing), CoulombFriction(slowing)),
-        actuator=(Delay(DELAY[delay]), DeadZone(lost), Saturation(limit)),
+        actuator=(Delay(_DELAY[delay]), DeadZone(lost), Saturation(limit)),
         encoder=(Quantisation.encoder(bits),) if bits else (),
     )
 

@@ -23,9 +23,9 @@ from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-VISCOUS = (0.5, 0.15)  # friction of the joints, N m s/rad, the only effect here; assumed
-MOST_DEG = 30.0  # error of a joint at which a run is stopped: larger than any of a stable loop here
-LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
+_VISCOUS = (0.5, 0.15)  # friction of the joints, N m s/rad, the only effect here; assumed
+_MOST_DEG = 30.0  # error at which a run is stopped: larger than any of a stable loop here
+_LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
 
 _T = np.arange(round(3.5 / CONTROL_STEP) + 1) * CONTROL_STEP
 
@@ -33,7 +33,7 @@ TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
 
 _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 
-START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}  # the book's gains
+_START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}  # the book's gains
 
 _CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -50,16 +50,16 @@ class _Question:
     """What happens if: asked before it is shown."""
 
     text: str  # what is changed
-    change: dict  # parameters that differ from `START` afterwards
+    change: dict  # parameters that differ from `_START` afterwards
     choices: tuple[str, ...]  # what might happen
     right: int  # place of what does happen among them; a test measures it
     why: str
-    first: dict = field(default_factory=dict)  # parameters that differ from `START` before
+    first: dict = field(default_factory=dict)  # parameters that differ from `_START` before
 
     @property
     def settings(self) -> tuple[dict, dict]:
         """All parameters before and after."""
-        return {**START, **self.first}, {**START, **self.change}
+        return {**_START, **self.first}, {**_START, **self.change}
 
     def description(self) -> dict:
         """What the page needs to know."""
@@ -73,7 +73,7 @@ _KINDS = (
     "The swing grows until the run is stopped.",
 )
 
-QUESTIONS = (
+_QUESTIONS = (
     _Question(
         "the damper is taken away (derivative gain 0)",
         {"kd": 0.0},
@@ -145,7 +145,7 @@ class PIDTuner(LiveWidget):
     The sliders set the shoulder's gains; the elbow's are in the ratio of the book's `KP` and `KD`
     (its integral gain in that of `KP`). The arm is rigid, with viscous friction and exact sensors;
     feedforward uses the rigid arm as its model, without friction. The page computes everything by
-    the live engine. A run is stopped where a joint's error passes `MOST_DEG`. Growth and margins
+    the live engine. A run is stopped where a joint's error passes `_MOST_DEG`. Growth and margins
     are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
     joint's torque while the other joint's is closed.
 
@@ -165,7 +165,7 @@ class PIDTuner(LiveWidget):
 
     def __init__(self, arm: Arm = CMU_DD_ARM_II, **options):
         self._arm = arm
-        milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in LATE}
+        milliseconds = {n: f"{1e3 * CONTROL_STEP * n:g} ms" for n in _LATE}
         super().__init__(
             self._both,
             [
@@ -201,18 +201,18 @@ class PIDTuner(LiveWidget):
             note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
             **options,
         )
-        effects = Effects(friction=(ViscousFriction(VISCOUS),))
+        effects = Effects(friction=(ViscousFriction(_VISCOUS),))
         loop = {
             "plant": plant(arm, effects),
-            "modes": modes(arm, VISCOUS),
+            "modes": modes(arm, _VISCOUS),
             "elbow": _ELBOW,
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
             "step": CONTROL_STEP,
             "periods": len(_T),
             "every": round(LOG_STEP / CONTROL_STEP),
-            "most": np.deg2rad(MOST_DEG),
-            "questions": [q.description() for q in QUESTIONS],
+            "most": np.deg2rad(_MOST_DEG),
+            "questions": [q.description() for q in _QUESTIONS],
         }
         self._keep(before=self.values, loop=loop)
 
@@ -233,16 +233,16 @@ class PIDTuner(LiveWidget):
 
 @lru_cache(maxsize=32)
 def _kept(arm: Arm, **setting) -> dict:
-    return tuned(arm, **setting)
+    return _tuned(arm, **setting)
 
 
-def gains(kp, ki, kd) -> dict[str, np.ndarray]:
+def _gains(kp, ki, kd) -> dict[str, np.ndarray]:
     """Gains of both joints, shape (..., 2), from the shoulder's: arguments of `PID`."""
     given = {"kp": kp, "ki": ki, "kd": kd}
     return {k: np.multiply.outer(np.asarray(x, float), (1.0, _ELBOW[k])) for k, x in given.items()}
 
 
-def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
+def _tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator and python-control.
 
     Parameters
@@ -261,11 +261,11 @@ def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
         motion (NaN if it was stopped), phase margins, crossover and growth (1/s) of the linear
         loop, and the time (s) at which the run was stopped (NaN if it was not).
     """
-    law = gains(kp, ki, kd)
+    law = _gains(kp, ki, kd)
     reference = Trajectory(*pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T))
     drive = controller(arm, law, feedforward)
-    done = run(arm, VISCOUS, drive, late, reference, _T, np.deg2rad(MOST_DEG))
-    near = linear(arm, VISCOUS, law, late)
+    done = run(arm, _VISCOUS, drive, late, reference, _T, np.deg2rad(_MOST_DEG))
+    near = linear(arm, _VISCOUS, law, late)
     error = np.rad2deg(done.error)
     rows = {}
     for j, joint in enumerate(JOINTS):

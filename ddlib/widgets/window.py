@@ -13,7 +13,7 @@ from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
 from ddlib.widgets.engine.live import LiveWidget
 from ddlib.widgets.engine.plain import ENGINE, SLIDING, lean, networks
-from ddlib.widgets.hinton import JOINTS, check_models, width_choice
+from ddlib.widgets.hinton import JOINTS, _check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice
 
 
@@ -44,7 +44,7 @@ class SlidingWindow(LiveWidget):
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
-        models = check_models(models, 0)
+        models = _check_models(models, 0)
         self._measured = recording.tau[recording.motion]
         reach = max(models) // 2
         self._time = recording.t[recording.motion]

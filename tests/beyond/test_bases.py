@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import chebyshev, polynomial
 
 from workshop.beyond.rivals.bases import Fourier, Polynomial
-from workshop.beyond.rivals.protocol import Cases, NotFitted
+from workshop.beyond.rivals.protocol import Cases, _NotFitted
 
 RNG = np.random.default_rng(3)
 
@@ -86,7 +86,7 @@ def test_operations_are_counted_by_hand():
         (lambda: Polynomial(2, "legendre"), ValueError, "kind must be one of"),
         (lambda: Polynomial(9).fit(cases(states(), states()[..., 0])), ValueError, "5000 .* 5005"),
         (lambda: Fourier(2, period=0.5), ValueError, "period"),
-        (lambda: Polynomial(2).with_ridge(1.0), NotFitted, r"Polynomial.* has learnt nothing"),
+        (lambda: Polynomial(2).with_ridge(1.0), _NotFitted, r"Polynomial.* has learnt nothing"),
     ],
 )
 def test_what_makes_no_sense_is_refused(make, error, message):

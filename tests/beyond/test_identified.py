@@ -9,7 +9,7 @@ from sklearn.preprocessing import StandardScaler
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.identification import FRICTION, GRAVITY, RIGID, true_parameters
-from workshop.beyond.rivals.identified import RIDGES, Identified, Linear, _written_out
+from workshop.beyond.rivals.identified import _RIDGES, Identified, Linear, _written_out
 from workshop.beyond.rivals.protocol import Cases
 
 EFFECTS = Effects(friction=(ViscousFriction((5.0, 1.0)), CoulombFriction((1.5, 0.4))))
@@ -72,14 +72,14 @@ def test_the_penalty_is_ridge_regressions():
 def test_the_penalty_is_chosen_by_leaving_out_blocks():
     data = windows()
     data, lost = Cases(data.x, data.torque / data.torque.std(0), "windows", 0.01), []
-    for ridge in RIDGES:
+    for ridge in _RIDGES:
         lost.append(0.0)
         for kept, left in KFold(5).split(data.x):
             rival = Linear(ridge=ridge).fit(Cases(data.x[kept], data.torque[kept], "windows", 0.01))
             lost[-1] += ((rival._torque(data.x[left]) - data.torque[left]) ** 2).sum()
     best = int(np.argmin(lost))
-    assert 0 < best < len(RIDGES) - 1  # neither end
-    assert Linear().fit(data).chosen == RIDGES[best]
+    assert 0 < best < len(_RIDGES) - 1  # neither end
+    assert Linear().fit(data).chosen == _RIDGES[best]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import torch
 
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
-from workshop.beyond.rivals.protocol import Cases, NotFitted
+from workshop.beyond.rivals.protocol import Cases, _NotFitted
 
 STEP = 0.01
 UPRIGHT = Arm("upright", 1.37, 0.5, 0.52, (1.0, 1.0), (2.6, 1.5))
@@ -109,7 +109,7 @@ def test_counts():
     "make, error, message",
     [
         (lambda: LagrangianNetwork(gravity="moon"), ValueError, "gravity"),
-        (lambda: LagrangianNetwork().mass_matrix([0.0, 0.0]), NotFitted, "learnt nothing"),
+        (lambda: LagrangianNetwork().mass_matrix([0.0, 0.0]), _NotFitted, "learnt nothing"),
         (lambda: untrained().mass_matrix([0.0]), ValueError, "q must have a last axis of length 2"),
         (
             lambda: untrained(gravity="vector").potential_energy([0.0, 0.0]),

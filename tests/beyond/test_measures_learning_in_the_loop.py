@@ -8,7 +8,7 @@ from workshop.beyond.measures.loop import learning
 
 def test_trials_to_half_the_error(monkeypatch):
     errors = np.array([[9.0, 9, 9, 2], [4, 9, 9, 2], [9, 4, 9, 2], [4, 4, 9, 2]])
-    np.testing.assert_array_equal(learning.trials_to_half(errors, [10.0] * 4), [3, 2, np.inf, 0])
+    np.testing.assert_array_equal(learning._trials_to_half(errors, [10.0] * 4), [3, 2, np.inf, 0])
     tests = {"no feedforward": [24] * 6, "x": [24, 13, 6, 30, 20, 14], "y": [24] * 3 + [30] * 3}
     family = {
         "tests": {name: np.outer(trials, np.ones(5)) for name, trials in tests.items()},

@@ -8,7 +8,7 @@ from scipy.special import expit
 from ddlib.learning import TrainingDiverged, TrainingSet, WindowNetwork, train
 from ddlib.metrics import rmss
 from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver, adam
+from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver, _adam
 from workshop.beyond.rivals.protocol import Cases
 
 
@@ -79,7 +79,7 @@ def test_adam_steps_as_published():
     y = np.array([[1.0], [0.2], [-0.4]])
     module = torch.nn.Linear(2, 1, bias=False)
     w = module.weight.detach().numpy().astype(float).copy()
-    adam(module, x, y, epochs=3, rate=0.1, decay=0.2)
+    _adam(module, x, y, epochs=3, rate=0.1, decay=0.2)
     m, v = np.zeros_like(w), np.zeros_like(w)
     for t in range(1, 4):
         rate = 0.1 * 0.5 * (1 + np.cos(np.pi * (t - 1) / 3))
@@ -89,7 +89,7 @@ def test_adam_steps_as_published():
         w = w - rate * 0.2 * w - rate * step
     np.testing.assert_allclose(module.weight.detach().numpy(), w, atol=1e-6)
     with pytest.raises(TrainingDiverged, match="lower the rate"):
-        adam(torch.nn.Linear(2, 1), np.full((3, 2), 1e30), np.ones((3, 1)), 3, 0.1, 0.0)
+        _adam(torch.nn.Linear(2, 1), np.full((3, 2), 1e30), np.ones((3, 1)), 3, 0.1, 0.0)
 
 
 STILL = Cases(states().x * [[1, 1, 1], [1, 0, 1]], states().torque, "states", 0.01)

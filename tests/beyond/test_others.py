@@ -7,7 +7,7 @@ import pytest
 
 from workshop.beyond import others
 
-PAGE = (others.FOLDER / "README.md").read_text(encoding="utf-8")
+PAGE = (others._FOLDER / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -18,10 +18,10 @@ PAGE = (others.FOLDER / "README.md").read_text(encoding="utf-8")
     ],
 )
 def test_files_are_as_they_came(name, digest):
-    content = (others.FOLDER / f"{name}.npz").read_bytes()
+    content = (others._FOLDER / f"{name}.npz").read_bytes()
     assert hashlib.sha256(content).hexdigest() == digest
     assert digest in PAGE and f"LICENSE-{name}" in PAGE
-    assert (others.FOLDER / f"LICENSE-{name}").stat().st_size > 500
+    assert (others._FOLDER / f"LICENSE-{name}").stat().st_size > 500
 
 
 def test_characters_add_up():
@@ -40,8 +40,8 @@ def test_the_recording_is_in_radians():
     found = others.staubli()
     assert found.q.shape == found.current.shape == (9000, 6) and found.step == 1e-3
     assert found.t[0] == 0 and found.t[-1] == pytest.approx(8.999)
-    with np.load(others.FOLDER / "staubli-tx40.npz") as file:
-        assert int(file["rate_hz"]) == others.RATE
+    with np.load(others._FOLDER / "staubli-tx40.npz") as file:
+        assert int(file["rate_hz"]) == others._RATE
         np.testing.assert_allclose(found.q * 180 / np.pi, file["position_deg"], rtol=1e-12)
         np.testing.assert_array_equal(found.current, file["current_a"])
 

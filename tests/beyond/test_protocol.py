@@ -7,7 +7,7 @@ import pytest
 
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.trajectories import OutsideFamilyWarning, pick_and_place
-from workshop.beyond.rivals.protocol import Cases, Estimating, NotFitted, Rival, trial
+from workshop.beyond.rivals.protocol import Cases, Estimating, Rival, _NotFitted, trial
 
 STEP = 0.01
 TIMES = np.arange(-20, 321) * STEP
@@ -97,5 +97,5 @@ BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
 def test_what_makes_no_sense_is_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
-    with pytest.raises(NotFitted):
+    with pytest.raises(_NotFitted):
         Linear().torque(EXACT.x)

@@ -84,7 +84,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     data = Windowed.of(100, 5)
     x, y, decay = data.x[:200:4], data.current[:200:4], 1e-2
     start = Weights.random(1, 5, 2, 6, 6)[0]
-    model = tx40_networks.decayed(x, y, start, decay, steps=2000)
+    model = tx40_networks._decayed(x, y, start, decay, steps=2000)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     scaled, wanted = model.scaled(x), model.outputs.scale(y)
     parts = [getattr(model.weights, n) for n in names]

@@ -29,8 +29,8 @@ def test_floors_are_below_what_is_measured(recorded):
 
 
 def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
-    nearest = lineup.Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
-    filters = lineup.Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
+    nearest = lineup._Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
+    filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
     monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "DAYS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")

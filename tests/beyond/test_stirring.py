@@ -61,14 +61,14 @@ class TestCircles:
 class TestViaPoints:
     def test_they_pass_all_points_at_equal_times(self):
         count = 6
-        points = motions.random_points(5, count, 0)
+        points = motions._random_points(5, count, 0)
         assert (points <= 0).all() and (points >= -np.pi / 4).all()
         when = MOTION_SECONDS * np.arange(count + 2) / (count + 1)
-        reference = motions.via_points(points, when)
+        reference = motions._via_points(points, when)
         np.testing.assert_allclose(reference.q[:, 1:-1], points, atol=1e-12)
         for x in reference:
             np.testing.assert_allclose(x[:, [0, -1]], 0, atol=1e-9)  # rest at both ends
-        dense = motions.via_points(points, T)
+        dense = motions._via_points(points, T)
         inner = np.flatnonzero(INSIDE)[1:-1]  # the jerk jumps where the motion begins and ends
         for x, rate in itertools.pairwise(dense):
             numeric = np.gradient(x, T, axis=1)[:, inner]
@@ -76,7 +76,7 @@ class TestViaPoints:
 
 
 def test_coverage_tells_a_family_from_its_like():
-    tests = motions.asked(JOINT_DAMPING, 6, vias=False)
+    tests = motions._asked(JOINT_DAMPING, 6, vias=False)
     found = motions.coverage(JOINT_DAMPING, tests, 6)
     for name in ("circles", "pick and place"):
         cell = found["positions"][name]

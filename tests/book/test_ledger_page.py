@@ -72,7 +72,7 @@ def test_code_leads_to_the_lines_that_measure(ledger, visit):
     for claim in (next(c for c in PAPER if c.measure), next(c for c in PAPER if c.find)):
         link = page.locator(f"#claim-{claim.id} a", has_text="code").first
         where = link.evaluate("(a) => a.href")
-        assert where.endswith(wall.source(claim).removeprefix(".."))
+        assert where.endswith(wall._source(claim).removeprefix(".."))
         name = where.partition("#")[2]
         assert f"def {name}" in visit(where).page.locator(f'[id="{name}"]').inner_text()
 

@@ -56,7 +56,7 @@ def plain(rows) -> list[list[str]]:
     ],
 )
 def test_a_missed_target_is_said_to_be_missed(row, shown):
-    assert plain([[status.outcome(row)]]) == [[shown]]
+    assert plain([[status._outcome(row)]]) == [[shown]]
 
 
 def test_every_group_has_its_table(folder):

@@ -30,9 +30,9 @@ def found(rows, where, words) -> str:
 
 def test_units_of_the_figures_belong_to_one_window():
     for unit in (52, 85, 93):
-        fitting = [w for w in (11, 21, 41, 81) if ledger.unit_fits(unit, w)]
+        fitting = [w for w in (11, 21, 41, 81) if ledger._unit_fits(unit, w)]
         assert fitting == [21 if unit == 52 else 41]
-    fits = [ledger.unit_fits(unit, 21) for unit in (42, 43, 54, 55)]
+    fits = [ledger._unit_fits(unit, 21) for unit in (42, 43, 54, 55)]
     assert fits == [False, True, True, False]  # 42 inputs, 10 hidden units, 2 outputs
 
 
@@ -96,8 +96,8 @@ def test_direct_filters_follow_position_after_two_sines_too():
 def test_main_findings_good_and_bad():
     """One table for those who read no other: each row a claim as it is judged, with its chapter."""
     known = {claim.id: claim for claim in claims.load()}
-    chosen = [known[name] for name in ledger_tables.FINDINGS]
-    assert len(set(ledger_tables.FINDINGS)) == len(chosen) <= 15  # few enough to read
+    chosen = [known[name] for name in ledger_tables._FINDINGS]
+    assert len(set(ledger_tables._FINDINGS)) == len(chosen) <= 15  # few enough to read
     verdicts = [claim.verdict for claim in chosen]
     assert not {"by construction", "not testable"} & set(verdicts)
     assert verdicts.count("not reproduced") >= 4  # no selection of what came out well
@@ -106,7 +106,7 @@ def test_main_findings_good_and_bad():
     assert places == sorted(places) and len(set(places)) >= 5
     for row, claim in zip(ledger_tables.findings().rows, chosen, strict=True):
         assert row[0] == f"{claim.claim} ({{doc}}`{claim.chapter}`)"
-        assert row[1] == claims.printed(claim) and claims.sure(claim) == row[3]
+        assert row[1] == claims._printed(claim) and claims._sure(claim) == row[3]
         assert row[4] == claim.why
 
 

@@ -9,7 +9,7 @@ from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
 from ddlib.widgets import Choice, CurveWidget, Panel
-from ddlib.widgets.baking.baked import MAX_BYTES
+from ddlib.widgets.baking.baked import _MAX_BYTES
 from workshop.beyond.studies.loop.runs import adaptive as runs
 from workshop.beyond.studies.page import learner
 from workshop.chapters.widgets import loop
@@ -29,16 +29,16 @@ def truths(load):
 
 
 def test_the_page_shows_the_committed_result_in_every_setting(widget):
-    assert widget.baked_bytes < MAX_BYTES / 10
+    assert widget.baked_bytes < _MAX_BYTES / 10
     assert widget.interpolation_error(60) < 1e-3
     kept, rate = results.read("loop-learner")["loads"], list(loop.SPEEDS).index("ten times")
     for who in loop.LEARNERS:
         widget.load, widget.friction, widget.learner, widget.rate = 5, True, who, "ten times"
-        errors = np.minimum(kept["5"][who]["errors"][1][rate], loop.MOST_ERROR)
+        errors = np.minimum(kept["5"][who]["errors"][1][rate], loop._MOST_ERROR)
         np.testing.assert_array_equal(widget.curves["error"], errors)
-        estimates = np.array(kept["5"][who]["estimates"][1][rate])[:, list(loop.SHOWN.values())]
-        for name, wanted in zip(loop.SHOWN, (estimates / truths(5)).T):
-            np.testing.assert_allclose(widget.curves[name], np.clip(wanted, *loop.BOUNDS))
+        estimates = np.array(kept["5"][who]["estimates"][1][rate])[:, list(loop._SHOWN.values())]
+        for name, wanted in zip(loop._SHOWN, (estimates / truths(5)).T):
+            np.testing.assert_allclose(widget.curves[name], np.clip(wanted, *loop._BOUNDS))
         baked = widget.interpolate()
         for name, values in widget.curves.items():
             np.testing.assert_allclose(baked[name], values, atol=2e-3 * max(1.0, np.ptp(values)))

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from traitlets import TraitError
 
-from ddlib.widgets.baking.baked import MAX_BYTES
+from ddlib.widgets.baking.baked import _MAX_BYTES
 from workshop.beyond.studies.lineup import REFERENCE
 from workshop.beyond.studies.rivals import GRID, TORQUES
-from workshop.chapters.widgets.rivals import MEASURED, RivalPicker
+from workshop.chapters.widgets.rivals import _MEASURED, RivalPicker
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "linear filter"
     run = 1 * GRID + 8  # the elbow changes fastest
     for j, joint in enumerate(("shoulder", "elbow")):
-        for line, name in ((MEASURED,) * 2, (REFERENCE,) * 2, ("rival", "linear filter")):
+        for line, name in ((_MEASURED,) * 2, (REFERENCE,) * 2, ("rival", "linear filter")):
             wanted = torque[names.index(name), run, :, j]
             np.testing.assert_array_equal(picker.curves[f"{joint}, {line}"], wanted)
     scale = torque[0].reshape(-1, 2).std(0)
@@ -35,7 +35,7 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
 
 
 def test_what_was_committed_fits(picker):
-    assert picker.baked_bytes < MAX_BYTES
+    assert picker.baked_bytes < _MAX_BYTES
     assert (picker.curves["errors"] > 0).all()
 
 
@@ -43,7 +43,7 @@ def test_what_makes_no_sense_is_refused(picker, tmp_path):
     with pytest.raises(TraitError, match="shoulder must be one of"):
         picker.shoulder = 10
     with pytest.raises(TraitError, match="rival must be one of"):
-        picker.rival = MEASURED
+        picker.rival = _MEASURED
     with pytest.raises(ValueError, match="rival must be one of"):
         RivalPicker(rival="oracle")
     with pytest.raises(FileNotFoundError):

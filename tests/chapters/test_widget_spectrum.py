@@ -9,7 +9,7 @@ from widget_pages import settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
-from workshop.chapters.why_smooth_filters import FLOOR, WHO, SpectrumExplorer
+from workshop.chapters.why_smooth_filters import _FLOOR, _WHO, SpectrumExplorer
 
 EPOCHS = (0, 1, 10, 100, 1000, 20_000)
 WIDTHS, SHOWN = (7, 11), 5
@@ -39,7 +39,7 @@ def cell(setup, scaling, width, rng):
         "scaling": list(scaling),
         "width": width,
         "variance": (10.0 ** (-2 * np.arange(2 * width + 1))).tolist(),
-        **{who: course() for who in WHO},
+        **{who: course() for who in _WHO},
     }
 
 
@@ -69,9 +69,9 @@ def test_curves_are_those_of_the_study(widget, study, along):
         zeros = (max(WIDTHS) - values["width"]) // 2
         for joint, f in zip(("shoulder", "elbow"), along[at].filters[k]):
             np.testing.assert_allclose(shown[f"{joint} shape"], np.pad(f, zeros), atol=2e-4)
-        for who in WHO:
+        for who in _WHO:
             change = np.array(cell[who]["change over start"])[1:, k]
-            kept = np.maximum(np.log10(change), FLOOR)
+            kept = np.maximum(np.log10(change), _FLOOR)
             np.testing.assert_allclose(shown[f"change {who}"], kept, atol=2e-3)
             assert shown[f"now {who}"][0] == pytest.approx(kept[row - 1], abs=2e-3)
             error = np.array(cell[who]["error"])[1:, k]

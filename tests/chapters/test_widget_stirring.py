@@ -7,9 +7,9 @@ from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
-from ddlib.widgets.baking.baked import MAX_BYTES
+from ddlib.widgets.baking.baked import _MAX_BYTES
 from workshop.beyond.studies.loop.stirring import PICKER, PLACES
-from workshop.chapters.widgets.stirring import LINES, StirringPicker
+from workshop.chapters.widgets.stirring import _LINES, StirringPicker
 
 
 @pytest.fixture(scope="module")
@@ -26,7 +26,7 @@ def test_curves_are_those_of_the_place(picker):
     at = tuple(PLACES[name].index(value) for name, value in place.items())
     curves = picker.curves
     np.testing.assert_allclose(curves["hand"], hand[(slice(None), *at)])
-    for k, line in enumerate(LINES):
+    for k, line in enumerate(_LINES):
         np.testing.assert_allclose(curves[f"elbow, {line}"], torque[(k, *at)][:, 1])
     q = np.deg2rad(np.stack([curves[f"{joint} angle"] for joint in ("shoulder", "elbow")], -1))
     centre = 0.55 * np.exp(1j * np.deg2rad(-75))
@@ -48,7 +48,7 @@ def test_what_cannot_be_reached_is_zero_and_marked(picker):
 
 
 def test_what_was_committed_fits(picker):
-    assert picker.baked_bytes < MAX_BYTES
+    assert picker.baked_bytes < _MAX_BYTES
     near, far = reach(ARM)
     for at, there in np.ndenumerate(picker._reached):
         distance, radius = PLACES["distance"][at[0]], PLACES["radius"][at[2]]

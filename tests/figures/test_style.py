@@ -126,9 +126,9 @@ def test_texts_fit_in_other_fonts_and_are_read_aloud(browser):
     page = browser.new_page()
     for make in (draw, formulas):
         svg = illustrate(make, "Some formulas.", 3.5, 2.5).svg
-        assert style.FONT in svg
-        for font in (style.FONT, "'DejaVu Sans Condensed'", "'DejaVu Serif'"):
-            page.set_content(f"<main>{svg.replace(style.FONT, font)}</main>")
+        assert style._FONT in svg
+        for font in (style._FONT, "'DejaVu Sans Condensed'", "'DejaVu Serif'"):
+            page.set_content(f"<main>{svg.replace(style._FONT, font)}</main>")
             assert page.evaluate(CLASHES) == []
     tree = page.locator("main").aria_snapshot()
     page.close()
@@ -188,7 +188,7 @@ def test_no_letter_is_too_small(form):
 
     svg = getattr(illustrate(small, "Small letters."), form)
     smallest = min(map(float, re.findall(r"font(?:-size)?: ([\d.]+)px", svg)))
-    assert smallest == style.LEAST
+    assert smallest == style._LEAST
     least = float(re.search(r"--least:(\d+)px", svg)[1])
     assert least * smallest / size(svg)[0] == pytest.approx(9, rel=0.01)
 

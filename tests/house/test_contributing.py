@@ -60,9 +60,9 @@ def test_the_claim_is_judged(tmp_path, monkeypatch):
 def test_the_study_is_run_and_read(tmp_path, monkeypatch):
     (source,) = examples("A study")
     copy = tmp_path / "workshop"
-    shutil.copytree(code_hash.ROOTS["workshop"], copy)
+    shutil.copytree(code_hash._ROOTS["workshop"], copy)
     (copy / "report" / "studies" / "following.py").write_text(source, encoding="utf-8")
-    monkeypatch.setitem(code_hash.ROOTS, "workshop", copy)
+    monkeypatch.setitem(code_hash._ROOTS, "workshop", copy)
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
     monkeypatch.setattr(reproduce, "run", lambda name: run(source)[name]())
     reproduce.main(["following", "--jobs", "1"])

@@ -16,8 +16,8 @@ from ddlib.learning import (
     Weights,
     solve,
 )
-from ddlib.learning.gauss_newton import Objective
-from ddlib.learning.network import FIELDS
+from ddlib.learning.gauss_newton import _Objective
+from ddlib.learning.network import _FIELDS
 from ddlib.metrics import rmss
 
 HIDDEN = 3
@@ -33,9 +33,9 @@ def flat(weights) -> np.ndarray:
 
 
 def shaped(vector, like) -> list[torch.Tensor]:
-    sizes = [getattr(like, name).size for name in FIELDS]
+    sizes = [getattr(like, name).size for name in _FIELDS]
     parts = torch.split(torch.as_tensor(vector, dtype=torch.float64), sizes)
-    return [part.reshape(getattr(like, name).shape) for part, name in zip(parts, FIELDS)]
+    return [part.reshape(getattr(like, name).shape) for part, name in zip(parts, _FIELDS)]
 
 
 def unflat(vector, like) -> Weights:
@@ -84,7 +84,7 @@ def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay)
     mixed = np.random.default_rng(0).normal(size=(2, outputs))
     data = TrainingSet.from_arrays(windows, torque @ mixed)
     w = Weights.random(1, WIDTH, hidden, 2, outputs, initial=1.0, seed=hidden)[0]
-    objective = Objective(w, data, decay)
+    objective = _Objective(w, data, decay)
     vector, rest = objective.pack(w), (w, data, decay)
     value, gradient = by_hand(*rest)
     j, bent = jacobian(flat(w), *rest), hessian(flat(w), *rest)

@@ -47,7 +47,7 @@ FILES = {
 @pytest.fixture
 def package(tmp_path, monkeypatch):
     """``package(file, old, new)`` edits a small package and returns the hash of its first study."""
-    monkeypatch.setattr(hashes, "ROOTS", {"ddlib": tmp_path})
+    monkeypatch.setattr(hashes, "_ROOTS", {"ddlib": tmp_path})
 
     def write(name, text):
         path = tmp_path / name

@@ -16,7 +16,7 @@ BANDED = [claim for claim in claims.load() if claim.band]
 
 @pytest.fixture(scope="module")
 def kept():
-    return results.read(judging.NAME)
+    return results.read(judging._NAME)
 
 
 def test_written_verdicts_are_the_fresh_ones(kept):
@@ -25,7 +25,7 @@ def test_written_verdicts_are_the_fresh_ones(kept):
 
 @pytest.mark.skipif(not os.environ.get("CI"), reason="results made here are another draw")
 def test_fresh_verdicts_are_of_the_committed_results(kept):
-    assert kept["of results"] == judging.digest(), AGAIN
+    assert kept["of results"] == judging._digest(), AGAIN
 
 
 @pytest.fixture
@@ -38,14 +38,14 @@ def folder(tmp_path, monkeypatch):
 
 
 def test_the_digest_sees_numbers_and_networks_alone(folder):
-    before = judging.digest()
+    before = judging._digest()
     results.write_json(folder / "a.json", {"made by": {"code": "2", "seconds": 9}, "x": [1, 2]})
     results.write_json(folder / "b.json", {"made by": {"seconds": 2}, "x": 4})
-    assert judging.digest() == before
+    assert judging._digest() == before
     results.write_json(folder / "a.json", {"made by": {"code": "2", "seconds": 9}, "x": [1, 3]})
-    other = judging.digest()
+    other = judging._digest()
     (folder / "n.npz").write_bytes(b"other weights")
-    assert len({before, other, judging.digest()}) == 3
+    assert len({before, other, judging._digest()}) == 3
 
 
 def planted(verdict, value=1.0, replicates=None):
@@ -64,7 +64,7 @@ def test_lines_and_the_kept_file(folder, monkeypatch, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert lines == ["a | 1 | 25.0 % | - | reproduced | reproduced", "contradicted: none"]
     kept = json.loads((folder / "verdicts.json").read_text())
-    assert kept == {"of results": judging.digest(), "fresh": {"a": "reproduced"}}
+    assert kept == {"of results": judging._digest(), "fresh": {"a": "reproduced"}}
 
 
 def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
@@ -81,5 +81,5 @@ def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
 
 
 def test_distance_is_to_the_nearest_edge():
-    assert judging.distance(planted("reproduced", 1.0)) == pytest.approx(0.25)
-    assert judging.distance(planted("reproduced", 0.45)) == pytest.approx(0.1)
+    assert judging._distance(planted("reproduced", 1.0)) == pytest.approx(0.25)
+    assert judging._distance(planted("reproduced", 0.45)) == pytest.approx(0.1)

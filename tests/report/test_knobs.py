@@ -11,16 +11,16 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from workshop.report import knobs
 from workshop.report.knobs import (
     METHODS,
-    Emulator,
-    Knob,
+    _Emulator,
+    _Knob,
+    _left_out,
+    _screening,
+    _shares,
+    _terms,
+    _weigh,
+    _without_start,
     knobs_of,
-    left_out,
     moments,
-    screening,
-    shares,
-    terms,
-    weigh,
-    without_start,
     would_tell,
 )
 from workshop.report.studies.table import _ablations
@@ -32,7 +32,7 @@ CENTRE = {m: {n: float(k.value(0)) for n, k in knobs_of(m).items()} for m in MET
 
 
 def test_places_of_a_knob():
-    factor, step = Knob(0.5, 8.0), Knob(-1.0, 0.0, logarithmic=False)
+    factor, step = _Knob(0.5, 8.0), _Knob(-1.0, 0.0, logarithmic=False)
     np.testing.assert_allclose(factor.value([-1, 0, 1]), [0.5, 2.0, 8.0])
     np.testing.assert_allclose(step.value([-1, 0, 0.5]), [-1.0, -0.5, -0.25])
     for knob in (factor, step):
@@ -40,7 +40,7 @@ def test_places_of_a_knob():
 
 
 def test_the_design_separates_main_effects_from_all_of_second_order():
-    x = screening()
+    x = _screening()
     assert x.shape == (25, 12) and set(np.unique(x)) == {-1.0, 0.0, 1.0}
     np.testing.assert_array_equal(x.T @ x, 22 * np.eye(12))  # main effects from each other
     np.testing.assert_array_equal(x.sum(0), 0)
@@ -54,7 +54,7 @@ def test_the_design_separates_main_effects_from_all_of_second_order():
 @pytest.mark.parametrize("method", METHODS)
 def test_setups_are_what_the_knobs_say(method):
     values = CENTRE[method] | {"encoder bits": 13.0, "lowest input": -0.25}
-    made = knobs.setup(values, method)
+    made = knobs._setup(values, method)
     viscous, coulomb = made.effects.friction
     np.testing.assert_allclose(viscous.coefficient, values["joint damping"] * np.array((5.3, 1.1)))
     np.testing.assert_allclose(coulomb.level, values["Coulomb friction"] * np.array((0.5, 0.15)))
@@ -72,17 +72,17 @@ def test_setups_are_what_the_knobs_say(method):
         assert made.momentum == pytest.approx(1 - 1 / values["momentum"])
         assert made.rate == values["step"]
     with pytest.raises(ValueError, match="values must have one for 'torque noise'"):
-        knobs.setup({n: v for n, v in values.items() if n != "torque noise"}, method)
+        knobs._setup({n: v for n, v in values.items() if n != "torque noise"}, method)
     for name, knob in knobs_of(method).items():
         with pytest.raises(ValueError, match=name):
-            knobs.setup(values | {name: 1.01 * knob.high + 0.01}, method)
+            knobs._setup(values | {name: 1.01 * knob.high + 0.01}, method)
 
 
 def test_joint_damping_lies_inside_the_ranges():
     tuned = {"joint damping": 1, "Coulomb friction": 3, "position gain": 2.5, "encoder bits": 12.5,
              "torque noise": 1, "start left out": 0, "lowest input": 0, "decay": 1e-6,
              "steps": 60}  # fmt: skip
-    made = knobs.setup(tuned, "solver")
+    made = knobs._setup(tuned, "solver")
     level = made.effects.friction[1].level
     np.testing.assert_allclose(level, JOINT_DAMPING.effects.friction[1].level)  # to rounding
     same = replace(made.effects, friction=JOINT_DAMPING.effects.friction)
@@ -91,14 +91,14 @@ def test_joint_damping_lies_inside_the_ranges():
 
 def test_without_its_start_a_recording_has_fewer_cases():
     whole = JOINT_DAMPING.record()
-    late = without_start(whole, 0.25)
+    late = _without_start(whole, 0.25)
     (x, y), (x2, y2) = (cases(r, 11) for r in (whole, late))
     assert len(y) == 6 * 300 and len(y2) == 6 * 275
     np.testing.assert_array_equal(y.reshape(6, 300, 2)[:, 25:], y2.reshape(6, 275, 2))
     np.testing.assert_array_equal(x.reshape(6, 300, 2, 11)[:, 25:], x2.reshape(6, 275, 2, 11))
-    np.testing.assert_array_equal(cases(without_start(whole, 0.0), 11)[1], y)
+    np.testing.assert_array_equal(cases(_without_start(whole, 0.0), 11)[1], y)
     with pytest.raises(ValueError, match="seconds"):
-        without_start(whole, -0.1)
+        _without_start(whole, -0.1)
 
 
 # --- the regression -----------------------------------------------------------------------------
@@ -110,8 +110,8 @@ def polynomial(x):
 
 def test_the_emulator_finds_an_exact_polynomial():
     """Three knobs in 25 runs: all ten coefficients are determined."""
-    x = screening()[:, :3]
-    found = Emulator.fit(x, polynomial(x), 1e-8)
+    x = _screening()[:, :3]
+    found = _Emulator.fit(x, polynomial(x), 1e-8)
     points = np.random.default_rng(0).uniform(-1, 1, (50, 3))
     mean, variance = found.predict(points)
     np.testing.assert_allclose(mean, polynomial(points), atol=1e-4)
@@ -122,10 +122,10 @@ def test_the_emulator_finds_an_exact_polynomial():
 
 def test_the_emulator_is_least_squares_when_nothing_is_known_before():
     rng = np.random.default_rng(1)
-    x = screening()[:, :3]
+    x = _screening()[:, :3]
     y = polynomial(x) + rng.normal(0, 0.1, 25)
-    found = Emulator.fit(x, y, 0.01, widths=(1e3, 1e3, 0.0))
-    design = terms(x)
+    found = _Emulator.fit(x, y, 0.01, widths=(1e3, 1e3, 0.0))
+    design = _terms(x)
     wanted = np.linalg.lstsq(design, y, rcond=None)[0]
     np.testing.assert_allclose(found.mean, wanted, atol=1e-3)
     np.testing.assert_allclose(
@@ -138,34 +138,34 @@ def test_the_emulator_is_least_squares_when_nothing_is_known_before():
 
 def test_what_a_polynomial_misses_makes_it_less_sure():
     """A kink is no polynomial: without noise the misfit has to stand for it."""
-    x = screening()[:, :3]
-    found = Emulator.fit(x, polynomial(x) + 0.8 * np.abs(x.sum(1)), 1e-6)
+    x = _screening()[:, :3]
+    found = _Emulator.fit(x, polynomial(x) + 0.8 * np.abs(x.sum(1)), 1e-6)
     assert found.misfit > 0 and (found.predict(x)[1] >= found.misfit).all()
-    assert Emulator.fit(x, polynomial(x), 1e-6).misfit == 0
+    assert _Emulator.fit(x, polynomial(x), 1e-6).misfit == 0
 
 
 def test_runs_left_out_are_foretold_with_the_right_spread():
     rng = np.random.default_rng(2)
-    x = screening()[:, :4]
+    x = _screening()[:, :4]
     scores = np.concatenate(
-        [left_out(x, polynomial(x) + rng.normal(0, 0.1, 25), 0.01) for _ in range(4)]
+        [_left_out(x, polynomial(x) + rng.normal(0, 0.1, 25), 0.01) for _ in range(4)]
     )
     assert 0.8 < scores.std() < 1.4 and abs(scores.mean()) < 0.3
     wrong = polynomial(x)
     wrong[3] += 5.0
-    assert np.abs(left_out(x, wrong, 0.01)).argmax() == 3
+    assert np.abs(_left_out(x, wrong, 0.01)).argmax() == 3
 
 
 def test_shares_of_the_variance():
     """Of 2 x1 + x2^2 + 3 x1 x3 over the cube: variances 4/3, 4/45 and 1."""
     coefficients = np.zeros(1 + 3 + 3 + 3)
     coefficients[[1, 5, 8]] = 2.0, 1.0, 3.0
-    main, total = shares(coefficients, 3)
+    main, total = _shares(coefficients, 3)
     whole = 4 / 3 + 4 / 45 + 1
     np.testing.assert_allclose(main, np.array([4 / 3, 4 / 45, 0]) / whole)
     np.testing.assert_allclose(total, np.array([4 / 3 + 1, 4 / 45, 1]) / whole)
     x = np.random.default_rng(0).uniform(-1, 1, (200_000, 3))
-    assert (terms(x) @ coefficients).var() == pytest.approx(whole, rel=0.02)
+    assert (_terms(x) @ coefficients).var() == pytest.approx(whole, rel=0.02)
 
 
 # --- the posterior ------------------------------------------------------------------------------
@@ -179,7 +179,7 @@ def test_the_posterior_against_the_conjugate_one():
     noise, unsure = np.array([[0.5, 0.1], [0.1, 0.4]]), np.array([0.1, 0.2])
     observed = np.array([0.7, -0.4])
     means = places @ slopes.T
-    weights, evidence = weigh(means, np.broadcast_to(unsure, means.shape), noise, observed)
+    weights, evidence = _weigh(means, np.broadcast_to(unsure, means.shape), noise, observed)
     total = noise + np.diag(unsure)
     covariance = np.linalg.inv(np.eye(2) + slopes.T @ np.linalg.inv(total) @ slopes)
     mean, deviation = moments(places, weights)

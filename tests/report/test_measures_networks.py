@@ -92,7 +92,7 @@ def test_middle_between_two_crossings(monkeypatch):
     x = np.arange(-10.0, 11)
     parabolas = [(x - s) ** 2 - 9.3 for s in (0.0, 0.4, 0.6, -0.7)]  # crossings at s ± 3.05
     trained = [*parabolas, x - 0.5, x**3 - 20 * x + 3]
-    planted = {committed.networks: trained, committed.untrained: [x - 0.3, *parabolas[:2]]}
+    planted = {committed.networks: trained, committed._untrained: [x - 0.3, *parabolas[:2]]}
     monkeypatch.setattr(
         committed,
         "filters",

@@ -15,9 +15,9 @@ from ddlib.setups import KD, KP
 from ddlib.simulation import SecondOrderModel, follow, rms, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
 from workshop.report.measures import control, dynamics, trajectories
-from workshop.report.measures.control import EXTENTS, TIMES, track
+from workshop.report.measures.control import _EXTENTS, _TIMES, _track
 
-EFFECTS = dynamics.SETUP.effects
+EFFECTS = dynamics._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))
 SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
 
@@ -29,14 +29,14 @@ def nothing(q, qd, qdd):
 
 
 def test_the_arm_itself_moves_as_in_the_simulator():
-    motion = smooth_pick_and_place(EXTENTS, TIMES)
-    sampled = np.rad2deg(follow(ARM, pd(KP, KD), motion, TIMES, log_every=5).tracking_error)
-    errors = track([[0, 0]], [False], nothing, [[1, 1]])[0]
+    motion = smooth_pick_and_place(_EXTENTS, _TIMES)
+    sampled = np.rad2deg(follow(ARM, pd(KP, KD), motion, _TIMES, log_every=5).tracking_error)
+    errors = _track([[0, 0]], [False], nothing, [[1, 1]])[0]
     assert errors.shape == sampled.shape
     assert np.abs(errors - sampled).max() < 0.02 < 0.01 * np.abs(sampled).max() + 0.02
     half = Feedforward(lambda *motion: 0.5 * ARM.inverse_dynamics(*motion), pd(KP, KD))
-    sampled = np.rad2deg(follow(ARM, half, motion, TIMES, log_every=5).tracking_error)
-    errors = track([[0, 0]], [False], half.model, [[1, 1]])[0]
+    sampled = np.rad2deg(follow(ARM, half, motion, _TIMES, log_every=5).tracking_error)
+    errors = _track([[0, 0]], [False], half.model, [[1, 1]])[0]
     assert np.abs(errors - sampled).max() < 0.02 < np.abs(sampled).max()
 
 
@@ -49,9 +49,9 @@ def test_perfect_models_leave_nothing_whatever_the_arm():
         torque[2] = SecondOrderModel(ARM)(q, qd, qdd)[2]
         return torque
 
-    assert np.abs(track(rotors, frozen, model, np.zeros((3, 2)), speed=2.0)).max() < 1e-5
+    assert np.abs(_track(rotors, frozen, model, np.zeros((3, 2)), speed=2.0)).max() < 1e-5
     # and the test can fail: a model of the arm without rotors leaves an error
-    assert np.abs(track(rotors, frozen, ARM.inverse_dynamics, np.zeros((3, 2)))).max() > 1
+    assert np.abs(_track(rotors, frozen, ARM.inverse_dynamics, np.zeros((3, 2)))).max() > 1
 
 
 def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
@@ -59,7 +59,7 @@ def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
     heavy = np.array([[1000.0, 1000.0]])
     inertia = heavy + np.diag(ARM.mass_matrix([0.0, 0.0]))
     gains = inertia / np.diag(ARM.mass_matrix([0.0, 0.0]))
-    alone = track(heavy, [False], nothing, gains, extents=(20.0, 0.0))[0]
+    alone = _track(heavy, [False], nothing, gains, extents=(20.0, 0.0))[0]
     assert np.abs(alone[:, 0]).max() > 1
     assert np.abs(alone[:, 1]).max() < 0.01 * np.abs(alone[:, 0]).max()
 
@@ -67,15 +67,15 @@ def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
 @pytest.mark.parametrize("speed", [0.0, -1.0, np.nan])
 def test_bad_speeds_are_refused_by_name(speed):
     with pytest.raises(ValueError, match=r"^speed must"):
-        track([[0, 0]], [False], nothing, [[1, 1]], speed=speed)
+        _track([[0, 0]], [False], nothing, [[1, 1]], speed=speed)
 
 
 @pytest.mark.parametrize("effects", [IDEAL, CMU_DD_ARM_II_EFFECTS], ids=["ideal", "all effects"])
 def test_runs_of_a_batch_are_runs_by_themselves(effects):
     t = np.arange(750) * 0.002
-    found = control._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0, extents=EXTENTS)
+    found = control._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0, extents=_EXTENTS)
     assert found.shape == (2, 150, 2)  # logged a hundred times a second
-    motion = smooth_pick_and_place(EXTENTS, t, 2.0)
+    motion = smooth_pick_and_place(_EXTENTS, t, 2.0)
     laws = (
         Feedforward(lambda *m: 0.5 * ARM.inverse_dynamics(*m), pd(KP, KD)),
         pd(2 * np.array(KP), 2 * np.array(KD)),
@@ -126,8 +126,8 @@ def test_what_a_linear_model_leaves():
 @pytest.mark.parametrize("viscous", [(0.0, 0.0), (20.0, 5.0)])
 def test_what_ignoring_velocity_terms_loses(monkeypatch, viscous):
     """Coriolis and centripetal torque over all torque, friction included, on the closed form."""
-    rough = replace(dynamics.SETUP, effects=Effects(friction=(ViscousFriction(viscous),)))
-    monkeypatch.setattr(dynamics, "SETUP", rough)
+    rough = replace(dynamics._SETUP, effects=Effects(friction=(ViscousFriction(viscous),)))
+    monkeypatch.setattr(dynamics, "_SETUP", rough)
     t = np.arange(300)[:, None] * 0.01
     e, w = np.deg2rad(dynamics.APPENDIX_I[[0, 1, 2, 5]])[:, None], np.pi / 3
     q, qd, qdd = (-f * e for f in (np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)))
@@ -150,9 +150,9 @@ def test_looking_ahead_in_closed_form():
 
 def test_rounding_in_differences():
     """Rounding is uniform: the difference of two readings has a sixth of a step squared."""
-    step = dynamics.SETUP.effects.encoder[0].step
+    step = dynamics._SETUP.effects.encoder[0].step
     found = dynamics.differencing()
-    torque = dynamics.SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
+    torque = dynamics._SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
     assert float(found.text.split()[0]) == pytest.approx(torque, rel=0.1)
     x = np.arange(-18, 1)
     covariance = np.linalg.inv(np.vander(x, 3).T @ np.vander(x, 3))
@@ -165,7 +165,7 @@ def test_a_dead_zone_swallows_its_width():
     run = dynamics._ideal()
     rms = np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
     found = dynamics.dead_zone(0.2)
-    assert found.value == pytest.approx(dynamics.SIGNIFICANT * rms.min(), rel=0.02)
+    assert found.value == pytest.approx(dynamics._SIGNIFICANT * rms.min(), rel=0.02)
     assert found.text.startswith("dead zone of 0.2 N m: ")
 
 
@@ -175,7 +175,7 @@ def test_second_differences_of_rounded_positions():
     gain = np.sqrt((ARM.mass_matrix(run.q_true) ** 2).sum(-1).mean(0)) * np.sqrt(6 / 12) / 0.01**2
     share = gain / np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
     steps = {bits: 2 * np.pi / 2**bits for bits in range(14, 21)}
-    slight = [bits for bits, step in steps.items() if (step * share).max() < dynamics.SIGNIFICANT]
+    slight = [bits for bits, step in steps.items() if (step * share).max() < dynamics._SIGNIFICANT]
     found = dynamics.sensor_noise()
     assert found.value == min(slight)
     told = [int(word) for word in found.text.split() if word.isdigit()]
@@ -185,7 +185,7 @@ def test_second_differences_of_rounded_positions():
 def test_where_late_position_feedback_turns():
     """With that much viscous friction the slowest pole lies on the unit circle."""
     found = dynamics.sampling()
-    viscous = found.value * np.array(dynamics.SETUP.effects.friction[0].coefficient)
+    viscous = found.value * np.array(dynamics._SETUP.effects.friction[0].coefficient)
     joints = dynamics.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
     gain = np.hstack([np.diag(KP), np.zeros((2, 2))])
     poles = np.abs(dynamics.late_poles(joints, gain, 0.002, 0.0012))
@@ -203,7 +203,7 @@ def test_where_late_position_feedback_turns():
 
 def test_the_snap_that_is_measured_is_the_snap_of_the_reference():
     """Twist: torque through the shaft over its stiffness; left: motor inertia times its qdd."""
-    shaft = dynamics.SHAFT
+    shaft = dynamics._SHAFT
     motors, stiffness = np.array(shaft.motor_inertia), np.array(shaft.stiffness)
     through = ARM.inverse_dynamics(*REFERENCE) - motors * REFERENCE.qdd
     twist = through / stiffness

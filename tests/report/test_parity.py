@@ -89,7 +89,7 @@ def test_counts_by_formula(bits):
 
 def test_the_counters_units_are_binary_digits():
     x = patterns(6)
-    digits = parity_networks.counter(6).activity(x)
+    digits = parity_networks._counter(6).activity(x)
     for row, total in zip(digits, x.sum(1)):
         assert "".join(str(int(d)) for d in row[:-1]) == f"{total:03b}"[:-1]
         assert row[-1] == 1 - total % 2
@@ -130,9 +130,9 @@ def test_cases_in_both_codings():
         (lambda: monomials([1, 0, 1]), "values must have shape"),
         (lambda: monomials([0.5, 0]), "values must be whole numbers"),
         (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
-        (lambda: parity_networks.counter(0), "bits must be an integer from 1"),
-        (lambda: parity_networks.tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
-        (lambda: parity_networks.tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
+        (lambda: parity_networks._counter(0), "bits must be an integer from 1"),
+        (lambda: parity_networks._tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
+        (lambda: parity_networks._tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
         (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
         (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),

@@ -14,7 +14,7 @@ from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import SETUPS, STATE_FEEDBACK, WINDOWS, errors, split, true_states
 from workshop.report import reproduce, results
 from workshop.report.code_hash import places
-from workshop.report.studies.harmonics import NAME
+from workshop.report.studies.harmonics import _NAME
 from workshop.report.two_harmonics import record_two_harmonics
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
@@ -88,7 +88,7 @@ def parts(tmp_path, monkeypatch):
     monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
     monkeypatch.setattr(reproduce, "run", lambda name: ran.studies[name]())
     monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
-    monkeypatch.setattr(reproduce, "picture", lambda: None)
+    monkeypatch.setattr(reproduce, "_picture", lambda: None)
     return ran
 
 
@@ -211,7 +211,7 @@ SAMPLE = [(s, DRAW.choice(WINDOWS)) for s in SETUPS]
 def test_committed_networks_measure_what_the_table_says(table, setup, width):
     """Recorded anew, loaded, measured: a sample of Table 4-1."""
     cell = table["setups"][setup][str(width)]
-    path = results.networks_path(setup, width)
+    path = results._networks_path(setup, width)
     assert path.is_file(), STALE
     model = TorqueModel.load(path)
     measured = errors(model, SETUPS[setup].record()).named()
@@ -226,7 +226,7 @@ def test_committed_networks_measure_what_the_table_says(table, setup, width):
 @pytest.mark.parametrize("width", [DRAW.choice(WINDOWS)])
 def test_committed_networks_of_two_harmonics_measure_what_is_written(width):
     cell = results.read("harmonics")["windows"][str(width)]
-    model, recording = results.networks(width, NAME), record_two_harmonics()
+    model, recording = results.networks(width, _NAME), record_two_harmonics()
     for own, name in (("training", "training"), ("test", "test")):
         measured = getattr(errors(model, recording), name)
         np.testing.assert_allclose(measured, cell[own], rtol=0.02, err_msg=STALE)

@@ -16,19 +16,19 @@ def found():
 
 
 def test_every_size_is_there(found):
-    assert [row["samples"] for row in found["samples"]] == list(study.DRAWS)
-    assert [row["units"] for row in found["units"]] == list(study.UNITS)
+    assert [row["samples"] for row in found["samples"]] == list(study._DRAWS)
+    assert [row["units"] for row in found["units"]] == list(study._UNITS)
     for row in found["samples"]:
-        assert len(row["solver"]["test"]) == study.DRAWS[row["samples"]]
-        draws = study.DESCENT_DRAWS.get(row["samples"])
+        assert len(row["solver"]["test"]) == study._DRAWS[row["samples"]]
+        draws = study._DESCENT_DRAWS.get(row["samples"])
         assert (row["descent"] is None) == (draws is None)
         if draws:
-            assert len(row["descent"]["test"]) == draws * study.DESCENT_MEMBERS
+            assert len(row["descent"]["test"]) == draws * study._DESCENT_MEMBERS
     for row in found["units"]:
-        assert (row["solver"] is not None) == (row["units"] in study.SOLVED_UNITS)
+        assert (row["solver"] is not None) == (row["units"] in study._SOLVED_UNITS)
     longer = found["longer"]
     assert longer["epochs"][-1] == 5 * EPOCHS
-    assert np.shape(longer["test"]) == (study.DESCENT_MEMBERS, len(longer["epochs"]))
+    assert np.shape(longer["test"]) == (study._DESCENT_MEMBERS, len(longer["epochs"]))
 
 
 def test_the_same_cases_give_the_same_errors(found):
@@ -46,4 +46,4 @@ def test_the_solver_beats_descent_on_the_same_cases(found):
     for row in found["samples"]:
         if row["descent"]:
             assert np.median(row["solver"]["training"]) < np.median(row["descent"]["training"])
-    assert paper.HIDDEN_UNITS in study.UNITS
+    assert paper.HIDDEN_UNITS in study._UNITS

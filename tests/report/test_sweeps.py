@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from workshop.report.sweeps import sweep
+from workshop.report.sweeps import _sweep
 
 GAIN = 3.0
 
@@ -49,7 +49,7 @@ def calls(log) -> list[int]:
 @pytest.fixture
 def quick(tmp_path):
     """`sweep` in this process, into a folder of the test's own."""
-    return functools.partial(sweep, code="1", folder=tmp_path / "kept", backend="sequential")
+    return functools.partial(_sweep, code="1", folder=tmp_path / "kept", backend="sequential")
 
 
 @pytest.mark.parametrize("backend", ["sequential", "threading", "loky"])

@@ -12,10 +12,10 @@ from workshop.report.two_harmonics import (
     NEUTRAL,
     ORDER,
     SHARE,
-    record_circle,
-    record_quintic,
+    _record_circle,
+    _record_quintic,
+    _second_amplitudes,
     record_two_harmonics,
-    second_amplitudes,
     two_harmonics,
 )
 
@@ -52,11 +52,11 @@ def test_it_rests_before_and_after():
 
 
 def test_amplitudes_of_either_sign_within_their_share():
-    drawn = second_amplitudes()
+    drawn = _second_amplitudes()
     assert drawn.shape == APPENDIX_I.shape and (drawn > 0).any() and (drawn < 0).any()
     assert np.abs(drawn).max() <= SHARE * 45 / ORDER**2
-    assert np.abs(second_amplitudes(3)).max() > SHARE * 45 / ORDER**2
-    assert (drawn != second_amplitudes(seed=1)).all()
+    assert np.abs(_second_amplitudes(3)).max() > SHARE * 45 / ORDER**2
+    assert (drawn != _second_amplitudes(seed=1)).all()
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_the_recording_has_the_form_of_the_papers(recordings):
     own, paper = recordings["two sines"][1], recordings["one sine"][1]
     assert own.q.shape == paper.q.shape and own.motion == paper.motion
     np.testing.assert_array_equal(own.t, paper.t)
-    wanted = two_harmonics(APPENDIX_I, second_amplitudes(), own.t)
+    wanted = two_harmonics(APPENDIX_I, _second_amplitudes(), own.t)
     np.testing.assert_allclose(own.reference.q, wanted.q, atol=1e-12)
     assert np.abs(own.tracking_error).max() < 0.2
 
@@ -100,7 +100,7 @@ def test_what_position_explains_of_acceleration(recordings):
     assert max(share["two sines"]) < 0.25
 
 
-@pytest.mark.parametrize("record", [record_quintic, record_circle])
+@pytest.mark.parametrize("record", [_record_quintic, _record_circle])
 def test_single_motions_tell_position_from_acceleration(record):
     recording = record(STATE_FEEDBACK)
     states = true_states(recording, STATE_FEEDBACK)
@@ -111,7 +111,7 @@ def test_single_motions_tell_position_from_acceleration(record):
 
 
 def test_quintic_rests_at_both_ends_and_in_the_middle():
-    reference = record_quintic(STATE_FEEDBACK, -30.0).reference
+    reference = _record_quintic(STATE_FEEDBACK, -30.0).reference
     middle = reference.q[..., 0].argmin()
     assert np.rad2deg(reference.q[middle]) == pytest.approx([-30, -18])
     for k in (0, middle, -1):
@@ -121,7 +121,7 @@ def test_quintic_rests_at_both_ends_and_in_the_middle():
 
 
 def test_the_hand_goes_round_a_circle():
-    recording = record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
+    recording = _record_circle(STATE_FEEDBACK, radius=0.02, turns=3)
     hand = STATE_FEEDBACK.arm.forward_kinematics(recording.reference.q)[:, -1]
     centre = STATE_FEEDBACK.arm.forward_kinematics(np.array(NEUTRAL))[-1]
     assert np.linalg.norm(hand - centre, axis=-1) == pytest.approx(0.02)

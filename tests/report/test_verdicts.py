@@ -5,17 +5,17 @@ import pytest
 from scipy import stats
 
 from workshop.report.evidence.verdicts import (
-    CONTRADICTS,
+    _CONTRADICTS,
     DECIDED,
     DRAWS,
     FEWEST,
     STANDS,
+    _fresh,
+    _shares,
+    _stands,
     bootstrap,
-    fresh,
     judged,
     mean,
-    shares,
-    stands,
     turns_at,
 )
 
@@ -88,14 +88,14 @@ def test_bad_arguments(arguments, words):
 
 
 def test_shares_of_draws():
-    found = shares(["qualitative"] * 3 + ["reproduced"] * 7)
+    found = _shares(["qualitative"] * 3 + ["reproduced"] * 7)
     assert found == {"reproduced": 0.7, "qualitative": 0.3}
     assert list(found) == ["reproduced", "qualitative"]
 
 
 def test_a_verdict_needs_nearly_all_draws():
     for share, wanted in ((1.0, "reproduced"), (DECIDED, "reproduced"), (0.949, "undecided")):
-        assert fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
+        assert _fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
 
 
 def test_what_a_written_verdict_bears():
@@ -107,15 +107,15 @@ def test_what_a_written_verdict_bears():
         ("qualitative", 0.94, True),
         ("undecided", 0.5, True),
         ("undecided", 0.999, True),
-        ("undecided", CONTRADICTS, False),
+        ("undecided", _CONTRADICTS, False),
         ("not reproduced", 0.3, False),  # a planted one
     ):
-        assert stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
+        assert _stands(written, {"reproduced": share, "qualitative": 1 - share}) is holds
     for share in np.linspace(0, 1, 201):
         found = {"reproduced": share, "not reproduced": 1 - share}
-        assert stands(fresh(found), found)
+        assert _stands(_fresh(found), found)
     with pytest.raises(ValueError, match="written must be one of"):
-        stands("fine", {"reproduced": 1.0})
+        _stands("fine", {"reproduced": 1.0})
 
 
 def test_where_a_share_reaches_a_level():

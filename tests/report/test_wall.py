@@ -9,7 +9,7 @@ from book_pages import CHAPTERS
 
 from ddlib.tables import typeset
 from workshop.report.evidence import claims, expressions, ledger_tables, wall
-from workshop.report.evidence.claims import LEDGER, OWN, SECTIONS, Claim, Printed
+from workshop.report.evidence.claims import _LEDGER, _OWN, _SECTIONS, Claim, _Printed
 from workshop.report.evidence.verdicts import VERDICTS, Measured
 
 ALL = claims.load()
@@ -39,12 +39,12 @@ def tiles(text) -> list[str]:
 def code_of(claim) -> str:
     if not claim.measure:
         return f"{expressions.__name__.replace('.', '/')}.html#find"
-    function = claims.function(claim.measure)
+    function = claims._function(claim.measure)
     return f"{function.__module__.replace('.', '/')}.html#{claim.measure.split('.')[-1]}"
 
 
 def test_a_tile_for_each_claim_with_all_that_the_file_says():
-    expected = [claim for section in SECTIONS for claim in claims.of_section(section)]
+    expected = [claim for section in _SECTIONS for claim in claims.of_section(section)]
     found = tiles(wall.Tiles(expected)._repr_markdown_())
     for text, claim in zip(found, expected, strict=True):
         head, inside = text.split("</summary>")
@@ -52,8 +52,8 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         assert html.escape(typeset(claim.claim), quote=False) in head
         assert f"<b>{claim.judge()}</b>" in head
         assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
-        assert typeset(claims.printed(claim)) in inside
-        page = [] if claim.chapter == LEDGER else [claim.chapter]
+        assert typeset(claims._printed(claim)) in inside
+        page = [] if claim.chapter == _LEDGER else [claim.chapter]
         assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
         code = f'<a href="../_modules/{code_of(claim)}">code</a>'
         assert (code in inside) == claim.is_measured == (">code</a>" in inside)
@@ -62,7 +62,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
 
 
 def test_signs_differ_and_lead_to_tiles():
-    assert len(set(wall.MARKS.values())) == len(VERDICTS) == len(wall.MARKS)
+    assert len(set(wall._MARKS.values())) == len(VERDICTS) == len(wall._MARKS)
     of_the_paper = claims.of_the_paper()
     text = wall.Wall(of_the_paper)._repr_markdown_()
     known = {claim.id: claim for claim in of_the_paper}
@@ -70,18 +70,18 @@ def test_signs_differ_and_lead_to_tiles():
     assert sorted(name for name, *_ in squares) == sorted(known)
     for name, title, sign in squares:
         verdict = known[name].judge()
-        assert title.startswith(f"{verdict}: ") and wall.MARKS[verdict] in sign
+        assert title.startswith(f"{verdict}: ") and wall._MARKS[verdict] in sign
     for name in VERDICTS:
-        assert f"{wall.mark(name)} {name}" in text.split("wall-legend")[1]
+        assert f"{wall._mark(name)} {name}" in text.split("wall-legend")[1]
 
 
 def test_tiles_of_a_chapter_lead_to_the_ledger():
     chapter = CHAPTERS[0].removeprefix("book/")
-    mine = claims.of_chapter(chapter)
+    mine = claims._of_chapter(chapter)
     found = tiles(wall.chapter_tiles(chapter)._repr_markdown_())
     for text, claim in zip(found, mine, strict=True):
         assert f"]({chapter}.ipynb)" not in text
-        counted = claim.printed != OWN and not claim.arm
+        counted = claim.printed != _OWN and not claim.arm
         assert (f"ledger.html#claim-{claim.id}" in text) == counted
 
 
@@ -92,7 +92,7 @@ def parts(text) -> dict[str, tuple]:
 
 def test_the_picture_of_the_draws(make):
     draws = np.linspace(0.2, 0.4, 2001)
-    text = wall.draws(make({"from": 0.1, "to": 0.5}, draws, Printed("0.30")))
+    text = wall._draws(make({"from": 0.1, "to": 0.5}, draws, _Printed("0.30")))
     found = parts(text)
     assert found["median"][0] == pytest.approx(50, abs=0.1)
     assert found["printed"][0] == pytest.approx(50, abs=0.1)
@@ -100,30 +100,30 @@ def test_the_picture_of_the_draws(make):
     assert found["draws"][1] == pytest.approx(scale * 0.95 * 0.2, abs=0.2)
     assert found["band"][0] == pytest.approx(100 - sum(found["band"]), abs=0.2)
     assert "from 0.205 to 0.395, median 0.300; reproduced from 0.100 to 0.500; printed 0.30" in text
-    factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), Printed("10"))
-    assert "reproduced from 5.00 to 20.0" in wall.draws(factor)
+    factor = make({"factor": 2}, np.linspace(9.0, 11.0, 50), _Printed("10"))
+    assert "reproduced from 5.00 to 20.0" in wall._draws(factor)
 
 
 def test_a_band_that_is_open_fills_its_side(make):
     draws = np.linspace(1.0, 2.0, 50)
-    text = wall.draws(make({"to": 1.5}, draws))
+    text = wall._draws(make({"to": 1.5}, draws))
     left, width = parts(text)["band"]
     assert left == 0 and 40 < width < 60 and "reproduced up to 1.50" in text
-    text = wall.draws(make({"from": 1.5}, draws))
+    text = wall._draws(make({"from": 1.5}, draws))
     assert sum(parts(text)["band"]) == pytest.approx(100, abs=0.2)
     assert "reproduced from 1.50" in text
 
 
 def test_values_that_span_decades_have_a_logarithmic_scale(make):
-    found = parts(wall.draws(make({"to": 1.0}, np.geomspace(0.01, 100, 2001))))
+    found = parts(wall._draws(make({"to": 1.0}, np.geomspace(0.01, 100, 2001))))
     assert found["median"][0] == pytest.approx(50, abs=0.5)
     assert sum(found["band"]) == pytest.approx(50, abs=0.5)
 
 
 def test_no_picture_without_draws_or_range(make):
-    assert wall.draws(make({"to": 1})) == wall.draws(make({"is": True}, [True] * 50)) == ""
+    assert wall._draws(make({"to": 1})) == wall._draws(make({"is": True}, [True] * 50)) == ""
     for value in (0.0, 3.0):  # draws that are all alike have one
-        text = wall.draws(make({"to": value}, [value] * 50))
+        text = wall._draws(make({"to": value}, [value] * 50))
         assert parts(text)["median"][0] == pytest.approx(50)
 
 

@@ -14,7 +14,7 @@ from ddlib import paper
 from ddlib.setups import WINDOWS
 from workshop.report import results
 from workshop.report.evidence import claims
-from workshop.report.studies.windows import SIZES
+from workshop.report.studies.windows import _SIZES
 
 # Words near which a number may be a result.
 RESULT_WORDS = re.compile(
@@ -63,7 +63,7 @@ NAMES = re.compile(
 @cache
 def _settings() -> re.Pattern:
     """Settings of experiments, taken from the code; 0 and 1 as points of reference."""
-    known = {*WINDOWS, *SIZES, paper.HIDDEN_UNITS, paper.SAMPLES_PER_TRAJECTORY, paper.EPOCHS}
+    known = {*WINDOWS, *_SIZES, paper.HIDDEN_UNITS, paper.SAMPLES_PER_TRAJECTORY, paper.EPOCHS}
     known |= {row["units"] for row in results.read("hidden-units")["rows"]}
     known |= {results.read(n)["members"] for n in ("table-4-1", "clean", "hidden-units")}
     known |= {results.read("longer")["epochs"], 298, 1500}

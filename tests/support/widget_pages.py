@@ -47,7 +47,7 @@ CALM = {"reduced_motion": "reduce"}
 def functions(browser, *scripts):
     """`call(function, argument)`: a JavaScript function beside the engine's and the scripts'."""
     page = browser.new_page()
-    script = module(*plain.ENGINE, plain.TRAINING, *scripts)
+    script = module(*plain.ENGINE, plain._TRAINING, *scripts)
     page.add_script_tag(content=script.replace("export default", "void"))
     yield page.evaluate
     page.close()
@@ -98,7 +98,7 @@ def opened(tmp_path, visit, widget, query="", **options):
 
 def flat(weights) -> np.ndarray:
     """A network's weights in the page's order."""
-    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain.FIELDS])
+    return np.concatenate([np.ravel(getattr(weights, name)) for name in plain._FIELDS])
 
 
 def drag(page, box, *places):

@@ -27,8 +27,8 @@ def evaluate(browser):
 
 def drawn(n=20, seed=0):
     """Filters as a reader may draw them, some with a mean and some without."""
-    f = np.random.default_rng(seed).integers(-builder.LEVELS, builder.LEVELS + 1, (n, 21))
-    f = np.cumsum(f, axis=1) / builder.LEVELS
+    f = np.random.default_rng(seed).integers(-builder._LEVELS, builder._LEVELS + 1, (n, 21))
+    f = np.cumsum(f, axis=1) / builder._LEVELS
     return np.concatenate([f, f - f.mean(1, keepdims=True)])
 
 
@@ -73,8 +73,8 @@ def test_the_page_computes_the_same(evaluate):
     for f, row in zip(every, fits):
         for zero, fit in zip(zeros, row):
             assert fit["error"] == pytest.approx(builder.score(f, zero), abs=1e-9)
-            np.testing.assert_allclose(fit["output"], builder.fitted(f, zero), atol=1e-7)
-    nu = builder.FREQUENCIES
+            np.testing.assert_allclose(fit["output"], builder._fitted(f, zero), atol=1e-7)
+    nu = builder._FREQUENCIES
     for f in drawn(2):
         given = [f.tolist(), nu.tolist(), LOG_STEP]
         gain = evaluate("([f, nu, step]) => nu.map((x) => gainOf(f, x, step))", given)

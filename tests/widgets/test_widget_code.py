@@ -36,7 +36,7 @@ def test_code_of_the_chapters_runs(name, capsys):
 
 def test_code_gives_what_the_picker_shows():
     run = {}
-    exec(filled(picker.MOTION, {"shoulder_deg": 30.0, "elbow_deg": 10.0}), run)
+    exec(filled(picker._MOTION, {"shoulder_deg": 30.0, "elbow_deg": 10.0}), run)
     shown = picker.TrajectoryPicker().interpolate(shoulder_deg=30, elbow_deg=10)
     for j, joint in enumerate(("shoulder", "elbow")):
         peak = np.abs(run["torque"][:, j]).max()

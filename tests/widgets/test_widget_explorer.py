@@ -12,8 +12,8 @@ from widget_pages import NEXT_FRAME, page_of, settings
 from ddlib.analysis import CLASSES, classify, savitzky_golay
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.explorer import FLOOR, FREQUENCIES, FilterExplorer
-from ddlib.widgets.hinton import diagram
+from ddlib.widgets.explorer import _FLOOR, _FREQUENCIES, FilterExplorer
+from ddlib.widgets.hinton import _diagram
 from workshop.report import results
 
 CELLS = "weights of all units"
@@ -42,7 +42,7 @@ def weights_of(models, width, seed, unit, joint) -> np.ndarray:
 
 
 def gain_of(f) -> np.ndarray:
-    return np.abs(freqz(f, worN=FREQUENCIES, fs=1 / LOG_STEP)[1])
+    return np.abs(freqz(f, worN=_FREQUENCIES, fs=1 / LOG_STEP)[1])
 
 
 def test_truths_of_every_filter(explorer, models):
@@ -74,7 +74,7 @@ def test_gains_are_scipys(explorer, models):
     for values in settings(explorer, 40, seed=3):
         f = weights_of(models, **values)
         shown = explorer.interpolate(**values)
-        lowest = FLOOR * max(gain_of(f).max(), gain_of(f - f.mean()).max())
+        lowest = _FLOOR * max(gain_of(f).max(), gain_of(f - f.mean()).max())
         for name, g in (("gain", f), ("gain, varying", f - f.mean())):
             expected = np.log10(np.maximum(gain_of(g), lowest))
             np.testing.assert_allclose(shown[name], expected, atol=1e-3)
@@ -84,14 +84,14 @@ def test_gains_are_scipys(explorer, models):
         textbook = savitzky_golay(len(f), order, LOG_STEP, degree=order)
         scale = np.sqrt(shown["shares"][order] * (f @ f) / (textbook @ textbook))
         if shown["shares"][order] > 0.01:
-            expected = np.log10(scale * (2 * np.pi * FREQUENCIES) ** order)
+            expected = np.log10(scale * (2 * np.pi * _FREQUENCIES) ** order)
             got, shown_ = shown["gain, ideal"], expected > np.log10(lowest)
             np.testing.assert_allclose(got[shown_], expected[shown_], atol=0.01)
 
 
 def test_diagram_holds_every_weight_once(models):
     weights = models[11].weights[6]
-    cells = diagram(weights, 8).reshape(-1)
+    cells = _diagram(weights, 8).reshape(-1)
     fields = ("hidden_weights", "hidden_bias", "direct_weights", "output_bias")
     counted = np.concatenate([getattr(weights, name).ravel() for name in fields])
     # the weights between hidden and output units are drawn at both ends

@@ -8,7 +8,7 @@ from widget_pages import NEXT_FRAME, assert_curves, drag, page_of, settings
 
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases
 from ddlib.setups import STATE_FEEDBACK, split
-from ddlib.widgets.hinton import diagram
+from ddlib.widgets.hinton import _diagram
 from ddlib.widgets.player import TrainingPlayer
 
 EPOCHS = np.array([0, 1, 2, 5, 10, 30, 100, 300, 1000, 20_000])
@@ -56,7 +56,7 @@ def test_curves_are_the_recorded_ones(player, model, rmss):
         f = getattr(weights, part)[number]
         np.testing.assert_allclose(shown["shoulder weights"], f[0], atol=2e-4)
         np.testing.assert_allclose(shown["elbow weights"], f[1], atol=2e-4)
-        np.testing.assert_allclose(shown["weights of all units"], diagram(weights, 5), atol=2e-4)
+        np.testing.assert_allclose(shown["weights of all units"], _diagram(weights, 5), atol=2e-4)
         for name in ("training", "test"):
             assert shown[f"{name} RMSS"][0] == pytest.approx(rmss[name][k], rel=1e-3)
         reached = getattr(model.weights, part)[:, 1, number]
@@ -96,7 +96,7 @@ def assert_shown(page, model, rmss, epoch, unit):
     texts = page.locator(".scalars output").all_inner_texts()
     errors = [rmss[name][k] for name in ("training", "test")]
     assert [float(x) for x in texts[:2]] == pytest.approx(errors, abs=0.051)
-    largest = np.abs(diagram(model.weights[k, 1], WIDTH // 2)).max()
+    largest = np.abs(_diagram(model.weights[k, 1], WIDTH // 2)).max()
     assert float(texts[2]) == pytest.approx(largest, abs=0.006)
 
 
@@ -130,7 +130,7 @@ def test_slider_diagram_and_menu(tmp_path, visit, player, model, rmss):
         slider.press(key)
         page.evaluate(NEXT_FRAME)
         drawn = [float(side[1:-1]) ** 2 for side in page.evaluate(read)]
-        cells = diagram(model.weights[k, 1], 5)
+        cells = _diagram(model.weights[k, 1], 5)
         parts = np.sort(cells[cells > 0])[::-1] / np.abs(cells).max()
         np.testing.assert_allclose(np.sort(drawn)[::-1][:20] / 13**2, parts[:20], atol=0.02)
     assert not opened.problems

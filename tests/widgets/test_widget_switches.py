@@ -15,10 +15,10 @@ from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.switches import (
-    CLOSE_UP,
-    DELAY,
-    RANGES,
-    TIMES,
+    _CLOSE_UP,
+    _DELAY,
+    _RANGES,
+    _TIMES,
     RealArmSwitches,
 )
 
@@ -42,12 +42,12 @@ def recorded(effects, times):
 
 
 def test_axes_stay_and_hold_every_combination(switches):
-    for panel, name in zip(switches.spec["panels"], RANGES):
-        assert panel["y_range"] == list(RANGES[name]) and not panel["y_fit"]
+    for panel, name in zip(switches.spec["panels"], _RANGES):
+        assert panel["y_range"] == list(_RANGES[name]) and not panel["y_fit"]
     for chosen in itertools.product(("off", "strong"), repeat=3):
         levels = dict(zip(("friction", "saturation", "delay"), chosen))
         curves = switches._function(**dict.fromkeys(NAMES, "strong") | levels)
-        for name, (low, high) in RANGES.items():
+        for name, (low, high) in _RANGES.items():
             assert low <= curves[name].min() and curves[name].max() <= high
 
 
@@ -59,17 +59,17 @@ def test_axes_stay_and_hold_every_combination(switches):
             {"friction": "assumed", "quantisation": "assumed"},
             CMU_DD_ARM_II_EFFECTS.without("actuator", "torque_sensor"),
         ),
-        ({"delay": "strong"}, Effects(actuator=(Delay(DELAY["strong"]),))),
+        ({"delay": "strong"}, Effects(actuator=(Delay(_DELAY["strong"]),))),
     ],
     ids=["off", "as assumed", "delay"],
 )
 def test_curves_are_the_recorded_ones(switches, levels, effects):
     shown = switches.interpolate(**OFF | levels)
-    moving = TIMES < 3  # a rest after the motion has its own start
-    error, torque = recorded(effects, TIMES[moving])
+    moving = _TIMES < 3  # a rest after the motion has its own start
+    error, torque = recorded(effects, _TIMES[moving])
     np.testing.assert_allclose(shown["error"][moving], error, atol=2e-4)
     np.testing.assert_allclose(shown["torque"][moving], torque, atol=1e-3)
-    np.testing.assert_allclose(shown["close-up"], recorded(effects, CLOSE_UP)[1], atol=1e-3)
+    np.testing.assert_allclose(shown["close-up"], recorded(effects, _CLOSE_UP)[1], atol=1e-3)
 
 
 def test_the_stronger_the_further_from_the_ideal_arm(switches):

@@ -13,7 +13,7 @@ from ddlib.learning import sliding_windows
 from ddlib.setups import JOINT_DAMPING, KD, KP, POSITION_FEEDBACK, STATE_FEEDBACK, Setup
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import ThrownArm
-from ddlib.widgets.engine.throw import REST
+from ddlib.widgets.engine.throw import _REST
 from workshop.report import results
 
 WORLD = """([spec, weights, moves]) => {
@@ -55,7 +55,7 @@ def moved(evaluate, widget, *moves):
 def test_a_played_motion_is_that_of_the_simulator(evaluate, setup):
     model = results.networks(21, setup.name)[3]
     silent = setup.effects.without("torque_sensor")
-    known = setup.record(APPENDIX_I[[5]], effects=silent, rest=REST)[0]
+    known = setup.record(APPENDIX_I[[5]], effects=silent, rest=_REST)[0]
     seen = moved(evaluate, ThrownArm(model, setup), ["play", 0, 5 * len(known.t)])
     last = slice(-len(seen("q")), None)
     np.testing.assert_allclose(seen("q"), known.q[last], atol=1e-6)

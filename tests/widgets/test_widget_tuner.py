@@ -16,13 +16,13 @@ from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.engine import loops
 from ddlib.widgets.tuner import (
-    QUESTIONS,
-    START,
+    _QUESTIONS,
+    _START,
+    _VISCOUS,
     TIMES,
-    VISCOUS,
     PIDTuner,
-    gains,
-    tuned,
+    _gains,
+    _tuned,
 )
 
 ARM = CMU_DD_ARM_II
@@ -44,7 +44,7 @@ def engine(browser):
 @cache
 def known_run(**setting):
     """The same by ddlib; settings that are not given are those of the start."""
-    return tuned(ARM, **{**START, **setting})
+    return _tuned(ARM, **{**_START, **setting})
 
 
 def rms(x):
@@ -57,14 +57,14 @@ def rms(x):
 @pytest.mark.parametrize("feedforward", [False, True])
 def test_curves_are_the_recorded_ones(feedforward):
     """The same runs with a rest before the motion, by `record`."""
-    feedback = PID(**gains(200, 100, 30))
+    feedback = PID(**_gains(200, 100, 30))
     recording = record(
         ARM,
         Feedforward(ARM, feedback) if feedforward else feedback,
         APPENDIX_I[5],
-        effects=Effects(friction=(ViscousFriction(VISCOUS),)),
+        effects=Effects(friction=(ViscousFriction(_VISCOUS),)),
     )
-    shown = tuned(ARM, 200, 100, 30, 0, feedforward)
+    shown = _tuned(ARM, 200, 100, 30, 0, feedforward)
     at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
     error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(JOINTS):
@@ -75,8 +75,8 @@ def test_curves_are_the_recorded_ones(feedforward):
 
 
 def test_modes_are_the_joints_of_python_control():
-    joints = plant(ARM.mass_matrix([0.0, 0.7]), VISCOUS)
-    modes = loops.modes(ARM, VISCOUS, (0.0, 0.7))
+    joints = plant(ARM.mass_matrix([0.0, 0.7]), _VISCOUS)
+    modes = loops.modes(ARM, _VISCOUS, (0.0, 0.7))
     rates = sorted(-np.linalg.eigvals(joints.A).real)[2:]
     np.testing.assert_allclose([mode["rate"] for mode in modes], rates)
     shape = np.array([mode["shape"] for mode in modes]).T
@@ -100,12 +100,12 @@ def test_growth_and_margins_are_python_controls(engine, arm):
     given, wanted = [], []
     for k in range(60):
         kp, kd = rng.uniform(40, 1200), rng.uniform(0, 80) * (k % 4 > 0)
-        law = gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
+        law = _gains(kp, rng.uniform(0, 900) * (k % 3 > 0), kd)
         step, late = rng.choice([0.0005, 0.002, 0.008]), int(rng.choice([0, 1, 3, 20]))
-        near = loops.linear(arm, VISCOUS, law, late, step)
+        near = loops.linear(arm, _VISCOUS, law, late, step)
         given.append([{name: x.tolist() for name, x in law.items()}, step, late])
         wanted.append([near.growth, *np.ravel([near.phase_deg, near.crossover], order="F")])
-    answer = np.array(engine(LINEAR, [loops.modes(arm, VISCOUS), given]), dtype=float)
+    answer = np.array(engine(LINEAR, [loops.modes(arm, _VISCOUS), given]), dtype=float)
     wanted = np.array(wanted)
     stable = wanted[:, 0] < 0
     assert 10 < stable.sum() < 50
@@ -123,14 +123,14 @@ def swing(run, begin, end):
 
 def test_what_happens_if():
     """Each answer that the page calls right, by ddlib, with a margin."""
-    before, after = zip(*([known_run(**x) for x in (q.first, q.change)] for q in QUESTIONS))
+    before, after = zip(*([known_run(**x) for x in (q.first, q.change)] for q in _QUESTIONS))
     # swings through the whole motion, and dies out no sooner
     free = after[0]
     assert -1 / 9 < free["growth"] < 0 and np.isnan(free["stopped"])
     assert 0.7 < swing(free, 2, 3) / swing(free, 1, 2) < 1.3
     assert swing(free, 2, 3) > 5 * swing(before[0], 2, 3)
     for k in (1, 2, 4):
-        assert "grows" in QUESTIONS[k].choices[QUESTIONS[k].right]
+        assert "grows" in _QUESTIONS[k].choices[_QUESTIONS[k].right]
         assert after[k]["growth"] > 0.5 and after[k]["stopped"] < 2.8
         assert before[k]["growth"] < 0 and np.isnan(before[k]["stopped"])
     late = after[3]
@@ -189,7 +189,7 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     assert len(before) == 8 and all(a != b for a, b in zip(before[1::2], dragged[1::2]))
     kp = value_of(page, tuner, "kp")
     assert_computed(page, kp=kp)
-    assert page.evaluate(SEEN)["before"] == START  # the ghost stands where the change began
+    assert page.evaluate(SEEN)["before"] == _START  # the ghost stands where the change began
     page.wait_for_timeout(1000)  # a new change begins
     page.locator("input[id$=-kd]").press("Home")
     page.locator("input[id$=-ki]").press("ArrowRight")
@@ -197,7 +197,7 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     ki = value_of(page, tuner, "ki")
     page.locator("input[id$=-late]").press("ArrowRight")
     assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1)
-    assert page.evaluate(SEEN)["before"] == {**START, "kp": pytest.approx(kp)}
+    assert page.evaluate(SEEN)["before"] == {**_START, "kp": pytest.approx(kp)}
     assert "unstable" in page.locator(".verdict").inner_text()
     page.get_by_role("switch").press("Space")
     assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1, feedforward=True)
@@ -209,7 +209,7 @@ def test_a_prediction_comes_first(tmp_path, visit, tuner):
     opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
     page = opened.page
     show, told = page.get_by_role("button", name="Try it"), page.locator(".told")
-    for k, question in enumerate(QUESTIONS):
+    for k, question in enumerate(_QUESTIONS):
         assert question.text in page.locator(".question").inner_text()
         assert show.is_disabled() and not told.inner_text()
         guess = question.right if k % 2 else (question.right + 1) % 3
@@ -225,7 +225,7 @@ def test_a_prediction_comes_first(tmp_path, visit, tuner):
         assert stopped == (k in (1, 2, 4))
         assert not page.get_by_role("radio").count()  # the answer stands in their place
         page.get_by_role("button", name="Next question").click()
-    assert QUESTIONS[0].text in page.locator(".question").inner_text()
+    assert _QUESTIONS[0].text in page.locator(".question").inner_text()
     assert not opened.problems
 
 
@@ -235,7 +235,7 @@ def told_remedy(page):
 
 
 def is_stable(law, late=0):
-    joints = plant(ARM.mass_matrix([0.0, 0.0]), VISCOUS)
+    joints = plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
     loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=late)
     return np.abs(loop.poles()).max() < 1
 
@@ -250,10 +250,10 @@ def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
         text = told_remedy(page)
         assert text.startswith("An unstable loop has no margin: to be stable, all three gains")
         part = float(re.search(r"([\d.]+)\s%", text)[1]) / 100
-        whole = {**START, **setting}
+        whole = {**_START, **setting}
         signs = []
         for share in (0.96, 1.04):
-            law = gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
+            law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
             signs.append(is_stable(law, whole["late"]))
         assert signs == [True, False]
         numbers = page.locator(".scalars dd").all_inner_texts()

@@ -12,9 +12,9 @@ import numpy as np
 from ddlib._check import integer
 from workshop import BOOK
 
-FOLDER = BOOK / "data"
-PUBLISHED_TEST = ("e", "q", "v")  # kept for the test by the loader of Deep Lagrangian Networks
-RATE = 1000  # samples a second of the real arm's recording
+_FOLDER = BOOK / "data"
+_PUBLISHED_TEST = ("e", "q", "v")  # kept for the test by the loader of Deep Lagrangian Networks
+_RATE = 1000  # samples a second of the real arm's recording
 
 # from the configuration of the TX40's source
 REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)  # turns of a motor; motor 6 turns joint 5, too
@@ -22,7 +22,7 @@ COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)  # friction of the joints, N m
 
 
 @dataclass(frozen=True)
-class Characters:
+class _Characters:
     """Characters that a simulated two-joint arm with gravity draws, one after the other.
 
     Angles are rad, the first one counted from the horizontal, torque and its parts N m.
@@ -45,7 +45,7 @@ class Characters:
     def __len__(self) -> int:
         return len(self.labels)
 
-    def of(self, labels) -> Characters:
+    def of(self, labels) -> _Characters:
         """Those of some labels, in the order of the file."""
         labels = set(labels)
         if not labels or labels - set(self.labels):
@@ -60,14 +60,14 @@ class Characters:
         }
         return replace(self, **chosen)
 
-    def split(self, test=PUBLISHED_TEST) -> tuple[Characters, Characters]:
+    def split(self, test=_PUBLISHED_TEST) -> tuple[_Characters, _Characters]:
         """The characters to learn from, and those to be tested on."""
         test = set(test)
         return self.of(set(self.labels) - test), self.of(test)
 
 
 @dataclass(frozen=True)
-class RealArm:
+class _RealArm:
     """A recording of a real arm."""
 
     t: np.ndarray
@@ -75,7 +75,7 @@ class RealArm:
     current: np.ndarray  # of the motors, A
     step: float
 
-    def at(self, rate: int) -> RealArm:
+    def at(self, rate: int) -> _RealArm:
         """The same at fewer samples a second, each the mean of several."""
         now = round(1 / self.step)
         if now % integer("rate", rate, 1, now):
@@ -86,25 +86,25 @@ class RealArm:
             x[: count * many].reshape(count, many, *x.shape[1:]).mean(1)
             for x in (self.t, self.q, self.current)
         )
-        return RealArm(t, q, current, many * self.step)
+        return _RealArm(t, q, current, many * self.step)
 
 
-def characters() -> Characters:
+def characters() -> _Characters:
     """Twenty characters, drawn by somebody else's simulated arm (MIT licence).
 
     Source: M. Lutter, C. Ritter, J. Peters, "Deep Lagrangian Networks", ICLR 2019; the file is
     that of the repository milutter/deep_lagrangian_networks.
     """
-    with np.load(FOLDER / "characters.npz") as file:
-        return Characters(**file)
+    with np.load(_FOLDER / "characters.npz") as file:
+        return _Characters(**file)
 
 
-def staubli() -> RealArm:
+def staubli() -> _RealArm:
     """Nine seconds of a Stäubli TX40, six joints on exciting trajectories (Apache licence 2.0).
 
     Source: repository thanhndv212/figaroh-examples, examples/staubli_TX40, of which each sample is
     the mean of five.
     """
-    with np.load(FOLDER / "staubli-tx40.npz") as file:
+    with np.load(_FOLDER / "staubli-tx40.npz") as file:
         q, current = np.deg2rad(file["position_deg"]), np.array(file["current_a"])
-    return RealArm(np.arange(len(q)) / RATE, q, current, 1 / RATE)
+    return _RealArm(np.arange(len(q)) / _RATE, q, current, 1 / _RATE)

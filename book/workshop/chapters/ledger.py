@@ -18,12 +18,12 @@ from workshop import BOOK
 from workshop.report import results
 from workshop.report.measures.filters import parts_sum_up
 
-FILE = BOOK / "errata.yml"  # Where the errata are kept
+_FILE = BOOK / "errata.yml"  # Where the errata are kept
 
-QUESTIONS = FILE.with_name("questions.yml")  # Where the open questions are kept
+_QUESTIONS = _FILE.with_name("questions.yml")  # Where the open questions are kept
 
 # Fields of an erratum: place, what is printed, what is wrong or unclear, what this book does
-FIELDS = ("where", "printed", "wrong", "here")
+_FIELDS = ("where", "printed", "wrong", "here")
 
 # Unit named inside a figure, window by the text of section 5.1, window by the caption
 _FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
@@ -31,15 +31,15 @@ _FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
 _SETS = ("random set A", "random set B", "trajectory 6")  # The data sets of Table 6-1
 
 
-def unit_fits(unit: int, width: int) -> bool:
+def _unit_fits(unit: int, width: int) -> bool:
     """Whether a unit of this number is a hidden or an output unit of a window network."""
     inputs, others = 2 * width, paper.HIDDEN_UNITS + 2
     return inputs < unit <= inputs + others
 
 
-def errata(path: Path = FILE) -> Table:
+def errata(path: Path = _FILE) -> Table:
     """Where the paper contradicts itself, a formula or arithmetic, computed where it can be."""
-    rows = _filled("erratum", FIELDS, path, computed())
+    rows = _filled("erratum", _FIELDS, path, _computed())
     return Table(("where", "printed", "wrong or unclear", "in this book"), rows)
 
 
@@ -62,7 +62,7 @@ def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> lis
     return rows
 
 
-def computed() -> dict[str, str]:
+def _computed() -> dict[str, str]:
     """What the errata name and code can tell, from the paper's formulas and tables."""
     reference = pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP))
     extents = np.array(APPENDIX_I)
@@ -70,8 +70,8 @@ def computed() -> dict[str, str]:
     products = (f"{Weights.random(1, w)[0].count() * cases:,} at {w}" for w in WINDOWS)
     units = (
         f"unit {unit} of Figure {figure} is "
-        f"{'no input' if unit_fits(unit, text) else 'an input'} at {text} and "
-        f"{'no input' if unit_fits(unit, caption) else 'an input'} at {caption}"
+        f"{'no input' if _unit_fits(unit, text) else 'an input'} at {text} and "
+        f"{'no input' if _unit_fits(unit, caption) else 'an input'} at {caption}"
         for figure, (unit, text, caption) in _FIGURE_UNITS.items()
     )
     return {
@@ -94,7 +94,7 @@ def computed() -> dict[str, str]:
 def open_questions() -> Table:
     """What the questions that the paper leaves open decide, from the committed results."""
     fields = ("question", "decision", "decided", "otherwise")
-    rows = _filled("question", fields, QUESTIONS, {**_table_4_1(), **_table_6_1()})
+    rows = _filled("question", fields, _QUESTIONS, {**_table_4_1(), **_table_6_1()})
     header = ("question", "decision", "as decided", "otherwise")
     return Table(header, [row for row in rows if all(row)])
 

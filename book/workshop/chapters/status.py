@@ -7,28 +7,28 @@ from workshop.report import results
 from workshop.report.code_hash import places
 
 # Targets for the parts of `make reproduce` on two cores, s; for all of it, their sum
-REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
+_REPRODUCE_SECONDS = {"the report": 900, "rivals, a real arm": 300, "the loop": 360}
 
-GAP = "\N{NO-BREAK SPACE}"
+_GAP = "\N{NO-BREAK SPACE}"
 
 
-def duration(seconds: float) -> str:
+def _duration(seconds: float) -> str:
     """A time for a table, in the unit that suits it."""
     units = (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6))
     unit, size = next((u for u in units if seconds >= u[1]), units[-1])
-    return f"{significant(seconds / size)}{GAP}{unit}"
+    return f"{significant(seconds / size)}{_GAP}{unit}"
 
 
-def outcome(row: dict) -> str:
+def _outcome(row: dict) -> str:
     """The target of a row of `benchmarks.json`, and whether it is met."""
     if "not measured" in row:
         return f"not measured: {row['not measured']}"
     if "at least" in row:
         met = row["ratio"] >= row["at least"]
-        return f"≥{GAP}{significant(row['at least'], 2)}: {'met' if met else 'missed'}"
+        return f"≥{_GAP}{significant(row['at least'], 2)}: {'met' if met else 'missed'}"
     if "at most" in row:
         met = row["value"] <= row["at most"]
-        return f"≤{GAP}{significant(row['at most'], 2)}: {'met' if met else 'missed'}"
+        return f"≤{_GAP}{significant(row['at most'], 2)}: {'met' if met else 'missed'}"
     return "none"
 
 
@@ -52,8 +52,8 @@ def benchmarks() -> dict[str, Table]:
 
 
 def _quantities(rows: list[dict]) -> Table:
-    cells = (f"{significant(r['value'])}{GAP}{r['unit']}" if "value" in r else "–" for r in rows)
-    lines = [(row["what"], cell, outcome(row)) for row, cell in zip(rows, cells)]
+    cells = (f"{significant(r['value'])}{_GAP}{r['unit']}" if "value" in r else "–" for r in rows)
+    lines = [(row["what"], cell, _outcome(row)) for row, cell in zip(rows, cells)]
     return Table(("what", "measured", "target"), lines)
 
 
@@ -66,11 +66,11 @@ def _pairs(rows: list[dict]) -> Table | None:
     for row in rows:
         cells = ["–"] * (3 + len(beside))
         if "ratio" in row:
-            cells = [duration(row[side]["seconds"]) for side in ("ours", "other")]
-            cells.append(f"{significant(row['ratio'])}{GAP}×")
+            cells = [_duration(row[side]["seconds"]) for side in ("ours", "other")]
+            cells.append(f"{significant(row['ratio'])}{_GAP}×")
             found = ((key, row["details"][key]) for key in beside)
             cells += [f"{x:.0%}" if k.startswith("share") else significant(x) for k, x in found]
-        lines.append((row["what"], *cells, outcome(row)))
+        lines.append((row["what"], *cells, _outcome(row)))
     names = (first["ours"]["name"], first["other"]["name"])
     return Table(("what", *names, "ratio", *beside, "target"), lines)
 
@@ -82,12 +82,12 @@ def made_results() -> Table:
     times = {name: by["seconds"] for name, by in made.items() if "code" in by}
     rows = [(name, f"{seconds:.1f} s") for name, seconds in times.items()]
     rows.append(("sum", f"{sum(times.values()):.0f} s"))
-    for part, most in REPRODUCE_SECONDS.items():
+    for part, most in _REPRODUCE_SECONDS.items():
         spent = sum(seconds for name, seconds in times.items() if _part(name) == part)
         rows.append((f"results of {part}, half of it", _held(spent / 2, most)))
     if whole := made.get("reproduce"):
         fewer = "" if whole.get("parts") == len(times) else ", before results were added"
-        words = _held(whole["seconds"], sum(REPRODUCE_SECONDS.values()), fewer)
+        words = _held(whole["seconds"], sum(_REPRODUCE_SECONDS.values()), fewer)
         rows.append((f"make reproduce, {whole['jobs']} at a time, by the clock", words))
     return Table(("result", "processor time to make it"), rows)
 
@@ -98,8 +98,8 @@ def _held(seconds: float, most: float, beside: str = "") -> str:
 
 
 def _part(name: str) -> str:
-    """The part of `REPRODUCE_SECONDS` to which a result belongs, by the folder of its study."""
-    report, rivals, loop = REPRODUCE_SECONDS
+    """The part of `_REPRODUCE_SECONDS` to which a result belongs, by the folder of its study."""
+    report, rivals, loop = _REPRODUCE_SECONDS
     module, _ = places().get(name, ("", ""))
     if "beyond.studies" not in module or ".page." in module:
         return report

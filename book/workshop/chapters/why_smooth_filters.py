@@ -25,8 +25,8 @@ from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choic
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 
-WHO = ("measured", "predicted")
-FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
+_WHO = ("measured", "predicted")
+_FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
 _SHARES = dict(enumerate(("bias", "pos.", "vel.", "acc.", "jerk", "rest")))
 
 _CHARTS = 'extras.push((view) => view.el.classList.add("ddlib-spectrum"));\n'
@@ -119,7 +119,7 @@ class SpectrumExplorer(CurveWidget):
         over = {"cursor": "place", "x_scale": "power"}
         cell, per_epoch = ("case", "width", "direction"), ("case", "width", "direction", "epoch")
         shape = [f"{joint} shape" for joint in JOINTS]
-        courses = [f"{what} {who}" for what in ("change", "error") for who in WHO]
+        courses = [f"{what} {who}" for what in ("change", "error") for who in _WHO]
         super().__init__(
             self._curves,
             [
@@ -143,17 +143,17 @@ class SpectrumExplorer(CurveWidget):
                 share_panel("What it responds to, share", "part of the window", _SHARES),
                 Panel(
                     "Change over the start, times",
-                    {f"change {who}": who for who in WHO},
+                    {f"change {who}": who for who in _WHO},
                     "epoch",
                     places,
                     fixed={"as large as the start": np.zeros(len(places))},
                     y_scale="power",
-                    y_range=(FLOOR, 3.0),
+                    y_range=(_FLOOR, 3.0),
                     **over,
                 ),
                 Panel(
                     "Its part of the RMSS",
-                    {f"error {who}": who for who in WHO},
+                    {f"error {who}": who for who in _WHO},
                     "epoch",
                     places,
                     y_fit=True,
@@ -170,12 +170,12 @@ class SpectrumExplorer(CurveWidget):
                 Scalar("variance", "Variance, times that of direction 1", scale="power"),
                 *(
                     Scalar(f"now {who}", f"Change, {who}, times the start", scale="power")
-                    for who in WHO
+                    for who in _WHO
                 ),
             ],
             depends={
                 **dict.fromkeys((*shape, *courses, "shares", "variance"), cell),
-                **dict.fromkeys((f"now {who}" for who in WHO), per_epoch),
+                **dict.fromkeys((f"now {who}" for who in _WHO), per_epoch),
                 **dict.fromkeys(("first", "last"), ("width",)),
                 "place": ("epoch",),
             },
@@ -189,9 +189,9 @@ class SpectrumExplorer(CurveWidget):
         f, half = along.filters[k], (width // 2 + 0.5) * LOG_STEP * 1e3
         energy = [along.axes[k, -1] ** 2, *(content(f) ** 2).sum(0)]
         curves = {f"{joint} shape": zero_padded(g, self._reach) for joint, g in zip(JOINTS, f)}
-        for who in WHO:
+        for who in _WHO:
             change = np.array(cell[who]["change over start"])[1:, k]
-            change = np.log10(np.maximum(change, 10**FLOOR))
+            change = np.log10(np.maximum(change, 10**_FLOOR))
             curves |= {f"change {who}": change, f"now {who}": change[row - 1]}
             curves[f"error {who}"] = np.array(cell[who]["error"])[1:, k]
         return {

@@ -20,20 +20,20 @@ from ddlib._check import one_of
 from workshop import BOOK
 
 # Folders of the packages whose code is followed
-ROOTS = {"ddlib": Path(ddlib.__file__).parent, "workshop": BOOK / "workshop"}
+_ROOTS = {"ddlib": Path(ddlib.__file__).parent, "workshop": BOOK / "workshop"}
 
 # Module of functions ``check(name, value, ...)`` that hand a value on or refuse it
-CHECKS = "_check"
+_CHECKS = "_check"
 
 # Last names of modules that decide no number: what is used of them counts by its name alone
-ASIDE = (CHECKS, "workshop", "results", "sweeps", "code_hash")
+_ASIDE = (_CHECKS, "workshop", "results", "sweeps", "code_hash")
 
 # Fields of a syntax tree that mean nothing here, or differ between versions of Python
-SILENT = {"annotation", "returns", "ctx", "kind", "type_params", "type_comment", "simple"}
+_SILENT = {"annotation", "returns", "ctx", "kind", "type_params", "type_comment", "simple"}
 
-COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
-SCOPES = (ast.FunctionDef, ast.Lambda, *COMPREHENSIONS)
-IMPORTS = (ast.Import, ast.ImportFrom)
+_COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+_SCOPES = (ast.FunctionDef, ast.Lambda, *_COMPREHENSIONS)
+_IMPORTS = (ast.Import, ast.ImportFrom)
 
 
 def study(function):
@@ -49,7 +49,7 @@ def code_hash(result: str) -> str:
 def places() -> dict[str, tuple[str, str]]:
     """Module and function that make each result: the functions with the decorator `study`."""
     found = {}
-    for root, folder in ROOTS.items():
+    for root, folder in _ROOTS.items():
         for path in sorted(folder.rglob("studies/**/*.py")):
             module = ".".join((root, *path.relative_to(folder).with_suffix("").parts))
             for name in _studies(path.read_text(encoding="utf-8")):
@@ -57,7 +57,7 @@ def places() -> dict[str, tuple[str, str]]:
     return found
 
 
-def run(result: str) -> dict:
+def _run(result: str) -> dict:
     """Call the study that makes a result."""
     module, name = places()[result]
     return getattr(importlib.import_module(module), name)()
@@ -102,9 +102,9 @@ def _hashes(result: str) -> dict[tuple[str, str], str]:
 def _file(module: str) -> Path | None:
     """The file of a module of ours; of a package that with its names."""
     top, *inside = module.split(".")
-    if top not in ROOTS:
+    if top not in _ROOTS:
         return None
-    path = ROOTS[top].joinpath(*inside)
+    path = _ROOTS[top].joinpath(*inside)
     files = (path / "__init__.pyi", path / "__init__.py", path.with_name(path.name + ".py"))
     return next((file for file in files if file.is_file()), None)
 
@@ -147,7 +147,7 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
     """By name at the top of a module: the statements that make it, or where it comes from."""
     names: dict = {}
     for statement in ast.parse(text).body:
-        if isinstance(statement, IMPORTS):
+        if isinstance(statement, _IMPORTS):
             names |= _imported(statement, module)
             continue
         if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
@@ -156,7 +156,7 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
             continue
         else:  # an assignment, or a call that changes what has been made before
             used = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name)]
-            made = _stored(statement, SCOPES) or [n for n in dict.fromkeys(used) if n in names]
+            made = _stored(statement, _SCOPES) or [n for n in dict.fromkeys(used) if n in names]
         for name in made:
             earlier = names.get(name)
             names[name] = [*(earlier if isinstance(earlier, list) else []), statement]
@@ -176,7 +176,7 @@ def _stored(node, apart=()) -> list[str]:
 
 def _only_tells(node) -> bool:
     """A docstring, an assertion, a refusal, a warning: what leaves every number as it is."""
-    if isinstance(node, (ast.Raise, ast.Assert, ast.Pass, *IMPORTS)):
+    if isinstance(node, (ast.Raise, ast.Assert, ast.Pass, *_IMPORTS)):
         return True
     if isinstance(node, ast.FunctionDef):
         return node.name in ("__str__", "__repr__")
@@ -197,7 +197,7 @@ def _form(module: str, name: str, text: str) -> list[str | tuple[str, str]]:
     for statement in names[name]:
         writer = _Writer(module, name, names)
         for node in ast.walk(statement):
-            if isinstance(node, IMPORTS):
+            if isinstance(node, _IMPORTS):
                 writer.names |= _imported(node, module)
         writer.write(statement)
         form += writer.form
@@ -213,7 +213,7 @@ class _Writer:
         self.local: dict[str, str] | None = None  # inside a function: what stands for its names
 
     def write(self, node) -> None:
-        if isinstance(node, SCOPES) and self.local is None:
+        if isinstance(node, _SCOPES) and self.local is None:
             self.local = self._locals(node)
             self.write(node)
             self.local = None
@@ -237,13 +237,13 @@ class _Writer:
     def _write_fields(self, node: ast.AST) -> None:
         self.form.append(type(node).__name__)
         for field, value in ast.iter_fields(node):
-            if value not in (None, []) and field not in SILENT:
+            if value not in (None, []) and field not in _SILENT:
                 is_name = field == "name" and isinstance(value, str)
                 self.form.append(field)
                 self.write(self._called(value) if is_name else value)
 
     def _write_place(self, module: str, name: str | None) -> None:
-        if module.rpartition(".")[2] in ASIDE:
+        if module.rpartition(".")[2] in _ASIDE:
             self.form.append(f"aside {name}")
         elif name is not None and isinstance(self._known(module).get(name), list):
             self.form.append((module, name))
@@ -283,7 +283,7 @@ class _Writer:
 
     def _is_check(self, node: ast.Call) -> bool:
         module, _ = self._place(node.func) or ("", None)
-        return module.rpartition(".")[2] == CHECKS and bool(node.args)
+        return module.rpartition(".")[2] == _CHECKS and bool(node.args)
 
     def _is_idle(self, node) -> bool:
         called = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)

@@ -32,7 +32,7 @@ def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
 
 
 @cache
-def untrained(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
+def _untrained(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
     """The same networks before training: their initial weights, their scaling."""
     trained = networks(width, setup)
     start = Weights.random(len(trained.weights), width, initial=SETUPS[setup].initial)

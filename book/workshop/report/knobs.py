@@ -3,8 +3,8 @@
 Every knob is turned to three places, coded -1, 0 and 1, in a *definitive screening design*
 (Jones & Nachtsheim 2011): twice as many runs as knobs, and one. Main effects are orthogonal to
 each other, to all squares and to all products of two knobs. A Bayesian regression
-(`Emulator`) then says what any other places would give, how sure it is, what share of the
-variance each knob makes, and, by `weigh`, which places the printed numbers speak for.
+(`_Emulator`) then says what any other places would give, how sure it is, what share of the
+variance each knob makes, and, by `_weigh`, which places the printed numbers speak for.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from ddlib.simulation import Recording
 
 
 @dataclass(frozen=True)
-class Knob:
+class _Knob:
     """A quantity that is varied between two bounds."""
 
     low: float  # its value at place -1
@@ -54,38 +54,38 @@ class Knob:
 
 # Knobs of the recording. The damping is a factor of `JOINT_DAMPING`'s, which is the IMI arm's;
 # friction, gain and noise are factors of the default ones; the start is in s.
-RECORDING = {
-    "joint damping": Knob(0.35, 2.0),
-    "Coulomb friction": Knob(0.5, 6.0),
-    "position gain": Knob(0.7, 6.0),
-    "encoder bits": Knob(11.5, 16.0, logarithmic=False),
-    "torque noise": Knob(0.25, 4.0),
-    "start left out": Knob(0.0, 0.3, logarithmic=False),
+_RECORDING = {
+    "joint damping": _Knob(0.35, 2.0),
+    "Coulomb friction": _Knob(0.5, 6.0),
+    "position gain": _Knob(0.7, 6.0),
+    "encoder bits": _Knob(11.5, 16.0, logarithmic=False),
+    "torque noise": _Knob(0.25, 4.0),
+    "start left out": _Knob(0.0, 0.3, logarithmic=False),
 }
 
 # Knobs of the learning, by method. The momentum is ``1 / (1 - momentum)``: how many steps go on
 # together; the step is the rate times the width of the window.
 METHODS = {
     "descent": {
-        "lowest input": Knob(-1.0, 0.0, logarithmic=False),
-        "momentum": Knob(50.0, 200.0),
-        "step": Knob(8.25, 33.0),
-        "epochs": Knob(6_000.0, 24_000.0),
+        "lowest input": _Knob(-1.0, 0.0, logarithmic=False),
+        "momentum": _Knob(50.0, 200.0),
+        "step": _Knob(8.25, 33.0),
+        "epochs": _Knob(6_000.0, 24_000.0),
     },
     "solver": {
-        "lowest input": Knob(-1.0, 0.0, logarithmic=False),
-        "decay": Knob(1e-7, 1e-5),
-        "steps": Knob(15.0, 60.0),
+        "lowest input": _Knob(-1.0, 0.0, logarithmic=False),
+        "decay": _Knob(1e-7, 1e-5),
+        "steps": _Knob(15.0, 60.0),
     },
 }
 
 
-def knobs_of(method: str) -> dict[str, Knob]:
+def knobs_of(method: str) -> dict[str, _Knob]:
     """All knobs of a method, those of the recording first."""
-    return {**RECORDING, **METHODS[one_of("method", method, tuple(METHODS))]}
+    return {**_RECORDING, **METHODS[one_of("method", method, tuple(METHODS))]}
 
 
-def screening() -> np.ndarray:
+def _screening() -> np.ndarray:
     """The definitive screening design for twelve knobs, shape ``(25, 12)``, of -1, 0 and 1.
 
     A conference matrix of order 12 (Paley's, from the squares modulo 11), its mirror image, and
@@ -99,7 +99,7 @@ def screening() -> np.ndarray:
     return np.concatenate([conference, -conference, np.zeros((1, 12))])
 
 
-def setup(values: Mapping[str, float], method: str) -> Setup:
+def _setup(values: Mapping[str, float], method: str) -> Setup:
     """The experiment with every knob of a method at some value."""
     for name, knob in knobs_of(method).items():
         if name not in values:
@@ -140,14 +140,14 @@ def setup(values: Mapping[str, float], method: str) -> Setup:
     )
 
 
-def without_start(recording: Recording, seconds: float) -> Recording:
+def _without_start(recording: Recording, seconds: float) -> Recording:
     """A recording whose motion begins `seconds` later: less of the start transient."""
     late = number("seconds", seconds, 0.0, 2.0)
     begin, end = recording.span
     return replace(recording, t=recording.t - late, duration=end - begin - late)
 
 
-def terms(places) -> np.ndarray:
+def _terms(places) -> np.ndarray:
     """Terms of the regression: 1, every knob, squares less their mean, products, shape (points, 1 +
     2 knobs + knobs (knobs - 1).
     """
@@ -157,14 +157,14 @@ def terms(places) -> np.ndarray:
 
 
 # Standard deviations tried for the coefficients of first and of second order
-MAIN, SECOND = (0.1, 0.2, 0.4, 0.8, 1.6), (0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
+_MAIN, _SECOND = (0.1, 0.2, 0.4, 0.8, 1.6), (0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
 
 # Standard deviations tried for what a polynomial of second order misses
-MISFIT = (0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.7)
+_MISFIT = (0.0, 0.05, 0.1, 0.2, 0.3, 0.45, 0.7)
 
 
 @dataclass(frozen=True)
-class Emulator:
+class _Emulator:
     """A polynomial of second order through the runs of a design, and how sure it is.
 
     Bayesian linear regression: coefficients of one order are drawn from a normal distribution
@@ -175,7 +175,7 @@ class Emulator:
     Attributes
     ----------
     mean : ndarray, shape (terms,)
-        Coefficients of `terms`.
+        Coefficients of `_terms`.
     covariance : ndarray, shape (terms, terms)
     misfit : float
         Variance of what the polynomial misses.
@@ -186,11 +186,11 @@ class Emulator:
     misfit: float = 0.0
 
     @classmethod
-    def fit(cls, places, values, variance: float, widths=None) -> Emulator:
+    def fit(cls, places, values, variance: float, widths=None) -> _Emulator:
         """Fit to the values of a response."""
-        design, values = terms(places), finite_array("values", values)
+        design, values = _terms(places), finite_array("values", values)
         number("variance", variance, 0.0, open_low=True)
-        main, second, misfit = widths or likeliest(places, values, variance)
+        main, second, misfit = widths or _likeliest(places, values, variance)
         squares = _squares(places, main, second)
         gain = squares[:, None] * design.T
         total = (variance + misfit**2) * np.eye(len(values)) + design @ gain
@@ -200,7 +200,7 @@ class Emulator:
 
     def predict(self, places) -> tuple[np.ndarray, np.ndarray]:
         """Mean of the response at some places, and the variance around it, misfit included."""
-        design = terms(places)
+        design = _terms(places)
         spread = np.einsum("ni,ij,nj->n", design, self.covariance, design)
         return design @ self.mean, spread + self.misfit
 
@@ -211,19 +211,19 @@ class Emulator:
 
 
 def _squares(places, main, second) -> np.ndarray:
-    """Variances of the coefficients of `terms` before anything is seen."""
+    """Variances of the coefficients of `_terms` before anything is seen."""
     count = np.atleast_2d(places).shape[1]
     squares = np.full(1 + 2 * count + count * (count - 1) // 2, second**2)
     squares[0], squares[1 : 1 + count] = 100.0, main**2
     return squares
 
 
-def likeliest(places, values, variance: float) -> tuple[float, float, float]:
+def _likeliest(places, values, variance: float) -> tuple[float, float, float]:
     """The `widths` of `Emulator.fit` that make the `values` at `places` likeliest.
 
     `variance` is that of a value's own noise.
     """
-    design, values = terms(places), finite_array("values", values)
+    design, values = _terms(places), finite_array("values", values)
 
     def likelihood(widths):
         main, second, misfit = widths
@@ -231,30 +231,30 @@ def likeliest(places, values, variance: float) -> tuple[float, float, float]:
         total += (variance + misfit**2) * np.eye(len(values))
         return -values @ np.linalg.solve(total, values) - np.linalg.slogdet(total)[1]
 
-    return max(product(MAIN, SECOND, MISFIT), key=likelihood)
+    return max(product(_MAIN, _SECOND, _MISFIT), key=likelihood)
 
 
-def left_out(places, values, variance: float) -> np.ndarray:
+def _left_out(places, values, variance: float) -> np.ndarray:
     """Each run's value less what the others predict, in the standard deviations of that.
 
     The widths are those of all runs together; `places`, `values` and `variance` are those of
     `Emulator.fit`.
     """
     places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
-    widths, scores = likeliest(places, values, variance), []
+    widths, scores = _likeliest(places, values, variance), []
     for k in range(len(values)):
         others = np.arange(len(values)) != k
-        emulator = Emulator.fit(places[others], values[others], variance, widths)
+        emulator = _Emulator.fit(places[others], values[others], variance, widths)
         mean, spread = emulator.predict(places[k])
         scores.append((values[k] - mean[0]) / np.sqrt(spread[0] + variance))
     return np.array(scores)
 
 
-def shares(coefficients, count: int) -> np.ndarray:
+def _shares(coefficients, count: int) -> np.ndarray:
     """Share of a response's variance that each knob makes, when all are drawn evenly, shape (...,
     2, count).
 
-    Sobol indices of a polynomial in `terms`: by itself (main), and with all products it takes part
+    Sobol indices of a polynomial in `_terms`: by itself (main), and with all products it takes part
     in (total).
     """
     coefficients = np.asarray(coefficients, dtype=float)
@@ -269,13 +269,13 @@ def shares(coefficients, count: int) -> np.ndarray:
     return np.stack([main / variance, (main + joint) / variance], axis=-2)
 
 
-def spread_evenly(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
+def _spread_evenly(count: int, dimensions: int, seed: int = 0) -> np.ndarray:
     """Coded places that fill the cube evenly (Sobol's sequence, scrambled by `seed`)."""
     points = qmc.Sobol(dimensions, rng=integer("seed", seed, 0)).random(integer("count", count, 1))
     return 2 * points - 1
 
 
-def weigh(means, variances, covariance, observed) -> tuple[np.ndarray, float]:
+def _weigh(means, variances, covariance, observed) -> tuple[np.ndarray, float]:
     """Posterior weights of places, from what was observed once, shape (places,)."""
     means, variances = finite_array("means", means), finite_array("variances", variances)
     total = np.asarray(covariance) + variances[:, :, None] * np.eye(means.shape[1])

@@ -1,8 +1,8 @@
 """The parity function of section 1.1: as a polynomial, as networks of units, and learned.
 
 Parity is "1 or 0 depending on whether the number of 1 bits in an input string of length n is
-even or odd". `monomials` counts what a polynomial needs, exactly; `one_layer`, `direct`,
-`counter` and `tree` are networks with weights set by hand; `learn` trains networks from
+even or odd". `monomials` counts what a polynomial needs, exactly; `_one_layer`, `_direct`,
+`_counter` and `_tree` are networks with weights set by hand; `learn` trains networks from
 random weights by batch descent with acceleration.
 """
 
@@ -17,9 +17,9 @@ from ddlib.learning.descent import Descent
 from ddlib.learning.network import Weights
 from ddlib.learning.training import TARGET_RANGE
 
-INITIAL, RATE = 1.0, 8.0  # Range of the initial weights, step size times cases, in `learn`
+_INITIAL, _RATE = 1.0, 8.0  # Range of the initial weights, step size times cases, in `learn`
 
-MOST_BITS = 16  # Most bits for which all inputs are listed
+_MOST_BITS = 16  # Most bits for which all inputs are listed
 
 # Ways to write an input for a polynomial: 0 and 1, or 1 and -1 (-1 for a bit that is on)
 CODINGS = ("bits", "signs")
@@ -27,7 +27,7 @@ CODINGS = ("bits", "signs")
 
 def patterns(bits: int) -> np.ndarray:
     """All inputs of a length, shape ``(2**bits, bits)``: input i holds the binary digits of i."""
-    integer("bits", bits, 1, MOST_BITS)
+    integer("bits", bits, 1, _MOST_BITS)
     return np.arange(2**bits)[:, None] >> np.arange(bits) & 1
 
 
@@ -49,7 +49,7 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
     """
     values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
     bits = values.size.bit_length() - 1
-    shaped("values", values, (2 ** integer("bits of values", bits, 1, MOST_BITS),))
+    shaped("values", values, (2 ** integer("bits of values", bits, 1, _MOST_BITS),))
     if (values != np.round(values)).any():
         raise ValueError("values must be whole numbers")
     table = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
@@ -62,7 +62,7 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class UnitNetwork:
+class _UnitNetwork:
     """Units one after the other, each seeing the inputs and any unit before it.
 
     The last unit is the output. Weights and biases are small whole or half numbers; `activity`
@@ -118,22 +118,22 @@ class UnitNetwork:
         return self.activity(x, gain)[..., -1]
 
 
-def _build(inputs: int, rows) -> UnitNetwork:
+def _build(inputs: int, rows) -> _UnitNetwork:
     """A network from a pair for each unit: weights by place, units after the inputs, and bias."""
     weights = np.zeros((len(rows), inputs + len(rows)))
     for k, (links, _) in enumerate(rows):
         weights[k, list(links)] = list(links.values())
-    return UnitNetwork(weights, np.array([bias for _, bias in rows], float))
+    return _UnitNetwork(weights, np.array([bias for _, bias in rows], float))
 
 
-def one_layer(bits: int) -> UnitNetwork:
+def _one_layer(bits: int) -> _UnitNetwork:
     """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986)."""
     bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - k) for k in range(1, bits + 1)]
     return _build(bits, [*hidden, ({bits + k: -((-1) ** k) for k in range(bits)}, 0.5)])
 
 
-def direct(bits: int) -> UnitNetwork:
+def _direct(bits: int) -> _UnitNetwork:
     """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999)."""
     bits = integer("bits", bits, 1)
     hidden = [(dict.fromkeys(range(bits), 1), 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
@@ -141,7 +141,7 @@ def direct(bits: int) -> UnitNetwork:
     return _build(bits, [*hidden, (dict.fromkeys(range(bits), -1) | above, 0.5)])
 
 
-def counter(bits: int) -> UnitNetwork:
+def _counter(bits: int) -> _UnitNetwork:
     """Parity by a counter: each unit is a binary digit of the number of bits that are on.
 
     A unit sees all inputs and the higher digits, which take their value away from the number;
@@ -156,7 +156,7 @@ def counter(bits: int) -> UnitNetwork:
     return _build(bits, [*rows, (lowest, 0.5)])
 
 
-def tree(bits: int) -> UnitNetwork:
+def _tree(bits: int) -> _UnitNetwork:
     """Parity by a tree of two-bit parities, two units each: seven coefficients for a bit more."""
     bits = integer("bits", bits, 1)
     rows, ends = [], list(range(bits))  # places of what is still to be joined
@@ -177,10 +177,10 @@ def tree(bits: int) -> UnitNetwork:
 
 # Networks that compute parity, by name: functions of the number of bits
 NETWORKS = {
-    "one hidden layer": one_layer,
-    "with direct weights": direct,
-    "binary counter": counter,
-    "tree of pairs": tree,
+    "one hidden layer": _one_layer,
+    "with direct weights": _direct,
+    "binary counter": _counter,
+    "tree of pairs": _tree,
 }
 
 
@@ -217,8 +217,8 @@ def learn(
     number("momentum", momentum, 0.0, 0.999)
     integer("epochs", epochs, integer("every", every, 1))
     x, y = parity_cases(bits)
-    start = Weights.random(members, bits, hidden, 1, 1, INITIAL, seed)
-    descent = Descent(start, x, y, RATE / len(x), momentum)
+    start = Weights.random(members, bits, hidden, 1, 1, _INITIAL, seed)
+    descent = Descent(start, x, y, _RATE / len(x), momentum)
     learned = np.full(members, np.inf)
     for epoch in range(1, epochs + 1):
         descent.epoch()

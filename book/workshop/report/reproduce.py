@@ -22,10 +22,10 @@ from ddlib import figures
 from ddlib.analysis import purest, upright
 from ddlib.simulation import LOG_STEP
 from workshop.report import results
-from workshop.report.code_hash import code_hash, places, run
+from workshop.report.code_hash import _run, code_hash, places
 
 
-def picture() -> None:
+def _picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
     networks = results.networks(21).weights
     found = {
@@ -36,22 +36,22 @@ def picture() -> None:
     figures.decomposition(found, LOG_STEP).save(target)
 
 
-def make(name: str, code: str) -> None:
+def _make(name: str, code: str) -> None:
     """Run one study and write its result with the hash `code` of what made it."""
     started = time.process_time()
-    content = run(name)
+    content = _run(name)
     made_by = {"code": code, **results.stamp(time.process_time() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 
 
 def _quietly(name: str, code: str) -> None:
-    """`make` in a process of its own: the bars of several would disturb each other."""
+    """`_make` in a process of its own: the bars of several would disturb each other."""
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        make(name, code)
+        _make(name, code)
 
 
-def side_by_side(codes: dict[str, str], jobs: int) -> None:
+def _side_by_side(codes: dict[str, str], jobs: int) -> None:
     """Make results in as many processes as cores: no thread waits for another.
 
     The longest come first. What is finished is kept when another one fails.
@@ -111,18 +111,18 @@ def main(arguments=None) -> None:
             print(f"==> {name}: up to date", flush=True)
     started = time.monotonic()
     if len(stale) > 1 and options.jobs > 1:
-        side_by_side({name: codes[name] for name in stale}, options.jobs)
+        _side_by_side({name: codes[name] for name in stale}, options.jobs)
     else:
         for name in stale:
             print(f"==> {name}", flush=True)
-            make(name, codes[name])
+            _make(name, codes[name])
             print(f"==> {name}: {_seconds(name):.0f} s", flush=True)
     if len(stale) == len(known):
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
         made_by["parts"] = len(known)
         results.write_json(results.FOLDER / "reproduce.json", {"made by": made_by})
     if "table-4-1" in stale:  # the picture shows two of its networks
-        picture()
+        _picture()
 
 
 if __name__ == "__main__":

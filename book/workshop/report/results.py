@@ -68,7 +68,7 @@ def _plain(value):
 
 def networks(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
     """The trained networks of a cell of Table 4-1."""
-    return TorqueModel.load(networks_path(setup, width))
+    return TorqueModel.load(_networks_path(setup, width))
 
 
 def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
@@ -77,12 +77,12 @@ def median_network(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
     return networks(width, setup)[int(np.argsort(errors)[len(errors) // 2])]
 
 
-def networks_path(setup: str, width: int) -> Path:
+def _networks_path(setup: str, width: int) -> Path:
     """File of the trained networks of one cell of Table 4-1."""
     return FOLDER / f"networks-{setup.replace(' ', '-')}-{width}.npz"
 
 
-def course_path(width: int) -> Path:
+def _course_path(width: int) -> Path:
     """File of the first two networks of a window size on their way through training."""
     return FOLDER / f"course-{width}.npz"
 
@@ -91,7 +91,7 @@ def course(width: int) -> tuple[np.ndarray, TorqueModel]:
     """The first two networks (state feedback) of a window size, all along their training, shape
     (epochs,).
     """
-    return np.array(COURSE), TorqueModel.load(course_path(width))
+    return np.array(COURSE), TorqueModel.load(_course_path(width))
 
 
 _parsed = lru_cache(maxsize=8)(json.loads)  # a chapter asks for a large one hundreds of times

@@ -11,12 +11,12 @@ from tqdm.auto import tqdm
 from ddlib._check import one_of
 from workshop import BOOK
 
-FOLDER = BOOK.parent / ".cache" / "sweeps"  # Where finished settings are kept. It may be deleted.
+_FOLDER = BOOK.parent / ".cache" / "sweeps"  # Where finished settings are kept. It may be deleted.
 
-BACKENDS = ("loky", "threading", "sequential", "dask")  # Backends of joblib that a sweep runs on
+_BACKENDS = ("loky", "threading", "sequential", "dask")  # Backends of joblib that a sweep runs on
 
 
-def sweep(
+def _sweep(
     experiment: Callable,
     settings: Iterable[Mapping],
     *,
@@ -24,14 +24,14 @@ def sweep(
     backend: str = "loky",
     jobs: int = -1,
     label: str = "sweep",
-    folder: str | Path = FOLDER,
+    folder: str | Path = _FOLDER,
 ) -> list:
     """``experiment(**setting)`` for every setting, in their order.
 
     If one fails, its exception ends the sweep; those that have finished are kept for the next
     one with the same `code`, a name for the code that the results depend on.
     """
-    one_of("backend", backend, BACKENDS)
+    one_of("backend", backend, _BACKENDS)
     settings = list(settings)
     kept = joblib.Memory(Path(folder, code), verbose=0).cache(experiment)
     tasks = (joblib.delayed(kept)(**setting) for setting in settings)

@@ -46,7 +46,7 @@ def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
     return Trajectory(*(x + rho[..., None, :] * y[:, None] for x, y in zip(first, second)))
 
 
-def second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
+def _second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
     """Amplitudes of the second sine for the six runs, degrees, shape (6, 2)."""
     most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
     draw = np.random.default_rng(integer("seed", seed, 0))
@@ -58,10 +58,10 @@ def record_two_harmonics(
 ) -> Recording:
     """The six runs of Appendix I with a second sine on top, recorded as the paper's are."""
     t = time_grid(CONTROL_STEP, REST)
-    return _followed(setup, t, two_harmonics(APPENDIX_I, second_amplitudes(order, seed), t, order))
+    return _followed(setup, t, two_harmonics(APPENDIX_I, _second_amplitudes(order, seed), t, order))
 
 
-def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
+def _record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:
     """Both joints out and back by polynomials of degree five, at rest at either end of each."""
     t = time_grid(CONTROL_STEP, REST)
     half = MOTION_SECONDS / 2
@@ -70,7 +70,9 @@ def record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Rec
     return _followed(setup, t, _along(np.stack([q, 0.6 * q], -1)))
 
 
-def record_circle(setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2) -> Recording:
+def _record_circle(
+    setup: Setup = STATE_FEEDBACK, radius: float = 0.03, turns: int = 2
+) -> Recording:
     """The hand goes round a circle about where `NEUTRAL` puts it."""
     t = time_grid(CONTROL_STEP, REST)
     angle = 2 * np.pi * turns * np.clip(t, 0, MOTION_SECONDS) / MOTION_SECONDS

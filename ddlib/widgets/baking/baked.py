@@ -12,10 +12,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ddlib._check import finite_array, integer, one_of
-from ddlib.widgets.baking.compress import TINY, Table
+from ddlib.widgets.baking.compress import _TINY, _Table
 
-MAX_BYTES = 400_000  # of the baked values of one widget
-MAX_VALUES = 6_000_000  # settings times samples that are computed to be baked
+_MAX_BYTES = 400_000  # of the baked values of one widget
+_MAX_VALUES = 6_000_000  # settings times samples that are computed to be baked
 
 
 def evaluate(function: Callable, values: Mapping) -> dict[str, np.ndarray]:
@@ -46,9 +46,9 @@ class Baked:
         self._samples = sum(self.lengths.values())
         self._groups = self._grouped(depends or {})
         grids = [self._settings(names, start) for names in self._groups]
-        if (count := sum(map(len, grids)) * self._samples) > MAX_VALUES:
+        if (count := sum(map(len, grids)) * self._samples) > _MAX_VALUES:
             raise ValueError(
-                f"grid must give at most {MAX_VALUES} values, got {count}: "
+                f"grid must give at most {_MAX_VALUES} values, got {count}: "
                 "take fewer grid points or fewer samples"
             )
         self.low = np.empty(len(self.lengths))  # range of each curve over the grid
@@ -63,9 +63,9 @@ class Baked:
         self.tables = [
             self._table(names, group, tolerance) for names, group in zip(self._groups, rows)
         ]
-        if (size := len(self.tobytes())) > MAX_BYTES:
+        if (size := len(self.tobytes())) > _MAX_BYTES:
             raise ValueError(
-                f"grid must give at most {MAX_BYTES} baked bytes, got {size}: "
+                f"grid must give at most {_MAX_BYTES} baked bytes, got {size}: "
                 "take fewer grid points or fewer samples"
             )
 
@@ -108,14 +108,14 @@ class Baked:
         """One value per curve repeated over its samples."""
         return np.repeat(values, list(self.lengths.values()))
 
-    def _table(self, names, rows, tolerance) -> Table:
+    def _table(self, names, rows, tolerance) -> _Table:
         columns = self._columns(names)
         half = self._half[columns]
         values = (rows[:, columns] - self._middle[columns]) / np.where(half > 0, half, 1)
         axes = [p for p in self.parameters if p.name in names]
         lengths = [self.lengths[name] for name in self._groups[names]]
         values = values.reshape(*(p.grid for p in axes), -1)
-        return Table(axes, values, lengths, tolerance)
+        return _Table(axes, values, lengths, tolerance)
 
     def _columns(self, names) -> np.ndarray:
         """Which samples of a row belong to the group of the parameters `names`."""
@@ -162,7 +162,7 @@ class Baked:
         integer("n", n, 1)
         fractions = np.random.default_rng(seed).uniform(size=(n, len(self.parameters)))
         settings = [{p.name: p.place(f) for p, f in zip(self.parameters, row)} for row in fractions]
-        width = np.where(self._half > 0, 2 * self._half, np.abs(self._middle) + TINY)
+        width = np.where(self._half > 0, 2 * self._half, np.abs(self._middle) + _TINY)
         return max(
             float((np.abs(self._interpolated(values) - row) / width).max())
             for values, row in zip(settings, self._rows(settings))

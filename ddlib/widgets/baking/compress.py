@@ -12,11 +12,11 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 
 _STEPS = {2: 32_767, 1: 127}  # largest integer of two bytes, and of one: numbers are scaled to it
 _FAINT = 10  # components that never reach so many tolerances are stored in one byte a number
-TINY = 1e-12  # keeps divisions by a size finite where all is zero
-SHARE = 0.3  # of the tolerance that leaving components out may cost
+_TINY = 1e-12  # keeps divisions by a size finite where all is zero
+_SHARE = 0.3  # of the tolerance that leaving components out may cost
 
 
-class Table:
+class _Table:
     """Curves on a grid (`values`: points, ..., samples; within 1), as a spline's coefficients.
 
     The coefficients are a matrix with a row per grid point and a column per sample. Where
@@ -41,10 +41,10 @@ class Table:
         weight = np.repeat(1 / np.sqrt(lengths), lengths)  # a number counts as much as a curve
         left, shapes = _components(rows * weight)
         shapes = shapes / weight
-        rank = _least_rank(left, shapes, SHARE * tolerance)
+        rank = _least_rank(left, shapes, _SHARE * tolerance)
         if rank:
             table, shapes = left[:, :rank], shapes[:rank]
-            most = np.abs(table).max(0) + TINY, np.abs(shapes).max(1) + TINY
+            most = np.abs(table).max(0) + _TINY, np.abs(shapes).max(1) + _TINY
             strong = most[0] * most[1] / 2 > _FAINT * tolerance
             self.wide = int(np.flatnonzero(strong).max(initial=-1)) + 1
             steps = np.where(np.arange(rank) < self.wide, _STEPS[2], _STEPS[1])

@@ -14,15 +14,15 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.baking.still import still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
+from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
 from ddlib.widgets.engine.plain import lean
 from ddlib.widgets.parts.panels import Panel
 
 _WIDTH = 21  # stems of the window
 _ZEROS = 20  # other zeros of the encoder by which the same motion is read again
-FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
-LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
-TALL = 0.9  # largest stem of a starting point, of the height there is
+_FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
+_LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
+_TALL = 0.9  # largest stem of a starting point, of the height there is
 _GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 
 _HINT = (
@@ -61,7 +61,7 @@ def windows(zero: float = 0.0) -> np.ndarray:
     return sliding_windows(read[:, None], _WIDTH, slice(_WIDTH // 2, len(q) - _WIDTH // 2))[:, 0]
 
 
-def fitted(f, zero: float = 0.0) -> np.ndarray:
+def _fitted(f, zero: float = 0.0) -> np.ndarray:
     """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,)."""
     f = shaped("f", f, (_WIDTH,))
     output, truth = windows(zero) @ f, readings()[1]
@@ -72,8 +72,8 @@ def fitted(f, zero: float = 0.0) -> np.ndarray:
 
 
 def score(f, zero: float = 0.0) -> float:
-    """RMSS of `fitted` against the true acceleration: 1 is a constant guess, 0 no error."""
-    return float(rmss(fitted(f, zero)[:, None], readings()[1][:, None]))
+    """RMSS of `_fitted` against the true acceleration: 1 is a constant guess, 0 no error."""
+    return float(rmss(_fitted(f, zero)[:, None], readings()[1][:, None]))
 
 
 def least_squares() -> np.ndarray:
@@ -84,7 +84,7 @@ def least_squares() -> np.ndarray:
 
 
 def starts() -> dict[str, np.ndarray]:
-    """Starting points by name, each with a largest weight of `TALL`, shape (21,) each."""
+    """Starting points by name, each with a largest weight of `_TALL`, shape (21,) each."""
     filters = {
         "Second difference": _textbook(3),
         "Savitzky–Golay, 5": _textbook(5),
@@ -92,7 +92,7 @@ def starts() -> dict[str, np.ndarray]:
         "Savitzky–Golay, 21": _textbook(21),
         "Velocity": _textbook(21, 1),
     }
-    tall = {name: TALL * f / np.abs(f).max() for name, f in filters.items()}
+    tall = {name: _TALL * f / np.abs(f).max() for name, f in filters.items()}
     return {**tall, "Zero": np.zeros(_WIDTH)}
 
 
@@ -102,7 +102,7 @@ def _textbook(width: int, derivative: int = 2) -> np.ndarray:
     return np.pad(f, (_WIDTH - width) // 2)
 
 
-class FilterBuilder(PageWidget):
+class FilterBuilder(_PageWidget):
     """Draw 21 weights that measure acceleration; see output, error and gain at once.
 
     Everything is computed in the page, with a kernel and without. Least squares and a trained
@@ -137,7 +137,7 @@ class FilterBuilder(PageWidget):
         output, gain = curves("output", "truth", "true"), curves("gain", "ideal", "ideal, (2πν)²")
         panels = [
             Panel("Acceleration, rad/s²", output, "time, s", time, y_range=(-most, most)),
-            Panel("Gain, 1/s²", gain, "frequency, Hz", FREQUENCIES, "log", "log", y_range=_GAINS),
+            Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS),
         ]
         spec = {
             "title": "Be the network: measure acceleration",
@@ -147,7 +147,7 @@ class FilterBuilder(PageWidget):
             "period": LOG_STEP,
             "step": step,
             "zeros": zeros().tolist(),
-            "levels": LEVELS,
+            "levels": _LEVELS,
             "starts": [[name, f.tolist()] for name, f in starts().items()],
             "rivals": [
                 ["unit", "A trained unit", unit.tolist()],
@@ -170,16 +170,16 @@ def _still(time, truth) -> tuple[str, str]:
     """A textbook filter, its output and its gain, and what the picture shows."""
     name = "Savitzky–Golay, 11"
     f = starts()[name]
-    response = frequency_response(f, FREQUENCIES, LOG_STEP)
+    response = frequency_response(f, _FREQUENCIES, LOG_STEP)
     output = windows() @ f
     factor = np.polyfit(output - output.mean(), truth, 1)[0]
     half = _WIDTH // 2 * LOG_STEP * 1e3
     curves = {
         "weights": f,
-        "output": fitted(f),
+        "output": _fitted(f),
         "gain": np.clip(np.abs(factor * response), _GAINS[0], None),
     }
-    ideal = {"ideal": (2 * np.pi * FREQUENCIES) ** 2}
+    ideal = {"ideal": (2 * np.pi * _FREQUENCIES) ** 2}
     panels = [
         Panel(
             "Weights", {"weights": name}, "time from the centre, ms",
@@ -189,7 +189,7 @@ def _still(time, truth) -> tuple[str, str]:
             "Acceleration, rad/s²", {"output": "filter"}, "time, s", time, fixed={"true": truth}
         ),
         Panel(
-            "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", FREQUENCIES, "log", "log",
+            "Gain, 1/s²", {"gain": "filter"}, "frequency, Hz", _FREQUENCIES, "log", "log",
             fixed=ideal, y_range=_GAINS,
         ),
     ]  # fmt: skip

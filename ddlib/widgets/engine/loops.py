@@ -35,7 +35,7 @@ def modes(arm: Arm, viscous, posture=(0.0, 0.0)) -> list[dict]:
     ]
 
 
-class Run(NamedTuple):
+class _Run(NamedTuple):
     """Error (rad) and torque (N m) at the logging period, shape (time, 2), NaN after the run.
 
     `stopped` is the place of the last sample if an error passed the limit, otherwise None.
@@ -63,7 +63,7 @@ class _SwitchedOff:
         return torque
 
 
-def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t, most) -> Run:
+def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t, most) -> _Run:
     """Drive an arm with viscous friction along a reference, the torque some periods late.
 
     The reference is sampled at the control period; the run is over at an error of `most` (rad).
@@ -76,10 +76,10 @@ def run(arm: Arm, viscous, law: Controller, late: int, reference: Trajectory, t,
     stopped = int(beyond[0]) if beyond.size else None
     if stopped is not None:
         error[stopped + 1 :] = torque[stopped + 1 :] = np.nan
-    return Run(error, torque, stopped)
+    return _Run(error, torque, stopped)
 
 
-class Linear(NamedTuple):
+class _Linear(NamedTuple):
     """The linear loop: growth (1/s) of its slowest or least stable motion; negative if stable.
 
     Phase margin (degrees) and crossover (rad/s) are those of each joint's loop, the other one
@@ -91,7 +91,7 @@ class Linear(NamedTuple):
     crossover: np.ndarray
 
 
-def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> Linear:
+def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> _Linear:
     """Poles and margins of the sampled loop at the stretched arm, by python-control.
 
     `law` holds the gains of a `PID` by name, `late` counts periods from a reading to its torque.
@@ -100,9 +100,9 @@ def linear(arm: Arm, viscous, law: dict, late: int, period=CONTROL_STEP) -> Line
     poles = closed_loop(joints, **law, period=period, delay=late).poles()
     growth = float(np.log(np.abs(poles).max()) / period)
     if growth >= 0:
-        return Linear(growth, np.full(2, np.nan), np.full(2, np.nan))
+        return _Linear(growth, np.full(2, np.nan), np.full(2, np.nan))
     each = [margins(opened_loop(joints, **law, period=period, delay=late, joint=j)) for j in (0, 1)]
-    return Linear(
+    return _Linear(
         growth, np.array([m.phase_deg for m in each]), np.array([m.crossover for m in each])
     )
 

@@ -14,11 +14,11 @@ from ddlib.learning import Scaler, TorqueModel
 # Scripts: of every widget of this room; and, after them, of one that trains, of one whose networks
 # see a recording.
 ENGINE = ("physics.js", "engine.js")
-TRAINING = "descent.js"
+_TRAINING = "descent.js"
 SLIDING = "sliding.js"
 
-# Order of the weights in `weight_bytes`.
-FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
+# Order of the weights in `_weight_bytes`.
+_FIELDS = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
 
 
 def lean(script: str) -> str:
@@ -70,7 +70,7 @@ def gains(controller: PID) -> dict:
 
 
 def network(model: TorqueModel) -> dict:
-    """Layout and scaling of one network; `weight_bytes` has its weights."""
+    """Layout and scaling of one network; `_weight_bytes` has its weights."""
     weights = model.weights if isinstance(model, TorqueModel) else None
     if weights is None or weights.hidden_bias.ndim != 1:
         raise TypeError(f"model must be a single network, got {model!r}")
@@ -87,16 +87,16 @@ def network(model: TorqueModel) -> dict:
     }
 
 
-def weight_bytes(model: TorqueModel) -> bytes:
-    """All weights of one network as little-endian float32, as committed, in the order `FIELDS`."""
-    parts = [np.ravel(getattr(model.weights, name)) for name in FIELDS]
+def _weight_bytes(model: TorqueModel) -> bytes:
+    """All weights of one network as little-endian float32, as committed, in the order `_FIELDS`."""
+    parts = [np.ravel(getattr(model.weights, name)) for name in _FIELDS]
     return np.concatenate(parts).astype("<f4").tobytes()
 
 
 def networks(models: Iterable[TorqueModel]) -> tuple[list[dict], bytes]:
     """What ``static/sliding.js`` takes: `network` of each model, and the weights of all."""
     models = list(models)
-    return [network(model) for model in models], b"".join(map(weight_bytes, models))
+    return [network(model) for model in models], b"".join(map(_weight_bytes, models))
 
 
 def _scaling(scaler: Scaler) -> dict:

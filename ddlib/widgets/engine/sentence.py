@@ -15,7 +15,7 @@ from ddlib.figures import illustrate
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
 from ddlib.widgets.baking.still import START, encoded
-from ddlib.widgets.base import FRAME, STYLE, PageWidget, module
+from ddlib.widgets.base import _FRAME, STYLE, _PageWidget, module
 from ddlib.widgets.engine.loops import LOOPS, linear, modes
 from ddlib.widgets.engine.plain import ENGINE, lean, plant
 from ddlib.widgets.parts.common import key_of
@@ -24,7 +24,7 @@ from ddlib.widgets.parts.parameters import Parameter
 _SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains
 
 
-class LiveSentence(PageWidget):
+class _LiveSentence(_PageWidget):
     """A sentence with numbers to drag or to step, and the consequence in the same sentence.
 
     `parts` are its pieces: plain text, a name of a number in braces, and once or more a name of a
@@ -33,7 +33,7 @@ class LiveSentence(PageWidget):
     the Python `code` names of numbers in braces stand for their values.
     """
 
-    _esm = lean(module(*FRAME, *ENGINE, LOOPS, "sentence.js"))
+    _esm = lean(module(*_FRAME, *ENGINE, LOOPS, "sentence.js"))
     _css = module(*STYLE, "sentence.css")
 
     values = t.Dict(help="the numbers by name").tag(sync=True)
@@ -80,7 +80,7 @@ class LiveSentence(PageWidget):
         return f"{_signed(value, digits)}{'' if unit == '°' else ' '}{unit}"
 
 
-class TorqueSentence(LiveSentence):
+class TorqueSentence(_LiveSentence):
     """Joints that turn at constant speeds, and the torques that this takes."""
 
     def __init__(self):
@@ -110,7 +110,7 @@ class TorqueSentence(LiveSentence):
         return dict(zip(("shoulder", "forearm"), (f"{_signed(x, 2)} N m" for x in torque)))
 
 
-class LoopSentence(LiveSentence):
+class LoopSentence(_LiveSentence):
     """Friction, a period and two gains, and whether the sampled loop is stable.
 
     The loop is the linear one of the stretched arm, as in `ddlib.widgets.tuner`; friction and gains

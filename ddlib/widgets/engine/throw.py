@@ -13,11 +13,11 @@ from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from ddlib.widgets.baking.still import still_picture
-from ddlib.widgets.base import STYLE, PageWidget, module
-from ddlib.widgets.engine.plain import ENGINE, gains, lean, network, plant, weight_bytes
+from ddlib.widgets.base import STYLE, _PageWidget, module
+from ddlib.widgets.engine.plain import ENGINE, _weight_bytes, gains, lean, network, plant
 from ddlib.widgets.parts.panels import Panel
 
-REST = 0.4  # s between two motions that are played: longer than half a window
+_REST = 0.4  # s between two motions that are played: longer than half a window
 _FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
 _SPRING = 150.0  # N/m, stiffness of the pull on the hand
 _TOSS_RATE = 4.0  # rad/s^2, largest acceleration that the button gives the joints,
@@ -30,7 +30,7 @@ _HINT = (
 )
 
 
-class ThrownArm(PageWidget):
+class ThrownArm(_PageWidget):
     """Throw a simulated arm; a window network tells the torque from positions alone.
 
     Everything is computed in the page by the live engine (``static/engine.js``), with a kernel
@@ -75,7 +75,7 @@ class ThrownArm(PageWidget):
             "step": CONTROL_STEP,
             "every": round(LOG_STEP / CONTROL_STEP),
             "motion": MOTION_SECONDS,
-            "rest": REST,
+            "rest": _REST,
             "force": _FORCE,
             "spring": _SPRING,
             "toss": {"rate": _TOSS_RATE, "seconds": _TOSS_SECONDS},
@@ -83,7 +83,7 @@ class ThrownArm(PageWidget):
             "trajectories": [_trajectory(k) for k in order],
             "units": _units(model),
         }
-        self._keep(spec=spec, weights=weight_bytes(model), still=still, still_alt=alt)
+        self._keep(spec=spec, weights=_weight_bytes(model), still=still, still_alt=alt)
         super().__init__()
 
 

@@ -13,13 +13,13 @@ from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.baking.still import still_picture
-from ddlib.widgets.base import SCRIPT, STYLE, PageWidget, module
-from ddlib.widgets.engine.plain import ENGINE, FIELDS, TRAINING, lean
+from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
+from ddlib.widgets.engine.plain import _FIELDS, _TRAINING, ENGINE, lean
 from ddlib.widgets.parts.panels import Panel
 
-WIDTH = 21  # samples of the window
-EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
-SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
+_WIDTH = 21  # samples of the window
+_EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
+_SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _ERRORS = (0.03, 2.0)  # range of the errors shown
@@ -33,7 +33,7 @@ _HINT = (
 )
 
 
-def first_weights(seed: int) -> Weights:
+def _first_weights(seed: int) -> Weights:
     """The page's random initial weights, as an ensemble of one network.
 
     Parameters
@@ -42,7 +42,7 @@ def first_weights(seed: int) -> Weights:
         0 to 2**32 - 1, of the generator mulberry32.
     """
     state = integer("seed", seed, 0, 2**32 - 1)
-    width, joints = WIDTH, len(JOINTS)
+    width, joints = _WIDTH, len(JOINTS)
     shapes = {
         "hidden_weights": (HIDDEN_UNITS, joints, width),
         "hidden_bias": (HIDDEN_UNITS,),
@@ -51,7 +51,7 @@ def first_weights(seed: int) -> Weights:
         "output_bias": (joints,),
     }
     parts = {}
-    for name in FIELDS:
+    for name in _FIELDS:
         draws = np.empty(int(np.prod(shapes[name])))
         for i in range(draws.size):
             state = (state + 0x6D2B79F5) % 2**32
@@ -66,7 +66,7 @@ def _mixed(state: int) -> int:
     return x ^ x >> 14
 
 
-class NetworkTrainer(PageWidget):
+class NetworkTrainer(_PageWidget):
     """Train a window network in the page: errors, torques and the filters of all units.
 
     Everything is computed in the page, with a kernel and without.
@@ -88,7 +88,7 @@ class NetworkTrainer(PageWidget):
 
     _esm = lean(
         module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module(*ENGINE, TRAINING, "canvas.js", "trainer.js")
+        + module(*ENGINE, _TRAINING, "canvas.js", "trainer.js")
     )
     _css = module(*STYLE, "trainer.css")
 
@@ -110,14 +110,14 @@ class NetworkTrainer(PageWidget):
         one_of("momentum", momentum, _MOMENTA)
         recording = JOINT_DAMPING.record()
         training, test = split(recording)
-        motion, half = recording.motion, WIDTH // 2
+        motion, half = recording.motion, _WIDTH // 2
         (encoder,) = JOINT_DAMPING.effects.encoder
         seen = recording.q[:, motion.start - half : motion.stop + half]
         torque = recording.tau[:, motion]
         samples = torque.shape[1]
         place = np.arange(samples)[None, :, None] * np.ones((len(training.q), 1, 2))
         shifted = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(shifts)]
-        plain = TrainingSet.from_recording(training, WIDTH, scaling=SCALINGS["printed"])
+        plain = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["printed"])
         looks = np.maximum(1, np.arange(0, epochs + 1, check))
         panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
         spec = {
@@ -128,16 +128,16 @@ class NetworkTrainer(PageWidget):
                 "hidden": HIDDEN_UNITS,
                 "outputs": len(JOINTS),
                 "joints": len(JOINTS),
-                "width": WIDTH,
+                "width": _WIDTH,
             },
             "runs": len(recording.q),
             "samples": samples,
-            "every": EVERY,
+            "every": _EVERY,
             "encoder": encoder.step,
             "inputs": {
                 "low": plain.inputs.low.tolist(),
                 "gain": plain.inputs.gain.tolist(),
-                "ranges": {name: list(pair) for name, pair in SCALINGS.items()},
+                "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
             },
             "outputs": {
                 "low": plain.outputs.low.tolist(),
@@ -146,14 +146,14 @@ class NetworkTrainer(PageWidget):
             },
             "shifts": [shift.tolist() for shift in shifted],
             "initial": INITIAL,
-            "rate": default_rate(WIDTH),
+            "rate": default_rate(_WIDTH),
             "steps": list(_STEPS),
             "momenta": list(_MOMENTA),
             "momentum": momentum,
             "epochs": epochs,
             "check": check,
             "level": level,
-            "basis": basis(WIDTH).tolist(),
+            "basis": basis(_WIDTH).tolist(),
             "classes": list(CLASSES),
             "panels": [panel.description() for panel in panels],
             "curves": [
@@ -186,9 +186,9 @@ def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
 
 def _still(panels, training, test) -> tuple[str, str]:
     """The torques to be learnt and what an untrained network makes of them."""
-    data = TrainingSet.from_recording(training, WIDTH, scaling=SCALINGS["centred"])
-    windows, torque = cases(test, WIDTH)
-    model = TorqueModel(first_weights(1)[0], data.inputs, data.outputs)
+    data = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["centred"])
+    windows, torque = cases(test, _WIDTH)
+    model = TorqueModel(_first_weights(1)[0], data.inputs, data.outputs)
     told = model.torque(windows)
     curves = {}
     for j, joint in enumerate(JOINTS):

@@ -21,7 +21,7 @@ import numpy as np
 from ddlib._check import integer, non_negative, number, one_of
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.windowed import reference_windows
+from workshop.beyond.control.windowed import _reference_windows
 
 _TEACHERS = ("torque", "feedback", "nobody")
 _NEAREST = 0.02  # least distance of a scaled torque from the ends of the output unit
@@ -219,7 +219,7 @@ class _Law:
         moving = (reference.qd != 0) | (reference.qdd != 0)
         self._moving = moving.any(axis=(*range(moving.ndim - 2), -1))
         self._half, self._read, self._applied = half, [], []
-        self._windows = reference_windows(reference.q, controller.width, self._every)
+        self._windows = _reference_windows(reference.q, controller.width, self._every)
         if self._teacher == "nobody":
             self._ahead = learner.torque(self._windows)
 

@@ -21,7 +21,7 @@ from ddlib.trajectories import Trajectory
 _BETWEEN = ("window", "line", "hold")
 
 
-def reference_windows(q, width: int, every: int) -> np.ndarray:
+def _reference_windows(q, width: int, every: int) -> np.ndarray:
     """A view of the windows around all samples of a reference, ``(..., time, joint, width)``.
 
     Before the first and after the last sample the reference is taken to rest; `every` is the number
@@ -72,7 +72,7 @@ class WindowFeedforward:
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
         late = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
-        windows = reference_windows(np.concatenate([q, late], -2), self.width, self.every)
+        windows = _reference_windows(np.concatenate([q, late], -2), self.width, self.every)
         windows = windows[..., ::stride, :, :]
         centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])

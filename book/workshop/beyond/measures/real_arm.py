@@ -11,17 +11,17 @@ import numpy as np
 
 from workshop.report import results
 
-RATE = 100  # samples a second of the paper, and of all rows that name no other
+_RATE = 100  # samples a second of the paper, and of all rows that name no other
 
 
-def cell(width: int, rate: int = RATE) -> dict:
+def cell(width: int, rate: int = _RATE) -> dict:
     """What the grid has for a window and a rate."""
     grid = results.read("real-arm")["grid"]
     (row,) = [r for r in grid if (r["width"], r["rate"]) == (width, rate)]
     return row
 
 
-def squares(width: int, model: str = "network", rate: int = RATE) -> np.ndarray:
+def squares(width: int, model: str = "network", rate: int = _RATE) -> np.ndarray:
     """Mean squared errors of a model of the grid, ``(blocks, networks)``; others stand alone."""
     errors = np.array(cell(width, rate)[model])
     return errors if model.startswith("network") else errors[:, None]

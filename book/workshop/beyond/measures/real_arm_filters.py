@@ -15,12 +15,12 @@ from ddlib.tables import significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
-NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that the paper finds
+_NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that the paper finds
 
 # Gains of a network, and what the identified model has in their place
 WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
 
-UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
+_UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
 
 
 def row(width: int) -> dict:
@@ -41,8 +41,8 @@ def _gains(what: str, width: int) -> tuple[np.ndarray, np.ndarray, list[np.ndarr
 
 
 def named(ensemble: dict) -> np.ndarray:
-    """Share of an ensemble's filters that have one of the names in `NAMED`."""
-    which = [CLASSES.index(name) for name in NAMED]
+    """Share of an ensemble's filters that have one of the names in `_NAMED`."""
+    which = [CLASSES.index(name) for name in _NAMED]
     hidden, direct = (
         np.array(ensemble["classes"][x])[:, which].sum(-1) for x in ("hidden", "direct")
     )
@@ -78,7 +78,7 @@ def calibrated(what: str = "inertia", width: int = 21) -> Measured:
     chance = max(p_value(typical, _off(x[:, None], true), "less") for x in nulls)
     pairs = zip(np.median(real, 0), true)
     told = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
-    text = f"{told} {UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
+    text = f"{told} {_UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
     return judged(lambda each: _off(each, true), real, text=text)
 
 

@@ -14,7 +14,7 @@ from numpy.polynomial.polynomial import polyvander
 
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
-from workshop.beyond.rivals.protocol import NotFitted, Rival
+from workshop.beyond.rivals.protocol import Rival, _NotFitted
 
 _MOST = 5000  # functions at most
 _BLOCK = 2000  # cases whose functions are computed at once
@@ -106,7 +106,7 @@ class _Basis(Rival):
     def with_ridge(self, ridge: float) -> _Basis:
         """The same fitted rival with another penalty, at nearly no cost."""
         if not hasattr(self, "coefficients"):
-            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
         other = copy(self)
         other.ridge = number("ridge", ridge, 0.0)
         other.coefficients = self._solution.coefficients(ridge)

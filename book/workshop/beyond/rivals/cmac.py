@@ -8,7 +8,7 @@ from scipy.linalg import solve_triangular
 
 from ddlib._check import integer, number
 from ddlib.dynamics import Operations
-from workshop.beyond.rivals.tables import Bounded
+from workshop.beyond.rivals.tables import _Bounded
 
 _BLOCK = 300  # cases whose updates are solved at once, by one triangular system
 _WORSE = 1e3  # a training error that has grown this many times has diverged
@@ -18,7 +18,7 @@ class Diverged(RuntimeError):
     """The delta rule ran away; the error before each pass is kept in `CMAC.history`."""
 
 
-class CMAC(Bounded):
+class CMAC(_Bounded):
     """A cerebellar model articulation controller (Albus 1975; Miller, Glanz & Kraft 1987).
 
     Each of `layers` layers cuts the box of states into cubes of the same width, and each is

@@ -20,7 +20,7 @@ from ddlib._check import integer, one_of, positive
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
 from workshop.beyond.rivals.identified import Identified
-from workshop.beyond.rivals.protocol import KINDS, Rival
+from workshop.beyond.rivals.protocol import _KINDS, Rival
 
 _STEPS = 100  # iterations that a search for hyperparameters may take
 _TINY = 1e-9  # share of the torque below which what is left over counts as rounding
@@ -81,7 +81,7 @@ class GaussianProcess(Rival):
         restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, KINDS)
+        self.kind = one_of("kind", kind, _KINDS)
         self.directions = directions
         self.subset = integer("subset", subset, 2)
         self.restarts = integer("restarts", restarts, 0)
@@ -216,7 +216,7 @@ class RandomFeatures(Rival):
         lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, KINDS)
+        self.kind = one_of("kind", kind, _KINDS)
         self.features = integer("features", features, 1)
         self.directions = directions
         self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))

@@ -15,9 +15,9 @@ from ddlib._check import integer, number, one_of
 from ddlib.dynamics import Operations, Tape
 from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
 from ddlib.learning import check_width
-from workshop.beyond.rivals.protocol import KINDS, Rival
+from workshop.beyond.rivals.protocol import _KINDS, Rival
 
-RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
+_RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 
 
 class Identified(Rival):
@@ -90,11 +90,11 @@ class Linear(Rival):
 
     Columns count by their deviation. `width` is how many samples in the middle of a window are
     used. The ridge, in units of the largest singular value squared, is given or chosen from
-    `RIDGES`, by leaving out one of `blocks` equal parts of the training cases at a time.
+    `_RIDGES`, by leaving out one of `blocks` equal parts of the training cases at a time.
     """
 
     def __init__(self, kind="windows", width=None, ridge=None, blocks=5):
-        self.kind = one_of("kind", kind, KINDS)
+        self.kind = one_of("kind", kind, _KINDS)
         self.width = None if width is None else check_width(width)
         self.ridge = None if ridge is None else number("ridge", ridge, 0.0)
         self.blocks = integer("blocks", blocks, 2)
@@ -116,12 +116,12 @@ class Linear(Rival):
     def _choose(self, x, torque) -> float:
         if len(x) < 2 * self.blocks:
             raise ValueError(f"data must hold {2 * self.blocks} cases or more, got {len(x)}")
-        lost, scale = np.zeros(len(RIDGES)), torque.std(0)
+        lost, scale = np.zeros(len(_RIDGES)), torque.std(0)
         for part in np.array_split(np.arange(len(x)), self.blocks):
-            matrices, constants = _ridge(np.delete(x, part, 0), np.delete(torque, part, 0), RIDGES)
+            matrices, constants = _ridge(np.delete(x, part, 0), np.delete(torque, part, 0), _RIDGES)
             left = (x[part] @ matrices + constants[:, None] - torque[part]) / scale
             lost += (left**2).sum((1, 2))
-        return RIDGES[int(lost.argmin())]
+        return _RIDGES[int(lost.argmin())]
 
     def _torque(self, x):
         return self._rows(x) @ self.matrix + self.constant

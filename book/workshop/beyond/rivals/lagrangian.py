@@ -18,7 +18,7 @@ from torch.nn import functional
 from ddlib._check import finite_array, integer, number, one_of
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
-from workshop.beyond.rivals.protocol import NotFitted, Rival
+from workshop.beyond.rivals.protocol import Rival, _NotFitted
 
 _GRAVITIES = ("potential", "vector", "none")
 _DIAGONALS = ("softplus", "relu")
@@ -250,7 +250,7 @@ class LagrangianNetwork(Rival):
     def _parts(self, q):
         """Triangle, its derivatives by position, gravity and potential, in scaled units."""
         if not hasattr(self, "network"):
-            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
         q = finite_array("q", q, self.network.joints)
         flat = (q.reshape(-1, q.shape[-1]) - self.units.mean) / self.units.spread
         position = torch.tensor(flat).to(self.network.places)

@@ -22,7 +22,7 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.paper import EPOCHS, HIDDEN_UNITS
-from workshop.beyond.rivals.protocol import KINDS, Rival
+from workshop.beyond.rivals.protocol import _KINDS, Rival
 
 
 class _Network(Rival):
@@ -36,7 +36,7 @@ class _Network(Rival):
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=0.3, scaling=(0.0, 1.0), seed=0
     ):
-        self.kind, self.hidden = one_of("kind", kind, KINDS), integer("hidden", hidden, 1)
+        self.kind, self.hidden = one_of("kind", kind, _KINDS), integer("hidden", hidden, 1)
         self.initial = number("initial", initial, 0.0, open_low=True)
         self.scaling, self.seed = scaling, integer("seed", seed, 0)
 
@@ -128,12 +128,12 @@ class ByAdam(_Network):
         network = WindowNetwork(
             width, self.hidden, joints, data.y.shape[1], initial=self.initial, seed=self.seed
         )
-        adam(network, data.x, data.y, self.epochs, self.rate, self.decay)
+        _adam(network, data.x, data.y, self.epochs, self.rate, self.decay)
         weights = network.weights()
         return TorqueModel(weights, data.inputs, data.outputs)
 
 
-def adam(
+def _adam(
     module: torch.nn.Module, x, y, epochs: int, rate: float, decay: float, batch=None, seed=0
 ) -> float:
     """Train a module in place by Adam with decoupled weight decay (Loshchilov & Hutter 2019).

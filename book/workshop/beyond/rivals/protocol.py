@@ -38,11 +38,11 @@ from ddlib.metrics import rmss
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning
 
-KINDS = ("windows", "states")
-MARGIN = 0.1  # share of the training box's edge by which inputs may leave it without a warning
+_KINDS = ("windows", "states")
+_MARGIN = 0.1  # share of the training box's edge by which inputs may leave it without a warning
 
 
-class NotFitted(RuntimeError):
+class _NotFitted(RuntimeError):
     """A rival was asked before it had learnt anything."""
 
 
@@ -60,7 +60,7 @@ class Cases:
     step: float  # sampling period of the windows, s
 
     def __post_init__(self):
-        one_of("kind", self.kind, KINDS)
+        one_of("kind", self.kind, _KINDS)
         number("step", self.step, 0.0, open_low=True)
         x = shaped("x", self.x, "(cases, joint, rows)")
         if self.kind == "states" and x.shape[-1] != 3:
@@ -126,10 +126,10 @@ class Rival(ABC):
         """Predicted torque, shape (cases, joint), of inputs as in `Cases`.
 
         Where the rival has no answer it raises a ValueError; inputs that lie outside the box of the
-        training inputs by more than `MARGIN` are answered with an `OutsideFamilyWarning`.
+        training inputs by more than `_MARGIN` are answered with an `OutsideFamilyWarning`.
         """
         if not hasattr(self, "_shape"):
-            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
         joints, rows = self._shape
         x = shaped("x", x, f"(cases, {joints}, {rows})")
         outside = self.outside(x)
@@ -143,9 +143,9 @@ class Rival(ABC):
         return predicted
 
     def outside(self, x) -> np.ndarray:
-        """Whether inputs ``(cases, joint, rows)`` lie outside the training box by `MARGIN`."""
+        """Whether inputs ``(cases, joint, rows)`` lie outside the training box by `_MARGIN`."""
         low, high = self._box
-        slack = MARGIN * (high - low)
+        slack = _MARGIN * (high - low)
         return ((x < low - slack) | (x > high + slack)).any((-2, -1))
 
     def __repr__(self):

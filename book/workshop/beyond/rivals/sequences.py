@@ -15,7 +15,7 @@ from torch import nn
 from ddlib._check import integer, number
 from ddlib.dynamics import Operations
 from ddlib.learning import Weights
-from workshop.beyond.rivals.networks import adam
+from workshop.beyond.rivals.networks import _adam
 from workshop.beyond.rivals.protocol import Rival
 
 _BATCH = 100  # cases of a step of descent
@@ -84,7 +84,7 @@ class _Sequence(Rival):
             self.network = self._network(joints, width, torque.shape[1])
         scaled = (torque - self.offset) / self.spread
         options = self.epochs, self.rate, self.decay, _BATCH, self.seed
-        adam(self.network, self._channels(x), scaled, *options)
+        _adam(self.network, self._channels(x), scaled, *options)
 
     @staticmethod
     def _parts(x):

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
-from workshop.beyond.rivals.protocol import MARGIN, Rival
+from workshop.beyond.rivals.protocol import _MARGIN, Rival
 
 _OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
 _BEYOND = ("refuse", "edge")
@@ -88,7 +88,7 @@ def full_table(
     return np.concatenate(found)
 
 
-class Bounded(Rival):
+class _Bounded(Rival):
     """A rival that has room for a box of states and no other.
 
     The box is given by `limits`, the least and largest states, or else that of the training states,
@@ -106,7 +106,7 @@ class Bounded(Rival):
         """The box, decided by training states; they in units of it."""
         if self.limits is None:
             low, high = x.min(0), x.max(0)
-            slack = np.where(high > low, MARGIN * (high - low), 0.5)
+            slack = np.where(high > low, _MARGIN * (high - low), 0.5)
             self.low, self.high = low - slack, high + slack
         elif self.limits.shape[1:] != x.shape[1:]:
             raise ValueError(
@@ -136,7 +136,7 @@ def _inside(x, low, high, beyond) -> np.ndarray:
     return np.clip(u, 0.0, 1.0)
 
 
-class Nearest(Bounded):
+class Nearest(_Bounded):
     """All training cases are kept; the torque is that of the nearest.
 
     Distances are in units of the training states' standard deviation, each quantity its own.
@@ -162,7 +162,7 @@ class Nearest(Bounded):
         return Operations(axes + cases * axes, cases * (2 * axes - 1))
 
 
-class CellTable(Bounded):
+class CellTable(_Bounded):
     """Cells over states, motions or configurations; the torque is linear in what remains.
 
     In a cell of states it is the mean of what was recorded there. Over motions, positions and
@@ -183,7 +183,7 @@ class CellTable(Bounded):
     ridge : float
         Penalty on squared coefficients: it acts as so many cases that say zero.
     limits, beyond
-        As in `Bounded`.
+        As in `_Bounded`.
     """
 
     def __init__(
@@ -254,7 +254,7 @@ class CellTable(Bounded):
         return Operations(axes + products + signs + each, axes + each)
 
 
-class GridTable(Bounded):
+class GridTable(_Bounded):
     """Torques at the nodes of a grid over states, multilinear between them.
 
     The nodes get the torques that fit all cases best by least squares, with a penalty on their

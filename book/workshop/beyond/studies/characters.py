@@ -15,7 +15,7 @@ import numpy as np
 
 from ddlib.dynamics import Arm
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.others import Characters, characters as data
+from workshop.beyond.others import _Characters, characters as data
 from workshop.beyond.rivals.bases import Fourier, Polynomial
 from workshop.beyond.rivals.cmac import CMAC
 from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures
@@ -63,7 +63,7 @@ _ENTRIES = {
 }
 
 
-def states(drawn: Characters, turned: float = np.pi / 2) -> Cases:
+def states(drawn: _Characters, turned: float = np.pi / 2) -> Cases:
     """States and torques of characters, the first angle from hanging down.
 
     Without being turned it is as the public code takes it, from the horizontal.
@@ -94,7 +94,7 @@ def _parts(torque: Callable, x) -> dict[str, np.ndarray]:
     }
 
 
-def _errors(found: dict, drawn: Characters) -> dict[str, float]:
+def _errors(found: dict, drawn: _Characters) -> dict[str, float]:
     """Errors as in the public code; that of the mass matrix is relative (root mean square)."""
     truth = {"torque": drawn.tau, "mass_matrix": drawn.mass_matrix}
     result = {}
@@ -118,7 +118,7 @@ def _hurried(torque: Callable, x) -> float:
     return float(np.sqrt(((torque(fast) - truth) ** 2).sum(-1).mean() / truth.var(0).sum()))
 
 
-def _tested(torque: Callable, drawn: Characters) -> dict:
+def _tested(torque: Callable, drawn: _Characters) -> dict:
     x = states(drawn).x
     return {**_errors(_parts(torque, x), drawn), "hurried": _hurried(torque, x)}
 

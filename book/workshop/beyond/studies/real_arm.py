@@ -26,12 +26,12 @@ from workshop.beyond.studies.tx40 import (
     RATES,
     Ridge,
     Windowed,
-    best_penalty,
+    _best_penalty,
     identified,
     known_structure,
     least_squares,
 )
-from workshop.beyond.studies.tx40_networks import EPOCHS, HIDDEN, both, decayed, trained, wrong
+from workshop.beyond.studies.tx40_networks import _EPOCHS, _HIDDEN, _both, _decayed, trained, wrong
 from workshop.report.code_hash import study
 
 _COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988
@@ -60,8 +60,8 @@ def _cell(data: Windowed, fold, members: int) -> dict:
     flat, states, given = data.flat, data.states, data.current[training]
     plain = states.reshape(len(states), -1)
     model, *_ = trained(data.x[training], given, members, 0, data.width)
-    network = both(model, data, fold)
-    penalty = best_penalty(data, training)
+    network = _both(model, data, fold)
+    penalty = _best_penalty(data, training)
     others = {
         "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
         "least squares": least_squares(flat[training], given, flat[test]),
@@ -97,13 +97,13 @@ def _variants(members: int) -> dict:
         x, y = data.x[training], data.current[training]
         last, kept, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
         for epoch, model in {**kept, paper.EPOCHS: last}.items():
-            put(f"{epoch} epochs", both(model, data, fold))
+            put(f"{epoch} epochs", _both(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
-            put(f"{units} units", both(model, data, fold))
-        start = Weights.random(members, data.width, HIDDEN, 6, 6)
+            put(f"{units} units", _both(model, data, fold))
+        start = Weights.random(members, data.width, _HIDDEN, 6, 6)
         for decay in _DECAYS:
-            each = [both(decayed(x, y, start[k], decay), data, fold) for k in range(members)]
+            each = [_both(_decayed(x, y, start[k], decay), data, fold) for k in range(members)]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
         for decay in _DECAYS[-2:]:
             put(f"on the rest, decay {decay:g}", _structured(data, fold, members, decay))
@@ -116,8 +116,8 @@ def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.nda
     states, given = data.states, data.current[training]
     known = known_structure(states[training], given, states)
     left = data.current - known
-    start = Weights.random(members, data.width, HIDDEN, 6, 6)
-    models = [decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
+    start = Weights.random(members, data.width, _HIDDEN, 6, 6)
+    models = [_decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
     return [
         np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
         for part in fold
@@ -182,12 +182,12 @@ def _filters(width: int, members: int, draws: int) -> dict:
     y = data.current
     same = np.repeat(y[None], members, 0)
     model, _, made = trained(data.x, y, members, 0, width)
-    start = Weights.random(members, width, HIDDEN, 6, 6)
+    start = Weights.random(members, width, _HIDDEN, 6, 6)
     untrained = TorqueModel(start, made.inputs, made.outputs)
     structure = identified(data.states, y)
     known = structure.friction, structure.rest
     flat = data.flat
-    penalty = best_penalty(data, np.ones(len(flat), bool))
+    penalty = _best_penalty(data, np.ones(len(flat), bool))
 
     fitted = Ridge(flat, y).filters(penalty).T.reshape(6, 6, width)
     own = np.arange(6)
@@ -305,7 +305,7 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "members": members,
         "filters": filters,
         "draws": draws,
-        "epochs": EPOCHS,
+        "epochs": _EPOCHS,
         "blocks": BLOCKS,
         "grid": _grid(members),
         "differences": _differences(),

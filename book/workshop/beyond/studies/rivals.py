@@ -12,7 +12,7 @@ from ddlib.setups import JOINT_DAMPING, split, square, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import OutsideFamilyWarning
 from workshop.beyond.rivals.protocol import Cases, Estimating, trial
-from workshop.beyond.studies.lineup import DAYS, LINES, REFERENCE
+from workshop.beyond.studies.lineup import _DAYS, _LINES, REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
@@ -78,10 +78,10 @@ def rivals() -> dict:
     torques of the first day go into `TORQUES`.
     """
     rows, torques, floor = {}, {}, None
-    for day in range(1, DAYS + 1):
+    for day in range(1, _DAYS + 1):
         sets, asked = recorded(day)
         floor = floor or _floors(sets["positions"])
-        for name, line in LINES.items():
+        for name, line in _LINES.items():
             for inputs, size in product(_INPUTS, line.sizes if day <= line.days else ()):
                 rival = _seen(line, inputs, size, day)
                 if rival is None:
@@ -97,13 +97,13 @@ def rivals() -> dict:
         if day == 1:
             _keep(torques, asked)
     return {
-        "days": DAYS,
+        "days": _DAYS,
         "width": _WIDTH,
         "reference": REFERENCE,
         "budget": _BUDGET,
         "floor": floor,
         "lines": {
-            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
+            name: {"varied": line.varied, "family": line.family} for name, line in _LINES.items()
         },
         "rows": list(rows.values()),
     }

@@ -14,7 +14,7 @@ import numpy as np
 from ddlib._check import integer
 from ddlib.analysis import savitzky_golay
 from ddlib.identification import joint_columns
-from workshop.beyond.others import RealArm, staubli
+from workshop.beyond.others import _RealArm, staubli
 
 BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
 RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}  # windows, by samples a second
@@ -25,7 +25,7 @@ _DEGREE = 3  # of the polynomial whose derivatives are a window's states
 
 
 @cache
-def _recorded(rate: int) -> RealArm:
+def _recorded(rate: int) -> _RealArm:
     """The recording at so many samples a second."""
     return staubli().at(rate)
 
@@ -63,7 +63,7 @@ class Windowed:
 
     def fold(self, block: int) -> tuple[np.ndarray, np.ndarray]:
         """Masks of the cases to learn from and of those to be tested on, without common samples."""
-        return fold(len(self.x), block, self.gap)
+        return _fold(len(self.x), block, self.gap)
 
     def folds(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """The masks of each block."""
@@ -80,7 +80,7 @@ class Windowed:
         return -(-self.width * 100 // self.rate)
 
 
-def fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
+def _fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
     """Masks of training and test cases: a block is tested, none within `gap` of it is learnt."""
     size, place = cases / blocks, np.arange(cases)
     first, last = (round((integer("block", block, 0, blocks - 1) + k) * size) for k in (0, 1))
@@ -116,11 +116,11 @@ class Ridge:
         return self.mean + (new - self.centre) @ self.filters(penalty)
 
 
-def best_penalty(data: Windowed, training) -> float:
+def _best_penalty(data: Windowed, training) -> float:
     """The penalty of `_RIDGES` with the least error on pieces left out of the training cases."""
     x, total = data.flat, 0.0
     for piece in range(_PIECES):
-        kept, tried = fold(len(x), piece, data.gap, _PIECES)
+        kept, tried = _fold(len(x), piece, data.gap, _PIECES)
         kept, tried = kept & training, tried & training
         if tried.any():
             made = Ridge(x[kept], data.current[kept])
@@ -150,7 +150,7 @@ def _fitted(a, y) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Identified:
+class _Identified:
     """Gains of the identified model, joint by joint."""
 
     inertia: np.ndarray  # on the joint's own acceleration, averaged over the cases, A s^2/rad
@@ -161,7 +161,7 @@ class Identified:
     rest: np.ndarray  # of all other terms
 
 
-def identified(states, current) -> Identified:
+def identified(states, current) -> _Identified:
     """The known structure fitted to states ``(cases, 6, 3)`` and currents ``(cases, 6)``."""
     speed, found = states[..., 1], []
     for j in range(current.shape[1]):
@@ -178,7 +178,7 @@ def identified(states, current) -> Identified:
         found.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
     inertia, slope, viscous, coulomb, rubbing, rest = zip(*found)
     arrays = map(np.array, (inertia, slope, viscous, coulomb))
-    return Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
+    return _Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
 
 
 def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:

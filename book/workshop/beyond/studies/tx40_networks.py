@@ -8,16 +8,16 @@ from scipy.optimize import minimize
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
 from workshop.beyond.studies.tx40 import Windowed
 
-HIDDEN = 10  # as in 1988
+_HIDDEN = 10  # as in 1988
 
 # Per sample of a window: one of six joints has three times the inputs of one of two.
 _DESCENT = {"rate": 22.0, "momentum": 0.995, "warm_up": 300}
 _SCALING = (-1.0, 1.0)  # of the inputs
-EPOCHS = 2000  # of all networks but the longest
+_EPOCHS = 2000  # of all networks but the longest
 
 
-def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=HIDDEN,
-            epochs: int = EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
+def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=_HIDDEN,
+            epochs: int = _EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
     """Networks by descent on windows ``(cases, 6, width)`` and currents ``(cases, outputs)``.
 
     ``targets`` ``(members, cases, outputs)`` are currents of each network in place of `y`. With
@@ -40,12 +40,12 @@ def wrong(predicted, data: Windowed, cases) -> np.ndarray:
     return (error**2).mean(-2) / data.current.var(0)
 
 
-def both(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
+def _both(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
     """Errors of a fold: on what was learnt, and on the block left out."""
     return [wrong(model.torque(data.x[part]), data, part) for part in fold]
 
 
-def decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
+def _decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
     """One network by quasi-Newton steps on half the mean squared error with weight decay.
 
     Half of the decay times the sum of squared weights, biases left out, is added.

@@ -14,10 +14,10 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.page.learner import LEARNERS, LOADS, MOTIONS, SPEEDS
 from workshop.report import results
 
-SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # estimates, by place among the parameters
-_LABELS = dict(zip(SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
-MOST_ERROR = 20.0  # mm, the largest that is shown; a run that the guard stopped has a larger one
-BOUNDS = (-2.0, 6.0)  # smallest and largest multiple of a true value that is shown
+_SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # estimates, by place among the parameters
+_LABELS = dict(zip(_SHOWN, ("a", "b", "d", "viscous, shoulder", "Coulomb, shoulder")))
+_MOST_ERROR = 20.0  # mm, the largest that is shown; a run that the guard stopped has a larger one
+_BOUNDS = (-2.0, 6.0)  # smallest and largest multiple of a true value that is shown
 
 _NOTE = (
     "Damped joints, an encoder of 12.5 bits, a tachometer; it begins with the base parameters of "
@@ -57,7 +57,7 @@ class LoopLearner(CurveWidget):
                     "motion, number",
                     motions,
                     y_fit=True,
-                    limits=(None, MOST_ERROR),
+                    limits=(None, _MOST_ERROR),
                 ),
                 Panel(
                     "Estimates over true values",
@@ -65,7 +65,7 @@ class LoopLearner(CurveWidget):
                     "motions done, number",
                     np.arange(MOTIONS + 1),
                     y_fit=True,
-                    limits=BOUNDS,
+                    limits=_BOUNDS,
                 ),
             ],
             **{
@@ -90,7 +90,7 @@ def _curves(load, friction, learner, rate) -> dict:
     found, k = _learned(load), list(SPEEDS).index(rate)
     errors, estimates = found[learner]
     relative = estimates[int(friction), k] / _truth(load)
-    curves = {name: np.clip(relative[:, place], *BOUNDS) for name, place in SHOWN.items()}
+    curves = {name: np.clip(relative[:, place], *_BOUNDS) for name, place in _SHOWN.items()}
     nobody = found[LEARNERS[0]][0][int(friction), 0]
-    shown = np.minimum(errors[int(friction), k], MOST_ERROR)
+    shown = np.minimum(errors[int(friction), k], _MOST_ERROR)
     return {"error": shown, "nobody": nobody, **curves}

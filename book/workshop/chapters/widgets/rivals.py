@@ -16,7 +16,7 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.lineup import REFERENCE
 from workshop.beyond.studies.rivals import GRID, TORQUES
 
-MEASURED = "measured"
+_MEASURED = "measured"
 
 _NOTE = (
     "Each rival sees measured positions, learnt from the five training recordings, and has the "
@@ -36,15 +36,15 @@ class RivalPicker(CurveWidget):
         with np.load(path) as kept:
             names, torque = kept["names"].tolist(), kept["torque"].astype(float)
         self._torque = dict(zip(names, torque))
-        rivals = [name for name in names if name != MEASURED]
+        rivals = [name for name in names if name != _MEASURED]
         one_of("rival", rival, rivals)
-        measured = self._torque[MEASURED]
+        measured = self._torque[_MEASURED]
         scale = measured.reshape(-1, len(JOINTS)).std(0)
         self._errors = np.stack([rmss(self._torque[n], measured, scale=scale) for n in rivals], -1)
         times = np.arange(torque.shape[2]) * MOTION_SECONDS / torque.shape[2]
         labels = {name: f"{k}: {name}" for k, name in enumerate(rivals, 1)}
         extents = {k: f"{MAX_EXTENT_DEG * k / GRID:g}°" for k in range(1, GRID + 1)}
-        lines = (MEASURED, REFERENCE, "rival")
+        lines = (_MEASURED, REFERENCE, "rival")
         panels = [
             *(
                 Panel(
@@ -88,7 +88,7 @@ class RivalPicker(CurveWidget):
 
     def _curves(self, shoulder, elbow, rival) -> dict:
         run = (shoulder - 1) * GRID + elbow - 1
-        lines = {MEASURED: MEASURED, REFERENCE: REFERENCE, "rival": rival}
+        lines = {_MEASURED: _MEASURED, REFERENCE: REFERENCE, "rival": rival}
         curves = {
             f"{joint}, {line}": self._torque[name][run, :, j]
             for line, name in lines.items()

@@ -18,15 +18,15 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.loop.motions import Circles, stirred
 from workshop.beyond.studies.loop.stirring import PICKER, PLACES, SHOWN
 
-HERE = Path(__file__).parent
+_HERE = Path(__file__).parent
 
-LINES = {
+_LINES = {
     "exact behind a window": "equations",
     "pick and place": "network of pick-and-place",
     "circles": "network of circles",
 }  # whose torques are shown, and what the legend calls them
 
-BARS = {
+_BARS = {
     "none": "none",
     "exact behind a window": "exact",
     "pick and place": "pick",
@@ -52,8 +52,8 @@ class StirringPicker(CurveWidget):
     sentence. Its curves are zero. `path` holds what the study ``stirring`` kept.
     """
 
-    _esm = module(*SCRIPT, HERE / "stirring.js")
-    _css = module(*STYLE, HERE / "stirring.css")
+    _esm = module(*SCRIPT, _HERE / "stirring.js")
+    _css = module(*STYLE, _HERE / "stirring.css")
 
     workspace = t.Dict(help="lengths, reach and part that is drawn, m", read_only=True)
     workspace.tag(sync=True)
@@ -72,7 +72,7 @@ class StirringPicker(CurveWidget):
             *(
                 Panel(
                     f"{joint.title()} torque, N m",
-                    {f"{joint}, {line}": told for line, told in LINES.items()},
+                    {f"{joint}, {line}": told for line, told in _LINES.items()},
                     seconds,
                     times,
                     y_fit=True,
@@ -83,9 +83,9 @@ class StirringPicker(CurveWidget):
                 "Error of the hand, mm",
                 {"hand": "RMS over the motion"},
                 "feedforward",
-                np.arange(len(BARS)),
+                np.arange(len(_BARS)),
                 kind="bars",
-                ticks=list(enumerate(BARS.values())),
+                ticks=list(enumerate(_BARS.values())),
                 y_fit=True,
             ),
         ]
@@ -122,10 +122,10 @@ class StirringPicker(CurveWidget):
             **{f"{joint} angle": angles[:, j] for j, joint in enumerate(JOINTS)},
             **{
                 f"{joint}, {line}": self._torque[line][at][:, j]
-                for line in LINES
+                for line in _LINES
                 for j, joint in enumerate(JOINTS)
             },
-            "hand": np.array([self._hand[name][at] for name in BARS]),
+            "hand": np.array([self._hand[name][at] for name in _BARS]),
         }
 
 

@@ -11,11 +11,11 @@ An entry has these fields:
     "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
     judged like the others and not counted twice among the paper's.
 ``chapter``
-    The page of the book that deals with it; `LEDGER` if there is no other.
+    The page of the book that deals with it; `_LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
-``printed``
-    The printed value: a number, or text such as "by eye"; `OWN` for what this book claims itself.
+``_printed``
+    The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
 ``measure`` or ``find``, ``with``
     A function of `workshop.report.measures` as "module.function", and its keyword arguments; or an
     expression of `workshop.report.evidence.expressions`, and what its placeholders stand for.
@@ -58,24 +58,24 @@ import yaml
 from ddlib._check import one_of
 from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
-from workshop.report.evidence.expressions import find
-from workshop.report.evidence.verdicts import VERDICTS, Measured, fresh, shares, stands
+from workshop.report.evidence.expressions import _find
+from workshop.report.evidence.verdicts import VERDICTS, Measured, _fresh, _shares, _stands
 
-FILE = BOOK / "claims.yml"  # Where the claims are kept
+_FILE = BOOK / "claims.yml"  # Where the claims are kept
 
-LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
+_LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
 
 # Environment variable with a folder in which notebooks that are built together share what they
 # measured: each runs in a process of its own, which an argument does not reach. Who sets it takes
 # a new folder for other code or results.
 SHARED = "DDLIB_MEASURED"
 
-# As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
+# As `_printed`: a claim of this book, to explain what the paper's section reports. It is judged
 # like the others, in its chapter, and is not counted among the paper's.
-OWN = "not in the paper"
+_OWN = "not in the paper"
 
 # Titles of the paper's sections; abstract and appendix are numbered so that they sort
-SECTIONS = {
+_SECTIONS = {
     "0": "Abstract",
     "1": "1. Introduction",
     "2": "2. Problem definition",
@@ -94,7 +94,7 @@ _PLACE = re.compile(
 )
 
 
-class MeasureError(RuntimeError):
+class _MeasureError(RuntimeError):
     """A claim's measuring function failed; the message names the claim."""
 
 
@@ -106,12 +106,12 @@ class Claim:
     where: str
     chapter: str
     claim: str
-    printed: float | str
+    _printed: float | str
     verdict: str
     why: str
     refuted: str
     measure: str = ""
-    find: Mapping = field(default_factory=dict)
+    _find: Mapping = field(default_factory=dict)
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
@@ -167,7 +167,7 @@ class Claim:
             )
 
     def place(self) -> tuple[str, int, int]:
-        """Where the claim stands: key of `SECTIONS`, subsection, number of a table or figure.
+        """Where the claim stands: key of `_SECTIONS`, subsection, number of a table or figure.
 
         What comes first in ``where`` counts. Tables and figures come after their section's
         text, whose subsections come in order: sort by this.
@@ -192,7 +192,7 @@ class Claim:
             return _measured(json.dumps([self.measure, self.find, self.arguments]))
         except Exception as error:
             given = ", ".join(f"{name}={value!r}" for name, value in self.arguments.items())
-            raise MeasureError(
+            raise _MeasureError(
                 f"claim {self.id!r} could not be measured by {self.measure or 'find'}({given}): "
                 f"{type(error).__name__}: {error}"
             ) from error
@@ -205,19 +205,19 @@ class Claim:
         if not self.band:
             return "not testable"
         found = self.shares()
-        return self.verdict if found and stands(self.verdict, found) else self.fresh()
+        return self.verdict if found and _stands(self.verdict, found) else self.fresh()
 
     def fresh(self) -> str:
         """The verdict of the bands for the measured value alone, whatever is written."""
         if not self.band:
             return "not testable"
         found = self.shares()
-        return fresh(found) if found else self.of(self.measured().value)
+        return _fresh(found) if found else self.of(self.measured().value)
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else shares(self._of_each(replicates))
+        return {} if replicates is None else _shares(self._of_each(replicates))
 
     def of(self, value: float) -> str:
         """The verdict that the bands give for one value."""
@@ -256,7 +256,7 @@ def _measured(way: str) -> Measured:
     return joblib.Memory(folder, verbose=0).cache(_measure)(way) if folder else _measure(way)
 
 
-def function(measure: str) -> Callable:
+def _function(measure: str) -> Callable:
     """The function of `workshop.report.measures` that a claim names as "module.function"."""
     room = "beyond" if measure.startswith("beyond.") else "report"
     module, _, name = measure.removeprefix("beyond.").rpartition(".")
@@ -266,7 +266,7 @@ def function(measure: str) -> Callable:
 def _measure(way: str) -> Measured:
     """What a function of some name or an expression finds with some arguments."""
     measure, expression, arguments = json.loads(way)
-    result = function(measure)(**arguments) if measure else find(expression, arguments)
+    result = _function(measure)(**arguments) if measure else _find(expression, arguments)
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()
@@ -275,7 +275,7 @@ def _measure(way: str) -> Measured:
     return result
 
 
-class Printed(float):
+class _Printed(float):
     """A number that keeps the digits it is printed with."""
 
     def __new__(cls, text: str):
@@ -292,7 +292,7 @@ _VALUES = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
 
-def load(path: Path = FILE) -> list[Claim]:
+def load(path: Path = _FILE) -> list[Claim]:
     """All claims, in the order of the file."""
     return list(_parsed(path.read_text(encoding="utf-8")))
 
@@ -312,7 +312,7 @@ def _parsed(text: str) -> tuple[Claim, ...]:
         entry = dict(entry)
         entry["arguments"] = entry.pop("with", {})
         if isinstance(entry.get("printed"), float):
-            entry["printed"] = Printed(plain["printed"])
+            entry["printed"] = _Printed(plain["printed"])
         try:
             if isinstance(entry.get("refuted"), dict):
                 entry["refuted"], entry["outcome"] = _sentence(**entry["refuted"])
@@ -335,13 +335,13 @@ def measured(id: str) -> Measured:
     """What we find for one claim, for a page that quotes it."""
     by_id = {claim.id: claim for claim in load()}
     if id not in by_id:
-        raise ValueError(f"id must be of a claim in {FILE.name}, got {id!r}")
+        raise ValueError(f"id must be of a claim in {_FILE.name}, got {id!r}")
     return by_id[id].measured()
 
 
 def of_the_paper() -> list[Claim]:
     """All claims but this book's own and those that are judged again on another arm."""
-    return [claim for claim in load() if claim.printed != OWN and not claim.arm]
+    return [claim for claim in load() if claim.printed != _OWN and not claim.arm]
 
 
 def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
@@ -350,17 +350,17 @@ def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
     return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
 
 
-def of_chapter(chapter: str) -> list[Claim]:
+def _of_chapter(chapter: str) -> list[Claim]:
     """The claims that a page of the book deals with; an error if there are none."""
     found = [claim for claim in load() if claim.chapter == chapter]
     if not found:
-        raise ValueError(f"chapter must have claims in {FILE.name}, got {chapter!r}")
+        raise ValueError(f"chapter must have claims in {_FILE.name}, got {chapter!r}")
     return found
 
 
-def printed(claim: Claim) -> str:
+def _printed(claim: Claim) -> str:
     """What the paper prints, for a table."""
-    if isinstance(claim.printed, (str, Printed)):
+    if isinstance(claim.printed, (str, _Printed)):
         return getattr(claim.printed, "text", claim.printed)
     return f"{claim.printed:,g}"
 
@@ -370,7 +370,7 @@ def here(claim: Claim) -> str:
     return claim.measured().text if claim.is_measured else "–"
 
 
-def sure(claim: Claim) -> str:
+def _sure(claim: Claim) -> str:
     """The verdict, and in which share of the draws it comes out where that was found."""
     verdict, found = claim.judge(), claim.shares()
     if not found:
@@ -383,5 +383,5 @@ def sure(claim: Claim) -> str:
 
 def of_section(section: str) -> list[Claim]:
     """The claims of a section of the paper, in the paper's order."""
-    one_of("section", section, tuple(SECTIONS))
+    one_of("section", section, tuple(_SECTIONS))
     return sorted((c for c in of_the_paper() if c.place()[0] == section), key=Claim.place)

@@ -1,11 +1,11 @@
-"""Measures that only read committed results, written down in ``book/claims.yml`` as ``find``.
+"""Measures that only read committed results, written down in ``book/claims.yml`` as ``_find``.
 
 A *path* leads into a result: ``table-6-1/slope``. At a list a number takes one place, ``:`` goes on
 from each, ``:5`` from the first five, ``width=21&rate=100`` takes the one row with these entries;
 ``a|b`` adds two up, and ``path or path`` is the first that exists. The numbers at its end are a
 *cell*, one for each member (a network, a day, a seed); null, a run that was stopped, counts as
-infinite. Cells are combined member by member by `CELLS`, the members pooled by `POOLED` (the
-median, if none is named), pooled values compared by `FORMS`::
+infinite. Cells are combined member by member by `_CELLS`, the members pooled by `_POOLED` (the
+median, if none is named), pooled values compared by `_FORMS`::
 
     find: {median: table-6-1/slope, text: "{0:spread}"}
 
@@ -27,7 +27,7 @@ members of each member, too. A cell of one member, or below ``fixed``, is not dr
 names to cells, in the order in which they are drawn; what only the text names is not drawn.
 
 The text tells ``{0}``, ``{1}``, … or a name: a cell's median to two digits. After a colon may stand
-another statistic (`TOLD`), then digits, "power" or a format of Python: ``{0:mean .0%}``. Further
+another statistic (`_TOLD`), then digits, "power" or a format of Python: ``{0:mean .0%}``. Further
 there are ``{value}``, what is judged; ``{each}``, all that the outermost form compares, of which
 ``{each[0]}`` is the first; ``{draws}``, the value in all draws; and of each ``least`` that goes
 through values with ``for``, what it is and where: ``{least[0]} at {at[0]}``.
@@ -55,7 +55,7 @@ def _furthest(*parts) -> np.ndarray:
 
 
 # What makes one cell of others, member by member; cut to the fewest members
-CELLS = {
+_CELLS = {
     "over": np.divide,
     "times": np.multiply,
     "plus": np.add,
@@ -69,7 +69,7 @@ CELLS = {
 }
 
 # What pools the members of a cell, in each draw
-POOLED = {
+_POOLED = {
     "median": median,
     "mean": mean,
     "root mean": lambda cell: np.sqrt(cell.mean(tuple(range(1, cell.ndim)))),
@@ -79,7 +79,7 @@ POOLED = {
 
 # What compares pooled values. Two more need what ``for`` goes through: ``best`` tells of which of
 # it the least value is, ``rising`` whether the values rise in an ``order``.
-FORMS = {
+_FORMS = {
     "ratio": lambda a, b: a / b,
     "difference": lambda a, b: a - b,
     "deviation": lambda part: np.abs(part - 1),
@@ -92,7 +92,7 @@ FORMS = {
 
 # What the text tells of a cell. Three more: ``spread``, the median with the range; ``all``, each
 # member; ``p``, the chance that a member is as large as the mean of the first cell.
-TOLD = {
+_TOLD = {
     "median": np.median,
     "mean": np.mean,
     "root": lambda cell: np.sqrt(np.mean(cell)),  # of the mean
@@ -105,7 +105,7 @@ TOLD = {
 _FIXED = "fixed"
 
 
-def find(expression: Mapping, arguments: Mapping | None = None) -> Measured:
+def _find(expression: Mapping, arguments: Mapping | None = None) -> Measured:
     """What an expression finds in the committed results: value, text, replicates."""
     return _Expression(expression, dict(arguments or {})).measured()
 
@@ -160,17 +160,17 @@ class _Expression:
         more = dict(entry)
         loop, order = more.pop("for", {}), _values(more.pop("order", []), names)
         ((form, inner),) = more.items()
-        if form in POOLED:
-            return self._leaf(POOLED[form], inner, names, group)
-        if form in CELLS:
+        if form in _POOLED:
+            return self._leaf(_POOLED[form], inner, names, group)
+        if form in _CELLS:
             return self._leaf(median, more, names, group)
         if _FIXED in (form, group) and form in (_FIXED, "paired"):
             return self._compiled(inner, names, _FIXED)
         if form == "paired":
             self.groups[key := f"paired {len(self.groups)}"] = []
             return self._compiled(inner, names, key)
-        if form not in (*FORMS, "best", "rising"):
-            known = ", ".join([*FORMS, "best", "rising", *POOLED, *CELLS, "paired", _FIXED])
+        if form not in (*_FORMS, "best", "rising"):
+            known = ", ".join([*_FORMS, "best", "rising", *_POOLED, *_CELLS, "paired", _FIXED])
             raise ValueError(f"form must be one of {known}, got {form!r}")
         outermost, self.parts = self.parts is None, self.parts or []
         each = [self._compiled(one, env, group) for one, env in _several(inner, loop, names)]
@@ -179,8 +179,8 @@ class _Expression:
         labels = _values(*loop.values(), names) if loop else ()
         if form == "least" and loop:
             self.leasts.append(dict(zip(labels, each)))
-        if form in FORMS:
-            return lambda drawn: FORMS[form](*np.broadcast_arrays(*(part(drawn) for part in each)))
+        if form in _FORMS:
+            return lambda drawn: _FORMS[form](*np.broadcast_arrays(*(part(drawn) for part in each)))
         if form == "best":
             return lambda drawn: np.array(labels)[np.argmin([part(drawn) for part in each], axis=0)]
         return lambda drawn: _rising({k: part(drawn) for k, part in zip(labels, each)}, order)
@@ -215,7 +215,7 @@ class _Expression:
         ((form, inner),) = more.items()
         cells = [np.asarray(self._cell(one, env)) for one, env in _several(inner, loop, names)]
         fewest = min((len(cell) for cell in cells if cell.ndim), default=0)
-        return CELLS[form](*(cell[:fewest] if cell.ndim else cell for cell in cells))
+        return _CELLS[form](*(cell[:fewest] if cell.ndim else cell for cell in cells))
 
 
 def _several(inner, loop: Mapping, names: dict) -> list[tuple]:
@@ -322,8 +322,8 @@ class _Words:
             return ", ".join(_number(value, rest) for value in self.values)
         if name == "p":
             return format(p_value(self.first.mean(), self.values, "more"), rest)
-        if name in TOLD:
-            return _number(TOLD[name](self.values), rest)
+        if name in _TOLD:
+            return _number(_TOLD[name](self.values), rest)
         return _number(
             self.values.item() if self.values.ndim == 0 else np.median(self.values), spec
         )
@@ -333,7 +333,7 @@ class _Several(list):
     """Numbers that a template tells one after another, or a statistic of them."""
 
     def __format__(self, spec: str) -> str:
-        if spec.partition(" ")[0] in TOLD:
+        if spec.partition(" ")[0] in _TOLD:
             return format(_Words([one.values for one in self]), spec)
         return ", ".join(format(one, spec) for one in self)
 

@@ -17,16 +17,16 @@ import math
 from workshop.report import results
 from workshop.report.evidence.claims import Claim, load
 
-NAME = "verdicts"  # Name of the result that keeps the fresh verdicts
+_NAME = "verdicts"  # Name of the result that keeps the fresh verdicts
 
 
-def distance(claim: Claim) -> float:
+def _distance(claim: Claim) -> float:
     """Relative distance of the value from the nearest edge of its bands; NaN if it has none."""
     value, edges = float(claim.measured().value), claim.edges()
     return min((abs(value - e) / max(abs(e), 1e-300) for e in edges), default=math.nan)
 
 
-def digest() -> str:
+def _digest() -> str:
     """Hash of all committed numbers and networks, whoever made them and whenever."""
     total = hashlib.sha256()
     for path in sorted(results.FOLDER.glob("*.json")):
@@ -38,7 +38,7 @@ def digest() -> str:
     return total.hexdigest()[:16]
 
 
-def line(claim: Claim) -> str:
+def _line(claim: Claim) -> str:
     """A claim in a line of the list.
 
     Id, value, relative distance from the nearest edge, shares of the draws, fresh verdict,
@@ -49,7 +49,7 @@ def line(claim: Claim) -> str:
     note = "stands" if fresh != claim.verdict else ""
     note = "CONTRADICTED" if claim.judge() != claim.verdict else note
     drawn = ", ".join(f"{100 * share:.1f} % {name}" for name, share in claim.shares().items())
-    value, away = f"{float(claim.measured().value):.4g}", f"{100 * distance(claim):.1f} %"
+    value, away = f"{float(claim.measured().value):.4g}", f"{100 * _distance(claim):.1f} %"
     cells = (claim.id, value, away, drawn or "-", fresh, claim.verdict, note)
     return " | ".join(cells).rstrip(" |")
 
@@ -61,12 +61,12 @@ def main(arguments=None) -> int:
     options = parser.parse_args(arguments)
     measured = [claim for claim in load() if claim.band]
     for claim in measured:
-        print(line(claim), flush=True)
+        print(_line(claim), flush=True)
     wrong = [claim.id for claim in measured if claim.judge() != claim.verdict]
     print(f"contradicted: {', '.join(wrong) or 'none'}")
     if options.write:
-        kept = {"of results": digest(), "fresh": {claim.id: claim.fresh() for claim in measured}}
-        results.write_json(results.FOLDER / f"{NAME}.json", kept)
+        kept = {"of results": _digest(), "fresh": {claim.id: claim.fresh() for claim in measured}}
+        results.write_json(results.FOLDER / f"{_NAME}.json", kept)
     return bool(wrong)
 
 

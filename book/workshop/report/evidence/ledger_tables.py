@@ -10,23 +10,23 @@ from ddlib._check import one_of
 from ddlib.setups import POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK
 from ddlib.tables import Table, number_beside, significant, typeset
 from workshop.report.evidence.claims import (
-    FILE,
-    LEDGER,
-    SECTIONS,
+    _FILE,
+    _LEDGER,
+    _SECTIONS,
     Claim,
-    function,
+    _function,
+    _printed,
+    _sure,
     here,
     judged_again,
     load,
-    printed,
-    sure,
 )
 from workshop.report.evidence.verdicts import VERDICTS
 
 _SHOWN = {"table": "Table 4-1", "figures": "Figure 5-"}
 
 # What a claim's `refuted` tells, if not what would have refuted it
-HEADS = {
+_HEADS = {
     "not reproduced": "What would have supported it",
     "by construction": "Why nothing could have refuted it",
     "not testable": "What a test would need",
@@ -34,7 +34,7 @@ HEADS = {
 
 
 # Ids of the claims on which the paper's theses and this book's answers hang
-FINDINGS = (
+_FINDINGS = (
     "headline",
     "headline-damping",
     "saturated-21-damping",
@@ -54,8 +54,8 @@ FINDINGS = (
 
 
 def findings() -> Table:
-    """The main findings, `FINDINGS`, as `chosen` shows them."""
-    return chosen(FINDINGS)
+    """The main findings, `_FINDINGS`, as `chosen` shows them."""
+    return chosen(_FINDINGS)
 
 
 def chosen(ids: Iterable[str]) -> Table:
@@ -66,7 +66,7 @@ def chosen(ids: Iterable[str]) -> Table:
     known = {claim.id: claim for claim in load()}
     header = ("claim", "printed", "here", "verdict", "why")
     rows = [
-        (f"{c.claim} ({{doc}}`{c.chapter}`)", printed(c), _here(c), sure(c), c.why)
+        (f"{c.claim} ({{doc}}`{c.chapter}`)", _printed(c), _here(c), _sure(c), c.why)
         for c in (known[one_of("ids", name, tuple(known))] for name in ids)
     ]
     return Table(header, [tuple(map(typeset, row)) for row in rows])
@@ -78,7 +78,7 @@ def again_table(arm: str) -> Table:
     if not pairs:
         raise ValueError(f"arm must be named by claims, got {arm!r}")
     rows = [
-        (f"{c.claim} ({_linked(c)})", printed(c), sure(first), _judged(c), here(c))
+        (f"{c.claim} ({_linked(c)})", _printed(c), _sure(first), _judged(c), here(c))
         for first, c in sorted(pairs, key=lambda pair: pair[1].place())
     ]
     header = ("claim", "printed", "verdict on the simulated arm", f"verdict on {arm}", "there")
@@ -97,7 +97,7 @@ def window(claim: Claim) -> int | None:
     """The window size that a claim is measured at; None if there is none or there are several."""
     if not claim.measure:
         return claim.arguments.get("width")
-    given = inspect.signature(function(claim.measure)).bind(**claim.arguments)
+    given = inspect.signature(_function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
 
@@ -114,10 +114,10 @@ def left_out(claims: Iterable[Claim]) -> Table:
 
 
 def _judged(claim: Claim) -> str:
-    return f"{sure(claim)} ({bands(claim)})" if claim.band else claim.judge()
+    return f"{_sure(claim)} ({_bands(claim)})" if claim.band else claim.judge()
 
 
-def bands(claim: Claim) -> str:
+def _bands(claim: Claim) -> str:
     """The value that is judged and what decides the verdict, in words."""
     if not claim.band:
         return "not judged"
@@ -143,21 +143,21 @@ def _bounds(bounds: Mapping) -> str:
 
 def _linked(claim: Claim) -> str:
     """The claim's place in the paper, as a link to its chapter."""
-    page = page_of(claim)
-    return claim.where if claim.chapter == LEDGER or not page else f"[{claim.where}]({page})"
+    page = _page_of(claim)
+    return claim.where if claim.chapter == _LEDGER or not page else f"[{claim.where}]({page})"
 
 
-def page_of(claim: Claim) -> str:
+def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
     names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    return next((name for name in names if FILE.with_name(name).is_file()), "")
+    return next((name for name in names if _FILE.with_name(name).is_file()), "")
 
 
 def counts(claims: Iterable[Claim]) -> dict[str, dict[str, int]]:
     """How many claims of each section of the paper have which verdict."""
     found: dict[str, dict[str, int]] = {}
     for claim in sorted(claims, key=Claim.place):
-        row = found.setdefault(SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
+        row = found.setdefault(_SECTIONS[claim.place()[0]], dict.fromkeys(VERDICTS, 0))
         row[claim.judge()] += 1
     return found
 

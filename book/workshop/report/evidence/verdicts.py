@@ -9,7 +9,7 @@ its value, from a bootstrap over the networks, and its verdict is what most repl
 - The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
   (`judging`). Results made anew on another machine are another draw; there it
   *stands* until the replicates contradict it: a decided one while at least `STANDS` of them agree,
-  "undecided" while no verdict has `CONTRADICTS`.
+  "undecided" while no verdict has `_CONTRADICTS`.
 
 Measures without replicates, of exact mathematics or a deterministic simulation, have one value
 and one verdict, and a written one that differs is wrong.
@@ -46,7 +46,7 @@ DECIDED = 0.95  # Share of the draws that makes a verdict
 # verdict at the edge of being decided falls in 1 new ensemble of 100, where 0.8 would fell 29.
 STANDS = 0.05
 
-CONTRADICTS = 1.0  # Share of the draws for one verdict that ends a written "undecided"
+_CONTRADICTS = 1.0  # Share of the draws for one verdict that ends a written "undecided"
 
 
 class Measured(NamedTuple):
@@ -127,24 +127,24 @@ def largest_median(*cells) -> np.ndarray:
     return np.max([median(cell) for cell in cells], axis=0)
 
 
-def shares(verdicts) -> dict[str, float]:
+def _shares(verdicts) -> dict[str, float]:
     """Share of the draws in which each verdict comes out, the most frequent first."""
     names, counts = np.unique(verdicts, return_counts=True)
     order = np.argsort(-counts, kind="stable")
     return {str(names[k]): float(counts[k] / counts.sum()) for k in order}
 
 
-def fresh(found: Mapping[str, float]) -> str:
+def _fresh(found: Mapping[str, float]) -> str:
     """The verdict that shares of draws give by themselves; "undecided" if none is decided."""
     best = max(found, key=found.get)
     return best if found[best] >= DECIDED else "undecided"
 
 
-def stands(written: str, found: Mapping[str, float]) -> bool:
+def _stands(written: str, found: Mapping[str, float]) -> bool:
     """Whether shares of draws do not contradict a written verdict; see the module."""
     one_of("written", written, VERDICTS)
     if written == "undecided":
-        return max(found.values()) < CONTRADICTS
+        return max(found.values()) < _CONTRADICTS
     return found.get(written, 0.0) >= STANDS
 
 

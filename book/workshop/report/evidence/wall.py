@@ -15,28 +15,28 @@ import numpy as np
 
 from ddlib.tables import significant, typeset
 from workshop.report.evidence.claims import (
-    LEDGER,
-    OWN,
-    SECTIONS,
+    _LEDGER,
+    _OWN,
+    _SECTIONS,
     Claim,
-    Printed,
-    function,
+    _function,
+    _of_chapter,
+    _Printed,
+    _printed,
+    _sure,
     here,
-    of_chapter,
-    printed,
-    sure,
 )
-from workshop.report.evidence.expressions import find
-from workshop.report.evidence.ledger_tables import HEADS, bands, page_of, window
+from workshop.report.evidence.expressions import _find
+from workshop.report.evidence.ledger_tables import _HEADS, _bands, _page_of, window
 from workshop.report.evidence.verdicts import VERDICTS
 
 # A sign for each verdict, so that colour is not all that tells them apart
-MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
+_MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
 
-CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
+_CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
 
 # Titles of the paper's subsections
-PARTS = {
+_PARTS = {
     "1.1": "Motivation",
     "1.2": "Backpropagation Networks",
     "2.1": "The CMU DD Arm II",
@@ -55,10 +55,10 @@ _TABLE = 10  # a table's place among subsections
 _WIDE = 20.0  # a scale is logarithmic from this ratio of its ends on
 
 
-def mark(verdict: str) -> str:
+def _mark(verdict: str) -> str:
     """A verdict's sign, for the page."""
     name = verdict.replace(" ", "-")
-    return f'<span class="sign v-{name}" aria-hidden="true">{MARKS[verdict]}</span>'
+    return f'<span class="sign v-{name}" aria-hidden="true">{_MARKS[verdict]}</span>'
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,12 @@ class Wall:
 
     def _repr_markdown_(self) -> str:
         rows = []
-        for section, title in SECTIONS.items():
+        for section, title in _SECTIONS.items():
             inside = [claim for claim in self.claims if claim.place()[0] == section]
             if inside:
                 squares = "".join(map(_square, inside))
                 rows.append(f'<p class="wall-row"><span>{_text(title)}</span> {squares}</p>')
-        legend = " ".join(f"<span>{mark(name)} {name}</span>" for name in VERDICTS)
+        legend = " ".join(f"<span>{_mark(name)} {name}</span>" for name in VERDICTS)
         return "\n".join(
             ['<div class="wall" role="group" aria-label="All claims, by section and verdict">',
              *rows, f'<p class="wall-legend">{legend}</p>', "</div>"]
@@ -89,7 +89,7 @@ class Tiles:
     """Claims to open: sentence and verdict outside; value, picture, bands and reasons inside."""
 
     claims: Iterable[Claim]
-    on: str = LEDGER
+    on: str = _LEDGER
 
     def __post_init__(self):
         object.__setattr__(self, "claims", tuple(self.claims))
@@ -100,25 +100,25 @@ class Tiles:
 
 def chapter_tiles(chapter: str) -> Tiles:
     """A chapter's "Paper and reproduction": its claims as `Tiles`."""
-    return Tiles(of_chapter(chapter), chapter)
+    return Tiles(_of_chapter(chapter), chapter)
 
 
 def _square(claim: Claim) -> str:
     told = html.escape(f"{claim.judge()}: {typeset(claim.claim)}")
-    return f'<a href="#claim-{claim.id}" title="{told}">{mark(claim.judge())}</a>'
+    return f'<a href="#claim-{claim.id}" title="{told}">{_mark(claim.judge())}</a>'
 
 
 def _text(text: str) -> str:
     return html.escape(typeset(text), quote=False)
 
 
-def part(claim: Claim) -> str:
+def _part(claim: Claim) -> str:
     """The subsection, table or figure in which a claim stands; empty for its section's own text."""
     section, below, number = claim.place()
     if number:
         return f"{'Table' if below == _TABLE else 'Figure'} {section}-{number}"
     name = f"{section}.{below}"
-    return f"{name}. {PARTS[name]}" if below else ""
+    return f"{name}. {_PARTS[name]}" if below else ""
 
 
 def _tile(claim: Claim, on: str) -> str:
@@ -126,13 +126,13 @@ def _tile(claim: Claim, on: str) -> str:
     data = {
         "verdict": verdict,
         "section": claim.place()[0],
-        "part": part(claim),
+        "part": _part(claim),
         "chapter": claim.chapter,
     }
     given = " ".join(f'data-{name}="{html.escape(value)}"' for name, value in data.items())
     lines = [
         f'<details class="claim" id="claim-{claim.id}" {given}>',
-        f"<summary>{mark(verdict)} <b>{verdict}</b> {_text(claim.claim)}</summary>",
+        f"<summary>{_mark(verdict)} <b>{verdict}</b> {_text(claim.claim)}</summary>",
         "",
         *_body(claim, on),
         "",
@@ -143,7 +143,7 @@ def _tile(claim: Claim, on: str) -> str:
 
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
-    source = "This book's own claim" if claim.printed == OWN else f"Printed: {printed(claim)}"
+    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {_printed(claim)}"
     width, found = window(claim), here(claim)
     known = width is None or str(width) in f"{claim.claim} {found}"
     lines = [
@@ -151,34 +151,34 @@ def _body(claim: Claim, on: str) -> list[str]:
         f"**Here: {typeset(found)}{'' if known else f' (window {width})'}**",
         "",
     ]
-    picture = draws(claim)
+    picture = _draws(claim)
     if picture:
         lines += [picture, ""]
-    judged = f"Judged: {typeset(sure(claim))} ({typeset(bands(claim))}). " if claim.band else ""
-    head = HEADS.get(claim.verdict, "What would have refuted it")
+    judged = f"Judged: {typeset(_sure(claim))} ({typeset(_bands(claim))}). " if claim.band else ""
+    head = _HEADS.get(claim.verdict, "What would have refuted it")
     lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]
     lines.append(_links(claim, on))
     return lines
 
 
 def _links(claim: Claim, on: str) -> str:
-    page, links = page_of(claim), []
+    page, links = _page_of(claim), []
     if page and claim.chapter != on:
         links.append(f"[chapter]({page})")
-    if on != LEDGER and claim.printed != OWN and not claim.arm:
+    if on != _LEDGER and claim.printed != _OWN and not claim.arm:
         links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
-        links.append(f'<a href="{source(claim)}">code</a>')
+        links.append(f'<a href="{_source(claim)}">code</a>')
     return " · ".join(links)
 
 
-def source(claim: Claim) -> str:
+def _source(claim: Claim) -> str:
     """Address of the lines that measure a claim, from the page of a chapter."""
-    measure = inspect.unwrap(function(claim.measure) if claim.measure else find)
-    return f"{CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
+    measure = inspect.unwrap(_function(claim.measure) if claim.measure else _find)
+    return f"{_CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
-def draws(claim: Claim) -> str:
+def _draws(claim: Claim) -> str:
     """A claim's draws in a small picture: 95 % of them, their median, band and printed value."""
     if not claim.band or "is" in claim.band:
         return ""
@@ -187,7 +187,7 @@ def draws(claim: Claim) -> str:
         return ""
     low, median, high = np.quantile(np.asarray(replicates, float), _MIDDLE)
     band = _range(claim)
-    given = float(claim.printed) if isinstance(claim.printed, Printed) else None
+    given = float(claim.printed) if isinstance(claim.printed, _Printed) else None
     place, ends = _scale([low, high, *filter(np.isfinite, band), *([given] if given else [])])
     parts = [
         ("band", *map(place, band)),

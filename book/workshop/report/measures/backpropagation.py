@@ -13,7 +13,7 @@ from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, parity_networks, results
 from workshop.report.evidence.verdicts import Measured, judged, median
 
-LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
+_LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
 
 
 @cache
@@ -47,7 +47,7 @@ def chain_rule() -> Measured:
     return Measured(gap / largest, f"{scientific(gap / largest)} of the largest derivative")
 
 
-def reach(history: History, level: float = LEVEL) -> np.ndarray:
+def reach(history: History, level: float = _LEVEL) -> np.ndarray:
     """Epochs after which each member's training error first falls below a level."""
     found = []
     for error in history.training.T:
@@ -66,7 +66,7 @@ def acceleration() -> Measured:
     """How much more acceleration speeds up learning here than in another domain, parity.
 
     The speed-up is the median number of epochs without over that with acceleration, at the same
-    step size and from the same initial weights: to a training RMSS of `LEVEL` on the windows of
+    step size and from the same initial weights: to a training RMSS of `_LEVEL` on the windows of
     21, and to the first time that all inputs are right on parity. A run that does not get there
     counts with its length.
     """

@@ -26,10 +26,10 @@ from ddlib.trajectories import APPENDIX_I, pick_and_place
 from workshop.report.evidence.verdicts import Measured
 
 ARM = CMU_DD_ARM_II
-EXTENTS = APPENDIX_I[0]
-TIMES = np.arange(1500) * CONTROL_STEP
+_EXTENTS = APPENDIX_I[0]
+_TIMES = np.arange(1500) * CONTROL_STEP
 # Inertia that each joint has by itself, the arm stretched, kg m^2
-OWN = np.diag(ARM.mass_matrix([0.0, 0.0]))
+_OWN = np.diag(ARM.mass_matrix([0.0, 0.0]))
 
 
 def _rms(x) -> np.ndarray:
@@ -37,7 +37,7 @@ def _rms(x) -> np.ndarray:
     return np.sqrt(np.mean(np.square(x), axis=(-2, -1)))
 
 
-def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0, extents=EXTENTS):
+def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0, extents=_EXTENTS):
     """Tracking errors on the smooth motion, degrees, ``(runs, time, 2)``.
 
     Each run has a factor, the share of the needed torque that its model gives, and another on
@@ -65,16 +65,16 @@ def _real(speed: float) -> np.ndarray:
 def perfect_model() -> Measured:
     """Largest error of feedforward alone over the extent, ideal arm and smooth motion."""
     held, none = np.abs(_errors([1, 0], [0, 1])).max((1, 2))
-    continuous = np.abs(track(np.zeros((1, 2)), [False], ARM.inverse_dynamics, [[0, 0]])).max()
+    continuous = np.abs(_track(np.zeros((1, 2)), [False], ARM.inverse_dynamics, [[0, 0]])).max()
     text = f"{held:.2f}° on a smooth motion without feedback, torque held for 2 ms; "
     text += f"{scientific(continuous)}° with a continuous torque ({none:.1f}° by PD alone)"
-    return Measured(float(held / EXTENTS.max()), text)
+    return Measured(float(held / _EXTENTS.max()), text)
 
 
 def perfect_model_on_family() -> Measured:
     """Largest error over the extent on the paper's own references, perfect model and PD."""
     law = Feedforward(ARM, pd(KP, KD))
-    run = follow(ARM, law, pick_and_place(APPENDIX_I, TIMES), TIMES)
+    run = follow(ARM, law, pick_and_place(APPENDIX_I, _TIMES), _TIMES)
     largest = np.rad2deg(np.abs(run.tracking_error).max((1, 2)))
     share = largest / APPENDIX_I.max(1)
     text = f"largest error {largest.min():.1f} to {largest.max():.1f}°, at the jump of the start"
@@ -101,13 +101,13 @@ def disturbances(load: float = 5.0) -> Measured:
 
 def coupling() -> Measured:
     """Error under PID that models of the joints by themselves leave, over the coupled model's."""
-    motion = smooth_pick_and_place(np.broadcast_to(EXTENTS, (3, 2)), TIMES)
+    motion = smooth_pick_and_place(np.broadcast_to(_EXTENTS, (3, 2)), _TIMES)
 
     def model(q, qd, qdd):
-        return np.stack([0 * qdd[0], OWN * qdd[1], SecondOrderModel(ARM)(q, qd, qdd)[2]])
+        return np.stack([0 * qdd[0], _OWN * qdd[1], SecondOrderModel(ARM)(q, qd, qdd)[2]])
 
     law = Feedforward(model, PID(KP, np.array(KP) / 2, KD))
-    alone, own, coupled = _rms(np.rad2deg(follow(ARM, law, motion, TIMES).tracking_error))
+    alone, own, coupled = _rms(np.rad2deg(follow(ARM, law, motion, _TIMES).tracking_error))
     text = f"independent PID {significant(alone, 2)}°, with models of single joints "
     text += f"{significant(own, 2)}°, of second order with coupling {significant(coupled, 2)}°"
     return Measured(float(own / coupled), text)
@@ -115,9 +115,9 @@ def coupling() -> Measured:
 
 def off_line() -> Measured:
     """Whether computed torque and feedforward give the same torque on the reference."""
-    motion = smooth_pick_and_place(EXTENTS, TIMES)
-    law = ComputedTorque(ARM, tuple(KP / OWN), tuple(KD / OWN)).start(motion, CONTROL_STEP)
-    on_line = np.array([law(k, motion.q[k], motion.qd[k]) for k in range(TIMES.size)])
+    motion = smooth_pick_and_place(_EXTENTS, _TIMES)
+    law = ComputedTorque(ARM, tuple(KP / _OWN), tuple(KD / _OWN)).start(motion, CONTROL_STEP)
+    on_line = np.array([law(k, motion.q[k], motion.qd[k]) for k in range(_TIMES.size)])
     gap = np.abs(on_line - ARM.inverse_dynamics(*motion)).max()
     text = "the same torque wherever the arm is on its reference "
     text += f"(difference {significant(gap, 1)} N m)"
@@ -126,16 +126,16 @@ def off_line() -> Measured:
 
 def figure_2_1() -> Measured:
     """Largest difference between Figure 2-1 as a program and the sampled simulator, degrees."""
-    t = TIMES[::5]
-    drawn = run_system(feedforward_system(ARM, ARM, KP, KD), smooth_pick_and_place(EXTENTS, t), t)
+    t = _TIMES[::5]
+    drawn = run_system(feedforward_system(ARM, ARM, KP, KD), smooth_pick_and_place(_EXTENTS, t), t)
     law = Feedforward(ARM, pd(KP, KD))
-    built = follow(ARM, law, smooth_pick_and_place(EXTENTS, TIMES), TIMES, log_every=5)
+    built = follow(ARM, law, smooth_pick_and_place(_EXTENTS, _TIMES), _TIMES, log_every=5)
     gap = float(np.rad2deg(np.abs(drawn.q - built.q_true).max()))
     text = f"drawn and run: {significant(gap, 2)}° at most from the sampled simulation"
     return Measured(gap, text)
 
 
-def track(rotors, frozen, model, gains, speed: float = 1.0, extents=EXTENTS) -> np.ndarray:
+def _track(rotors, frozen, model, gains, speed: float = 1.0, extents=_EXTENTS) -> np.ndarray:
     """Tracking errors of changed arms under continuous PD control and feedforward, shape (runs,
     time, 2).
 
@@ -183,7 +183,7 @@ def linearised(speed: float = 2.0) -> Measured:
         full[3] = 0.8 * SecondOrderModel(ARM)(*motion)[3]
         return full
 
-    errors = track(np.zeros((4, 2)), frozen, model, np.ones((4, 2)), speed)
+    errors = _track(np.zeros((4, 2)), frozen, model, np.ones((4, 2)), speed)
     alone, ahead = _rms(errors[0] - errors[1]), _rms(errors[2] - errors[3])
     text = f"what a linear arm does not explain falls from {significant(alone, 2)}° to "
     text += f"{significant(ahead, 2)}° (model 20 % off, {speed:g} times the speed)"
@@ -203,12 +203,12 @@ def faster(speed: float = 2.0) -> Measured:
 def _geared(gear: float, own_model: bool, extents: tuple) -> np.ndarray:
     """Errors of the arm without and with gears, the joints' own loops equally fast."""
     rotors = np.array([[0.0, 0.0], [gear**2 * PUMA_560_ROTORS[0]] * 2])
-    inertia = OWN + rotors
+    inertia = _OWN + rotors
 
     def model(q, qd, qdd):
         return own_model * inertia[:, None] * qdd
 
-    return track(rotors, [False, False], model, inertia / OWN, extents=np.array(extents))
+    return _track(rotors, [False, False], model, inertia / _OWN, extents=np.array(extents))
 
 
 def backdriven(gear: float = 100.0) -> Measured:
@@ -221,7 +221,7 @@ def backdriven(gear: float = 100.0) -> Measured:
 
 def target_for_models(gear: float = 100.0) -> Measured:
     """What a model of each joint by itself leaves of PD's error: without over behind gears."""
-    left = [_rms(_geared(gear, own, tuple(EXTENTS))) for own in (True, False)]
+    left = [_rms(_geared(gear, own, tuple(_EXTENTS))) for own in (True, False)]
     direct, geared = left[0] / left[1]
     text = f"a model without coupling leaves {100 * direct:.0f} % of PD's error, "
     text += f"{100 * geared:.0f} % behind gears of {gear:g} to 1"

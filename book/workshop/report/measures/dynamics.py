@@ -53,19 +53,19 @@ from ddlib.trajectories import (
 )
 from workshop.report.evidence.verdicts import Measured, judged, turns_at
 
-SETUP = STATE_FEEDBACK
+_SETUP = STATE_FEEDBACK
 ARM = CMU_DD_ARM_II
-TIMES = np.arange(300) * 0.01
-LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
+_TIMES = np.arange(300) * 0.01
+_LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
 # A springy shaft with modes at 36 and 38 Hz: an example, no value of the real arm
-SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))
+_SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))
 
-SIGNIFICANT = 0.2  # Share of the rigid body's torque from which on an effect counts as significant
+_SIGNIFICANT = 0.2  # Share of the rigid body's torque from which on an effect counts as significant
 
 
 def nonlinearity() -> Measured:
     """What a linear model leaves unexplained on the pick-and-place family (judged), on a cube."""
-    family = linear_residual(ARM, *pick_and_place(random_extents(100, seed=0), TIMES))
+    family = linear_residual(ARM, *pick_and_place(random_extents(100, seed=0), _TIMES))
     cube = np.random.default_rng(0).uniform(-np.pi, np.pi, (3, 20_000, 2))
     text = (
         f"a linear model leaves {100 * family:.0f} % on the pick-and-place family, "
@@ -76,7 +76,7 @@ def nonlinearity() -> Measured:
 
 def terms() -> Measured:
     """Whether the torque is the sum of terms of known origin; sizes of the velocity terms."""
-    motion = pick_and_place(APPENDIX_I[0], TIMES)
+    motion = pick_and_place(APPENDIX_I[0], _TIMES)
     parts = ARM.torque_terms(*motion)
     bilinear = np.einsum("tij,tj->ti", ARM.mass_matrix(motion.q), motion.qdd)
     bilinear += np.einsum("tij,tj->ti", ARM.coriolis_matrix(motion.q, motion.qd), motion.qd)
@@ -98,7 +98,7 @@ def multiplications() -> Measured:
     )
     closed = costs.count(lagrange_euler, PUMA_560).multiplications
     newton = costs.count(newton_euler, PUMA_560).multiplications
-    two = costs.count_closed_form(LINKS, shared=True).multiplications
+    two = costs.count_closed_form(_LINKS, shared=True).multiplications
     text = f"Lagrangian form of six joints: closed {closed:,}, recursive {recursive:,}, "
     text += f"{zeros:,} with its zeros known, {custom:,} customised to the Puma; "
     return Measured(recursive, f"{text}Newton-Euler {newton:,}; two joints, closed {two}")
@@ -143,11 +143,11 @@ def extra_links(samples: int = 4000) -> Measured:
 def ignoring_terms() -> Measured:
     """Share of the multiplications that is left without velocity terms, and the error."""
     full, cheap = (
-        costs.count_closed_form(LINKS, shared=True, velocity_terms=v).multiplications
+        costs.count_closed_form(_LINKS, shared=True, velocity_terms=v).multiplications
         for v in (True, False)
     )
-    motion = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], TIMES)
-    lost = 100 * share_of_velocity_terms(ARM, motion, effects=SETUP.effects)
+    motion = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], _TIMES)
+    lost = 100 * share_of_velocity_terms(ARM, motion, effects=_SETUP.effects)
     text = (
         f"{cheap} for {full} multiplications, at {lost[0]:.0f} % and {lost[1]:.0f} % of the torque"
     )
@@ -156,9 +156,9 @@ def ignoring_terms() -> Measured:
 
 @cache
 def _coverage() -> np.ndarray:
-    plant = (ARM, SETUP.controller, APPENDIX_I[:5], SETUP.effects)
+    plant = (ARM, _SETUP.controller, APPENDIX_I[:5], _SETUP.effects)
     found = least_squares(by_modulation(repeat(*plant, repetitions=200, seed=1)))
-    return found.covers(true_parameters(ARM, SETUP.effects, RIGID + FRICTION))
+    return found.covers(true_parameters(ARM, _SETUP.effects, RIGID + FRICTION))
 
 
 def identification() -> Measured:
@@ -170,7 +170,7 @@ def identification() -> Measured:
 
 def gears() -> Measured:
     """The shoulder's share of the elbow's torque without gears over that behind 100 to 1."""
-    motion = pick_and_place(APPENDIX_I[0], TIMES)
+    motion = pick_and_place(APPENDIX_I[0], _TIMES)
     direct, geared = share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
     text = f"the shoulder causes {100 * direct:.0f} % of the elbow's torque, "
     text += f"{100 * geared:.0f} % behind gears of 100 to 1"
@@ -192,7 +192,7 @@ def _drive(runs: int | None = None, **effects) -> Recording:
     extents = APPENDIX_I[TEST_TRAJECTORY - 1]
     extents = extents if runs is None else np.repeat([extents], runs, axis=0)
     options = dict(effects=Effects(**effects), log_step=CONTROL_STEP, rest=0.1)
-    return record(SETUP.arm, SETUP.controller, extents, **options)
+    return record(_SETUP.arm, _SETUP.controller, extents, **options)
 
 
 @cache
@@ -206,7 +206,7 @@ def _shares(left) -> tuple[np.ndarray, str]:
     reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], run.t[run.motion])
     driven, asked = (
         rms(left) / rms(torque)
-        for torque in (run.tau_true[run.motion], SETUP.arm.inverse_dynamics(*reference))
+        for torque in (run.tau_true[run.motion], _SETUP.arm.inverse_dynamics(*reference))
     )
     text = f"{100 * driven[0]:.0f} % of the torque at the shoulder, {100 * driven[1]:.0f} % at the "
     text += f"elbow; of what the reference asks for {100 * asked[0]:.0f} and {100 * asked[1]:.0f} %"
@@ -219,16 +219,16 @@ def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
     The joint with the smaller share counts, both as RMS.
     """
     factor = np.outer(factors, (1.0, 1.0))
-    viscous, coulomb = SETUP.effects.friction
+    viscous, coulomb = _SETUP.effects.friction
     scaled = (
         replace(viscous, coefficient=factor * viscous.coefficient),
         replace(coulomb, level=factor * coulomb.level),
     )
     run = _drive(len(factors), friction=scaled)
-    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    left = residual_torque(_SETUP.arm, run)[:, run.motion]
     share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
-    turn = turns_at(factors, share.min(-1), SIGNIFICANT)
-    text = f"{_shares(left[0])[1]}; {100 * SIGNIFICANT:g} % from {significant(turn, 2)} times the "
+    turn = turns_at(factors, share.min(-1), _SIGNIFICANT)
+    text = f"{_shares(left[0])[1]}; {100 * _SIGNIFICANT:g} % from {significant(turn, 2)} times the "
     return Measured(turn, f"{text}assumed friction on")
 
 
@@ -239,9 +239,9 @@ def differencing(width: int = 19) -> Measured:
     that it makes through the derivative gain of the shoulder. `width`: readings of the parabola.
     """
     q = _ideal().q_true[:, 0]
-    rounding = SETUP.effects.encoder[0].apply(q) - q
+    rounding = _SETUP.effects.encoder[0].apply(q) - q
     noise = [
-        SETUP.controller.kd[0] * np.std(sliding_window_view(rounding, len(w)) @ w)
+        _SETUP.controller.kd[0] * np.std(sliding_window_view(rounding, len(w)) @ w)
         for w in (difference(1, CONTROL_STEP), end_slope(width, 2, CONTROL_STEP))
     ]
     simple, fitted = (f"{significant(n, 2)} N m" for n in noise)
@@ -271,11 +271,11 @@ def snap() -> Measured:
     omega, extents = np.pi / MOTION_SECONDS, np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1])
     sine, cosine = (f(omega * t)[:, None] * extents for f in (np.sin, np.cos))
     reference = Trajectory(-sine, -omega * cosine, omega**2 * sine)
-    options = dict(effects=Effects(transmission=(SHAFT,)), log_every=1)
-    run = follow(SETUP.arm, SETUP.controller, reference, t, **options)
-    left = rms(residual_torque(SETUP.arm, run)[t[:-1] >= 0])[0]
-    noise = SETUP.effects.torque_sensor[0].std[0]
-    modes = SHAFT.mode_frequencies(SETUP.arm, [0.0, 0.0]) / (2 * np.pi)
+    options = dict(effects=Effects(transmission=(_SHAFT,)), log_every=1)
+    run = follow(_SETUP.arm, _SETUP.controller, reference, t, **options)
+    left = rms(residual_torque(_SETUP.arm, run)[t[:-1] >= 0])[0]
+    noise = _SETUP.effects.torque_sensor[0].std[0]
+    modes = _SHAFT.mode_frequencies(_SETUP.arm, [0.0, 0.0]) / (2 * np.pi)
     turn = float(modes[0] * np.sqrt(left / noise))
     text = (
         f"{1e3 * left:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
@@ -288,8 +288,8 @@ def snap() -> Measured:
 @cache
 def _rattle(gaps: tuple) -> np.ndarray:
     """Torque that play of the springy shaft adds at both joints, the whole motion."""
-    run = _drive(len(gaps) + 1, transmission=(replace(SHAFT, gap=np.outer((0, *gaps), (1, 1))),))
-    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    run = _drive(len(gaps) + 1, transmission=(replace(_SHAFT, gap=np.outer((0, *gaps), (1, 1))),))
+    left = residual_torque(_SETUP.arm, run)[:, run.motion]
     return left[1:] - left[0]
 
 
@@ -297,17 +297,17 @@ def backlash(gaps=(1e-3, 2e-3, 4e-3)) -> Measured:
     """Play behind a springy shaft that is significant, rad: share of the rigid body's torque."""
     left = _rattle(tuple(gaps))
     share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
-    turn = turns_at(gaps, share.max(-1), SIGNIFICANT)
+    turn = turns_at(gaps, share.max(-1), _SIGNIFICANT)
     text = f"if it had gears, play of {np.rad2deg(gaps[0]):.2f}°: {_shares(left[0])[1]}; "
-    return Measured(turn, f"{text}{100 * SIGNIFICANT:g} % from {np.rad2deg(turn):.2f}° on")
+    return Measured(turn, f"{text}{100 * _SIGNIFICANT:g} % from {np.rad2deg(turn):.2f}° on")
 
 
 def high_frequency(softer=(0.3, 0.1)) -> Measured:
     """Torque that a springy shaft leaves over the rigid body's, ringing at the start included."""
     factors = (1, *softer)
-    stiffness = np.outer(factors, SHAFT.stiffness)
-    run = _drive(len(factors), transmission=(replace(SHAFT, stiffness=stiffness),))
-    left = residual_torque(SETUP.arm, run)[:, run.motion]
+    stiffness = np.outer(factors, _SHAFT.stiffness)
+    run = _drive(len(factors), transmission=(replace(_SHAFT, stiffness=stiffness),))
+    left = residual_torque(_SETUP.arm, run)[:, run.motion]
     share = (rms(left) / rms(_ideal().tau_true[_ideal().motion])).max(-1)
     others = ", ".join(f"{100 * x:.0f} % at {f:g}" for x, f in zip(share[1:], softer))
     text = f"springy shaft: {_shares(left[0])[1]}; the larger share is {others} of the stiffness"
@@ -319,15 +319,15 @@ def dead_zone(width: float = 0.1) -> Measured:
     tau = _ideal().tau_true[_ideal().motion]
     lost = DeadZone((width, width)).inverse(tau) - tau
     share, text = _shares(lost)
-    turn = float(width * SIGNIFICANT / share.max())
+    turn = float(width * _SIGNIFICANT / share.max())
     text = f"dead zone of {width:g} N m: {text}; "
-    text += f"{100 * SIGNIFICANT:g} % from {significant(turn, 2)} N m on"
+    text += f"{100 * _SIGNIFICANT:g} % from {significant(turn, 2)} N m on"
     return Measured(turn, text)
 
 
 def saturation() -> Measured:
     """Torque limit below which the motion saturates over the assumed one, the nearer joint."""
-    limit = np.array(SETUP.effects.actuator[0].limit)
+    limit = np.array(_SETUP.effects.actuator[0].limit)
     largest = np.abs(_ideal().tau_true).max(0)
     share = (largest / limit).max()
     text = f"the motion takes {100 * share:.0f} % of the assumed limit at most; limits below "
@@ -340,11 +340,11 @@ def sampling(late: float = 1.2e-3) -> Measured:
 
     The torque is held over a control period, and late.
     """
-    viscous = np.array(SETUP.effects.friction[0].coefficient)
-    gain = np.hstack([np.diag(SETUP.controller.kp), np.zeros((2, 2))])
+    viscous = np.array(_SETUP.effects.friction[0].coefficient)
+    gain = np.hstack([np.diag(_SETUP.controller.kp), np.zeros((2, 2))])
 
     def growth(factor, delay):
-        joints = linear.plant(SETUP.arm.mass_matrix([0.0, 0.0]), factor * viscous)
+        joints = linear.plant(_SETUP.arm.mass_matrix([0.0, 0.0]), factor * viscous)
         return np.log(np.abs(late_poles(joints, gain, CONTROL_STEP, delay)).max()) / CONTROL_STEP
 
     turn = brentq(growth, 0.1, 10.0, args=(late,))
@@ -362,9 +362,9 @@ def sensor_noise(bits=(14, 15, 16, 17, 18, 19, 20)) -> Measured:
 
     def torque(q):
         qd, qdd = (q[2:] - q[:-2]) / (2 * LOG_STEP), np.diff(q, 2, axis=0) / LOG_STEP**2
-        return SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd)
+        return _SETUP.arm.inverse_dynamics(q[1:-1], qd, qdd)
 
     noise = {b: torque(Quantisation.encoder(b).apply(log)) - torque(log) for b in bits}
-    turn = min(b for b, left in noise.items() if _shares(left)[0].max() < SIGNIFICANT)
+    turn = min(b for b, left in noise.items() if _shares(left)[0].max() < _SIGNIFICANT)
     text = f"16 bits, second differences at 100 a second: {_shares(noise[16])[1]}; below "
-    return Measured(turn, f"{text}{100 * SIGNIFICANT:g} % from {turn} bits on")
+    return Measured(turn, f"{text}{100 * _SIGNIFICANT:g} % from {turn} bits on")

@@ -43,7 +43,7 @@ ENTRIES = {
     "friction": {"shoulder": (0, 0, 1), "elbow": (1, 1, 1)},
 }
 
-UNITS = {"inertia": "kg m²", "friction": "N m s/rad"}  # Units of these gains
+_UNITS = {"inertia": "kg m²", "friction": "N m s/rad"}  # Units of these gains
 
 
 @cache
@@ -70,7 +70,7 @@ def calibrated(what: str = "inertia", width: int = 21, path: str = "gains") -> M
     real, true, told = _entries(what, np.array(found["real"][path]), arm_gains())
     nulls = (_entries(what, np.array(x[path]), arm_gains())[0] for x in matched(found).values())
     chance = max(near_by_chance(null, real, true) for null in nulls)
-    text = f"{told} {UNITS[what]}; as near by chance: p {chance:.2f}"
+    text = f"{told} {_UNITS[what]}; as near by chance: p {chance:.2f}"
     return judged(lambda each: _off(each, true), real, text=text)
 
 
@@ -79,7 +79,7 @@ def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
     windows, _ = cases(committed.training(setup), width)
     found = gains_of(committed.networks(width, setup), windows).whole
     real, true, told = _entries("inertia", found, arm_gains(setup))
-    return judged(lambda each: _off(each, true), real, text=f"{told} {UNITS['inertia']}")
+    return judged(lambda each: _off(each, true), real, text=f"{told} {_UNITS['inertia']}")
 
 
 def stiffness(width: int = 21) -> Measured:

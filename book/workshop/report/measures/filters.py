@@ -34,7 +34,7 @@ from workshop.report.evidence.verdicts import Measured, judged, largest_median, 
 
 def _pair(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
     """Filters of the trained networks, and of the same before training."""
-    models = committed.networks, committed.untrained
+    models = committed.networks, committed._untrained
     return [committed.filters(width, layer, model, setup) for model in models]
 
 
@@ -117,7 +117,7 @@ def parts_sum_up() -> Measured:
 
 def _both(of: Callable) -> list:
     """What a function makes of the trained networks, and of the same before training."""
-    return [of(models) for models in (committed.networks, committed.untrained)]
+    return [of(models) for models in (committed.networks, committed._untrained)]
 
 
 def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
@@ -172,7 +172,7 @@ def shoulder_profile(width: int) -> Measured:
     return judged(median, wrong, text=spread(wrong))
 
 
-RUNS = ("training", "trajectory 6")  # Where errors are taken
+_RUNS = ("training", "trajectory 6")  # Where errors are taken
 
 
 @cache
@@ -198,12 +198,12 @@ def hidden_units_add(
 ) -> Measured:
     """Error of a linear filter alone over that with the hidden units, both fitted anew."""
     (x, hidden, y), (new, held, answer) = _features(width, setup)
-    alone = linear_alone(width, setup)[RUNS.index(runs)]
+    alone = linear_alone(width, setup)[_RUNS.index(runs)]
     pairs = [
         refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)
         for h, t in zip(hidden, held)
     ]
-    both = np.array(pairs)[:, RUNS.index(runs)]
+    both = np.array(pairs)[:, _RUNS.index(runs)]
     text = f"{significant(alone, 2)} alone, {significant(np.median(both), 2)} with hidden units"
     return judged(median, alone / both, text=text)
 

@@ -10,7 +10,7 @@ import numpy as np
 from ddlib import paper
 from ddlib.setups import WINDOWS
 from workshop.report import results
-from workshop.report.knobs import Emulator, knobs_of, left_out, shares, spread_evenly, weigh
+from workshop.report.knobs import _Emulator, _left_out, _shares, _spread_evenly, _weigh, knobs_of
 
 # The six cells of Table 4-1
 CELLS = tuple((column, width) for column in ("training", "test") for width in WINDOWS)
@@ -27,14 +27,14 @@ def printed(wanted=CELLS) -> np.ndarray:
     return np.log([tables[column][width] for column, width in wanted])
 
 
-class Screen(NamedTuple):
+class _Screen(NamedTuple):
     """What the design says of the six cells."""
 
     names: tuple[str, ...]  # of the knobs
     places: np.ndarray  # (runs, knobs)
     values: np.ndarray  # logarithms of errors, (runs, networks, cells)
     covariance: np.ndarray  # of one network on one recording around the mean of its run
-    emulators: tuple[Emulator, ...]
+    emulators: tuple[_Emulator, ...]
     scores: np.ndarray  # each run less what the others predict, in deviations, (cells, runs)
 
     def predict(self, places) -> tuple[np.ndarray, np.ndarray]:
@@ -44,7 +44,7 @@ class Screen(NamedTuple):
         return np.stack([m for m, _ in pairs], -1), np.stack([v for _, v in pairs], -1) * wider
 
 
-def screen_of(places, values, names) -> Screen:
+def _screen_of(places, values, names) -> _Screen:
     """Emulators of some cells."""
     places, values = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
     runs, networks, cells = values.shape
@@ -52,9 +52,9 @@ def screen_of(places, values, names) -> Screen:
     apart = (values - means[:, None]).reshape(-1, cells)
     covariance = apart.T @ apart / (runs * (networks - 1))
     variances = np.diag(covariance) / networks
-    emulators = [Emulator.fit(places, means[:, k], variances[k]) for k in range(cells)]
-    scores = [left_out(places, means[:, k], variances[k]) for k in range(cells)]
-    return Screen(tuple(names), places, values, covariance, tuple(emulators), np.array(scores))
+    emulators = [_Emulator.fit(places, means[:, k], variances[k]) for k in range(cells)]
+    scores = [_left_out(places, means[:, k], variances[k]) for k in range(cells)]
+    return _Screen(tuple(names), places, values, covariance, tuple(emulators), np.array(scores))
 
 
 def logarithms(method: str, wanted=CELLS) -> np.ndarray:
@@ -65,10 +65,10 @@ def logarithms(method: str, wanted=CELLS) -> np.ndarray:
 
 
 @cache
-def screen(method: str, wanted=CELLS) -> Screen:
+def screen(method: str, wanted=CELLS) -> _Screen:
     """The emulators of some numbers by a method, from the committed design."""
     rows = results.read("screened")["methods"][method]
-    return screen_of([row["places"] for row in rows], logarithms(method, wanted), knobs_of(method))
+    return _screen_of([row["places"] for row in rows], logarithms(method, wanted), knobs_of(method))
 
 
 def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
@@ -78,7 +78,7 @@ def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
     """
     here = screen(method)
     total = [
-        shares(emulator.draws(draws, seed=k), len(here.names))[:, 1]
+        _shares(emulator.draws(draws, seed=k), len(here.names))[:, 1]
         for k, (emulator, cell) in enumerate(zip(here.emulators, CELLS))
         if cell[0] == column
     ]
@@ -86,7 +86,7 @@ def knob_shares(method: str, column: str, draws: int = 200) -> dict[str, tuple]:
     return dict(zip(here.names, map(tuple, levels.T)))
 
 
-class Posterior(NamedTuple):
+class _Posterior(NamedTuple):
     """Places of the knobs, spread evenly, and what the printed numbers make of them."""
 
     places: np.ndarray  # (places, knobs)
@@ -108,12 +108,12 @@ class Posterior(NamedTuple):
 
 
 @cache
-def posterior(method: str, wanted=CELLS, count: int = 2**14) -> Posterior:
+def posterior(method: str, wanted=CELLS, count: int = 2**14) -> _Posterior:
     """Posterior of the knobs of a method, given printed numbers; default: the six errors.
 
     One network on one recording was printed, so an observation scatters as ours do.
     """
     here = screen(method, wanted)
-    places = spread_evenly(count, len(here.names))
-    weights, evidence = weigh(*here.predict(places), here.covariance, printed(wanted))
-    return Posterior(places, weights, evidence)
+    places = _spread_evenly(count, len(here.names))
+    weights, evidence = _weigh(*here.predict(places), here.covariance, printed(wanted))
+    return _Posterior(places, weights, evidence)

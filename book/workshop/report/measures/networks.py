@@ -97,7 +97,7 @@ def explained(layer: str = "direct") -> Measured:
     """Median share of position, velocity and acceleration in filters; the least of 3 windows."""
     cells, before = (
         [shares(committed.filters(w, layer, model))[..., :3].sum(-1) for w in WINDOWS]
-        for model in (committed.networks, committed.untrained)
+        for model in (committed.networks, committed._untrained)
     )
     text = ", ".join(f"{100 * np.median(c):.0f} % at {w}" for c, w in zip(cells, WINDOWS))
     text += f" of the energy; before training at most {100 * max(map(np.median, before)):.0f} %"
@@ -120,7 +120,7 @@ def _crossings(filters, shift: float) -> tuple[np.ndarray, np.ndarray]:
 def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
     """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
     two, off = _crossings(committed.filters(width, "direct"), shift)
-    before = _crossings(committed.filters(width, "direct", committed.untrained), shift)[0]
+    before = _crossings(committed.filters(width, "direct", committed._untrained), shift)[0]
 
     def share(pair):
         return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)

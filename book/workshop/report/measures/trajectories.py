@@ -28,7 +28,7 @@ from workshop.report import committed
 from workshop.report.evidence.verdicts import Measured, turns_at
 from workshop.report.exact_states import RADIUS
 
-TRAINING = len(TRAINING_TRAJECTORIES)
+_TRAINING = len(TRAINING_TRAJECTORIES)
 
 
 def ends_and_middle() -> Measured:
@@ -44,8 +44,8 @@ def ends_and_middle() -> Measured:
 def members() -> Measured:
     """Whether all six pairs of extents lie in the square; where the test lies."""
     inside = ((APPENDIX_I >= 0) & (APPENDIX_I <= MAX_EXTENT_DEG)).all()
-    hull = Delaunay(APPENDIX_I[:TRAINING])
-    draws = random_extents(2000 * (TRAINING + 1), seed=3).reshape(2000, TRAINING + 1, 2)
+    hull = Delaunay(APPENDIX_I[:_TRAINING])
+    draws = random_extents(2000 * (_TRAINING + 1), seed=3).reshape(2000, _TRAINING + 1, 2)
     outside = np.mean([Delaunay(d[:-1]).find_simplex(d[-1]) < 0 for d in draws])
     place = "outside" if hull.find_simplex(APPENDIX_I[-1]) < 0 else "inside"
     text = f"six of six; number {paper.TEST_TRAJECTORY} lies {place} the hull of the others, as in "
@@ -73,11 +73,11 @@ def cases() -> Measured:
     """Windows of the five training recordings: with the rests, and inside the motions."""
     recording = committed.recording()
     found = [
-        sliding_windows(recording.q[:TRAINING], w, recording.motion)[..., 0, 0].size
+        sliding_windows(recording.q[:_TRAINING], w, recording.motion)[..., 0, 0].size
         for w in WINDOWS
     ]
     inside = [
-        sliding_windows(recording.q[:TRAINING, recording.motion], w)[..., 0, 0].size
+        sliding_windows(recording.q[:_TRAINING, recording.motion], w)[..., 0, 0].size
         for w in WINDOWS
     ]
     text = f"{found[0]:,} with the rests; windows within the motions give "
@@ -127,7 +127,7 @@ def unreachable(width: int = 21) -> Measured:
     """Upper bound on the reachable share of the windows' cube, as a power of ten."""
     power = 2 * log10_reachable_share(width, RADIUS * LOG_STEP / np.pi)
     recording = committed.recording()
-    windows = sliding_windows(recording.q[:TRAINING], width, recording.motion)
+    windows = sliding_windows(recording.q[:_TRAINING], width, recording.motion)
     step = STATE_FEEDBACK.effects.encoder[0].step
     used = used_dimensions(windows.reshape(-1, 2 * width), step)
     share = scientific(10.0 ** np.ceil(power))
@@ -138,7 +138,7 @@ def unreachable(width: int = 21) -> Measured:
 
 def _states(setup: str) -> np.ndarray:
     """True states of the training runs, ``(runs, samples, 2, 3)``."""
-    return true_states(committed.recording(setup)[:TRAINING], SETUPS[setup])
+    return true_states(committed.recording(setup)[:_TRAINING], SETUPS[setup])
 
 
 def coverage(cells: int = 10) -> Measured:

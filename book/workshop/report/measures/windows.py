@@ -210,7 +210,7 @@ def noise_left(width: int = 41) -> Measured:
     """Correlation of trained with initial weights in directions predicted not to be learnt."""
     learnt = int(np.median(learning(width, 0)["predicted"]["learnt"]))
     along = Directions.of(TrainingSet.from_recording(committed.training(), width))
-    models = committed.networks(width), committed.untrained(width)
+    models = committed.networks(width), committed._untrained(width)
     ends = [along.along(model.weights)[..., learnt:] for model in models]
     found = np.array([np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in zip(*ends)])
     text = f"{spread(found)} in {along.values.size - learnt} of {along.values.size} directions"
@@ -224,7 +224,7 @@ def learnt_by_solver(width: int = 41) -> Measured:
     """
     name = JOINT_DAMPING.name
     along = Directions.of(TrainingSet.from_recording(committed.training(name), width))
-    trained, start = (m(width, name).weights for m in (committed.networks, committed.untrained))
+    trained, start = (m(width, name).weights for m in (committed.networks, committed._untrained))
     share = (along.energy(trained, start) > along.energy(start)).mean(-1)
     descent = np.array(learning(width, 2)["measured"]["learnt"]) / along.values.size
     text = f"{significant(np.median(share), 2)} of the directions; by descent "

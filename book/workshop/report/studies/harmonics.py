@@ -11,14 +11,14 @@ from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import ORDER, record_two_harmonics
 
-NAME = "two harmonics"  # Name of the setup, under which its networks are kept
+_NAME = "two harmonics"  # Name of the setup, under which its networks are kept
 
 # Orders of the second sine and seeds of its amplitudes that are tried besides
-VARIED = ((ORDER, 1), (3, 0))
+_VARIED = ((ORDER, 1), (3, 0))
 
 
 def _cell(order, seed, width, members):
-    setup = replace(STATE_FEEDBACK, name=NAME)
+    setup = replace(STATE_FEEDBACK, name=_NAME)
     recording = record_two_harmonics(setup, order, seed)
     model, history, _ = train_windows(setup, recording, width, members)
     training, _ = split(recording)
@@ -48,9 +48,9 @@ def harmonics(members=12, fewer=6) -> dict:
     windows = {}
     for width in WINDOWS:
         windows[str(width)], model = _cell(ORDER, 0, width, members)
-        model.save(results.networks_path(NAME, width))
+        model.save(results._networks_path(_NAME, width))
     varied = [
         {"order": order, "seed": seed, "width": 21, **_cell(order, seed, 21, fewer)[0]}
-        for order, seed in VARIED
+        for order, seed in _VARIED
     ]
     return {"members": members, "fewer": fewer, "windows": windows, "varied": varied}

@@ -12,13 +12,13 @@ from ddlib.simulation import LOG_STEP, Recording
 from workshop.report import parity_networks
 from workshop.report.code_hash import study
 
-RACED = 0.9  # Acceleration in a race at one step size: the share of the last step that is repeated
+_RACED = 0.9  # Acceleration in a race at one step size: the share of the last step that is repeated
 
 # Epochs of the race by acceleration; on parity it may take twice as many
-LENGTHS = {0.0: 2200, RACED: 500}
+_LENGTHS = {0.0: 2200, _RACED: 500}
 
 # Step sizes to choose from, as multiples of the usual one: twice it derails
-STEPS = (0.5, 1.0, 1.5)
+_STEPS = (0.5, 1.0, 1.5)
 
 
 def _states(recording: Recording, kind: str) -> np.ndarray:
@@ -79,14 +79,14 @@ def acceleration(members=25, epochs=2000, bits=3) -> dict:
     """With and without acceleration: errors by window and step size, and a race at window 21.
 
     Errors are those of `members` networks after `epochs`, with the table's acceleration. The race
-    has `RACED` and one step size, and is run on another task, too: parity of `bits` bits, with
+    has `_RACED` and one step size, and is run on another task, too: parity of `bits` bits, with
     twice as many networks.
     """
     training = split(STATE_FEEDBACK.record())[0]
     return {
         "members": members,
         "epochs": epochs,
-        "steps": STEPS,
+        "steps": _STEPS,
         "errors": {str(width): _by_step(training, width, members, epochs) for width in WINDOWS},
         "bits": bits,
         "race": _race(training, members),
@@ -105,14 +105,14 @@ def _by_step(training: Recording, width: int, members: int, epochs: int) -> dict
     errors = {}
     for name, momentum in (("without", 0.0), ("with", STATE_FEEDBACK.momentum)):
         _, history, _ = train_ensemble(
-            Weights.concatenate([start] * len(STEPS)),
+            Weights.concatenate([start] * len(_STEPS)),
             data,
-            rate=np.repeat([factor * default_rate(width) for factor in STEPS], members),
+            rate=np.repeat([factor * default_rate(width) for factor in _STEPS], members),
             momentum=momentum,
             epochs=epochs,
             label=f"window {width}, {name} acceleration",
         )
-        errors[name] = history.training[-1].reshape(len(STEPS), members).T
+        errors[name] = history.training[-1].reshape(len(_STEPS), members).T
     return errors
 
 
@@ -120,7 +120,7 @@ def _race(training: Recording, members: int, width: int = 21) -> dict:
     """Training errors along the epochs, ``(points, members)``, without and with acceleration."""
     data, start = _start(training, width, members)
     run = {}
-    for name, (momentum, length) in zip(("without", "with"), LENGTHS.items()):
+    for name, (momentum, length) in zip(("without", "with"), _LENGTHS.items()):
         _, history, _ = train_ensemble(
             start,
             data,
@@ -136,7 +136,7 @@ def _race(training: Recording, members: int, width: int = 21) -> dict:
 def _race_on_parity(bits: int, members: int) -> dict:
     """Epochs until parity is learnt, or all there are if it never is, without and with it."""
     learned = {}
-    for name, (momentum, length) in zip(("without", "with"), LENGTHS.items()):
+    for name, (momentum, length) in zip(("without", "with"), _LENGTHS.items()):
         _, epochs = parity_networks.learn(
             bits, bits, members=members, momentum=momentum, epochs=2 * length, every=10
         )

@@ -30,24 +30,24 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
-from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
+from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
 
-EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
+_EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
 
-LONGER = 50_000  # Epochs of the row that asks what the rest of the training adds
+_LONGER = 50_000  # Epochs of the row that asks what the rest of the training adds
 
 # How the trial descends, with centred inputs, which gets far in few epochs
-DESCENT = {
+_DESCENT = {
     "scaling": (-1.0, 1.0), "rate": 66.0, "momentum": 0.995, "warm_up": 1000, "steps": 0,
-    "decay": 0.0, "epochs": EPOCHS,
+    "decay": 0.0, "epochs": _EPOCHS,
 }  # fmt: skip
 
 # Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques do
 # best, so that the comparison favours them
-RIDGE = 1e-2
+_RIDGE = 1e-2
 
 # The recording of the third set-up, with this descent in place of its solver
-TRIAL = replace(JOINT_DAMPING, **DESCENT)
+TRIAL = replace(JOINT_DAMPING, **_DESCENT)
 
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
@@ -118,9 +118,11 @@ class _Trial:
         answer = self.test_states[..., 1:3].reshape(len(held[0]), -1)
         speed, speed_there = target[:, [0, 2]], answer[:, [0, 2]]
         return {
-            "probe": np.array([decoded(h, target, t, answer, RIDGE) for h, t in zip(hidden, held)]),
+            "probe": np.array(
+                [decoded(h, target, t, answer, _RIDGE) for h, t in zip(hidden, held)]
+            ),
             "probe of sign": np.array(
-                [decoded_sign(h, speed, t, speed_there, RIDGE) for h, t in zip(hidden, held)]
+                [decoded_sign(h, speed, t, speed_there, _RIDGE) for h, t in zip(hidden, held)]
             ),
         }
 
@@ -233,8 +235,8 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
     setup = trial.setup
     motions = {
         "two sines": split(record_two_harmonics(setup))[0],
-        "quintic": record_quintic(setup),
-        "circle": record_circle(setup),
+        "quintic": _record_quintic(setup),
+        "circle": _record_circle(setup),
     }
     found: dict = {}
     for name, motion in motions.items():
@@ -253,7 +255,7 @@ def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
     """Filters of networks trained on real torques beside those trained on surrogates."""
     recording = TRIAL.record()
     windows = {str(w): _row(TRIAL, recording, w, members, draws, each, more=True) for w in WINDOWS}
-    return {"members": members, "draws": draws, "each": each, "epochs": EPOCHS, "windows": windows}
+    return {"members": members, "draws": draws, "each": each, "epochs": _EPOCHS, "windows": windows}
 
 
 @study
@@ -264,12 +266,12 @@ def filter_trial_elsewhere(
 
     Other noise and another zero of the encoders, two sines in place of one, a window between those
     of Table 4-1, state feedback with its own descent on inputs of 0 to 1; shifted and
-    phase-randomised torques. Then `LONGER` epochs, and the third set-up with its own solver in
+    phase-randomised torques. Then `_LONGER` epochs, and the third set-up with its own solver in
     place of descent: half as many networks, phase-randomised torques only.
     """
     kinds = ("shifted", "phases")
     other = TRIAL.repeated(1)
-    old = replace(STATE_FEEDBACK, epochs=EPOCHS)
+    old = replace(STATE_FEEDBACK, epochs=_EPOCHS)
     rows = {
         "other noise": (other, other.record(), width),
         "two sines": (TRIAL, record_two_harmonics(TRIAL), width),
@@ -277,10 +279,10 @@ def filter_trial_elsewhere(
         "state feedback": (old, old.record(), width),
     }
     found = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
-    slow = {"longer": replace(TRIAL, epochs=LONGER), "solver": JOINT_DAMPING}
+    slow = {"longer": replace(TRIAL, epochs=_LONGER), "solver": JOINT_DAMPING}
     for name, setup in slow.items():
         found[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
-    return {"members": members, "draws": draws, "each": each, "longer": LONGER, "rows": found}
+    return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": found}
 
 
 @study
@@ -289,7 +291,7 @@ def null_controls(
 ) -> dict:
     """Networks of window 21 that started elsewhere, or went on to an optimum.
 
-    The starts are other initial weights, descended for `EPOCHS`. The optima are those of the error
+    The starts are other initial weights, descended for `_EPOCHS`. The optima are those of the error
     with a penalty on the squared weights ("weight decay"), reached by Levenberg-Marquardt: the
     gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended. The
     error alone has no end within reach: its row is what `few` steps give.

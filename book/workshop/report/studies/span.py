@@ -13,18 +13,18 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, split, train_wi
 from workshop.report.code_hash import study
 
 # Epochs of the learning curves: 4 in each decade
-COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
+_COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
 
 # State feedback with inputs around zero, against the printed "0.0 to 1.0"
-CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
+_CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
 
 # The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
 # the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors.
-DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
+_DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
 
-READINGS = (STATE_FEEDBACK, CENTRED, DAMPED)
+READINGS = (STATE_FEEDBACK, _CENTRED, _DAMPED)
 
-SHOWN = 12  # Directions whose curves are kept, the steepest first
+_SHOWN = 12  # Directions whose curves are kept, the steepest first
 
 
 def _rmss(error, y) -> np.ndarray:
@@ -59,9 +59,9 @@ def _cell(setup, recording, width, members) -> dict:
     """One window size: measured and predicted courses of its networks, and what follows."""
     data = TrainingSet.from_recording(split(recording)[0], width, scaling=setup.scaling)
     along = Directions.of(data)
-    _, _, kept = train_windows(setup, recording, width, members, snapshots=COURSE)
-    courses = Weights.stack([kept[epoch] for epoch in COURSE])
-    how = (setup.rate / width, COURSE, setup.momentum, setup.warm_up)
+    _, _, kept = train_windows(setup, recording, width, members, snapshots=_COURSE)
+    courses = Weights.stack([kept[epoch] for epoch in _COURSE])
+    how = (setup.rate / width, _COURSE, setup.momentum, setup.warm_up)
     order = np.random.default_rng(0).permutation(len(data.y))
     seen = {"measured": [], "predicted": [], "shuffled": []}
     for member in range(members):
@@ -87,17 +87,17 @@ def _cell(setup, recording, width, members) -> dict:
     for who, courses in every.items():
         change = courses["change"] / start[:, None]
         found[who] = {
-            "change over start": np.sqrt(np.median(change[..., :SHOWN], 0)),
+            "change over start": np.sqrt(np.median(change[..., :_SHOWN], 0)),
             "last change over start": np.sqrt(np.median(change[:, -1], 0)),
             "learnt": (change[:, -1] > 1).sum(-1),
-            "error": np.median(courses["error"][..., :SHOWN], 0),
+            "error": np.median(courses["error"][..., :_SHOWN], 0),
             "rmss": courses["rmss"][:, -1],
-            "halves": [_halves(each[:, :SHOWN]) for each in courses["error"]],
+            "halves": [_halves(each[:, :_SHOWN]) for each in courses["error"]],
             "moved": np.median(courses["moved"], 0),
             **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
         }
     ratio = every["measured"]["change"] / every["predicted"]["change"]
-    apart = np.exp(np.abs(np.log(ratio[:, 1:, :SHOWN])) / 2)
+    apart = np.exp(np.abs(np.log(ratio[:, 1:, :_SHOWN])) / 2)
     return {**found, "factor": np.median(apart, -1)}
 
 
@@ -106,7 +106,7 @@ def _halves(error) -> np.ndarray:
 
     Between recorded epochs it goes linearly on logarithmic scales; NaN if it never is.
     """
-    epochs, found = np.log(COURSE[1:]), []
+    epochs, found = np.log(_COURSE[1:]), []
     for each in np.log(2 * error[1:] / error[0]).T:
         k = np.argmax(each <= 0)
         if each[k] > 0:
@@ -147,4 +147,4 @@ def span(members=5) -> dict:
     for setup in READINGS:
         recording = setup.record()
         cells += [_cell(setup, recording, width, members) for width in WINDOWS]
-    return {"members": members, "epochs": COURSE, "cells": cells}
+    return {"members": members, "epochs": _COURSE, "cells": cells}

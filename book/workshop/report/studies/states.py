@@ -8,7 +8,7 @@ from ddlib.metrics import rmss
 from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.exact_states import (
-    DESCENT,
+    _DESCENT,
     INITIAL,
     MOMENTUM,
     RATE,
@@ -21,7 +21,7 @@ from workshop.report.exact_states import (
 def _train(states, members, label="", **options):
     data = TrainingSet.from_arrays(states, torque(states))
     weights = Weights.random(members, 3, initial=options.pop("initial", INITIAL))
-    return train_ensemble(weights, data, label=f"state space{label}", **(DESCENT | options))
+    return train_ensemble(weights, data, label=f"state space{label}", **(_DESCENT | options))
 
 
 def _errors(model: TorqueModel, sets: dict) -> dict:

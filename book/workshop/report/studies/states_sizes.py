@@ -7,31 +7,31 @@ import numpy as np
 from ddlib import paper
 from ddlib.learning import TrainingSet, Weights, solve, train_ensemble
 from workshop.report.code_hash import study
-from workshop.report.exact_states import DESCENT, EPOCHS, INITIAL, SAMPLES, random_states, torque
+from workshop.report.exact_states import _DESCENT, EPOCHS, INITIAL, SAMPLES, random_states, torque
 
 # Size and seed of the random set on which every error is measured
-TEST_SAMPLES, TEST_SEED = 5000, 1000
+_TEST_SAMPLES, _TEST_SEED = 5000, 1000
 
-STEPS = 80  # Steps of Levenberg-Marquardt: the same for all sizes; most of the way, not to the end
+_STEPS = 80  # Steps of Levenberg-Marquardt: the same for all sizes; most of the way, not to the end
 
 # Samples of a training set, and draws of it that are solved (one network each)
-DRAWS = {100: 8, SAMPLES: 8, 1000: 6, 3000: 6, 10_000: 4, 30_000: 3, 100_000: 2}
+_DRAWS = {100: 8, SAMPLES: 8, 1000: 6, 3000: 6, 10_000: 4, 30_000: 3, 100_000: 2}
 
-# The same for momentum descent, with `DESCENT_MEMBERS` networks each
-DESCENT_DRAWS = {100: 2, SAMPLES: 2, 1000: 2, 3000: 1}
+# The same for momentum descent, with `_DESCENT_MEMBERS` networks each
+_DESCENT_DRAWS = {100: 2, SAMPLES: 2, 1000: 2, 3000: 1}
 
-DESCENT_MEMBERS = 4  # Networks that descend together on one draw
+_DESCENT_MEMBERS = 4  # Networks that descend together on one draw
 
-UNITS = (5, 10, 20, 40, 80)  # Hidden units of the networks that descend on set A
+_UNITS = (5, 10, 20, 40, 80)  # Hidden units of the networks that descend on set A
 
 # Hidden units that are solved, samples of their training sets, draws of each
-SOLVED_UNITS, SOLVED_SAMPLES, SOLVED_DRAWS = (5, 10, 20, 40), 1000, 3
+_SOLVED_UNITS, _SOLVED_SAMPLES, _SOLVED_DRAWS = (5, 10, 20, 40), 1000, 3
 
 
 def _data(samples, seed):
     states = random_states(samples, seed)
     data = TrainingSet.from_arrays(states, torque(states))
-    test = random_states(TEST_SAMPLES, TEST_SEED)
+    test = random_states(_TEST_SAMPLES, _TEST_SEED)
     return data, data.transform(test, torque(test))
 
 
@@ -48,21 +48,21 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
     histories = []
     for draw in range(draws):
         data, test = _data(samples, first + draw)
-        weights = Weights.random(DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
+        weights = Weights.random(_DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
         label = f"{samples:,} samples, {hidden} units, descent {draw + 1} of {draws}"
-        options = DESCENT | {"epochs": epochs}
+        options = _DESCENT | {"epochs": epochs}
         histories.append(train_ensemble(weights, data, test=test, label=label, **options)[1])
     return histories
 
 
 def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
-    """Errors after `STEPS` steps of the solver, and the gradients that it stopped with."""
+    """Errors after `_STEPS` steps of the solver, and the gradients that it stopped with."""
     found = []
     for draw in range(draws):
         data, test = _data(samples, 100 + draw)
         weights = Weights.random(1, 3, hidden, initial=INITIAL, seed=draw)
         label = f"{samples:,} samples, {hidden} units, solver {draw + 1} of {draws}"
-        found.append(solve(weights, data, test=test, steps=STEPS, label=label))
+        found.append(solve(weights, data, test=test, steps=_STEPS, label=label))
     errors = _errors([solution.history for solution in found])
     return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
 
@@ -74,27 +74,27 @@ def state_space_sizes() -> dict:
         {
             "samples": n,
             "solver": _solve(n, draws),
-            "descent": _errors(_descend(n, DESCENT_DRAWS[n])) if n in DESCENT_DRAWS else None,
+            "descent": _errors(_descend(n, _DESCENT_DRAWS[n])) if n in _DESCENT_DRAWS else None,
         }
-        for n, draws in DRAWS.items()
+        for n, draws in _DRAWS.items()
     ]
     units = [
         {
             "units": hidden,
             "descent": _errors(_descend(SAMPLES, 1, hidden, first=0)),
-            "solver": _solve(SOLVED_SAMPLES, SOLVED_DRAWS, hidden)
-            if hidden in SOLVED_UNITS
+            "solver": _solve(_SOLVED_SAMPLES, _SOLVED_DRAWS, hidden)
+            if hidden in _SOLVED_UNITS
             else None,
         }
-        for hidden in UNITS
+        for hidden in _UNITS
     ]
     (longer,) = _descend(SAMPLES, 1, epochs=5 * EPOCHS, first=0)
     return {
-        "test samples": TEST_SAMPLES,
-        "steps": STEPS,
+        "test samples": _TEST_SAMPLES,
+        "steps": _STEPS,
         "samples": samples,
         "units": units,
-        "solver's samples in units": SOLVED_SAMPLES,
+        "solver's samples in units": _SOLVED_SAMPLES,
         "longer": {
             "epochs": longer.epochs,
             "training": longer.training.T,

@@ -26,7 +26,7 @@ from workshop.report import results
 from workshop.report.code_hash import study
 
 
-def row(model, history, recording) -> dict:
+def _row(model, history, recording) -> dict:
     """What is written of trained networks: errors in training and test, the largest weights."""
     measured = errors(model, recording)
     return {
@@ -65,10 +65,10 @@ def table_4_1(members=25) -> dict:
             followed = COURSE if setup is STATE_FEEDBACK else ()
             cell, model, kept = _cell(setup, recording, width, members, followed)
             table[setup.name][str(width)] = cell
-            model.save(results.networks_path(setup.name, width))
+            model.save(results._networks_path(setup.name, width))
             if kept:
                 course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
-                TorqueModel(course, model.inputs, model.outputs).save(results.course_path(width))
+                TorqueModel(course, model.inputs, model.outputs).save(results._course_path(width))
     return {"members": members, "setups": table}
 
 
@@ -118,7 +118,7 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
                     setup, recording, w, members, seed=100 * day, progress=False
                 )
                 ends = _saturated(model, recording, w)
-                cells[str(w)].append({**row(model, history, recording), "saturated": ends})
+                cells[str(w)].append({**_row(model, history, recording), "saturated": ends})
         rows[name] = {
             w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()
         }

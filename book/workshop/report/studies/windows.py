@@ -11,10 +11,10 @@ from ddlib.learning import TrainingSet, Weights, cases, solve, train_ensemble
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split, train_windows
 from ddlib.simulation import LOG_STEP
 from workshop.report.code_hash import study
-from workshop.report.studies.table import row
+from workshop.report.studies.table import _row
 
 # Window sizes from the smallest that can see an acceleration up to 0.8 s
-SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
+_SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)
 
 
 def _acceleration_error(recording, width) -> float:
@@ -33,10 +33,10 @@ def window_sizes(members=6) -> dict:
     """Training and test error against the size of the window, far beyond the paper's three."""
     recording = STATE_FEEDBACK.record()
     rows = []
-    for width in SIZES:
+    for width in _SIZES:
         model, history, _ = train_windows(STATE_FEEDBACK, recording, width, members)
         weights = model.weights
-        cell = {**row(model, history, recording), "derailed": history.derailed}
+        cell = {**_row(model, history, recording), "derailed": history.derailed}
         if width >= 5:
             cell["roughness, hidden"] = np.median(roughness(weights.hidden_weights), (-2, -1))
             cell["roughness, direct"] = np.median(roughness(weights.direct_weights), (-2, -1))
@@ -53,15 +53,15 @@ def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     for hidden in units:
         setup = replace(STATE_FEEDBACK, hidden=hidden, name=f"{hidden} hidden units")
         model, history, _ = train_windows(setup, recording, width, members)
-        cell = {**row(model, history, recording), "derailed": history.derailed}
+        cell = {**_row(model, history, recording), "derailed": history.derailed}
         rows.append({"units": hidden, **cell})
     return {"members": members, "width": width, "rows": rows}
 
 
 # Steps of Levenberg-Marquardt on shuffled torques: not enough to converge, and said so
-MEMORY_STEPS = 40
+_MEMORY_STEPS = 40
 
-MEMORY_DECAY = 1e-3  # Weight decay with which weights stay about as large as the printed ones
+_MEMORY_DECAY = 1e-3  # Weight decay with which weights stay about as large as the printed ones
 
 
 @study
@@ -71,7 +71,7 @@ def memory(members=5) -> dict:
     The targets are the torques in shuffled order, so that no window says anything about its
     torque; what the training error falls below 1 is memory. By descent as usual, which tells what
     these networks do memorise, and by Levenberg-Marquardt, with and without weight decay, which
-    tells what they could. The solver is stopped after `MEMORY_STEPS`; its gradients are kept.
+    tells what they could. The solver is stopped after `_MEMORY_STEPS`; its gradients are kept.
     """
     training = split(STATE_FEEDBACK.record())[0]
     rows = []
@@ -99,15 +99,15 @@ def memory(members=5) -> dict:
                 "roughness, hidden": np.median(roughness(model.weights.hidden_weights), (-2, -1)),
                 "classes": {name: (classes == name).mean((-2, -1)) for name in CLASSES},
                 "solver": _capacity(weights, shuffled, 0.0),
-                "solver, decay": _capacity(weights, shuffled, MEMORY_DECAY),
+                "solver, decay": _capacity(weights, shuffled, _MEMORY_DECAY),
             }
         )
-    return {"members": members, "steps": MEMORY_STEPS, "decay": MEMORY_DECAY, "rows": rows}
+    return {"members": members, "steps": _MEMORY_STEPS, "decay": _MEMORY_DECAY, "rows": rows}
 
 
 def _capacity(weights, shuffled, decay) -> dict:
-    """What the solver memorises in `MEMORY_STEPS`, and how far from an optimum it was left."""
-    found = solve(weights, shuffled, decay=decay, steps=MEMORY_STEPS, label=f"decay {decay:g}")
+    """What the solver memorises in `_MEMORY_STEPS`, and how far from an optimum it was left."""
+    found = solve(weights, shuffled, decay=decay, steps=_MEMORY_STEPS, label=f"decay {decay:g}")
     return {
         "training": found.history.training[-1],
         "course": np.median(found.history.training, 1),

@@ -12,10 +12,10 @@ from ddlib.control.controllers import ControlLaw
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.adaptive.regressor import (
     PARAMETERS,
-    check_parameters,
-    unchecked_regressor,
+    _check_parameters,
+    _unchecked_regressor,
 )
-from workshop.beyond.control.adaptive.running import RunningLaw
+from workshop.beyond.control.adaptive.running import _RunningLaw
 
 _MARGIN = 0.9  # largest b as a share of that which makes the mass matrix singular
 
@@ -45,7 +45,7 @@ class CraigHsuSastry:
             non_negative(name, getattr(self, name), 2)
         if not (np.asarray(self.weight) < self.kd).all():
             raise ValueError(f"weight must be below kd={self.kd}, got {self.weight}")
-        check_parameters(self)
+        _check_parameters(self)
         if tuple(self.names[:3]) != PARAMETERS[:3]:
             raise ValueError(f"names must begin with a, b, d, got {self.names}")
         low, high = (shaped(n, getattr(self, n), (len(self.names),)) for n in ("low", "high"))
@@ -63,16 +63,16 @@ class CraigHsuSastry:
         estimate = np.asarray(estimate, float)
         error, error_rate = wanted.q - q, wanted.qd - qd
         asked = wanted.qdd + np.asarray(self.kd) * error_rate + np.asarray(self.kp) * error
-        Y = unchecked_regressor(q, qd, qd, asked, self.names)
+        Y = _unchecked_regressor(q, qd, qd, asked, self.names)
         torque = np.einsum("...jp,...p->...j", Y, estimate)
-        measured = unchecked_regressor(q, qd, qd, qdd, self.names)
+        measured = _unchecked_regressor(q, qd, qd, qdd, self.names)
         filtered = error_rate + np.asarray(self.weight) * error
         turned = np.linalg.solve(_mass(estimate, np.asarray(q)), filtered[..., None])[..., 0]
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`; the acceleration is the difference of velocities."""
-        return RunningLaw(self, reference, step)
+        return _RunningLaw(self, reference, step)
 
     def advance(self, law, estimate, wanted, q, qd):
         """Torque of a running law, and its estimate one period later."""

@@ -11,7 +11,7 @@ from scipy.signal import cont2discrete
 from ddlib._check import finite_array, non_negative, number, positive
 from ddlib.control.controllers import ControlLaw
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive.running import RunningLaw
+from workshop.beyond.control.adaptive.running import _RunningLaw
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class ModelReference:
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows the model of `reference`, called every `step` s."""
-        return RunningLaw(self, self.model(reference, step), step)
+        return _RunningLaw(self, self.model(reference, step), step)
 
     def advance(self, law, estimate, wanted, q, qd):
         """Torque of a running law, and its estimate one period later."""

@@ -26,10 +26,10 @@ def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.nd
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
     for name in names:
         one_of("names", name, PARAMETERS)
-    return unchecked_regressor(*(finite_array(n, x, 2) for n, x in pairs), names)
+    return _unchecked_regressor(*(finite_array(n, x, 2) for n, x in pairs), names)
 
 
-def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
+def _unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
     """`mixed_regressor` without checks, for the inner loop of a simulation."""
     q, qd, v, a = np.broadcast_arrays(q, qd, v, a)
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
@@ -56,7 +56,7 @@ def unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
     return Y
 
 
-def check_parameters(controller) -> None:
+def _check_parameters(controller) -> None:
     """Refuse names, rates and estimates of a controller that do not fit together."""
     for name in controller.names:
         one_of("names", name, PARAMETERS)

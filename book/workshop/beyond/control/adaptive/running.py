@@ -11,7 +11,7 @@ from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
 
-class RunningLaw:
+class _RunningLaw:
     """A running adaptive law.
 
     Its controller's ``advance(law, estimate, wanted, q, qd)`` gives the torque and the next

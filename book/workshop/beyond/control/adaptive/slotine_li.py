@@ -13,10 +13,10 @@ from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.adaptive.regressor import (
     PARAMETERS,
-    check_parameters,
-    unchecked_regressor,
+    _check_parameters,
+    _unchecked_regressor,
 )
-from workshop.beyond.control.adaptive.running import RunningLaw
+from workshop.beyond.control.adaptive.running import _RunningLaw
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class SlotineLi:
                 raise ValueError(f"{name} must be above 0 for each joint, got {value}")
         non_negative("dead_zone", self.dead_zone, 2)
         number("leakage", self.leakage, 0.0)
-        check_parameters(self)
+        _check_parameters(self)
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
         """Torque ``(..., 2)`` and the estimate's rate of change per second, in continuous time.
@@ -56,7 +56,7 @@ class SlotineLi:
         s, v, a = self._sliding(wanted, q, qd)
         if self.at == "desired":
             q, qd, v, a = wanted.q, wanted.qd, wanted.qd, wanted.qdd
-        Y = unchecked_regressor(q, qd, v, a, self.names)
+        Y = _unchecked_regressor(q, qd, v, a, self.names)
         torque = np.einsum("...jp,...p->...j", Y, np.asarray(estimate)) + self.gain * s
         learnt = s - np.clip(s, -np.asarray(self.dead_zone), self.dead_zone)
         change = np.asarray(self.rate) * np.einsum("...jp,...j->...p", Y, learnt)
@@ -79,7 +79,7 @@ class SlotineLi:
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s; it holds its estimate."""
-        return RunningLaw(self, reference, step)
+        return _RunningLaw(self, reference, step)
 
     def _sliding(self, wanted, q, qd):
         slope = np.asarray(self.slope)

@@ -41,7 +41,7 @@ def family(learner: str, when: str, setup: str = "joint damping") -> np.ndarray:
     return np.array(found["tests"][learner])[trials if when == "with the load" else trials - 1]
 
 
-def trials_to_half(errors, start) -> np.ndarray:
+def _trials_to_half(errors, start) -> np.ndarray:
     """Trials after which errors, ``(trials, seeds)``, stay at half of a first value or below."""
     above = np.asarray(errors) > 0.5 * np.asarray(start)
     last = np.array([np.flatnonzero(each)[-1] if each.any() else -1 for each in above.T])
@@ -58,7 +58,7 @@ def halved(learner: str, loaded: bool = False, setup: str = "joint damping") -> 
         start = errors[0]
     else:
         errors, start = errors[:number], np.array(found["tests"][PLAIN])[0]
-    counts = trials_to_half(errors, start)
+    counts = _trials_to_half(errors, start)
     got = np.isfinite(counts).sum()
     text = f"{spread(counts)}, {got} of {counts.size} seeds" if got else "no seed"
     return Measured(float(np.median(counts)), text)

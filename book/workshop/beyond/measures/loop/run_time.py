@@ -20,7 +20,7 @@ NETWORK = "network, window 21"  # the paper's best window
 PREDICTORS = ("RMSS", "through the loop", "planned")  # of a network's end-point error
 
 # Rivals that see the same windows of 21
-KINDS = (
+_KINDS = (
     "identified", "linear filter", "Gaussian process", "Lagrangian network",
     "network, two hidden units",
 )  # fmt: skip
@@ -77,7 +77,7 @@ def predicts_better(first: str = "through the loop", setup: str = JOINT_DAMPING.
 
 def predicts_kind(setup: str = JOINT_DAMPING.name) -> Measured:
     """Rank correlation of RMSS and end-point error over kinds of model, each by its medians."""
-    cells = [(errors(kind, setup, "RMSS"), errors(kind, setup)) for kind in KINDS]
+    cells = [(errors(kind, setup, "RMSS"), errors(kind, setup)) for kind in _KINDS]
     cells.append(scatter("RMSS", 21, setup))
 
     def correlation(*drawn):

@@ -12,7 +12,7 @@ from workshop.report.evidence import claims
 from workshop.report.evidence.claims import Claim
 from workshop.report.evidence.verdicts import Measured
 
-SHUFFLES = 10_000  # permutations that stand for chance
+_SHUFFLES = 10_000  # permutations that stand for chance
 
 
 def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
@@ -40,7 +40,7 @@ def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) 
     return Table(("sentence", *readings), [tuple(map(typeset, row)) for _, row in rows])
 
 
-class Agreement(NamedTuple):
+class _Agreement(NamedTuple):
     """How often two lists of verdicts agree, and shuffled ones do.
 
     ``expected`` is how many would be alike if one list were shuffled, ``chance`` the share of the
@@ -53,16 +53,16 @@ class Agreement(NamedTuple):
     chance: float
 
 
-def agreement(pairs: Iterable[tuple[str, str]]) -> Agreement:
+def agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
     """Whether pairs of verdicts agree more often than shuffled ones."""
     pairs = list(pairs)
     if len(pairs) < 2:
         raise ValueError(f"pairs must be two or more, got {len(pairs)}")
     first, second = np.array(pairs).T
     same, rng = int((first == second).sum()), np.random.default_rng(0)
-    drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(SHUFFLES)])
+    drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(_SHUFFLES)])
     expected = sum((first == v).sum() * (second == v).sum() for v in set(first)) / len(pairs)
-    return Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
+    return _Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
 
 
 def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:

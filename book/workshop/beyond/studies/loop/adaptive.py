@@ -25,9 +25,9 @@ from workshop.beyond.studies.loop.runs.adaptive import LAWS
 from workshop.report.code_hash import study
 
 _SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
-LOADS = (2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
-PICKED = 5.0  # kg, taken up half-way
-_DELAYS = (1, 2, 4)  # control periods, with `PICKED`
+_LOADS = (2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
+_PICKED = 5.0  # kg, taken up half-way
+_DELAYS = (1, 2, 4)  # control periods, with `_PICKED`
 BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
@@ -60,7 +60,7 @@ def _course(setup: Setup, seed: int = 1) -> dict:
     }
     extents, effects = batch.drawn(_SEEDS, 2 * TRIALS, seed), batch.rounding(setup, _SEEDS, seed)
     found, laws = batch.trials(laws, extents[:TRIALS], setup.arm, effects)
-    loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, PICKED), effects)
+    loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, _PICKED), effects)
     found += loaded
     known = [n for n in laws if n.startswith(LAWS)]
     return {
@@ -79,7 +79,7 @@ def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in LAWS}}
     extents, effects = batch.drawn(_SEEDS, 2, seed), batch.rounding(setup, _SEEDS, seed)
     rows: list = []
-    settings = [(m, 0) for m in LOADS] + [(PICKED, late) for late in delays]
+    settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
         found, _ = batch.trials(laws, extents, with_load(setup.arm, mass), slow)

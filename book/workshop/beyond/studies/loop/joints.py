@@ -51,7 +51,7 @@ TEST_MOTIONS, TEST_SEED = 20, 1000
 _UNITS = (5, 20, 40)  # besides the report's ten, at four joints
 _STATE_SAMPLES, _STATE_STEPS, _STATE_TEST = (100, 300, 1000, 3000), 40, 2000  # of random states
 _MAIN = 20  # training motions of the networks whose filters are read
-_REST = arms.SPACING * LOG_STEP  # s, from one tap of a window to the next
+_REST = arms._SPACING * LOG_STEP  # s, from one tap of a window to the next
 
 
 def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
@@ -69,25 +69,27 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
         return solve(start, data, test=data.transform(*test), progress=False, **options)
 
 
-def sets(made: arms.Chain, motions: int, seed: int, **options) -> arms.Sample:
+def sets(made: arms._Chain, motions: int, seed: int, **options) -> arms._Sample:
     """A training set of `CASES` windows from so many motions of an arm."""
     drawn = arms.extents(made.joints, motions, seed)
     return arms.recorded(made, drawn, seed, **options).thinned(CASES)
 
 
-def tested(made: arms.Chain, **options) -> arms.Sample:
+def tested(made: arms._Chain, **options) -> arms._Sample:
     """The test motions, every fourth of their windows."""
     drawn = arms.extents(made.joints, TEST_MOTIONS, TEST_SEED)
     return arms.recorded(made, drawn, TEST_SEED, **options).thinned(CASES)
 
 
-def linear(training: arms.Sample, test: arms.Sample) -> float:
+def linear(training: arms._Sample, test: arms._Sample) -> float:
     """Error of a linear filter of the windows, its ridge chosen by leaving parts out."""
     rival = Linear().fit(Cases(training.windows, training.torque, "windows", _REST))
     return float(rmss(rival._torque(test.windows), test.torque))
 
 
-def _identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> tuple[float, float]:
+def _identified(
+    made: arms._Chain, training: arms._Sample, test: arms._Sample
+) -> tuple[float, float]:
     """Errors (training, test) of the equations with friction, by least squares.
 
     States come from a polynomial through each window, of the degree, 3 or 4, that fits better.
@@ -106,7 +108,7 @@ def _identified(made: arms.Chain, training: arms.Sample, test: arms.Sample) -> t
     return error, float(rmss(answer, test.torque))
 
 
-def _equations(made: arms.Chain, windows, degree: int) -> np.ndarray:
+def _equations(made: arms._Chain, windows, degree: int) -> np.ndarray:
     """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
 
     Its states are those of polynomials of this degree through the windows.
@@ -171,9 +173,9 @@ def _closed_loops(seeds: int = _SEEDS) -> list[dict]:
         made = arms.chain(2, setup.name)
         drawn = [arms.extents(2, motions, seed) for seed in range(1, 1 + seeds)]
         loop = setup.record(np.vstack([arms.extents(2, TEST_MOTIONS, TEST_SEED), *drawn]))
-        plan = [(arms.SPACING, kind) for kind in ("closed loop", *arms.MOTIONS)]
+        plan = [(arms._SPACING, kind) for kind in ("closed loop", *arms._MOTIONS)]
         if motions == _MAIN:
-            plan += [(1, "closed loop"), (1, arms.MOTIONS[0])]
+            plan += [(1, "closed loop"), (1, arms._MOTIONS[0])]
         for spacing, kind in plan:
             if kind == "closed loop":
                 test, *trained = _cut(loop, spacing, motions)
@@ -185,7 +187,7 @@ def _closed_loops(seeds: int = _SEEDS) -> list[dict]:
                 {
                     "reading": setup.name,
                     "motions": motions,
-                    "taps": 2 * arms.REACH // spacing + 1,
+                    "taps": 2 * arms._REACH // spacing + 1,
                     "kind": kind,
                     "deviation": test.torque.std(0),
                     **_trained([sample.pair for sample in trained], test.pair),
@@ -194,17 +196,17 @@ def _closed_loops(seeds: int = _SEEDS) -> list[dict]:
     return rows
 
 
-def _cut(loop, spacing: int, motions: int) -> list[arms.Sample]:
+def _cut(loop, spacing: int, motions: int) -> list[arms._Sample]:
     """Test set and training sets of a recording of closed loops, cut as `recorded` does."""
-    centres = np.arange(loop.motion.start, loop.motion.stop, arms.EVERY)
-    taps = centres[:, None] + np.arange(-arms.REACH, arms.REACH + 1, spacing)
+    centres = np.arange(loop.motion.start, loop.motion.stop, arms._EVERY)
+    taps = centres[:, None] + np.arange(-arms._REACH, arms._REACH + 1, spacing)
     windows, torque = np.moveaxis(loop.q[:, taps], -1, -2), loop.tau[:, centres]
     ends = [0, *range(TEST_MOTIONS, len(windows) + 1, motions)]
     made = []
     for first, last in pairwise(ends):
         x, y = windows[first:last], torque[first:last]
         flat = x.reshape(-1, *x.shape[2:]), y.reshape(-1, 2)
-        made.append(arms.Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
+        made.append(arms._Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
     return made
 
 

@@ -28,10 +28,10 @@ from workshop.beyond.control.online import LastLayer, LinearFilter, OnlineDescen
 from workshop.report import results
 
 SEEDS = 10
-TRIALS = 10  # of one motion, or with one load
+_TRIALS = 10  # of one motion, or with one load
 _WIDTH = 21
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
-RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
+_RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
 _PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
 TRUST = 1.0  # penalty where the network was trained off-line
 REPLAY = 15  # earlier samples that are learnt again with each new one
@@ -56,7 +56,7 @@ class Draw:
 
         self.learnt, self.other = drawn(20, 45, 2), drawn(10, 45, 2)
         self.second = drawn(4, 10, 2) * np.sign(drawn(-1, 1, 2))
-        self.family = drawn(5, 45, 2 * TRIALS, 2)
+        self.family = drawn(5, 45, 2 * _TRIALS, 2)
         zero = drawn(0.0, setup.effects.encoder[0].step, 2)
         encoder = (EncoderZero(zero), *setup.effects.encoder, EncoderZero(-zero))
         self.effects = replace(setup.effects, encoder=encoder)
@@ -121,7 +121,7 @@ def _round(draw: Draw, t) -> Trajectory:
 class Terms:
     """Feedback-error learning of given terms, whose weights outlive a run."""
 
-    def __init__(self, terms, draw: Draw, rate=RATE):
+    def __init__(self, terms, draw: Draw, rate=_RATE):
         t = grid()
         extents = np.stack(np.meshgrid([10, 25, 40], [10, 25, 40]), -1).reshape(-1, 2)
         size = (terms(*smooth_pick_and_place(extents, t)) ** 2).sum(-2).mean((0, 1))
@@ -139,7 +139,7 @@ class Terms:
         self.weights = watched.law.weights[..., -1, :]
 
 
-class Windows:
+class _Windows:
     """A learner of windows."""
 
     def __init__(self, learner, teacher: str, draw: Draw):
@@ -155,7 +155,7 @@ class Windows:
         """Nothing to do: the learner has learnt during the run."""
 
 
-class Memory:
+class _Memory:
     """The memory of a motion; it learns after each trial."""
 
     def __init__(self, draw: Draw):
@@ -174,24 +174,24 @@ def _recursion(penalty):
     return lambda weights: RecursiveLeastSquares(weights, penalty, FORGETTING)
 
 
-def last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> Windows:
+def _last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> _Windows:
     """The network whose last layer learns by recursive least squares from measured windows."""
-    return Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
+    return _Windows(LastLayer(model, _recursion(penalty)), "torque", draw)
 
 
-def linear_filter(draw: Draw) -> Windows:
+def _linear_filter(draw: Draw) -> _Windows:
     """A linear filter of the window that learns in the same way, from nothing."""
     zero = np.zeros((1, draw.seeds, 2, 2 * _WIDTH + 1))
-    return Windows(LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
+    return _Windows(LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
 
 
-def by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> Windows:
+def _by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> _Windows:
     """The network that learns from desired windows and the feedback's torque."""
     rate = _BY_FEEDBACK[draw.setup.name] * np.asarray(times)
-    return Windows(OnlineDescent(model, rate), "feedback", draw)
+    return _Windows(OnlineDescent(model, rate), "feedback", draw)
 
 
-def tiled(weights: Weights, count: int) -> Weights:
+def _tiled(weights: Weights, count: int) -> Weights:
     """Networks repeated along their first axis, `count` times."""
     return Weights(*(np.repeat(x, count, axis=0) for x in vars(weights).values()))
 
@@ -201,25 +201,25 @@ def lineup(draw: Draw) -> dict[str, object]:
     return {
         "exact terms": Terms(RigidBodyTerms(NAMES), draw),
         "generic terms": Terms(GenericTerms(), draw),
-        "network, by feedback": by_feedback(draw.untrained, draw),
-        "network, last layer": last_layer(draw.untrained, draw),
-        "linear filter": linear_filter(draw),
-        "memory": Memory(draw),
+        "network, by feedback": _by_feedback(draw.untrained, draw),
+        "network, last layer": _last_layer(draw.untrained, draw),
+        "linear filter": _linear_filter(draw),
+        "memory": _Memory(draw),
     }
 
 
-def candidates(draw: Draw) -> dict[str, object]:
+def _candidates(draw: Draw) -> dict[str, object]:
     """The learners of the family: from nothing, and from networks trained off-line."""
     return {
-        "one pass": Windows(OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
-        "replay": Windows(OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw),
-        "last layer": last_layer(draw.untrained, draw),
-        "by feedback": by_feedback(draw.untrained, draw),
-        "linear filter": linear_filter(draw),
-        "off-line, as it is": Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
-        "off-line, replay": Windows(
+        "one pass": _Windows(OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
+        "replay": _Windows(OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw),
+        "last layer": _last_layer(draw.untrained, draw),
+        "by feedback": _by_feedback(draw.untrained, draw),
+        "linear filter": _linear_filter(draw),
+        "off-line, as it is": _Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
+        "off-line, replay": _Windows(
             OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
         ),
-        "off-line, last layer": last_layer(draw.trained, draw, TRUST),
-        "off-line, by feedback": by_feedback(draw.trained, draw),
+        "off-line, last layer": _last_layer(draw.trained, draw, TRUST),
+        "off-line, by feedback": _by_feedback(draw.trained, draw),
     }

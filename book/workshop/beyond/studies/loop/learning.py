@@ -24,7 +24,7 @@ _TESTS = ((15.0, 15.0), (40.0, 20.0), (20.0, 40.0))  # extents, degrees
 _RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
-def trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
+def _trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
     """End-point errors (mm, RMS over the motion) and stops of one trial of controllers abreast.
 
     Errors have shape (rows, seeds), references (rows, seeds, time, 2); ``rows`` are those of each
@@ -45,14 +45,14 @@ def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
     """Trials of one motion: errors by trial of each learner, and of a second motion on the way."""
     errors = {name: [] for name in pupils}
     rows = [1] * len(pupils) * (2 if tested else 1)
-    for _ in range(learners.TRIALS):
+    for _ in range(learners._TRIALS):
         now = [learner.controller() for learner in pupils.values()]
         frozen = [x.controller(False) for x in pupils.values()] if tested else []
         every = _repeated(reference, len(now))
         if tested:
             more = _repeated(tested, len(now))
             every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
-        found = trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
+        found = _trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
         for k, (name, learner) in enumerate(pupils.items()):
             errors[name].append(found[:, k])
             learner.keep(now[k])
@@ -71,7 +71,7 @@ def _motion(draw: learners.Draw) -> dict:
         learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
         count = len(plain) + 2 * len(pupils)
         every = _repeated(wanted, count)
-        found, _ = trial(draw, plain + frozen + learning, [1] * count, every, times)
+        found, _ = _trial(draw, plain + frozen + learning, [1] * count, every, times)
         tests[name] = {
             "no feedforward": found[0],
             "exact equations": found[1],
@@ -89,7 +89,7 @@ def _motion(draw: learners.Draw) -> dict:
 
 def _family(draw: learners.Draw) -> dict:
     """Practise members of the paper's family; a load from half-way on; tests on three motions."""
-    pupils, t = learners.candidates(draw), learners.grid()
+    pupils, t = learners._candidates(draw), learners.grid()
     loaded = with_load(draw.setup.arm, _LOAD)
     tests = [pick_and_place(np.tile(extents, (draw.seeds, 1)), t) for extents in _TESTS]
     practice, tested = ({name: [] for name in ("no feedforward", *pupils)} for _ in range(2))
@@ -102,11 +102,11 @@ def _family(draw: learners.Draw) -> dict:
         controllers = [draw.plain]
         for learner in pupils.values():
             controllers += [learner.controller(learning), learner.controller(False)]
-        found = trial(draw, controllers, rows, every, t, arm)[0]
+        found = _trial(draw, controllers, rows, every, t, arm)[0]
         return found.reshape(1 + len(pupils), size, draw.seeds)
 
-    for k in range(2 * learners.TRIALS):
-        arm = draw.setup.arm if k < learners.TRIALS else loaded
+    for k in range(2 * learners._TRIALS):
+        arm = draw.setup.arm if k < learners._TRIALS else loaded
         for name, found in zip(practice, once(k, arm)):
             practice[name].append(found[0])
             tested[name].append(found[1:].mean(0))
@@ -124,16 +124,16 @@ def _rates(draw: learners.Draw) -> dict:
     """Six trials of one motion at several rates: the last error, and who was stopped."""
     t, reference = learners.motions(draw)["the same"]
     many, rates = len(_RATES), np.array(_RATES)[:, None]
-    model = replace(draw.untrained, weights=learners.tiled(draw.untrained.weights, many))
+    model = replace(draw.untrained, weights=learners._tiled(draw.untrained.weights, many))
     pupils = {
-        "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners.RATE * rates),
-        "generic terms": learners.Terms(GenericTerms(), draw, learners.RATE * rates),
-        "network, by feedback": learners.by_feedback(model, draw, rates + np.zeros(draw.seeds)),
+        "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners._RATE * rates),
+        "generic terms": learners.Terms(GenericTerms(), draw, learners._RATE * rates),
+        "network, by feedback": learners._by_feedback(model, draw, rates + np.zeros(draw.seeds)),
     }
     every, stopped = _repeated(reference, many * len(pupils)), False
-    for _ in range(learners.TRIALS // 2):
+    for _ in range(learners._TRIALS // 2):
         now = [learner.controller() for learner in pupils.values()]
-        errors, stops = trial(draw, now, [many] * len(now), every, t)
+        errors, stops = _trial(draw, now, [many] * len(now), every, t)
         stopped = stopped | stops.stopped
         for learner, controller in zip(pupils.values(), now):
             learner.keep(controller)
@@ -150,4 +150,4 @@ def learning_in_the_loop() -> dict:
         draw = learners.Draw(setup)
         parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
         found[setup.name] = parts
-    return {"setups": found, "rates": _RATES, "trials": learners.TRIALS, "load": _LOAD}
+    return {"setups": found, "rates": _RATES, "trials": learners._TRIALS, "load": _LOAD}

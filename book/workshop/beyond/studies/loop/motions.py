@@ -24,8 +24,8 @@ from ddlib.trajectories import (
 from workshop.beyond.rivals.protocol import Cases
 
 # 1,500 cases each; "both": every second case of the first two
-FAMILIES = ("pick and place", "circles", "both", "via points")
-VIA, MOST = 3, 6  # via points of the training motions, and most that are tested
+_FAMILIES = ("pick and place", "circles", "both", "via points")
+_VIA, MOST = 3, 6  # via points of the training motions, and most that are tested
 _LEG = 1.5  # s, from point to point of steady motions
 RADIUS = (0.04, 0.12)  # m
 PERIOD = (1.5, 3.0)  # s, of a turn
@@ -127,7 +127,7 @@ def stirred(
     return around(arm, circles.centre, circles.radius, (first + angle, rate, change), elbow)
 
 
-def via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
+def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
     """From rest at zero through points ``(runs, points, 2)``, rad, and back, by quintic splines.
 
     Points follow each other at equal times; the first two derivatives vanish at both ends.
@@ -142,7 +142,7 @@ def via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
     return Trajectory(*((spline(inside, k) * moving).swapaxes(0, 1) for k in range(3)))
 
 
-def random_points(runs: int, points: int, seed: int) -> np.ndarray:
+def _random_points(runs: int, points: int, seed: int) -> np.ndarray:
     """Via points ``(runs, points, 2)``, rad, uniform over the angles of pick-and-place."""
     draw = np.random.default_rng(integer("seed", seed, 0))
     shape = (integer("runs", runs, 1), integer("points", points, 1), 2)
@@ -170,13 +170,13 @@ def recorded(
     )
 
 
-def learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
-    """Windows of each of `FAMILIES`, from recordings by name: the same number of cases."""
+def _learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
+    """Windows of each of `_FAMILIES`, from recordings by name: the same number of cases."""
     found = {name: Cases.windows(run, width) for name, run in runs.items()}
     halves = [found[name] for name in ("pick and place", "circles")]
     x, torque = (np.concatenate([getattr(c, n)[::2] for c in halves]) for n in ("x", "torque"))
     found["both"] = Cases(x, torque, "windows", LOG_STEP)
-    return {name: found[name] for name in FAMILIES}
+    return {name: found[name] for name in _FAMILIES}
 
 
 def _small_circles(runs: int, seed: int) -> Circles:
@@ -185,7 +185,7 @@ def _small_circles(runs: int, seed: int) -> Circles:
     return replace(whole, **{name: draw.uniform(*r, runs) for name, r in _SMALL.items()})
 
 
-def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
+def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
     """Recordings of the tests: another draw of each family, and what lies beyond both.
 
     Motions with via points are quick (all in 3 s) and steady (`_LEG` from point to point).
@@ -204,9 +204,9 @@ def asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]
         **{name: recorded(today, reference) for name, reference in references.items()},
     }
     for count in range(1, MOST + 1) if vias else ():
-        points, seconds = random_points(members, count, TEST_DAY), _LEG * (count + 1)
-        found[f"{count} via points"] = recorded(today, via_points(points, t))
-        steady = via_points(points, times(seconds), seconds)
+        points, seconds = _random_points(members, count, TEST_DAY), _LEG * (count + 1)
+        found[f"{count} via points"] = recorded(today, _via_points(points, t))
+        steady = _via_points(points, times(seconds), seconds)
         found[f"{count} via points, steady"] = recorded(today, steady, seconds)
     return found
 

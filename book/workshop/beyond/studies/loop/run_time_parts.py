@@ -20,7 +20,7 @@ from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.beyond.rivals.protocol import derivative_filters
 from workshop.report import results
 
-WIDTH = 21  # samples of a window: the paper's best
+_WIDTH = 21  # samples of a window: the paper's best
 POINTS = 7  # trajectories in a row of the square of extents
 
 
@@ -30,22 +30,22 @@ def square_extents(points: int) -> np.ndarray:
     return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
 
 
-EXTENTS = square_extents(POINTS)
-EDGE = EXTENTS[:POINTS, 1]
-_INSIDE = inside_hull(EXTENTS)  # the hull of the training trajectories
-FEWER = EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
-T = time_grid(CONTROL_STEP, REST)  # control samples, s
+_EXTENTS = square_extents(POINTS)
+EDGE = _EXTENTS[:POINTS, 1]
+_INSIDE = inside_hull(_EXTENTS)  # the hull of the training trajectories
+_FEWER = _EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
+_T = time_grid(CONTROL_STEP, REST)  # control samples, s
 _START = 0.5  # s: what counts as the start of a motion
-Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+_Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
-def exact(setup: Setup, arm: Arm | None = None) -> Model:
+def exact(setup: Setup, arm: Arm | None = None) -> _Model:
     """The equations of the set-up's arm or another, friction included: torque of a state."""
     body = arm or setup.arm
     return lambda q, qd, qdd: body.inverse_dynamics(q, qd, qdd) + setup.effects.friction_torque(qd)
 
 
-def with_impulse(setup: Setup) -> Model:
+def _with_impulse(setup: Setup) -> _Model:
     """`exact`, with the impulse of each jump in velocity, within one control period."""
 
     def torque(q, qd, qdd):
@@ -57,7 +57,7 @@ def with_impulse(setup: Setup) -> Model:
     return torque
 
 
-def through_window(torque: Model, width: int = WIDTH) -> WindowFeedforward:
+def _through_window(torque: _Model, width: int = _WIDTH) -> WindowFeedforward:
     """Equations of a state that see windows: a polynomial in each gives the state."""
     filters = derivative_filters(width, LOG_STEP)
 
@@ -67,7 +67,7 @@ def through_window(torque: Model, width: int = WIDTH) -> WindowFeedforward:
     return WindowFeedforward(model, width, step=LOG_STEP)
 
 
-def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[WindowFeedforward]:
+def networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[WindowFeedforward]:
     """The first networks of a cell of Table 4-1 as feedforwards."""
     model = results.networks(width, setup.name)
     options = {"step": model.step, **options}
@@ -77,7 +77,7 @@ def networks(setup: Setup, count: int, width: int = WIDTH, **options) -> list[Wi
     ]
 
 
-def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
+def _computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
     """Computed torque with the friction of the reference, at the measured state.
 
     As stiff as the set-up's feedback with the arm stretched, and critically damped.
@@ -98,7 +98,7 @@ def computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
 
 def rounded(extents_deg, seconds: float) -> Trajectory:
     """The paper's motions with corners averaged over a raised cosine of so many seconds."""
-    plan = pick_and_place(extents_deg, T)
+    plan = pick_and_place(extents_deg, _T)
     half = round(number("seconds", seconds, 0.0, REST) / CONTROL_STEP / 2)
     if not half:
         return plan
@@ -114,13 +114,13 @@ def rounded(extents_deg, seconds: float) -> Trajectory:
     return Trajectory(smooth(plan.q), qd, np.gradient(qd, CONTROL_STEP, axis=-2))
 
 
-def on_days(effects: Effects, setup: Setup, days) -> Effects:
+def _on_days(effects: Effects, setup: Setup, days) -> Effects:
     """Effects with the encoder's zero of other days, which are the first axis of the runs."""
     zero = np.stack([setup.repeated(day).effects.encoder[0].angle for day in days])[:, None]
     return replace(effects, encoder=(EncoderZero(zero), *effects.encoder, EncoderZero(-zero)))
 
 
-def planned(models, reference: Trajectory) -> np.ndarray:
+def _planned(models, reference: Trajectory) -> np.ndarray:
     """Torques of several feedforwards along a reference, shape (models, ..., time, 2), N m."""
     return _time_first(np.stack([model(*reference) for model in models]))
 
@@ -137,13 +137,13 @@ def given(torque, feedback) -> Feedforward:
 
 def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) -> Recording:
     """Follow a reference on several days, which become the first axis of the runs."""
-    effects = on_days(effects or setup.effects, setup, days)
+    effects = _on_days(effects or setup.effects, setup, days)
     return follow(
-        arm or setup.arm, controller, reference, T, effects=effects, duration=MOTION_SECONDS
+        arm or setup.arm, controller, reference, _T, effects=effects, duration=MOTION_SECONDS
     )
 
 
-def driven(
+def _driven(
     setup: Setup, made: dict, reference: Trajectory, **changed
 ) -> tuple[Recording, dict[str, slice]]:
     """Recording of all lines, and which part of it belongs to each.
@@ -163,7 +163,7 @@ def driven(
 # --- scores -------------------------------------------------------------------------------
 
 
-class Score(NamedTuple):
+class _Score(NamedTuple):
     """End-point errors of runs, mm, and joint errors, degrees: RMS over the motion."""
 
     whole: np.ndarray
@@ -176,7 +176,7 @@ class Score(NamedTuple):
     elbow: np.ndarray
 
 
-def score(arm: Arm, recording: Recording) -> Score:
+def score(arm: Arm, recording: Recording) -> _Score:
     """End-point and joint errors of a recording."""
     moving = recording.motion
     wanted, wanted_rate, _ = (x[..., moving, :] for x in recording.reference)
@@ -192,7 +192,7 @@ def score(arm: Arm, recording: Recording) -> Score:
     def root(x):
         return np.sqrt(x.mean(-1))
 
-    return Score(
+    return _Score(
         whole=root(size2),
         start=root(size2[..., early]),
         rest=root(size2[..., ~early]),
@@ -204,14 +204,14 @@ def score(arm: Arm, recording: Recording) -> Score:
     )
 
 
-def errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[str, np.ndarray]:
-    """Median end-point error over the runs on each day of each line, as of `driven`, mm."""
-    log, parts = driven(setup, made, reference, **changed)
+def _errors(setup: Setup, made: dict, reference: Trajectory, **changed) -> dict[str, np.ndarray]:
+    """Median end-point error over the runs on each day of each line, as of `_driven`, mm."""
+    log, parts = _driven(setup, made, reference, **changed)
     middle = np.median(score(setup.arm, log).whole, -1)
     return {name: middle[part] for name, part in parts.items()}
 
 
-def told(found: Score) -> dict:
+def _told(found: _Score) -> dict:
     """Medians over the square of scores ``(members, runs)``, by member, and a map of `whole`."""
     row = {name: np.median(values, -1) for name, values in found._asdict().items()}
     row["inside"] = np.median(found.whole[:, _INSIDE], -1)
@@ -247,20 +247,20 @@ def through_loop(system, torque) -> np.ndarray:
     return found
 
 
-def predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
+def _predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
     """End-point error that the linear loop predicts for a feedforward, RMS in mm, shape (...).
 
     No motion is simulated: the missing torque goes through `linear_loop`, and joint errors to the
     hand by the Jacobian of the plan.
     """
     system = linear_loop(setup, float(reference.q[..., 1].mean()))
-    moving = (T >= 0) & (T < MOTION_SECONDS)
-    error = through_loop(system, torque - with_impulse(setup)(*reference))[..., moving, :]
+    moving = (_T >= 0) & (_T < MOTION_SECONDS)
+    error = through_loop(system, torque - _with_impulse(setup)(*reference))[..., moving, :]
     gap = np.einsum("...ij,...j->...i", jacobian(setup.arm, reference.q[..., moving, :]), error)
     return 1e3 * np.sqrt((gap**2).sum(-1).mean(-1))
 
 
-def logged_error(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
+def _logged_error(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
     """What each member's error on a recorded motion would do to the hand, RMS in mm.
 
     Nothing of it needs the model as a feedforward: a log, the feedback's gains and the arm's

@@ -29,13 +29,13 @@ from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating, Rival
 from workshop.beyond.studies.loop import motions
-from workshop.beyond.studies.loop.run_time_parts import exact, through_window
+from workshop.beyond.studies.loop.run_time_parts import _through_window, exact
 from workshop.beyond.studies.loop.runs.days import training
 from workshop.report import results
 from workshop.report.code_hash import study
 
 _DAYS, _MEMBERS = 10, 40  # of training; members of each family in a test
-WIDTH, _WIDER = 21, (11, 41)
+_WIDTH, _WIDER = 21, (11, 41)
 
 _NAMES = ("network", "two units", "linear filter", "identified")
 PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.chapters.widgets.stirring`
@@ -73,7 +73,7 @@ def _errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     return found
 
 
-def fitted(rival: Rival, cases: Cases) -> Rival:
+def _fitted(rival: Rival, cases: Cases) -> Rival:
     """The rival, trained for as many steps as it has."""
     with warnings.catch_warnings(action="ignore", category=NotConverged):
         return rival.fit(cases)
@@ -90,9 +90,9 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     rivals: dict = {pair: [] for pair in product(names, families)}
     found: dict = {name: {family: {} for family in families} for name in names}
     for day, run in enumerate(runs):
-        cases = motions.learnt(run, width)
+        cases = motions._learnt(run, width)
         for (name, family), trained in rivals.items():
-            trained.append(fitted(_maker(setup, name, day), cases[family]))
+            trained.append(_fitted(_maker(setup, name, day), cases[family]))
             every = _errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
                 found[name][family].setdefault(part, []).append(error)
@@ -108,7 +108,7 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
         for k in range(len(runs)):
             for part, error in _errors(table[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, _NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
+        other = _transfer(setup, _NAMES[:1], width, motions._FAMILIES[1:2], runs, tests)[1]
         found[str(width)] = {"pick and place": mine, **other["network"]}
     return found
 
@@ -147,8 +147,8 @@ def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
         "exact equations": [exact(setup)],
-        "exact behind a window": [through_window(exact(setup))],
-        **{n: [WindowFeedforward(model, WIDTH) for model in ms] for n, ms in models.items()},
+        "exact behind a window": [_through_window(exact(setup))],
+        **{n: [WindowFeedforward(model, _WIDTH) for model in ms] for n, ms in models.items()},
     }
 
 
@@ -177,7 +177,7 @@ def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
     """What the hidden filters of networks look like and follow, one row for each network."""
     rows = []
     for rival, day in zip(rivals, runs):
-        x = Cases.windows(day[family], WIDTH).x
+        x = Cases.windows(day[family], _WIDTH).x
         names = classify(rival.model.weights.hidden_weights)
         motion = true_states(day[family], setup).reshape(-1, 2, 3)
         follows = heard(unit_inputs(rival.model, x)["hidden"], motion)
@@ -196,10 +196,10 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
     for family in ("circles", "pick and place"):
         null, left = [], []
         for day, run in enumerate(runs):
-            cases = Cases.windows(run[family], WIDTH)
+            cases = Cases.windows(run[family], _WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
-            null.append(fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
+            null.append(_fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
         found[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),
@@ -216,7 +216,7 @@ def network_path(family: str):
 def _keep(setup: Setup, rivals: dict, table: dict) -> dict[str, TorqueModel]:
     """Save, of each family, the network with the median error on its own test."""
     kept = {}
-    for family in motions.FAMILIES[:3]:
+    for family in motions._FAMILIES[:3]:
         part = family if family != "both" else "circles"
         order = np.argsort([error[0] for error in table["network"][family][part]])
         kept[family] = rivals["network", family][order[len(order) // 2]].model
@@ -264,21 +264,21 @@ def stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     Also which states the families visit, filters beside a null, and files with a network of each
     family and with the picker's torques.
     """
-    found: dict = {"days": days, "members": members, "width": WIDTH, "setups": {}}
+    found: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (
-        (JOINT_DAMPING, _NAMES, motions.FAMILIES),
-        (STATE_FEEDBACK, _NAMES[::2], motions.FAMILIES[:3]),
+        (JOINT_DAMPING, _NAMES, motions._FAMILIES),
+        (STATE_FEEDBACK, _NAMES[::2], motions._FAMILIES[:3]),
     )
     for setup, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
         runs = training(setup, range(days))
-        tests = motions.asked(setup, members, vias=main)
+        tests = motions._asked(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
-        rivals, table = _transfer(setup, names, WIDTH, families, runs, tests)
+        rivals, table = _transfer(setup, names, _WIDTH, families, runs, tests)
         row = {
-            "deviations": {n: Cases.windows(r, WIDTH).torque.std(0) for n, r in tests.items()},
+            "deviations": {n: Cases.windows(r, _WIDTH).torque.std(0) for n, r in tests.items()},
             "errors": table,
             "coverage": motions.coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),

@@ -12,9 +12,9 @@ from ddlib.learning import TrainingSet, Weights, cases, default_rate, surrogate
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from workshop.report.code_hash import study
 
-WIDTH = 21  # Window of the networks
+_WIDTH = 21  # Window of the networks
 
-EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 6 all
+_EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 6 all
 
 EPOCHS = 2000  # Epochs of a run in the page
 
@@ -26,52 +26,52 @@ MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is 
 
 # What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
 # the first hidden filter with any name
-EVENTS = ("error", "direct", "hidden")
+_EVENTS = ("error", "direct", "hidden")
 
 SHIFTS = 5  # Draws of torques shifted in time
 
 
-def page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
+def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
     """Training set of the page, and scaled windows and torques of trajectory 6."""
     training, test = split(JOINT_DAMPING.record())
     torque = training.tau[:, training.motion]
     if shifted is not None:
         torque = surrogate("shifted", torque, shifted)
-    windows, _ = cases(training, WIDTH)
+    windows, _ = cases(training, _WIDTH)
     whole = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=scaling)
     samples = torque.shape[1]
-    kept = np.arange(len(windows)).reshape(-1, samples)[:, ::EVERY].ravel()
+    kept = np.arange(len(windows)).reshape(-1, samples)[:, ::_EVERY].ravel()
     data = replace(whole, x=whole.x[kept], y=whole.y[kept], step=training.step)
-    return data, data.transform(*cases(test, WIDTH))
+    return data, data.transform(*cases(test, _WIDTH))
 
 
-def events(weights: Weights, training: np.ndarray) -> np.ndarray:
-    """Which of `EVENTS` hold for each network, shape (members, 3)."""
+def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
+    """Which of `_EVENTS` hold for each network, shape (members, 3)."""
     direct = classify(weights.direct_weights) == "acceleration"
     hidden = classify(weights.hidden_weights) != "not analysable"
     shapes = [x.reshape(len(weights), -1).any(-1) for x in (direct, hidden)]
     return np.stack([training < LEVEL, *shapes], -1)
 
 
-def watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
+def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
     """Train, looking every `CHECK` epochs; what was seen of each network."""
-    rate = default_rate(WIDTH) / len(data.x)
+    rate = default_rate(_WIDTH) / len(data.x)
     descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
     sets = (descent.inputs, descent.targets), learning.prepare(*test)
-    first = np.full((len(weights), len(EVENTS)), np.nan)
+    first = np.full((len(weights), len(_EVENTS)), np.nan)
     for epoch in range(0, epochs + 1, CHECK):
         errors = [
             np.sqrt((descent.mean_square(*s) / spread**2).mean(-1))
             for s, spread in zip(sets, spreads)
         ]
         now = descent.weights()
-        first[events(now, errors[0]) & np.isnan(first)] = epoch
+        first[_events(now, errors[0]) & np.isnan(first)] = epoch
         for _ in range(CHECK if epoch < epochs else 0):
             descent.epoch()
     named = classify(now.hidden_weights) != "not analysable"
     return {
-        **dict(zip(EVENTS, first.T)),
+        **dict(zip(_EVENTS, first.T)),
         "training": errors[0],
         "test": errors[1],
         "named": named.reshape(len(weights), -1).mean(-1),
@@ -83,13 +83,13 @@ def page_training(members: int = 25) -> dict:
     """Networks of window 21 trained as the page trains them, on torques real and shifted."""
     rows = {}
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
-        start = Weights.random(members, WIDTH, initial=INITIAL)
-        rows[f"{name}, real"] = watched(start, *page_set(scaling))
+        start = Weights.random(members, _WIDTH, initial=INITIAL)
+        rows[f"{name}, real"] = _watched(start, *_page_set(scaling))
         shares = np.array_split(np.arange(members), SHIFTS)
         runs = [
-            watched(start[share], *page_set(scaling, shifted=k)) for k, share in enumerate(shares)
+            _watched(start[share], *_page_set(scaling, shifted=k)) for k, share in enumerate(shares)
         ]
         rows[f"{name}, shifted"] = {
             key: np.concatenate([run[key] for run in runs]) for key in runs[0]
         }
-    return {"members": members, "epochs": EPOCHS, "every": EVERY, "level": LEVEL, "rows": rows}
+    return {"members": members, "epochs": EPOCHS, "every": _EVERY, "level": LEVEL, "rows": rows}

@@ -180,7 +180,7 @@ def fixed(setup: Setup) -> dict[str, Controller]:
     }
 
 
-class Trial(NamedTuple):
+class _Trial(NamedTuple):
     """What became of one motion; arrays have shape (laws, runs)."""
 
     hand: np.ndarray  # root mean square of the hand's error, mm
@@ -189,7 +189,7 @@ class Trial(NamedTuple):
     laws: dict  # the controllers with what they know after it
 
 
-def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, **options) -> Trial:
+def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, **options) -> _Trial:
     """One motion of extents ``(runs, 2)``, degrees, of all laws side by side."""
     steps = np.arange(
         -round(_AFTER / CONTROL_STEP), round((MOTION_SECONDS + _AFTER) / CONTROL_STEP)
@@ -213,7 +213,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
         name: _taught(law, getattr(own, "estimate", None))
         for (name, law), own in zip(laws.items(), guard.law.inner.laws)
     }
-    return Trial(rms(off), rms(off[..., third:]), stops, after)
+    return _Trial(rms(off), rms(off[..., third:]), stops, after)
 
 
 @dataclass(frozen=True)
@@ -237,7 +237,7 @@ def rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
     return replace(setup.effects, encoder=(Rounded(step[:, None], shift),))
 
 
-def trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[Trial], dict]:
+def trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
     """Motions ``(trials, runs, 2)`` one after another, and the laws with what they have learnt."""
     found = []
     for each in extents:
@@ -251,8 +251,8 @@ def drawn(runs: int, count: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).uniform(0, MAX_EXTENT_DEG, (count, runs, 2))
 
 
-def by_law(found: list[Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
-    """Errors of trials (an attribute of `Trial`) by the names of laws, shape (trials, runs), mm."""
+def by_law(found: list[_Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
+    """Errors of trials (an attribute of theirs) by law, shape (trials, runs), mm."""
     return {name: np.stack([getattr(t, what)[k] for t in found]) for k, name in enumerate(laws)}
 
 

@@ -35,8 +35,8 @@ from workshop.beyond.studies.loop import (
     run_time_parts as run_time,
     stirring,
 )
-from workshop.beyond.studies.loop.chain import Sample, chain, extents, recorded
-from workshop.beyond.studies.loop.runs.days import recorded as recorded_days
+from workshop.beyond.studies.loop.chain import _Sample, chain, extents, recorded
+from workshop.beyond.studies.loop.runs.days import _recorded as recorded_days
 from workshop.report.code_hash import study
 
 _COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
@@ -47,21 +47,21 @@ _LATER, _MEMBERS, _TEST = 500, 12, 4711  # first day; test motions, and their se
 
 def _copies(setup: Setup, days) -> dict:
     """End-point errors on the paper's own plan, equations given a smoothed copy of it, mm."""
-    plan, equations = run_time.rounded(run_time.FEWER, 0.0), run_time.exact(setup)
+    plan, equations = run_time.rounded(run_time._FEWER, 0.0), run_time.exact(setup)
     torques = {"none": 0 * plan.q[None]}
-    torques |= {f"{s:g}": equations(*run_time.rounded(run_time.FEWER, s))[None] for s in _COPIES}
-    torques["network"] = run_time.planned(run_time.networks(setup, len(days)), plan)
+    torques |= {f"{s:g}": equations(*run_time.rounded(run_time._FEWER, s))[None] for s in _COPIES}
+    torques["network"] = run_time._planned(run_time.networks(setup, len(days)), plan)
     made = {name: (torque, days) for name, torque in torques.items()}
-    return run_time.errors(setup, made, plan)
+    return run_time._errors(setup, made, plan)
 
 
 def _cases(run, every: int) -> Cases:
-    return Cases.windows(run, stirring.WIDTH)[::every]
+    return Cases.windows(run, stirring._WIDTH)[::every]
 
 
 def _fitted(steps: int, cases: Cases, day: int) -> BySolver:
     rival = BySolver(10, steps, decay=JOINT_DAMPING.decay, initial=INITIAL, seed=day)
-    return stirring.fitted(rival, cases)
+    return stirring._fitted(rival, cases)
 
 
 def _chosen_steps(run, day: int) -> int:
@@ -110,7 +110,7 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
     """Median over a family of the hand's error, one for each model of each name, mm."""
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         torques = {
-            name: [WindowFeedforward(m._torque, stirring.WIDTH)(*reference) for m in several]
+            name: [WindowFeedforward(m._torque, stirring._WIDTH)(*reference) for m in several]
             for name, several in models.items()
         }
     torques = {"none": [0 * reference.q], **torques}
@@ -134,16 +134,16 @@ def _windows(seeds: int) -> dict:
     return found
 
 
-def _course(training: Sample, test: Sample, seed: int, **options) -> np.ndarray:
+def _course(training: _Sample, test: _Sample, seed: int, **options) -> np.ndarray:
     """Errors on a test after each step of the solver."""
     return joints.solved(*training.pair, test.pair, seed=seed, **options).history.test
 
 
-def _error(training: Sample, test: Sample, seed: int, **options) -> float:
+def _error(training: _Sample, test: _Sample, seed: int, **options) -> float:
     return float(_course(training, test, seed, **options)[-1, 0])
 
 
-def _chosen_decay(five: Sample, seed: int) -> tuple[float, int]:
+def _chosen_decay(five: _Sample, seed: int) -> tuple[float, int]:
     """Decay and number of steps with the least error on motions that are left out in turn."""
     run, best = np.repeat(np.arange(5), len(five.torque) // 5), (np.inf, 0.0, 1)
     for decay in _DECAYS:
@@ -158,9 +158,9 @@ def _chosen_decay(five: Sample, seed: int) -> tuple[float, int]:
     return best[1:]
 
 
-def _part(sample: Sample, cases: np.ndarray) -> Sample:
+def _part(sample: _Sample, cases: np.ndarray) -> _Sample:
     runs = len(cases) * sample.runs // len(sample.torque)
-    return Sample(sample.windows[cases], sample.torque[cases], sample.states[cases], runs)
+    return _Sample(sample.windows[cases], sample.torque[cases], sample.states[cases], runs)
 
 
 def _practised(setup: Setup, seeds: int) -> dict:
@@ -190,10 +190,10 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
     terms = RigidBodyTerms(learners.NAMES)
     taught = {
         "exact terms": learners.Terms(terms, draw),
-        "exact terms, slower": learners.Terms(terms, draw, 0.3 * learners.RATE),
-        "network, last layer": learners.last_layer(draw.untrained, draw),
-        "linear filter": learners.linear_filter(draw),
-        "memory": learners.Memory(draw),
+        "exact terms, slower": learners.Terms(terms, draw, 0.3 * learners._RATE),
+        "network, last layer": learners._last_layer(draw.untrained, draw),
+        "linear filter": learners._linear_filter(draw),
+        "memory": learners._Memory(draw),
     }
     learning._practise(draw, taught, reference, t)
     found: dict = {}
@@ -204,7 +204,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
         every = {"none": draw.plain} | {k: x.controller(False) for k, x in taught.items()}
         every["memory, scaled"] = scaled
         many = learning._repeated(wanted, len(every))
-        errors, _ = learning.trial(draw, list(every.values()), [1] * len(every), many, times)
+        errors, _ = learning._trial(draw, list(every.values()), [1] * len(every), many, times)
         found[motion] = dict(zip(every, errors))
     return found
 
