@@ -1,32 +1,25 @@
 """The design, the regression and the posterior of the knobs, against closed forms."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
 
 from ddlib.learning import cases
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.setups import JOINT_DAMPING
 from workshop.report import knobs
 from workshop.report.knobs import (
-    METHODS,
     _Emulator,
     _Knob,
-    _left_out,
     _screening,
     _shares,
     _terms,
     _weigh,
     _without_start,
-    knobs_of,
     moments,
     would_tell,
 )
-from workshop.report.studies.table import _ablations
-
-CENTRE = {m: {n: float(k.value(0)) for n, k in knobs_of(m).items()} for m in METHODS}
-
 
 # --- knobs and the design -----------------------------------------------------------------------
 
@@ -49,33 +42,6 @@ def test_the_design_separates_main_effects_from_all_of_second_order():
     np.testing.assert_array_equal(x.T @ second, 0)  # and from squares and products
     assert ((x == 0).sum(0) == 3).all()  # each knob is in the middle of its range three times
     assert np.linalg.matrix_rank(np.column_stack([np.ones(25), x, x**2])) == 25
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_setups_are_what_the_knobs_say(method):
-    values = CENTRE[method] | {"encoder bits": 13.0, "lowest input": -0.25}
-    made = knobs._setup(values, method)
-    viscous, coulomb = made.effects.friction
-    np.testing.assert_allclose(viscous.coefficient, values["joint damping"] * np.array((5.3, 1.1)))
-    np.testing.assert_allclose(coulomb.level, values["Coulomb friction"] * np.array((0.5, 0.15)))
-    np.testing.assert_allclose(made.controller.kp, values["position gain"] * np.array((300, 90)))
-    assert not any(made.controller.kd) and made.scaling == (-0.25, 1.0)
-    assert made.effects.encoder[0].step == pytest.approx(2 * np.pi / 2**13)
-    noise = STATE_FEEDBACK.effects.torque_sensor[0].std
-    np.testing.assert_allclose(
-        made.effects.torque_sensor[0].std, values["torque noise"] * np.array(noise)
-    )
-    if method == "solver":
-        assert (made.steps, made.decay) == (round(values["steps"]), values["decay"])
-    else:
-        assert (made.steps, made.epochs) == (0, round(values["epochs"]))
-        assert made.momentum == pytest.approx(1 - 1 / values["momentum"])
-        assert made.rate == values["step"]
-    with pytest.raises(ValueError, match="values must have one for 'torque noise'"):
-        knobs._setup({n: v for n, v in values.items() if n != "torque noise"}, method)
-    for name, knob in knobs_of(method).items():
-        with pytest.raises(ValueError, match=name):
-            knobs._setup(values | {name: 1.01 * knob.high + 0.01}, method)
 
 
 def test_joint_damping_lies_inside_the_ranges():
@@ -108,18 +74,6 @@ def polynomial(x):
     return 0.3 + x[:, 0] - 0.5 * x[:, 2] + 0.7 * x[:, 1] ** 2 - 0.4 * x[:, 0] * x[:, 1]
 
 
-def test_the_emulator_finds_an_exact_polynomial():
-    """Three knobs in 25 runs: all ten coefficients are determined."""
-    x = _screening()[:, :3]
-    found = _Emulator.fit(x, polynomial(x), 1e-8)
-    points = np.random.default_rng(0).uniform(-1, 1, (50, 3))
-    mean, variance = found.predict(points)
-    np.testing.assert_allclose(mean, polynomial(points), atol=1e-4)
-    assert (variance < 1e-7).all()
-    wanted = [0.3 + 0.7 / 3, 1, 0, -0.5, 0, 0.7, 0, -0.4, 0, 0]
-    np.testing.assert_allclose(found.mean, wanted, atol=1e-4)
-
-
 def test_the_emulator_is_least_squares_when_nothing_is_known_before():
     rng = np.random.default_rng(1)
     x = _screening()[:, :3]
@@ -142,18 +96,6 @@ def test_what_a_polynomial_misses_makes_it_less_sure():
     found = _Emulator.fit(x, polynomial(x) + 0.8 * np.abs(x.sum(1)), 1e-6)
     assert found.misfit > 0 and (found.predict(x)[1] >= found.misfit).all()
     assert _Emulator.fit(x, polynomial(x), 1e-6).misfit == 0
-
-
-def test_runs_left_out_are_foretold_with_the_right_spread():
-    rng = np.random.default_rng(2)
-    x = _screening()[:, :4]
-    scores = np.concatenate(
-        [_left_out(x, polynomial(x) + rng.normal(0, 0.1, 25), 0.01) for _ in range(4)]
-    )
-    assert 0.8 < scores.std() < 1.4 and abs(scores.mean()) < 0.3
-    wrong = polynomial(x)
-    wrong[3] += 5.0
-    assert np.abs(_left_out(x, wrong, 0.01)).argmax() == 3
 
 
 def test_shares_of_the_variance():
@@ -200,19 +142,3 @@ def test_what_another_number_would_tell_against_the_conjugate_one():
     weights = np.full(len(places), 1 / len(places))
     told = would_tell(places, weights, places[:, 0], np.full(len(places), 0.25))
     np.testing.assert_allclose(told, [np.sqrt(0.25 / 1.25), 1.0], atol=0.02)
-
-
-def test_each_ablation_takes_back_one_thing():
-    rows = _ablations()
-    whole = rows.pop("joint damping")
-    changed = {
-        name: {f.name for f in fields(s) if getattr(s, f.name) != getattr(whole, f.name)} - {"name"}
-        for name, s in rows.items()
-    }
-    assert changed["damping in the controller"] == {"controller", "effects"}
-    assert changed["no Coulomb friction"] == changed["16 bits"] == {"effects"}
-    assert changed["default gain"] == {"controller"}
-    assert changed["default descent"] == {"steps", "decay"}
-    controller = rows["damping in the controller"]
-    total = np.add(controller.controller.kd, controller.effects.friction[0].coefficient)
-    np.testing.assert_allclose(total, np.add((5.3, 1.1), (0.5, 0.15)))

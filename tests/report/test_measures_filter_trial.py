@@ -1,4 +1,4 @@
-"""Measures of the filters' trial on a planted trial."""
+"""The gains by which networks are judged, against the arm and finite differences."""
 
 import numpy as np
 import pytest
@@ -6,31 +6,9 @@ import pytest
 from ddlib.learning import cases
 from ddlib.setups import split
 from ddlib.simulation import LOG_STEP
-from workshop.report import committed, results
+from workshop.report import committed
 from workshop.report.measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
-
-
-@pytest.fixture
-def planted(monkeypatch):
-    """Give it a row; it becomes what the trial found, at any window."""
-
-    def plant(row):
-        asked = []
-
-        def read(name):
-            asked.append(name)
-            return {"windows": {"21": row, "41": row}, "rows": {"two sines": row}}
-
-        monkeypatch.setattr(results, "read", read)
-        return asked
-
-    return plant
-
-
-def row(real, untrained, **nulls):
-    return {"real": real, "untrained": untrained,
-            "nulls": {name.replace("_", " "): null for name, null in nulls.items()}}  # fmt: skip
 
 
 def test_gains_of_the_arm_by_other_means():
@@ -48,28 +26,6 @@ def test_gains_of_the_arm_by_other_means():
     slope = np.diag(wanted[..., 1])
     assert (slope > viscous).all() and (slope < 2 * viscous).all()  # Coulomb friction on top
     assert np.abs(wanted[..., 1] - np.diag(slope)).max() < 0.4
-
-
-def test_gains_are_judged_by_their_worst_entry(planted):
-    wanted = trial.arm_gains()
-    off = wanted.copy()
-    off[0, 0, 2] *= 1.1
-    off[1, 1, 2] *= 0.8
-    off[0, 0, 1] *= 1.5
-    real = {"gains": [off.tolist()] * 7, "gains, direct": [wanted.tolist()] * 7}
-    null = {"gains": [(1.9 * wanted).tolist()] * 18 + [wanted.tolist()],
-            "gains, direct": [(0 * wanted).tolist()] * 19}  # fmt: skip
-    planted(row(real, None, phases=null))
-    found = trial.calibrated("inertia")
-    assert found.value == pytest.approx(0.2)
-    assert found.replicates == pytest.approx(0.2)
-    m = wanted[0, 0, 2]
-    assert found.text.startswith(f"M₁₁ {1.1 * m:.2f} (arm {m:.2f}), M₁₂ ")
-    assert found.text.endswith(" kg m²; as near by chance: p 0.10")  # one draw of 19, and itself
-    assert trial.calibrated("friction").value == pytest.approx(0.5)
-    direct = trial.calibrated("friction", path="gains, direct")
-    assert direct.value == pytest.approx(0)
-    assert direct.text.endswith(" N m s/rad; as near by chance: p 0.05")
 
 
 def test_networks_of_the_table_are_judged_by_gains_that_finite_differences_confirm():

@@ -19,7 +19,6 @@ from workshop.report.measures.control import _EXTENTS, _TIMES, _track
 
 EFFECTS = dynamics._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))
-SPEED = np.pi / 3 * np.deg2rad(45)  # of a sine that lasts six seconds, at its zero
 
 # --- the loop ------------------------------------------------------------------------------------
 
@@ -62,12 +61,6 @@ def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
     alone = _track(heavy, [False], nothing, gains, extents=(20.0, 0.0))[0]
     assert np.abs(alone[:, 0]).max() > 1
     assert np.abs(alone[:, 1]).max() < 0.01 * np.abs(alone[:, 0]).max()
-
-
-@pytest.mark.parametrize("speed", [0.0, -1.0, np.nan])
-def test_bad_speeds_are_refused_by_name(speed):
-    with pytest.raises(ValueError, match=r"^speed must"):
-        _track([[0, 0]], [False], nothing, [[1, 1]], speed=speed)
 
 
 @pytest.mark.parametrize("effects", [IDEAL, CMU_DD_ARM_II_EFFECTS], ids=["ideal", "all effects"])
@@ -160,15 +153,6 @@ def test_rounding_in_differences():
     assert found.value == pytest.approx(np.sqrt(2) / gain, rel=0.25)
 
 
-def test_a_dead_zone_swallows_its_width():
-    """RMS of a constant loss over that of the torque: from which width is it a fifth?"""
-    run = dynamics._ideal()
-    rms = np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
-    found = dynamics.dead_zone(0.2)
-    assert found.value == pytest.approx(dynamics._SIGNIFICANT * rms.min(), rel=0.02)
-    assert found.text.startswith("dead zone of 0.2 N m: ")
-
-
 def test_second_differences_of_rounded_positions():
     """Rounding errors e, uniform: (e1 - 2 e0 + e-1) / T^2 has sqrt(6/12) steps over T^2."""
     run = dynamics._ideal()
@@ -215,15 +199,6 @@ def test_the_snap_that_is_measured_is_the_snap_of_the_reference():
 
 
 # --- the family and its recordings ---------------------------------------------------------------
-
-
-def test_the_sine_in_closed_form():
-    assert trajectories.period().value == pytest.approx(6.0)
-    assert trajectories.period().text == "6.0 s; the motion lasts half of it"
-    found = trajectories.start()
-    assert found.value == 1.0
-    assert found.text.startswith(f"starts at {SPEED:.2f} rad/s for an extent of 45°")
-    assert trajectories.ends_and_middle().value is True
 
 
 def test_the_chance_of_extents_on_a_limit():
