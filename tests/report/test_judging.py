@@ -1,6 +1,5 @@
 """Fresh and written verdicts: what is kept agrees, and follows from the committed results."""
 
-import json
 import os
 
 import pytest
@@ -57,16 +56,6 @@ def planted(verdict, value=1.0, replicates=None):
     return claim
 
 
-def test_lines_and_the_kept_file(folder, monkeypatch, capsys):
-    good = planted("reproduced")
-    monkeypatch.setattr(judging, "load", lambda: [good])
-    assert judging.main(["--write"]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines == ["a | 1 | 25.0 % | - | reproduced | reproduced", "contradicted: none"]
-    kept = json.loads((folder / "verdicts.json").read_text())
-    assert kept == {"of results": judging._digest(), "fresh": {"a": "reproduced"}}
-
-
 def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
     import numpy as np
 
@@ -78,8 +67,3 @@ def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
     assert judging.main([]) == 0
     assert "50.0 % qualitative" in (out := capsys.readouterr().out)
     assert "| undecided | qualitative | stands" in out
-
-
-def test_distance_is_to_the_nearest_edge():
-    assert judging._distance(planted("reproduced", 1.0)) == pytest.approx(0.25)
-    assert judging._distance(planted("reproduced", 0.45)) == pytest.approx(0.1)

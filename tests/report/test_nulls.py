@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddlib.analysis import CLASSES, classify
 from ddlib.learning import NotConverged, surrogates
 from ddlib.metrics import rmss
-from ddlib.setups import split
 from workshop.report.studies import nulls as study
 
 SMALL = replace(study.TRIAL, epochs=40, warm_up=10, hidden=3)
@@ -42,32 +40,6 @@ def test_each_network_learns_its_own_target(trial, trained):
     )
 
 
-def test_torques_and_windows_are_of_the_training_runs(trial):
-    training, test = split(SMALL.record())
-    assert np.array_equal(trial.torques.reshape(-1, 2), trial.torque)
-    assert np.array_equal(trial.torque[300], training.tau[1, training.motion][0])
-    assert np.array_equal(trial.answer, test.tau[test.motion])
-    assert trial.states.shape == (1500, 2, 4) and trial.test_states.shape == (300, 2, 4)
-    q = training.q_true[:, training.motion].reshape(-1, 2)
-    assert np.allclose(trial.states[..., 0], q)
-
-
-def test_shares_of_weights_and_of_what_training_added(trial, trained):
-    targets, weights, start = trained
-    found = trial.described(weights, start, targets)
-    for layer in ("hidden", "direct"):
-        f, first = (getattr(w, f"{layer}_weights") for w in (weights, start))
-        for kind, filters in (("classes", f), ("changes", f - first)):
-            for name in CLASSES:
-                wanted = [np.mean(classify(one) == name) for one in filters]
-                assert found[layer][kind][name] == pytest.approx(wanted)
-    still = trial.described(start, start, targets)  # nothing was added: the weights count
-    assert all(
-        np.array_equal(still["hidden"]["changes"][n], still["hidden"]["classes"][n])
-        for n in CLASSES
-    )
-
-
 def test_replaced_by_themselves_filters_change_nothing(trial, trained):
     _, weights, start = trained
     own = trial.replaced(weights, weights.hidden_weights)
@@ -77,13 +49,6 @@ def test_replaced_by_themselves_filters_change_nothing(trial, trained):
     x = np.column_stack([hidden[1], trial.windows.reshape(1500, -1), np.ones(1500)])
     fit = x @ np.linalg.pinv(x) @ trial.torque
     assert other["refitted"][1, 0] == pytest.approx(rmss(fit, trial.torque), rel=1e-6)
-
-
-def test_means_are_taken_by_draw():
-    found = {"a": {"b": np.arange(12.0).reshape(6, 2)}, "c": np.arange(6.0)}
-    means = study._mean(found, 3)
-    assert np.array_equal(means["c"], [0.5, 2.5, 4.5])
-    assert np.array_equal(means["a"]["b"], [[1, 2], [5, 6], [9, 10]])
 
 
 def test_the_solver_takes_the_place_of_descent():

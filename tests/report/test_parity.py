@@ -4,7 +4,6 @@ import itertools
 
 import numpy as np
 import pytest
-import sympy
 from hypothesis import given, settings, strategies as st
 
 from ddlib.learning import Weights
@@ -43,16 +42,6 @@ def test_polynomials_take_the_given_values(values):
     x = patterns(4)
     np.testing.assert_array_equal(evaluate(monomials(values), x), values)
     np.testing.assert_allclose(evaluate(monomials(values, "signs"), 1 - 2 * x), values)
-
-
-def test_polynomial_of_three_bits_by_algebra():
-    """Sympy multiplies out 1/2 + (1 - 2a)(1 - 2b)(1 - 2c)/2."""
-    names = sympy.symbols("a b c")
-    product = sympy.Rational(1, 2) * (1 + sympy.prod([1 - 2 * s for s in names]))
-    terms = sympy.Poly(sympy.expand(product), *names).as_dict()
-    found = monomials(parity_networks.parity(patterns(3)))
-    wanted = [terms.get(tuple(i >> k & 1 for k in range(3)), 0) for i in range(8)]
-    assert found.tolist() == [int(w) for w in wanted]
 
 
 @pytest.mark.parametrize("bits", [1, 2, 3, 10])
@@ -105,13 +94,6 @@ def test_learning_finds_exclusive_or_and_says_when():
     assert np.isinf(none).all() and (parity_networks.right(early, x, y) < 1).all()
 
 
-def test_members_are_the_same_in_any_company():
-    both, alone = (
-        parity_networks.learn(2, 1, members=m, seed=s, epochs=50) for m, s in ((2, 3), (1, 4))
-    )
-    np.testing.assert_allclose(both[0].direct_weights[1], alone[0].direct_weights[0], atol=1e-6)
-
-
 def test_cases_in_both_codings():
     (bits, y), (signs, same) = (
         parity_networks.parity_cases(3, coding) for coding in parity_networks.CODINGS
@@ -130,12 +112,8 @@ def test_cases_in_both_codings():
         (lambda: monomials([1, 0, 1]), "values must have shape"),
         (lambda: monomials([0.5, 0]), "values must be whole numbers"),
         (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
-        (lambda: parity_networks._counter(0), "bits must be an integer from 1"),
-        (lambda: parity_networks._tree(3).output([[0, 1]]), "x must have a last axis of length 3"),
-        (lambda: parity_networks._tree(3).output([[0, 1, 1]], 0.0), "gain must lie in"),
         (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
-        (lambda: parity_networks.parity_cases(2, "words"), "coding must be one of"),
     ],
 )
 def test_refusals(call, words):

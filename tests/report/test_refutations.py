@@ -50,17 +50,3 @@ def test_words_stand_for_the_bound():
         value = NUMBERS.get(words) or float(number) / (100 if per_cent else 1)
         ways = (bound, bound - 1, 1 - bound, 1 / bound if bound else bound)
         assert any(value == pytest.approx(way, rel=0.012) for way in ways), says
-
-
-def test_sentences_are_written_from_data(tmp_path):
-    entry = dict(id="a", where="section 1", chapter="c", claim="x", printed="p", why="y",
-                 verdict="reproduced", measure="m.f", band={"to": 2000})  # fmt: skip
-    for refuted, sentence in (
-        ({"says": "A count above {}.", "above": 2000}, "A count above 2,000."),
-        ({"says": "A share of {}.", "above": 2000, "as": "twice"}, "A share of twice."),
-        ({"says": "Below {}, above {}.", "below": 0.5, "above": 2000}, "Below 0.5, above 2,000."),
-        ("A miss.", "A miss."),
-    ):  # fmt: skip
-        path = tmp_path / "claims.yml"
-        path.write_text(yaml.safe_dump([{**entry, "refuted": refuted}], sort_keys=False))
-        assert claims.load(path)[0].refuted == sentence

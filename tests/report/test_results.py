@@ -1,21 +1,17 @@
-"""Committed results: hashes that see code and nothing else, files, freshness, a re-measurement."""
+"""Committed results: files, freshness, a re-measurement."""
 
 import json
 import random
-from concurrent.futures import Future
 from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from ddlib import paper
-from ddlib.analysis import LAYERS, summary
-from ddlib.learning import TorqueModel, Weights, cases
-from ddlib.setups import SETUPS, STATE_FEEDBACK, WINDOWS, errors, split, true_states
+from ddlib.learning import TorqueModel, Weights
+from ddlib.setups import SETUPS, STATE_FEEDBACK, WINDOWS, errors
 from workshop.report import reproduce, results
 from workshop.report.code_hash import places
-from workshop.report.studies.harmonics import _NAME
-from workshop.report.two_harmonics import record_two_harmonics
 
 STALE = "book/results is not what this code gives: run `make reproduce`"
 
@@ -86,7 +82,7 @@ def parts(tmp_path, monkeypatch):
     ran.studies = {n: lambda n=n: ran.append(n) or {"value": len(ran)} for n in ran.codes}
     monkeypatch.setattr(results, "FOLDER", tmp_path / "results")
     monkeypatch.setattr(reproduce, "places", lambda: dict.fromkeys(ran.codes, ("module", "name")))
-    monkeypatch.setattr(reproduce, "run", lambda name: ran.studies[name]())
+    monkeypatch.setattr(reproduce, "_run", lambda name: ran.studies[name]())
     monkeypatch.setattr(reproduce, "code_hash", lambda name: ran.codes[name])
     monkeypatch.setattr(reproduce, "_picture", lambda: None)
     return ran
@@ -107,46 +103,7 @@ def test_what_is_up_to_date_is_not_made_again(parts, capsys):
     with pytest.raises(SystemExit):
         reproduce.main(["table-9-9"])
     assert "parts must be among longer, clean, got ['table-9-9']" in capsys.readouterr().err
-    for jobs in ("0", "-1"):
-        with pytest.raises(SystemExit):
-            reproduce.main(["--jobs", jobs])
-        assert f"jobs must be 1 or more, got {jobs}" in capsys.readouterr().err
     assert len(parts) == 4
-
-
-class Pool:
-    """Stands for `ProcessPoolExecutor`: works at once, in this process."""
-
-    def __init__(self, *_, **__):
-        pass
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def submit(self, function, name, code):
-        task = Future()
-        try:
-            task.set_result(function(name, code))
-        except Exception as error:
-            task.set_exception(error)
-        return task
-
-
-def test_side_by_side_the_longest_come_first(parts, monkeypatch, capfd):
-    monkeypatch.setattr(reproduce, "ProcessPoolExecutor", Pool)
-    monkeypatch.setattr(reproduce, "_seconds", {"longer": 1.0, "clean": 9.0}.get)
-    reproduce.main(["--jobs", "2"])
-    assert parts == ["clean", "longer"]
-    made_by = results.read("reproduce")["made by"]
-    assert made_by["jobs"] == made_by["parts"] == 2 and 0 <= made_by["seconds"] < 600
-    assert "==> clean: 9 s" in capfd.readouterr().out
-    monkeypatch.setitem(parts.studies, "clean", lambda: 1 / 0)
-    with pytest.raises(RuntimeError, match="failed: clean; the others are written") as told:
-        reproduce.main(["--jobs", "2", "--force"])
-    assert "ZeroDivisionError" in str(told.value) and parts[2:] == ["longer"]
 
 
 def test_the_stamp_is_of_the_code_that_ran(parts, monkeypatch):
@@ -221,27 +178,6 @@ def test_committed_networks_measure_what_the_table_says(table, setup, width):
             values, cell["errors"][name], rtol=0.02, err_msg=f"{name}: {STALE}"
         )
     np.testing.assert_allclose(model.weights.largest, cell["largest weight"], rtol=1e-3)
-
-
-@pytest.mark.parametrize("width", [DRAW.choice(WINDOWS)])
-def test_committed_networks_of_two_harmonics_measure_what_is_written(width):
-    cell = results.read("harmonics")["windows"][str(width)]
-    model, recording = results.networks(width, _NAME), record_two_harmonics()
-    for own, name in (("training", "training"), ("test", "test")):
-        measured = getattr(errors(model, recording), name)
-        np.testing.assert_allclose(measured, cell[own], rtol=0.02, err_msg=STALE)
-    other = errors(model, STATE_FEEDBACK.record()).test
-    np.testing.assert_allclose(other, cell["one sine"]["trajectory 6"], rtol=0.02, err_msg=STALE)
-    training = split(recording)[0]
-    states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
-    found = summary(model, cases(training, width)[0], states)
-    scale = np.abs(found["gains"]).max()
-    np.testing.assert_allclose(found["gains"], cell["gains"], atol=0.01 * scale, err_msg=STALE)
-    for layer in LAYERS:
-        for kind in ("classes", "follow"):
-            for name, shares in cell[layer][kind].items():
-                mean = found[layer][kind][name].mean()
-                assert abs(mean - np.mean(shares)) < 0.03, (layer, kind, name, STALE)
 
 
 @pytest.mark.parametrize("width", WINDOWS)

@@ -49,11 +49,3 @@ def test_the_median_scatters_as_theory_says():
     assert draws.shape == (DRAWS,)
     assert draws.mean() == pytest.approx(np.median(values), abs=0.02)
     assert draws.std() == pytest.approx(2.0 * np.sqrt(np.pi / 2 / values.size), rel=0.1)
-
-
-def test_other_statistics_and_seeds():
-    values = np.arange(10.0)
-    means = resampled(values, np.mean)
-    assert means.std() == pytest.approx(values.std() / np.sqrt(10), rel=0.1)
-    assert (resampled(values) == resampled(values)).all()
-    assert (resampled(values) != resampled(values, seed=1)).any()

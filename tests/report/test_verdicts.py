@@ -11,10 +11,8 @@ from workshop.report.evidence.verdicts import (
     FEWEST,
     STANDS,
     _fresh,
-    _shares,
     _stands,
     bootstrap,
-    judged,
     mean,
     turns_at,
 )
@@ -41,20 +39,6 @@ def test_columns_of_the_same_members_are_drawn_together():
     assert together == pytest.approx(-2)
     apart = bootstrap(lambda a, b: mean(a) - mean(b), x, x + 2)
     assert apart.std() == pytest.approx(np.sqrt(2 / 30) * x.std(), rel=0.06)
-
-
-def test_members_bring_all_that_is_theirs():
-    units = np.repeat(np.arange(5.0)[:, None], 3, axis=1)  # three units a network, all alike
-    found = bootstrap(lambda x: np.ptp(x, axis=-1).max(-1), units)
-    assert (found == 0).all()
-
-
-def test_value_and_replicates_come_from_one_function():
-    x, y = np.array([1.0, 2.0, 6.0] * 2), np.full(6, 2.0)
-    value, text, replicates = judged(lambda a, b: mean(a) / mean(b), x, y, text="{} times".format)
-    assert value == 1.5 and text == "1.5 times"
-    assert replicates.shape == (DRAWS,) and 0.5 <= replicates.min() < replicates.max() <= 3
-    assert judged(lambda pair: mean(pair[0] * pair[1]), (x, y), text="six")[:2] == (6, "six")
 
 
 def test_networks_on_recordings_are_drawn_on_both_levels():
@@ -85,12 +69,6 @@ def test_bad_arguments(arguments, words):
         bootstrap(*arguments)
     with pytest.raises(ValueError, match="draws must be an integer from 2000"):
         bootstrap(mean, np.ones(3), draws=1999)
-
-
-def test_shares_of_draws():
-    found = _shares(["qualitative"] * 3 + ["reproduced"] * 7)
-    assert found == {"reproduced": 0.7, "qualitative": 0.3}
-    assert list(found) == ["reproduced", "qualitative"]
 
 
 def test_a_verdict_needs_nearly_all_draws():
