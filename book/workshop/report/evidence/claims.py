@@ -106,12 +106,12 @@ class Claim:
     where: str
     chapter: str
     claim: str
-    _printed: float | str
+    printed: float | str
     verdict: str
     why: str
     refuted: str
     measure: str = ""
-    _find: Mapping = field(default_factory=dict)
+    find: Mapping = field(default_factory=dict)
     arguments: Mapping = field(default_factory=dict)
     band: Mapping = field(default_factory=dict)
     loose: Mapping = field(default_factory=dict)
