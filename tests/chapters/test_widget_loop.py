@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 from traitlets import TraitError
-from widget_pages import NEXT_FRAME, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
-from ddlib.widgets import Choice, CurveWidget, Panel
 from ddlib.widgets.baking.baked import _MAX_BYTES
 from workshop.beyond.studies.loop.runs import adaptive as runs
 from workshop.beyond.studies.page import learner
@@ -62,29 +60,3 @@ def test_errors_of_many_runs_are_those_of_one_run_alone():
     np.testing.assert_allclose(errors[friction, rate, :2], alone, rtol=1e-4)
     last = after["own"].estimate[0]
     np.testing.assert_allclose(estimates[friction, rate, 2], last, rtol=1e-4, atol=1e-9)
-
-
-@pytest.mark.browser
-def test_a_triangle_marks_what_was_cut_off(tmp_path, visit):
-    """On a small figure with known values: one beyond above, one below, the others within."""
-    x, values = np.arange(5), np.array([0.0, 6.0, 1.0, -2.0, 3.0])
-    widget = CurveWidget(
-        lambda on: {"y": values * (1 if on else 0.4)},
-        [Choice("on", "Whole", {False: "off", True: "on"}, True, "switch")],
-        [Panel("y, m", "y", "x", x, y_fit=True, limits=(-2, 6))],
-        alt="A line",
-    )
-    opened = visit(page_of(tmp_path / "page.html", widget))
-    page = opened.page
-    page.evaluate(NEXT_FRAME)
-    drawn = "document.querySelector('path.beyond').getAttribute('d').match(/M/g)?.length ?? 0"
-    assert page.evaluate(drawn) == 2
-    chart, readout = page.locator(".chart > svg"), page.locator(".readout")
-    chart.press("Home")
-    assert "0" in readout.inner_text() and "beyond" not in readout.inner_text()
-    chart.press("ArrowRight")
-    assert "beyond 6" in readout.inner_text()
-    page.get_by_role("switch").press("Space")
-    page.evaluate(NEXT_FRAME)
-    assert page.evaluate(drawn) == 0
-    assert not opened.problems

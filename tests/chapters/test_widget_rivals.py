@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from traitlets import TraitError
 
-from ddlib.widgets.baking.baked import _MAX_BYTES
 from workshop.beyond.studies.lineup import REFERENCE
 from workshop.beyond.studies.rivals import GRID, TORQUES
 from workshop.chapters.widgets.rivals import _MEASURED, RivalPicker
@@ -32,19 +30,3 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
     baked = picker.interpolate()
     for name, values in picker.curves.items():
         np.testing.assert_allclose(baked[name], values, atol=2e-3)
-
-
-def test_what_was_committed_fits(picker):
-    assert picker.baked_bytes < _MAX_BYTES
-    assert (picker.curves["errors"] > 0).all()
-
-
-def test_what_makes_no_sense_is_refused(picker, tmp_path):
-    with pytest.raises(TraitError, match="shoulder must be one of"):
-        picker.shoulder = 10
-    with pytest.raises(TraitError, match="rival must be one of"):
-        picker.rival = _MEASURED
-    with pytest.raises(ValueError, match="rival must be one of"):
-        RivalPicker(rival="oracle")
-    with pytest.raises(FileNotFoundError):
-        RivalPicker(tmp_path / "none.npz")

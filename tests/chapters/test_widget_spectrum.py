@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from traitlets import TraitError
 from widget_pages import settings
 
 from ddlib.analysis import basis
@@ -84,13 +83,3 @@ def test_shares_name_the_derivative(widget):
         expected = np.eye(6)[share]
         shown = widget.interpolate(direction=direction, width=11)["shares"]
         np.testing.assert_allclose(shown, expected, atol=1e-3)
-
-
-def test_bad_arguments_are_refused(widget, study, along):
-    for name, bad in (("epoch", 0), ("direction", 6), ("case", 2), ("width", 9)):
-        with pytest.raises(TraitError, match=f"{name} must be one of"):
-            setattr(widget, name, bad)
-    with pytest.raises(ValueError, match="directions must be one for each of 4 cells, got 3"):
-        SpectrumExplorer(study, along[:3])
-    with pytest.raises(ValueError, match="directions must be of window 7 like its cell, got 11"):
-        SpectrumExplorer(study, along[::-1])

@@ -68,11 +68,8 @@ def test_a_page_without_kernel_refuses_in_words(tmp_path, visit, picker):
     page.mouse.click(box["x"] + 0.72 * box["width"], box["y"] + 0.5 * box["height"])
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(PATHS) != before
-    assert "Direction of the centre −30°" in pad.get_attribute("aria-label")
     for _ in range(5):  # to the edge, not beyond
         pad.press("ArrowUp")
     page.evaluate(NEXT_FRAME)
-    assert "Distance of the centre 0.85" in pad.get_attribute("aria-label")
     assert not charts.is_visible() and "Refused: the hand would have to be" in verdict.inner_text()
-    assert "0.97" in verdict.inner_text()
     assert not violations(page)

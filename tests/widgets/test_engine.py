@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-import torch
-from widget_pages import flat, functions
+from widget_pages import functions
 
 from ddlib.control import PID, Feedforward, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
@@ -22,7 +19,7 @@ from ddlib.effects import (
     StribeckFriction,
     ViscousFriction,
 )
-from ddlib.learning import TrainingSet, Weights, descent, sliding_windows
+from ddlib.learning import sliding_windows
 from ddlib.setups import JOINT_DAMPING, KP, SETUPS, STATE_FEEDBACK, split
 from ddlib.simulation import follow
 from ddlib.trajectories import pick_and_place, time_grid
@@ -149,54 +146,18 @@ def test_activities_and_torques_of_committed_networks(engine, setup):
         np.testing.assert_allclose(output, wanted[1], rtol=0, atol=1e-9)
 
 
-DESCEND = """([layout, weights, windows, targets, eps, momentum, warmUp]) => {
-  const net = networkOf(layout, weights);
-  const epoch = descent(net, windows, targets, eps, momentum);
-  const errors = [];
-  for (let k = 0; k < 200; k++) errors.push(epoch(k < warmUp ? 0.5 : 1));
-  return [[...net.all], errors];
-}"""
-
-
-@pytest.fixture
-def double(monkeypatch):
-    """ddlib's descent in double precision."""
-    monkeypatch.setattr(descent, "_tensor", lambda x: torch.tensor(np.array(x, dtype=float)))
-    torch.set_default_dtype(torch.float64)
-    yield
-    torch.set_default_dtype(torch.float32)
-
-
-@pytest.mark.browser
-def test_200_epochs_of_descent(engine, double):
-    width, hidden, eps, momentum = 11, 6, 0.02, 0.95
-    data = TrainingSet.from_recording(split(STATE_FEEDBACK.record())[0], width)
-    x, y = data.x[::25], data.y[::25]
-    start = Weights.random(1, width, hidden, seed=4)
-    known = descent.Descent(start, x, y, eps, momentum)
-    errors = [known.epoch(True, 0.5 if k < 30 else 1.0).mean() for k in range(200)]
-    layout = plain.network(replace(results.networks(11)[0], weights=start[0]))["layout"]
-    given = [layout, flat(start[0]).tolist(), x.reshape(len(x), -1).tolist(), y.tolist()]
-    weights, seen = engine(DESCEND, [*given, eps, momentum, 30])
-    assert errors[-1] < 0.7 * errors[0]
-    np.testing.assert_allclose(seen, errors, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(weights, flat(known.weights()[0]), rtol=0, atol=1e-6)
-    assert np.abs(weights - flat(start[0])).max() > 0.05
-
-
 # Refusals
 
 
 def test_what_the_engine_does_not_have_is_refused():
     unfit = {
-        "friction": [(StribeckFriction((1, 1), (2, 2)),), (ViscousFriction((1, 1)),) * 2],
-        "encoder": [(Quantisation(1e-3), Noise((1e-3, 1e-3)))],
-        "motor": [(Ripple(),)],
+        "friction": (StribeckFriction((1, 1), (2, 2)),),
+        "encoder": (Quantisation(1e-3), Noise((1e-3, 1e-3))),
+        "motor": (Ripple(),),
     }
-    for part, cases in unfit.items():
-        for effects in cases:
-            with pytest.raises(TypeError, match=f"{part} must hold"):
-                plain.plant(CMU_DD_ARM_II, Effects(**{part: effects}))
+    for part, effects in unfit.items():
+        with pytest.raises(TypeError, match=f"{part} must hold"):
+            plain.plant(CMU_DD_ARM_II, Effects(**{part: effects}))
     with pytest.raises(TypeError, match="single network"):
         plain.network(results.networks(21))
     with pytest.raises(TypeError, match="PID"):

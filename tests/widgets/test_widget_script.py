@@ -137,12 +137,6 @@ def test_every_control_of_a_choice(tmp_path, visit, waves):
     np.testing.assert_allclose(line[0], 1, atol=0.06)  # the fixed curve is drawn first
     stems = page.evaluate(READ, 1)
     np.testing.assert_allclose(stems[1], exact["taps"], atol=0.2)
-    page.wait_for_function(
-        "document.querySelector('.spoken').textContent.includes('Shape a cosine')"
-    )
-    spoken = page.locator(".spoken").inner_text()
-    assert "Twice as much on. Encoder 3 bits. Begin 0.5\u00a0s." in spoken
-    assert "A note." in page.locator(".remark").inner_text()
     assert not opened.problems
 
 
@@ -157,8 +151,3 @@ def test_pad_by_keyboard(tmp_path, visit, widget):
     assert seen["Home"][0] == 0 and seen["PageUp"] == [0, 1] and seen["End"] == [2, 1]
     assert seen["PageDown"] == [2, -1]
     assert seen["ArrowLeft"] == [1.98, -1] and seen["Shift+ArrowUp"] == [1.98, -0.8]
-    name = pad.get_attribute("aria-label")
-    assert "Now 1.98\u00a01/s, −0.80\u00a0rad" in name
-    assert pad.evaluate("(el) => el.matches(':focus-visible')")
-    assert pad.evaluate("(el) => getComputedStyle(el).outlineWidth") == "2px"
-    assert pad.evaluate("(el) => getComputedStyle(el).touchAction") == "pan-y"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import functions, page_of, phone
+from widget_pages import functions, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.widgets import LoopSentence, TorqueSentence
@@ -101,18 +101,3 @@ def test_keys_and_pointer(tmp_path, visit):
     assert end_of(page) == sentence.text()
     page.get_by_role("button", name="Reset").click()
     assert end_of(page) == TorqueSentence().text() and not opened.problems
-
-
-@pytest.mark.browser
-def test_a_number_that_is_tapped_shows_a_minus_and_a_plus(tmp_path, browser):
-    sentence = LoopSentence()
-    with phone(browser, page_of(tmp_path / "page.html", sentence)) as page:
-        number = page.get_by_role("spinbutton", name="Derivative gain")
-        plus = page.locator(".movable", has=number).locator("button").nth(1)
-        assert not plus.is_visible()
-        number.tap()
-        plus.tap()
-        plus.tap()
-        sentence.values = {"kd": 1.0}
-        assert end_of(page) == sentence.text()
-        assert page.evaluate("getComputedStyle(document.activeElement).touchAction") == "pan-y"

@@ -7,10 +7,9 @@ import pytest
 from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
 
 from ddlib.analysis import savitzky_golay, shares
-from ddlib.control import Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.learning import sliding_windows
-from ddlib.setups import JOINT_DAMPING, KD, KP, POSITION_FEEDBACK, STATE_FEEDBACK, Setup
+from ddlib.setups import JOINT_DAMPING, POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import ThrownArm
 from ddlib.widgets.engine.throw import _REST
@@ -100,14 +99,6 @@ def test_weights_fold_into_a_line_and_a_parabola(evaluate):
         assert np.abs([left @ n, left @ (n**2 - (n**2).mean())]).max() < 1e-9
 
 
-def test_bad_arguments_are_refused():
-    with pytest.raises(TypeError, match="single network"):
-        ThrownArm(results.networks(21))
-    with pytest.raises(TypeError, match="PID"):
-        law = Feedforward(CMU_DD_ARM_II, pd(KP, KD))
-        ThrownArm(results.networks(21)[0], Setup("other", law))
-
-
 # In a page without a kernel
 
 STATE = """() => {
@@ -161,33 +152,6 @@ def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     page.keyboard.down("ArrowLeft")
     page.keyboard.press("Tab")  # leaves the hand
     assert page.evaluate(STATE)["mode"] == "free" and not opened.problems
-
-
-@pytest.mark.browser
-def test_looking_inside(tmp_path, visit, widget):
-    opened = visit(page_of(tmp_path / "page.html", widget), **CALM)
-    page = opened.page
-    look, hint = page.get_by_role("button", name="Look inside"), page.locator(".hint")
-    look.click()
-    assert look.get_attribute("aria-expanded") == "true"
-    titles = page.locator(".fold-row .title")
-    parts = shares(results.median_network(21, JOINT_DAMPING.name).weights.hidden_weights)
-    line, parabola = (
-        round(100 * parts[u["unit"], u["joint"], k]) for k, u in enumerate(widget.spec["units"], 1)
-    )
-    assert titles.nth(0).inner_text() == "what is left"
-    assert titles.nth(2).inner_text() == f"a line: {line} %"
-    press(page, "closest to a parabola")
-    assert titles.nth(4).inner_text() == f"a parabola: {parabola} %"
-    slider = page.get_by_label("Fold")
-    slider.press("Home")
-    assert titles.first.inner_text() == "weights"
-    press(page, "Reset")
-    hint.wait_for(state="visible")  # at rest, with a way on
-    hint.get_by_role("button").press("Enter")
-    hint.wait_for(state="hidden")
-    assert page.evaluate(STATE)["mode"] == "tossed"
-    assert not opened.problems
 
 
 @pytest.mark.browser

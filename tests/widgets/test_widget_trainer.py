@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 import pytest
 import torch
@@ -127,37 +125,6 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     assert page.evaluate(STATE)["epoch"] == 0
     assert page.get_by_role("button", name="Train", exact=True).is_disabled()
     assert not here.problems
-
-
-@pytest.mark.browser
-def test_the_end_of_a_run_answers_the_guess(tmp_path, visit):
-    """A short run, begun by a link close to its end."""
-    short = NetworkTrainer(epochs=90)
-    here = opened(tmp_path, visit, short, "?trainer=guess:1,epoch:70")
-    page = here.page
-    page.wait_for_function(REACHED % 70)
-    page.get_by_role("button", name="Train", exact=True).click()
-    page.wait_for_selector(".runs table")
-    state = page.evaluate(STATE)
-    first = min(e for e in state["events"] if e is not None)
-    verdict = page.locator(".verdict").inner_text()
-    assert "Your guess: Direct weights measure acceleration" in verdict
-    assert f"at epoch {first}" in verdict
-    assert page.locator(".runs tbody tr").count() == 1
-    assert "Training is over, 90 epochs" in page.locator(".status").inner_text()
-    named = page.evaluate("""() => {
-      const { direct, hidden } = document.querySelector(".ddlib-trainer").school.names;
-      return [direct, hidden].map((names) => String(names.filter((k) => k < 6).length));
-    }""")
-    told = re.findall(r"(\d+|None) of the (?:4|20)", verdict)
-    assert [n.replace("None", "0") for n in told] == named
-    ends = page.locator(".events dd").all_inner_texts()
-    assert ends == ["never" if e is None else f"epoch {e}" for e in state["events"]]
-    step = page.get_by_role("button", name="Step")
-    assert step.get_attribute("aria-disabled") == "true"
-    page.get_by_role("button", name="Begin anew").click()
-    page.wait_for_function("document.querySelector('.ddlib-trainer').school.epoch < 90")
-    assert not page.locator(".verdict").inner_text() and not here.problems
 
 
 @pytest.mark.browser

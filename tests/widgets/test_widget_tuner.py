@@ -74,18 +74,6 @@ def test_curves_are_the_recorded_ones(feedforward):
         assert shown[f"{joint} RMS"] == pytest.approx(rms(error[recording.motion, j]))
 
 
-def test_modes_are_the_joints_of_python_control():
-    joints = plant(ARM.mass_matrix([0.0, 0.7]), _VISCOUS)
-    modes = loops.modes(ARM, _VISCOUS, (0.0, 0.7))
-    rates = sorted(-np.linalg.eigvals(joints.A).real)[2:]
-    np.testing.assert_allclose([mode["rate"] for mode in modes], rates)
-    shape = np.array([mode["shape"] for mode in modes]).T
-    dual = np.array([mode["dual"] for mode in modes])
-    np.testing.assert_allclose(shape @ dual, np.eye(2), atol=1e-12)
-    np.testing.assert_allclose(shape @ np.diag(rates) @ dual, -joints.A[2:, 2:], atol=1e-12)
-    np.testing.assert_allclose(shape @ shape.T, joints.B[2:], atol=1e-12)
-
-
 LINEAR = """([modes, all]) => all.map(([gains, step, late]) => {
   const margins = [0, 1].map((j) => marginOf(modes, gains, step, late, j));
   return [growthOf(modes, gains, step, late), ...margins.flatMap((m) => [m.phase, m.crossover])];
@@ -204,37 +192,12 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     assert not opened.problems
 
 
-@pytest.mark.browser
-def test_a_prediction_comes_first(tmp_path, visit, tuner):
-    opened = visit(page_of(tmp_path / "page.html", tuner), **CALM)
-    page = opened.page
-    show, told = page.get_by_role("button", name="Try it"), page.locator(".told")
-    for k, question in enumerate(_QUESTIONS):
-        assert question.text in page.locator(".question").inner_text()
-        assert show.is_disabled() and not told.inner_text()
-        guess = question.right if k % 2 else (question.right + 1) % 3
-        page.get_by_role("radio").nth(guess).check()
-        show.press("Enter")
-        begins = "As you said." if k % 2 else "Not what you said."
-        assert told.inner_text().startswith(f"{begins} {question.choices[question.right]}")
-        first, then = question.settings
-        assert_computed(page, **question.change)
-        seen = page.evaluate(SEEN)
-        assert (seen["before"], seen["setting"]) == (first, then)
-        stopped = "Run stopped at" in page.locator(".verdict").inner_text()
-        assert stopped == (k in (1, 2, 4))
-        assert not page.get_by_role("radio").count()  # the answer stands in their place
-        page.get_by_role("button", name="Next question").click()
-    assert _QUESTIONS[0].text in page.locator(".question").inner_text()
-    assert not opened.problems
-
-
 def told_remedy(page):
     page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
     return page.locator(".remedy").inner_text()
 
 
-def is_stable(law, late=0):
+def is_stable(law, late):
     joints = plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
     loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=late)
     return np.abs(loop.poles()).max() < 1
@@ -244,17 +207,11 @@ def is_stable(law, late=0):
 def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
     """In the page's own per cent: a little less is stable, a little more is not."""
     url = page_of(tmp_path / "page.html", tuner)
-    for setting in ({"kd": 0.0, "late": 10}, {"kd": 80.0, "late": 20}):
-        query = ",".join(f"{name}:{value:g}" for name, value in setting.items())
-        page = visit(f"{url}?pidtuner={query}", **CALM).page
-        text = told_remedy(page)
-        assert text.startswith("An unstable loop has no margin: to be stable, all three gains")
-        part = float(re.search(r"([\d.]+)\s%", text)[1]) / 100
-        whole = {**_START, **setting}
-        signs = []
-        for share in (0.96, 1.04):
-            law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
-            signs.append(is_stable(law, whole["late"]))
-        assert signs == [True, False]
-        numbers = page.locator(".scalars dd").all_inner_texts()
-        assert numbers[2:] == ["none, unstable"] * 3
+    page = visit(f"{url}?pidtuner=kd:80,late:20", **CALM).page
+    part = float(re.search(r"([\d.]+)\s%", told_remedy(page))[1]) / 100
+    whole = {**_START, "kd": 80.0}
+    signs = []
+    for share in (0.96, 1.04):
+        law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
+        signs.append(is_stable(law, late=20))
+    assert signs == [True, False]
