@@ -32,15 +32,6 @@ def test_a_law_beside_others_is_the_law_alone():
     assert found.laws["PD"] is laws["PD"] and not found.stops.stopped.any()
 
 
-def test_what_is_learnt_is_taken_along():
-    laws = {"learning": runs.make("rigid body", STATE_FEEDBACK, np.tile(HALF, (2, 1)))}
-    course = np.tile([40.0, 30.0], (3, 2, 1))
-    found, after = runs.trials(laws, course, CMU_DD_ARM_II, IDEAL)
-    errors = runs.by_law(found, laws)["learning"]
-    assert errors.shape == (3, 2) and (errors[-1] < 0.3 * errors[0]).all()
-    assert (np.abs(after["learning"].estimate / runs.TRUTH - 1) < 0.2).all()
-
-
 def test_excitation_is_what_sums_of_squared_torques_say():
     t = (np.arange(1500) + 0.5) * 0.002
     wanted = pick_and_place(APPENDIX_I[5], t)

@@ -33,15 +33,6 @@ def test_at_twice_the_speed_torques_follow_the_square_of_time(drawn):
     assert still == pytest.approx(0.5 / np.sqrt(moved.var(0).sum()))
 
 
-def test_a_row_has_all_seeds(monkeypatch):
-    monkeypatch.setattr(characters, "_SEEDS", 2)
-    entry = characters._Entry(lambda k: characters.RandomFeatures("states", 20, seed=k), True)
-    row = characters._entry(entry, ("e", "q", "v"))
-    assert row["test"][0]["torque"] != row["test"][1]["torque"]
-    once = characters._entry(characters._ENTRIES["equations, identified"], ("e", "q", "v"))
-    assert len(once["test"]) == 1 and once["test"][0]["torque"] < 1e-20 and once["count"] == 5
-
-
 def test_the_share_that_intervals_hold():
     x, torque = np.zeros((40, 2, 3)), np.zeros((40, 2))
     torque[:10] = 5.0

@@ -60,22 +60,6 @@ def test_blocks_of_updates_are_the_loop():
     np.testing.assert_allclose(hashing.torque(cases.x), looped, rtol=1e-9, atol=1e-9)
 
 
-def test_without_collisions_it_ends_as_the_dense_linear_model():
-    """From zero weights the delta rule ends at the shortest solution, if there is one."""
-    cases = data(60)
-    rival = CMAC(layers=6, width=0.5, epochs=3000, limits=BOX).fit(cases)
-    names = cubes(rival, cases.x)
-    known = sorted({name for row in names for name in row})
-    dense = np.array([[float(name in row) for name in known] for row in names])
-    assert dense.shape == (60, rival.visited) and rival.overlap == 1.0 and rival.sharing == 0.0
-    assert np.linalg.matrix_rank(dense) == 60  # so that every torque can be met
-    shortest = np.linalg.lstsq(dense, cases.torque, rcond=None)[0]
-    np.testing.assert_allclose(rival.torque(cases.x), cases.torque, atol=1e-6)
-    asked = data(40, seed=9).x * 0.9
-    rows = np.array([[float(n in row) for n in known] for row in cubes(rival, asked)])
-    np.testing.assert_allclose(rival.torque(asked), rows @ shortest, atol=1e-5)
-
-
 def test_own_collisions_make_it_diverge_and_the_history_is_kept():
     cases = data(200)
     rival = CMAC(layers=32, slots=8, epochs=200, limits=BOX)

@@ -66,23 +66,6 @@ def test_known_structure_leaves_nothing_of_clean_torques(arm):
     np.testing.assert_allclose(rival.known.estimate.values, truth, rtol=1e-6, atol=1e-8)
 
 
-def test_the_process_learns_what_the_structure_leaves():
-    def left(x):  # a spring at each joint, which no parameter stands for
-        return np.stack([3 * np.sin(3 * x[:, 0, 0]), 2 * x[:, 1, 0] ** 2], -1)
-
-    cases, x = data(100, noise=0.02), states(60, 9, 0.9)
-    cases = Cases(cases.x, cases.torque + left(cases.x), "states", STEP)
-    truth = CMU_DD_ARM_II.inverse_dynamics(*np.moveaxis(x, -1, 0)) + left(x)
-    semi = SemiParametric(RIGID, restarts=0).fit(cases)
-    plain = GaussianProcess("states", restarts=0).fit(cases)
-    errors = [np.sqrt(np.mean((r.torque(x) - truth) ** 2)) for r in (semi, plain)]
-    parametric = np.sqrt(np.mean((semi.parametric(x) - truth) ** 2))
-    assert errors[0] < 0.5 * errors[1] and errors[0] < 0.1 * parametric
-    inside = np.abs(semi.torque(x) - truth) <= 1.96 * semi.deviation(x)
-    assert inside.mean() > 0.9
-    assert semi.count() == 3 + semi.rest.count()
-
-
 def test_many_random_features_are_kernel_ridge_regression():
     cases, x = data(80, noise=0.3), states(30, 5, 0.9)
     rival = RandomFeatures("states", 20_000, lengths=(3.0,), seed=1).fit(cases)
@@ -98,16 +81,6 @@ def test_many_random_features_are_kernel_ridge_regression():
         wanted = y.mean() + (row - row.mean(1, keepdims=True)) @ weights
         error = rival.torque(x)[:, joint] - wanted
         assert np.sqrt(np.mean(error**2)) < 0.05 * y.std()
-
-
-def test_counts():
-    cases = data(50)
-    process = GaussianProcess("states", restarts=0).fit(cases)
-    assert process.count() == 2 * 6 + 50 * 6 + 2 * (50 + 7 + 2)
-    assert process.operations() == (6 + 2 * (50 * 13 + 1), 6 + 2 * (50 * 12 + 1), 0, 100)
-    features = RandomFeatures("states", 40).fit(cases)
-    assert features.count() == 2 * 6 + 40 * (6 + 1 + 2) + 2 * 3
-    assert features.operations() == (6 + 40 * 8, 6 + 40 * 8 + 2, 0, 40)
 
 
 @pytest.mark.parametrize(

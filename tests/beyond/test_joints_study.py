@@ -44,10 +44,6 @@ def test_torque_is_the_books_with_friction():
     np.testing.assert_allclose(made.torque(states), wanted, atol=1e-10)
 
 
-def test_costs_of_two_joints_are_the_reports():
-    assert study._costs()[0]["network"] == 524
-
-
 def test_the_study_cut_short(monkeypatch):
     for name, value in {"_STEPS": 2, "_SEEDS": 2, "CASES": 60}.items():
         monkeypatch.setattr(study, name, value)

@@ -5,11 +5,10 @@ import pytest
 
 from ddlib.control import Feedforward
 from ddlib.dynamics import end_point_error
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
 from workshop.beyond.studies.loop import learners, learning
-from workshop.beyond.studies.loop.runs import conditions
 
 
 @pytest.fixture(scope="module")
@@ -37,9 +36,3 @@ def test_errors_of_a_trial_are_those_of_the_hand_during_the_motion(draw):
     off = end_point_error(draw.setup.arm, run.reference.q, run.q_true)[..., run.motion, :]
     np.testing.assert_allclose(errors, 1e3 * np.sqrt((off**2).sum(-1).mean(-1)), rtol=1e-9)
     assert errors.max() < 2.0
-
-
-def test_equations_need_the_copy_and_not_the_plan():
-    found = conditions._copies(JOINT_DAMPING, range(1))
-    error = {name: float(value[0]) for name, value in found.items()}
-    assert error["0.1"] < 0.1 * error["0"] < error["none"]

@@ -23,24 +23,3 @@ def test_trials_to_half_the_error(monkeypatch):
     assert loaded == [30, 10]
     with pytest.raises(ValueError, match="setup"):
         learning.part("motion", "nowhere")
-
-
-@pytest.mark.parametrize("hidden, window", [(10, 42), (3, 10)])
-def test_multiplications_step_by_step(hidden, window):
-    found = learning.multiplications(hidden, window, every=5, replay=4)
-    forward = hidden * window + 2 * (hidden + window)
-    assert found["torque"] == forward
-    deltas = 2 * 2 + 2 * hidden + 2 * hidden  # o (1 - o) e; through the weights; h (1 - h)
-    steps = 2 + hidden + forward  # the rate, products
-    assert found["by feedback"] == pytest.approx((deltas + steps) / 5)
-    assert found["one pass"] == pytest.approx((forward + deltas + steps) / 5)
-    assert found["replay"] == pytest.approx(forward + deltas + steps)
-    for name, size, before in (
-        ("last layer", hidden + window + 1, hidden * window),
-        ("linear filter", window + 1, 0),
-    ):
-        seen, weight, gain = size**2, size, size
-        predicted, moved = 2 * (size - 1), 2 * size
-        covariance = 2 * size**2  # outer product, over the forgetting
-        total = before + seen + weight + gain + predicted + moved + covariance
-        assert found[name] == pytest.approx(total / 5)

@@ -17,19 +17,6 @@ def claim(name, setup=None, found="reproduced", measure="loop.verdict.reproduced
     )  # fmt: skip
 
 
-def test_sentences_of_one_measure_belong_together_those_that_agree_last():
-    other = claim("other", measure="loop.verdict.changed_by_reading")
-    position = claim("b, position", "position feedback", "undecided")
-    (group,) = verdict.by_reading([claim("a"), position, other])
-    assert {k: v.id for k, v in group.items()} == {
-        "state feedback": "a",
-        "position feedback": "b, position",
-    }
-    same = {"state feedback": claim("same"), "position feedback": claim("same, too")}
-    rows = verdict.readings_table([same, group], ("position feedback", "joint damping")).rows
-    assert rows == [("a (section 4)", "undecided", "–"), ("same (section 4)", "reproduced", "–")]
-
-
 def test_agreement_against_all_permutations():
     first, second = "aabcc", "aabbc"
     found = verdict.agreement(zip(first, second))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.control import Feedforward, pd, proportional
+from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import Scaler, TorqueModel, Weights
@@ -16,7 +16,6 @@ from workshop.beyond.control.online import (
     OnlineDescent,
     OnlineFeedforward,
 )
-from workshop.beyond.control.windowed import WindowFeedforward
 
 WIDTH = 5
 INPUTS = Scaler(np.array([-0.8, -0.9]), np.array([0.1, 0.2]))
@@ -75,15 +74,6 @@ def test_recursive_least_squares_on_line_is_batch_least_squares(forgetting):
         ridge = 0.2 * forgetting**30 * np.eye(x.shape[1])
         wanted = np.linalg.solve((x.T * age) @ x + ridge, (x.T * age) @ y[k] + ridge @ first[k].T)
         np.testing.assert_allclose(learner.output[k], wanted.T, rtol=1e-6, atol=1e-8)
-
-
-def test_with_rate_0_it_is_the_plain_feedforward():
-    network = model(1)
-    plain = Feedforward(WindowFeedforward(lambda w: network.torque(w)[0], WIDTH), FEEDBACK)
-    learner = OnlineDescent(network[0], 0.0)
-    online = OnlineFeedforward(learner, FEEDBACK, WIDTH)
-    runs = [record(ARM, law, EXTENTS, **SHORT) for law in (plain, online)]
-    np.testing.assert_allclose(runs[1].tau_true, runs[0].tau_true, rtol=1e-9, atol=1e-9)
 
 
 class Noting:

@@ -36,16 +36,6 @@ def test_characters_add_up():
     np.testing.assert_allclose(steps, found.STEP, atol=1e-9)
 
 
-def test_the_recording_is_in_radians():
-    found = others.staubli()
-    assert found.q.shape == found.current.shape == (9000, 6) and found.step == 1e-3
-    assert found.t[0] == 0 and found.t[-1] == pytest.approx(8.999)
-    with np.load(others._FOLDER / "staubli-tx40.npz") as file:
-        assert int(file["rate_hz"]) == others._RATE
-        np.testing.assert_allclose(found.q * 180 / np.pi, file["position_deg"], rtol=1e-12)
-        np.testing.assert_array_equal(found.current, file["current_a"])
-
-
 def test_fewer_samples_are_means():
     found = others.staubli()
     slow = found.at(200)

@@ -109,15 +109,3 @@ THREE = Cases(np.zeros((5, 3, 3)), np.zeros((5, 3)), "states", 0.01)
 def test_what_makes_no_sense_is_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
-
-
-def test_operations_are_counted_by_hand():
-    x = states(300)
-    assert CellTable(3).fit(cases(x)).operations()[:2] == (6, 6)  # finding the cell alone
-    # three products of velocities, two signs, ten columns for two joints
-    assert CellTable(3, "configurations").fit(cases(x)).operations()[:2] == (
-        2 + 3 + 2 + 18, 2 + 18
-    )  # fmt: skip
-    # 4 + 8 + 16 + 32 + 64 products for 64 weights, twice 64 for two torques
-    assert GridTable(2).fit(cases(x)).operations()[:2] == (6 + 124 + 128, 12 + 126)
-    assert Nearest().fit(cases(x)).operations()[:2] == (6 + 1800, 300 * 11)

@@ -1,7 +1,6 @@
 """The study of rivals: who takes part, what is asked, what is kept."""
 
 import numpy as np
-import pytest
 
 from ddlib.learning import Weights
 from workshop.beyond.rivals.identified import Linear
@@ -17,22 +16,11 @@ def test_the_budget_is_the_papers_network():
     assert max(r["count"] for r in rows) == rivals._BUDGET
 
 
-@pytest.fixture(scope="module")
-def recorded():
-    return rivals.recorded(2)
-
-
-def test_floors_are_below_what_is_measured(recorded):
-    floors = rivals._floors(recorded[0]["positions"])
-    for part in ("training", "trajectory 6", "inside", "outside"):
-        assert 0 < floors["exact states"][part] < floors["positions"][part] < 0.05
-
-
 def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     nearest = lineup._Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
     filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
-    monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
-    monkeypatch.setattr(rivals, "DAYS", 2)
+    monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
+    monkeypatch.setattr(rivals, "_DAYS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
     names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]

@@ -75,15 +75,6 @@ class TestViaPoints:
             np.testing.assert_allclose(rate[:, inner], numeric, atol=3e-3 * np.abs(rate).max())
 
 
-def test_coverage_tells_a_family_from_its_like():
-    tests = motions._asked(JOINT_DAMPING, 6, vias=False)
-    found = motions.coverage(JOINT_DAMPING, tests, 6)
-    for name in ("circles", "pick and place"):
-        cell = found["positions"][name]
-        assert cell["other family"]["shared"] < cell["same family"]["shared"]
-        assert cell["other family"]["distance"] > 3 * cell["same family"]["distance"]
-
-
 def test_errors_of_the_hand_are_distances_in_millimetres():
     reference = motions.stirred(ARM, motions.random_circles(2, 0), T)
     torques = np.stack([0 * reference.q, stirring.needed(JOINT_DAMPING, *reference)])

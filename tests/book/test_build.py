@@ -182,11 +182,3 @@ def test_bad_chapters_do_not_take_the_book_with_them(tiny):
     assert build(tiny).returncode == 0
     assert (tiny / STAMP).exists()
     assert "incomplete" not in pages["chapter"].read_text(encoding="utf-8")
-
-
-@pytest.mark.slow
-def test_jupyter_book_ends_if_nobody_waits_for_it(tmp_path):
-    """An interrupted build leaves no process behind that writes pages."""
-    command = [sys.executable, str(ROOT / "book" / "_ext" / "pages.py"), "build", str(tmp_path)]
-    ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
-    assert ended.returncode == 0 and not list(tmp_path.iterdir())

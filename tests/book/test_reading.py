@@ -10,7 +10,6 @@ import pytest
 from book_pages import CHAPTERS, ROOT, source
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_reading
 
 browser_test = pytest.mark.browser
 
@@ -25,21 +24,6 @@ SEEN = """
 def sources(page: str) -> list[str]:
     cells = json.loads(source(page).read_text(encoding="utf-8"))["cells"]
     return ["".join(c["source"]).strip() for c in cells if c["cell_type"] == "code"]
-
-
-@pytest.mark.parametrize(
-    ("tags", "page"),
-    [
-        ([], ["to-read"]),
-        (["labels"], ["to-read", "labels"]),
-        (["remove-cell"], ["hide-input", "remove-output", "bookkeeping"]),
-        (["findings", "remove-input"], ["hide-input", "bookkeeping", "findings"]),
-        (["hide-input"], ["hide-input", "plumbing"]),
-        (["hide-cell"], ["hide-cell"]),
-    ],
-)
-def test_tags_of_a_page(tags, page):
-    assert dd_reading.page_tags(tags) == page
 
 
 @browser_test

@@ -7,10 +7,8 @@ import sys
 
 import pytest
 from book_pages import API, CHAPTERS, ROOT
-from docutils.core import publish_doctree
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-import dd_search
 
 WORDS = ("friction", "overfitting", "jerk", "inertia")
 
@@ -56,29 +54,3 @@ def test_a_section_about_it_and_the_glossary_by_its_words(built, visit):
     assert {"Glossary > viscous friction", "Glossary > Coulomb friction"} <= set(words)
     assert len(words) == sum(hit["page"] == "book/glossary" for hit in found)
     assert any("proportional to velocity" in hit["excerpt"] for hit in words.values())
-
-
-PAGE = """
-Arms
-====
-
-An arm of mass :math:`m_1` *moves*.
-
-.. code::
-
-   import arm
-
-Friction
---------
-
-It brakes.
-
-+------+
-| cell |
-+------+
-"""
-
-
-def test_texts_are_prose_by_section():
-    texts = dd_search.texts_of(publish_doctree(PAGE, settings_overrides={"doctitle_xform": False}))
-    assert texts == {"arms": "An arm of mass … moves.", "friction": "It brakes."}

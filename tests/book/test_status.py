@@ -44,21 +44,6 @@ def plain(rows) -> list[list[str]]:
     return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
 
 
-@pytest.mark.parametrize(
-    ("row", "shown"),
-    [
-        (PAIR, "≥ 8.0: met"),
-        (PAIR | {"ratio": 7.99}, "≥ 8.0: missed"),
-        (LIMIT, "≤ 120: missed"),
-        (LIMIT | {"value": 120.0}, "≤ 120: met"),
-        (MISSING, "not measured: pip install .[bench]"),
-        ({key: value for key, value in PAIR.items() if key != "at least"}, "none"),
-    ],
-)
-def test_a_missed_target_is_said_to_be_missed(row, shown):
-    assert plain([[status._outcome(row)]]) == [[shown]]
-
-
 def test_every_group_has_its_table(folder):
     """Pairs have both times; what is not measured stays."""
     made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}

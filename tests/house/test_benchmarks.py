@@ -16,13 +16,6 @@ import measure
 import recordings
 import run
 
-
-def test_works_take_turns_after_one_untimed_call():
-    calls = []
-    taken = measure.interleaved(2, a=lambda: calls.append("a"), b=lambda: calls.append("b"))
-    assert calls == ["a", "b"] * 3 and 0 < taken["a"]["shortest"] <= taken["a"]["median"]
-
-
 ROWS = [
     (measure.ratio("g", "w", ("x", 1.0), ("y", 8.0), 8.0), True, "met"),
     (measure.ratio("g", "w", ("x", 1.0), ("y", 7.9), 8.0), False, "MISSED"),

@@ -1,22 +1,16 @@
 """Other systems than this one: declared dependencies, files without rights, pinned actions."""
 
-import errno
 import json
 import re
 import sys
 import tomllib
 from functools import cache
 from importlib.metadata import packages_distributions
-from pathlib import Path
 
-import pytest
 from book_pages import ROOT
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from test_imports import imported
-
-from ddlib.learning import Scaler, TorqueModel, Weights
-from workshop.report import results
 
 PYPROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 FOLDERS = ("ddlib", "book/workshop", "tests", "benchmarks", "book/_ext")
@@ -27,25 +21,6 @@ TEXTS = {
 HERE = {path.stem for f in ("tests", "benchmarks", "book/_ext") for path in TEXTS[f]}
 UNSEEN = {"pinocchio": ["pin"]}
 """Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
-
-
-def no_right(*_, **__):
-    raise PermissionError(errno.EACCES, "Permission denied")
-
-
-def test_a_file_that_may_not_be_read_is_neither_damaged_nor_missing(tmp_path, monkeypatch):
-    scaler, path = Scaler([0.0, 0.0], [1.0, 1.0]), tmp_path / "model.npz"
-    TorqueModel(Weights.random(1, 3), scaler, scaler).save(path)
-    assert TorqueModel.load(path).weights.width == 3
-    monkeypatch.setattr(results, "FOLDER", tmp_path)
-    (tmp_path / "half.json").write_text('{"a": 1')
-    with pytest.raises(ValueError, match=r"result 'half' in .* is damaged"):
-        results.read("half")
-    for method in ("read_bytes", "read_text", "open"):
-        monkeypatch.setattr(Path, method, no_right)
-    for read in (lambda: TorqueModel.load(path), lambda: results.read("half")):
-        with pytest.raises(PermissionError):
-            read()
 
 
 # --- dependencies -----------------------------------------------------------------------

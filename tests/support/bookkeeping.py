@@ -14,18 +14,7 @@ CALLS = re.compile(
     r"|(figures|drawn|wall|results|measured|pictures|np\.testing)\..*|.*\bassert_\w+|by_case"
 )
 # What tables, pictures and alternative texts are made of.
-NAMES = {
-    "alt",
-    "captions",
-    "columns",
-    "heads",
-    "head",
-    "labels",
-    "panels",
-    "rows",
-    "titles",
-    "told",
-}
+NAMES = set("alt captions columns head heads labels panels rows titles told".split())
 
 
 def lines_of_bookkeeping(code: str) -> list[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import base64
 import copy
 import json
 import re
@@ -128,23 +127,6 @@ def code_of(chapter: str, name: str) -> str:
             if isinstance(line, ast.Assign) and line.targets[0].id == name:
                 return ast.literal_eval(line.value)
     raise AssertionError(f"{chapter} has no {name}")
-
-
-def cut(name, count):
-    """Damage: a buffer that ends too early."""
-
-    def damage(entry):
-        where = next(b for b in entry["buffers"] if b["path"] == [name])
-        where["data"] = base64.b64encode(base64.b64decode(where["data"])[:-count]).decode()
-
-    return damage
-
-
-def alerts(tmp_path, visit, widget, *damages) -> list[str]:
-    """What a page says of damaged copies of a widget that it shows, too."""
-    opened = visit(page_of(tmp_path / "page.html", widget, damages=damages))
-    assert opened.page.locator(".ddlib-curves").count() == 1 and not opened.problems
-    return opened.page.locator("[role=alert]:visible").all_inner_texts()
 
 
 def settings(widget, n, seed=1):
