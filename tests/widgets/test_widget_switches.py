@@ -100,6 +100,7 @@ def test_switches_alone_and_all(tmp_path, visit, switches):
     page.get_by_role("combobox", name="Strength: Torque limit").select_option("strong")
     assert_shown(page, switches, saturation="strong")
     assert len(before) == 6 and before != page.evaluate(PATHS)
+    page.get_by_role("combobox", name="Strength: Delay").select_option("strong")  # switches on
     page.get_by_role("button", name="Delay alone").press("Enter")
     assert_shown(page, switches, **OFF | {"delay": "strong"})
     assert page.get_by_role("switch", checked=True).count() == 1
