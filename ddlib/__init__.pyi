@@ -18,6 +18,7 @@ from .analysis import (
     classify as classify,
     decompose as decompose,
     frequency_response as frequency_response,
+    gains as gains,
     savitzky_golay as savitzky_golay,
     upright as upright,
 )

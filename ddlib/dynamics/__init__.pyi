@@ -46,4 +46,5 @@ from .serial import (
     PUMA_560_GEARS as PUMA_560_GEARS,
     PUMA_560_ROTORS as PUMA_560_ROTORS,
     SerialArm as SerialArm,
+    SpatialLink as SpatialLink,
 )

@@ -9,7 +9,7 @@ import numpy as np
 from ddlib._check import finite_array, integer
 from ddlib.dynamics.arm import STANDARD_GRAVITY, _checked_state
 from ddlib.dynamics.formulations import _link_frame
-from ddlib.dynamics.serial import SerialArm, _SpatialLink
+from ddlib.dynamics.serial import SerialArm, SpatialLink
 
 _PER_LINK = 10  # inertial parameters of a link: mass, three first moments, six second moments
 _SECOND = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # xx, yy, zz, xy, xz, yz
@@ -43,7 +43,7 @@ def hand(arm: SerialArm, q) -> np.ndarray:
     return _frames(arm, q)[..., -1, :3, 3]
 
 
-def inertial_parameters(link: _SpatialLink) -> np.ndarray:
+def inertial_parameters(link: SpatialLink) -> np.ndarray:
     """What a link's torques are linear in, shape (10,), about the origin of its frame.
 
     Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
@@ -137,7 +137,7 @@ def locked(arm: SerialArm, joints: int) -> SerialArm:
     return SerialArm((*arm.links[: joints - 1], whole), arm.gravity)
 
 
-def _moved(link: _SpatialLink, place) -> tuple:
+def _moved(link: SpatialLink, place) -> tuple:
     """Mass, centre and tensor of inertia about it of a link, seen from another frame."""
     turn = place[:3, :3]
     com = turn @ link.com + place[:3, 3]
@@ -164,11 +164,11 @@ def _arm_in_space() -> SerialArm:
     about_axis = inertia + whole * centre**2 - (own + mass * middle**2).sum()
     about_com = about_axis - left * com**2
     twists = (-90.0, 90.0, -90.0, 90.0, 0.0)
-    first = _SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
+    first = SpatialLink(0.0, 0.50, 0.0, 14.0, (0.22 - 0.50, 0.0, 0.0), np.diag([0, 0, 0.40]))
     place = com - to_third_axis, 0.0, 0.0
-    second = _SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
+    second = SpatialLink(90.0, to_third_axis, 0.0, left, place, np.eye(3) * about_com)
     rest = [
-        _SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
+        SpatialLink(twist, a, 0.0, m, (-a / 2, 0.0, 0.0), np.eye(3) * i)
         for twist, a, m, i in zip(twists, length, mass, own)
     ]
     return SerialArm((first, second, *rest), (0.0, 0.0, -STANDARD_GRAVITY))

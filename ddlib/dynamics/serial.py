@@ -17,7 +17,7 @@ from ddlib.dynamics.formulations import _Constants, _LinkConstants, newton_euler
 
 
 @dataclass(frozen=True)
-class _SpatialLink:
+class SpatialLink:
     """A rigid link with a revolute joint, in Denavit-Hartenberg's parameters."""
 
     twist_deg: float  #: Angle from its joint's axis to the next joint's, degrees.
@@ -53,13 +53,13 @@ class _SpatialLink:
 class SerialArm:
     """A chain of links, each turning about the axis at its near end."""
 
-    links: tuple[_SpatialLink, ...]  #: From the base outwards.
+    links: tuple[SpatialLink, ...]  #: From the base outwards.
     #: Acceleration of free fall in the base's frame, m/s^2.
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
         links = tuple(self.links)
-        if not links or not all(isinstance(link, _SpatialLink) for link in links):
+        if not links or not all(isinstance(link, SpatialLink) for link in links):
             raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
         object.__setattr__(self, "links", links)
         object.__setattr__(self, "gravity", tuple(shaped("gravity", self.gravity, (3,)).tolist()))
@@ -68,7 +68,7 @@ class SerialArm:
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
         """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
         spatial = (
-            _SpatialLink(
+            SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
             )
             for k in links
@@ -125,7 +125,7 @@ _PUMA_560_LINKS = (  # twist (degrees), length, offset, mass, centre, diagonal o
     (0.0, 0.0, 0.0, 0.09, (0.0, 0.0, 0.032), (0.15e-3, 0.15e-3, 0.04e-3)),
 )
 PUMA_560 = SerialArm(
-    tuple(_SpatialLink(*place, np.diag(moments)) for *place, moments in _PUMA_560_LINKS),
+    tuple(SpatialLink(*place, np.diag(moments)) for *place, moments in _PUMA_560_LINKS),
     gravity=(0.0, 0.0, -STANDARD_GRAVITY),
 )
 """The most studied geared arm, without its motors (Corke & Armstrong-Helouvry 1994)."""

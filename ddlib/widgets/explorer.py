@@ -30,9 +30,9 @@ from ddlib.widgets.hinton import (
     _check_models,
     _diagram,
     _HintonWidget,
-    _unit_names,
-    _weight_functions,
     share_panel,
+    unit_names,
+    weight_functions,
     width_choice,
     zero_padded,
 )
@@ -86,7 +86,7 @@ class FilterExplorer(_HintonWidget):
             [
                 width_choice(self._weights),
                 Choice("seed", "Network", {k: f"seed {k}" for k in members}, members[0]),
-                Choice("unit", "Unit", _unit_names(some[0]), _unit_names(some[0])[0]),
+                Choice("unit", "Unit", unit_names(some[0]), unit_names(some[0])[0]),
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
             ],
             [
@@ -126,7 +126,7 @@ class FilterExplorer(_HintonWidget):
 
     def _filter(self, width, seed, unit, joint):
         weights = self._weights[width][seed]
-        return _weight_functions(weights)[_unit_names(weights).index(unit), JOINTS.index(joint)]
+        return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
 
     def _curves(self, width, seed, unit, joint) -> dict:
         f = self._filter(width, seed, unit, joint)

@@ -20,13 +20,13 @@ EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold
 CENTRE = "time from the centre, ms"
 
 
-def _unit_names(weights: Weights) -> tuple[str, ...]:
+def unit_names(weights: Weights) -> tuple[str, ...]:
     """Names of a network's units: the outputs, then the hidden ones, counted from 0."""
     outputs = [f"{joint} torque" for joint in JOINTS]
     return (*outputs, *(f"hidden {k}" for k in range(weights.hidden_bias.shape[-1])))
 
 
-def _weight_functions(weights: Weights) -> np.ndarray:
+def weight_functions(weights: Weights) -> np.ndarray:
     """Weights from both windows to all units, ``(..., unit, joint, width)``, outputs first."""
     return np.concatenate([weights.direct_weights, weights.hidden_weights], axis=-3)
 
@@ -79,7 +79,7 @@ def _diagram(weights: Weights, reach: int) -> np.ndarray:
     Bias, weights on top (an output's from the hidden units, a hidden unit's to the outputs), and
     the zero-padded window of each joint.
     """
-    windows = zero_padded(_weight_functions(weights), reach)
+    windows = zero_padded(weight_functions(weights), reach)
     biases = [*weights.output_bias, *weights.hidden_bias]
     tops = [*weights.output_weights, *weights.output_weights.T]
     units = [np.concatenate([[b], u, *w]) for b, u, w in zip(biases, tops, windows)]
@@ -112,7 +112,7 @@ class _HintonWidget(CurveWidget):
     def __init__(self, weights: Weights, reach: int, *args, largest: str = "now", **options):
         one_of("largest", largest, ("now", "ever"))
         layout = {
-            "units": list(_unit_names(weights)),
+            "units": list(unit_names(weights)),
             "outputs": weights.output_bias.shape[-1],
             "joints": list(JOINTS),
             "reach": reach,

@@ -16,8 +16,8 @@ from ddlib.widgets.hinton import (
     JOINTS,
     _diagram,
     _HintonWidget,
-    _unit_names,
-    _weight_functions,
+    unit_names,
+    weight_functions,
 )
 from ddlib.widgets.parts.parameters import Choice
 
@@ -67,9 +67,9 @@ class TrainingPlayer(_HintonWidget):
         self._weights = model.weights[:, member]
         every = errors(model[:, member], recording).named()
         self._errors = {name: every[name] for name in _ERRORS}
-        self._names = _unit_names(self._weights[0])
+        self._names = unit_names(self._weights[0])
         self._reach = self._weights.width // 2
-        self._functions = _weight_functions(self._weights)
+        self._functions = weight_functions(self._weights)
         begin = int(epochs[_moved(self._weights)])
         self.set_trait("begin", begin)
         places = np.log10(np.maximum(epochs, 1))

@@ -245,21 +245,7 @@ def _gains(kp, ki, kd) -> dict[str, np.ndarray]:
 def _tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator and python-control.
 
-    Parameters
-    ----------
-    arm : Arm
-    kp, ki, kd : float
-        The shoulder's gains, in N m/rad, N m/(rad s) and N m s/rad.
-    late : int
-        Control periods between a reading and its torque.
-    feedforward : bool
-
-    Returns
-    -------
-    dict
-        Errors (degrees) and torques (N m) at `TIMES`, NaN after the end of a run; RMS error of the
-        motion (NaN if it was stopped), phase margins, crossover and growth (1/s) of the linear
-        loop, and the time (s) at which the run was stopped (NaN if it was not).
+    Errors in degrees, torques in N m, NaN after the end of a run; growth of the linear loop in 1/s.
     """
     law = _gains(kp, ki, kd)
     reference = Trajectory(*pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], _T))

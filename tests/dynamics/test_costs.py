@@ -9,7 +9,7 @@ from ddlib.dynamics import (
     Link,
     Operations,
     SerialArm,
-    _SpatialLink,
+    SpatialLink,
     costs,
     lagrange_euler,
     newton_euler,
@@ -25,7 +25,7 @@ def general(joints) -> SerialArm:
     inertia = np.array([[3.0, 0.4, 0.5], [0.4, 4.0, 0.6], [0.5, 0.6, 5.0]])
     return SerialArm(
         [
-            _SpatialLink(37.0, 0.7, 0.3, 2.5, rng.uniform(0.1, 0.9, 3), inertia)
+            SpatialLink(37.0, 0.7, 0.3, 2.5, rng.uniform(0.1, 0.9, 3), inertia)
             for _ in range(joints)
         ],
         (1.0, 2.0, 3.0),

@@ -12,7 +12,7 @@ from ddlib.dynamics import (
     PUMA_560_GEARS,
     PUMA_560_ROTORS,
     SerialArm,
-    _SpatialLink,
+    SpatialLink,
     hand,
     inertial_parameters,
     lagrange_euler,
@@ -43,7 +43,7 @@ def random_arm(joints, seed) -> SerialArm:
         root = rng.normal(size=(3, 3))
         inertia = root @ root.T
         place = rng.uniform(-180, 180), *rng.uniform(-1, 1, 2)
-        return _SpatialLink(*place, rng.uniform(0.1, 5), rng.normal(size=3), inertia + inertia.T)
+        return SpatialLink(*place, rng.uniform(0.1, 5), rng.normal(size=3), inertia + inertia.T)
 
     return SerialArm([link() for _ in range(joints)], rng.normal(size=3) * 5)
 
@@ -172,7 +172,7 @@ def test_refusals():
     good = dict(twist_deg=0.0, length=1.0, offset=0.0, mass=1.0, com=(0, 0, 0), inertia=np.eye(3))
     for name, bad in (("mass", -1.0), ("com", (0.0, 0.0)), ("inertia", np.triu(np.ones((3, 3))))):
         with pytest.raises(ValueError, match=f"^{name} must"):
-            _SpatialLink(**{**good, name: bad})
+            SpatialLink(**{**good, name: bad})
     with pytest.raises(ValueError, match="arm must have its hand on the x axis of link 3"):
         locked(PUMA_560, 3)
     with pytest.raises(ValueError, match="q must have a last"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.dynamics import SerialArm, _SpatialLink
+from ddlib.dynamics import SerialArm, SpatialLink
 from ddlib.identification import joint_columns, joint_terms
 
 RNG = np.random.default_rng(0)
@@ -11,7 +11,7 @@ GRAVITY = (0.0, 0.0, -9.81)
 
 
 def link(twist, length, offset, mass, com, moments):
-    return _SpatialLink(twist, length, offset, mass, com, np.diag(moments))
+    return SpatialLink(twist, length, offset, mass, com, np.diag(moments))
 
 
 PAIR = SerialArm(
