@@ -80,14 +80,3 @@ def test_correlations_are_in_units_of_each_joint(ensembles):
         pytest.approx(1.0),
         "r 1.00; as high by chance: p 1.00",
     )
-
-
-def test_what_filters_follow_and_hidden_units_compensate_beside_chance(ensembles):
-    ensembles([1.0, 0.5, 1.0, 0.1, 1.0, 0.9], (0.2,), (0.6,))
-    assert [filters.unique_beyond(w, 21).value for w in ("velocity", "acceleration")] == [4, 4]
-    told = "10 (6), 10 (12), 30 (18), 4 (24), "
-    assert filters.unique_beyond("velocity", 21).text.startswith(told)
-    ensembles(1.0, (0.0,), (1.0,))
-    found, half = filters.compensate_friction(21), np.median(TRUE / TRUE.max())
-    assert found.value == pytest.approx(0.4)  # the median output
-    assert found.text.endswith(f"reach {half:.2f} in one of twenty")

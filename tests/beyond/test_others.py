@@ -36,15 +36,6 @@ def test_characters_add_up():
     np.testing.assert_allclose(steps, found.STEP, atol=1e-9)
 
 
-def test_fewer_samples_are_means():
-    found = others.staubli()
-    slow = found.at(200)
-    assert slow.q.shape == (1800, 6) and slow.step == pytest.approx(5e-3)
-    np.testing.assert_allclose(slow.q[7], found.q[35:40].mean(0), rtol=1e-12)
-    np.testing.assert_allclose(slow.current[-1], found.current[-5:].mean(0), rtol=1e-12)
-    assert slow.t[7] == pytest.approx(0.037)  # the middle of the five
-
-
 @pytest.mark.parametrize(
     "make, message",
     [

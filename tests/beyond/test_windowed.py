@@ -11,7 +11,6 @@ from workshop.beyond.control.windowed import (
     MeasuredWindows,
     PlannedTorque,
     WindowFeedforward,
-    past_slopes,
     poles_inside,
 )
 
@@ -79,13 +78,6 @@ def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
     else:
         np.testing.assert_allclose(passed[late:], measured[: 60 - late], atol=1e-12)
         np.testing.assert_array_equal(passed[:late], np.tile(Q[0], (late, 1)))
-
-
-def test_slopes_of_a_linear_model_are_its_weights():
-    filters = np.random.default_rng(0).standard_normal((2, 2, 5))
-    windows = np.random.default_rng(1).standard_normal((7, 2, 5))
-    found = past_slopes(lambda w: np.einsum("tjw,cjw->ct", filters, w), windows)
-    np.testing.assert_allclose(found, filters[..., :3], atol=1e-8)
 
 
 JOINTS = plant(ARM.mass_matrix([0.0, -0.3]), (5.3, 1.1))

@@ -60,34 +60,6 @@ def test_every_group_has_its_table(folder):
     ]
 
 
-@pytest.mark.parametrize(("seconds", "verdict"), [(1560.0, "met"), (1560.1, "missed")])
-def test_times_of_the_results_and_of_all_together(folder, tmp_path, seconds, verdict):
-    for name, made in {
-        "rivals": {"code": "2", "seconds": 750.0},
-        "table-4-1": {"code": "1", "seconds": 100.0},
-        "loop-conditions": {"code": "1", "seconds": 720.0},
-        "benchmarks": {"seconds": 900.0},  # not of make reproduce
-        "reproduce": {"seconds": seconds, "jobs": 2, "parts": 3},
-    }.items():
-        folder(name, {"made by": made})
-    folder("verdicts", {})  # of other results
-    rows = status.made_results().rows
-    assert [row[0] for row in rows[:4]] == ["loop-conditions", "rivals", "table-4-1", "sum"]
-    assert [row[1] for row in rows[3:]] == [
-        "1570 s",
-        "50 s; target ≤ 900 s: met",
-        "375 s; target ≤ 300 s: missed",
-        "360 s; target ≤ 360 s: met",
-        f"{seconds:.0f} s; target ≤ 1560 s: {verdict}",
-    ]
-    assert rows[-1][0] == "make reproduce, 2 at a time, by the clock"
-    folder("c", {"made by": {"code": "3", "seconds": 1.0}})
-    told = status.made_results().rows[-1][1]
-    assert told.endswith(verdict) and "before results were added" in told
-    (tmp_path / "reproduce.json").unlink()
-    assert not status.made_results().rows[-1][0].startswith("make reproduce")
-
-
 # --- on the built pages -------------------------------------------------------------------
 
 
