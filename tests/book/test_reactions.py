@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-
 import pytest
-from book_pages import ROOT, WITH_WIDGETS
+from book_pages import WITH_WIDGETS
 from reactions import Handle, handles
-
-sys.path.insert(0, str(ROOT / "benchmarks"))
 
 pytestmark = pytest.mark.browser
 

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-import sys
 
 import chromium
 import pytest
-from book_pages import CHAPTERS, ROOT, source
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
+from book_pages import CHAPTERS, source
 
 browser_test = pytest.mark.browser
 

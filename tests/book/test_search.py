@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import re
-import sys
 
 import pytest
-from book_pages import API, CHAPTERS, ROOT
-
-sys.path.insert(0, str(ROOT / "book" / "_ext"))
+from book_pages import API, CHAPTERS
 
 WORDS = ("friction", "overfitting", "jerk", "inertia")
 
