@@ -203,7 +203,7 @@ def train_windows(
 
 
 @dataclass(frozen=True)
-class _Errors:
+class Errors:
     """RMSS on an Appendix I recording, in each way the paper may have meant."""
 
     training: np.ndarray  #: Pooled, divided by the training set's own deviation.
@@ -226,10 +226,10 @@ NAMES = {
     "elbow": "test elbow",
     "desired": "test, desired positions",
 }
-"""What results and tables call the fields of `_Errors`."""
+"""What results and tables call the fields of `Errors`."""
 
 
-def errors(model: TorqueModel, recording: Recording) -> _Errors:
+def errors(model: TorqueModel, recording: Recording) -> Errors:
     """RMSS of a model on an Appendix I recording, one value per member each."""
     width = model.weights.width
     training, test = split(recording)
@@ -237,7 +237,7 @@ def errors(model: TorqueModel, recording: Recording) -> _Errors:
     desired = sliding_windows(test.reference.q, width, test.motion)
     predicted = model.torque(x6)
     by_joint = rmss(predicted, y6, pooled=False)
-    return _Errors(
+    return Errors(
         training=rmss(model.torque(x), y),
         test=rmss(predicted, y6),
         by_training_deviation=rmss(predicted, y6, scale=y.std(0)),

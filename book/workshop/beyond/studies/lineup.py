@@ -20,7 +20,7 @@ from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
 _DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
 
 
-class _Line(NamedTuple):
+class Line(NamedTuple):
     """A rival at several sizes."""
 
     make: Callable[[object, int], Rival]  # of a size and a seed
@@ -65,67 +65,67 @@ def _table(over):
     return lambda cells, _: CellTable(cells, over, beyond="edge")
 
 
-_LINES: dict[str, _Line] = {
+LINES: dict[str, Line] = {
     # tables
-    "nearest case": _Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
-    "table of states": _Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
-    "table of configurations": _Line(
+    "nearest case": Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
+    "table of states": Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
+    "table of configurations": Line(
         _table("configurations"), (1, 2, 3, 10), "cells an axis", "tables"
     ),
-    "multilinear table": _Line(
+    "multilinear table": Line(
         lambda cells, _: GridTable(cells, beyond="edge"), (1, 2), "cells an axis", "tables"
     ),
-    "CMAC": _Line(
+    "CMAC": Line(
         lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3), "width of a cube",
         "tables",
     ),
     # bases
-    "polynomial": _Line(
+    "polynomial": Line(
         lambda degree, _: Polynomial(degree, ridge=_PENALTY), (1, 2, 3, 5), "degree", "polynomials"
     ),
-    "Fourier series": _Line(
+    "Fourier series": Line(
         lambda order, _: Fourier(order, ridge=_PENALTY), (1, 2), "order", "polynomials"
     ),
     # known structure
-    "identified": _Line(_identified, (3, 7), "parameters", "known structure"),
-    "linear filter": _Line(
+    "identified": Line(_identified, (3, 7), "parameters", "known structure"),
+    "linear filter": Line(
         lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
     ),
-    "Lagrangian network": _Line(_lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
+    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
     # Gaussian processes
-    "Gaussian process": _Line(
+    "Gaussian process": Line(
         lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **_SEARCH),
         (6, 9, 12), "directions", "Gaussian processes", _FEWER,
     ),
-    "process on states": _Line(
+    "process on states": Line(
         lambda _, seed: GaussianProcess("states", seed=seed, **_SEARCH), (6,), "quantities",
         "Gaussian processes", _FEWER,
     ),
-    "structure and process": _Line(
+    "structure and process": Line(
         lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **_SEARCH), (6,),
         "quantities", "Gaussian processes", _FEWER,
     ),
-    "random features": _Line(
+    "random features": Line(
         lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
         (10, 50, 200), "features", "Gaussian processes", _FEWER,
     ),
     # the paper's network
-    REFERENCE: _Line(_descent, (2, 10), "hidden units", "the paper's network"),
-    "second-order steps": _Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
-    "Adam": _Line(
+    REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
+    "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
+    "Adam": Line(
         lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
         "the paper's network", _FEWER,
     ),
-    "on states": _Line(
+    "on states": Line(
         lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10),
         "hidden units", "the paper's network",
     ),
     # other networks
-    "convolutions": _Line(
+    "convolutions": Line(
         lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
         "other networks", _FEWER,
     ),
-    "recurrent": _Line(
+    "recurrent": Line(
         lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
         _FEWER,
     ),
