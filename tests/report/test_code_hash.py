@@ -109,6 +109,13 @@ BUSY = {
     "an argument's name": ("studies/some.py", "rate=LEVEL", "LEVEL"),
     "the order of arguments": ("rooms/plant.py", "gain(x, rate=1.0)", "gain(rate, x=1.0)"),
     "a key": ("studies/some.py", '"value": gain', '"values": gain'),
+    "a guard that also counts": ("rooms/plant.py", "if rate > 3:", "if (rate := 2 * rate) > 3:"),
+    "a loop that fills": ("rooms/noise.py", "", "for _ in (1,):\n    LEVEL += 1\n"),
+    "a default of the same name": (
+        "rooms/plant.py",
+        "def gain(x, rate=1.0):",
+        "RATE = 2.0\n\ndef gain(x, rate=RATE):",
+    ),
     "a decorator": ("rooms/plant.py", "def _turn", "@cache\ndef _turn"),
 }
 

@@ -28,6 +28,9 @@ _CHECKS = "_check"
 # Last names of modules that decide no number: what is used of them counts by its name alone
 _ASIDE = (_CHECKS, "workshop", "results", "sweeps", "code_hash")
 
+# Functions of `results` that load networks, and the study that trains them.
+_TRAINED = dict.fromkeys(("networks", "median_network", "course"), "table-4-1")
+
 # Fields of a syntax tree that mean nothing here, or differ between versions of Python
 _SILENT = {"annotation", "returns", "ctx", "kind", "type_params", "type_comment", "simple"}
 
@@ -156,11 +159,19 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
             continue
         else:  # an assignment, or a call that changes what has been made before
             used = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name)]
-            made = _stored(statement, _SCOPES) or [n for n in dict.fromkeys(used) if n in names]
+            made = _stored(statement, _SCOPES)
+            if not made or hasattr(statement, "body"):
+                ours = [n for n in used if n in names and not _is_ours(names[n])]
+                made = list(dict.fromkeys([*made, *ours]))
         for name in made:
             earlier = names.get(name)
             names[name] = [*(earlier if isinstance(earlier, list) else []), statement]
     return names
+
+
+def _is_ours(origin) -> bool:
+    """Whether a name is imported from a module of ours."""
+    return isinstance(origin, tuple) and _file(origin[0]) is not None
 
 
 def _stored(node, apart=()) -> list[str]:
@@ -171,11 +182,34 @@ def _stored(node, apart=()) -> list[str]:
     return list(dict.fromkeys(name for child in inner for name in _stored(child, apart)))
 
 
+def _loads(node, apart=()) -> set[str]:
+    """Names that a syntax tree reads, without parts of the kinds `apart`."""
+    if isinstance(node, ast.Name):
+        return {node.id} if isinstance(node.ctx, ast.Load) else set()
+    inner = [child for child in ast.iter_child_nodes(node) if not isinstance(child, apart)]
+    return set().union(*(_loads(child, apart) for child in inner))
+
+
+def _outer(scope) -> list[str]:
+    """Names that a function takes from outside, whatever scopes within it call theirs."""
+    if isinstance(scope, _COMPREHENSIONS):
+        return []
+    parameters, body = scope.args, scope.body if isinstance(scope.body, list) else [scope.body]
+    before = [*parameters.defaults, *filter(None, parameters.kw_defaults)]
+    before += getattr(scope, "decorator_list", [])
+    own = {a.arg for a in ast.walk(parameters) if isinstance(a, ast.arg)}
+    own |= {n for s in body for n in _stored(s, _SCOPES)}
+    inside = set().union(*(_loads(s, _SCOPES) for s in body)) - own
+    return sorted(inside.union(*map(_loads, before)))
+
+
 # --- what a definition says -------------------------------------------------------------------
 
 
 def _only_tells(node) -> bool:
     """A docstring, an assertion, a refusal, a warning: what leaves every number as it is."""
+    if isinstance(node, (ast.If, ast.Assert)) and _stored(node.test, _COMPREHENSIONS):
+        return False
     if isinstance(node, (ast.Raise, ast.Assert, ast.Pass, *_IMPORTS)):
         return True
     if isinstance(node, ast.FunctionDef):
@@ -216,6 +250,10 @@ class _Writer:
         if isinstance(node, _SCOPES) and self.local is None:
             self.local = self._locals(node)
             self.write(node)
+            shadowed, self.local = [n for n in _outer(node) if n in self.local], None
+            for name in shadowed:
+                if self._place(ast.Name(name, ast.Load())) is not None:
+                    self.write(ast.Name(name, ast.Load()))
             self.local = None
         elif isinstance(node, list):
             self.form.append("[")
@@ -245,6 +283,8 @@ class _Writer:
     def _write_place(self, module: str, name: str | None) -> None:
         if module.rpartition(".")[2] in _ASIDE:
             self.form.append(f"aside {name}")
+            if name in _TRAINED:  # what is loaded is of a class of ours, and a study made it
+                self.form += [("ddlib.learning.network", "TorqueModel"), places()[_TRAINED[name]]]
         elif name is not None and isinstance(self._known(module).get(name), list):
             self.form.append((module, name))
         else:
@@ -283,7 +323,7 @@ class _Writer:
 
     def _is_check(self, node: ast.Call) -> bool:
         module, _ = self._place(node.func) or ("", None)
-        return module.rpartition(".")[2] == _CHECKS and bool(node.args)
+        return module.rpartition(".")[2] == _CHECKS and len(node.args) > 1
 
     def _is_idle(self, node) -> bool:
         called = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call)
