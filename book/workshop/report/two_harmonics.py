@@ -22,13 +22,16 @@ from ddlib.trajectories import (
     time_grid,
 )
 
-# Frequency of the second sine over that of the first. Odd: then both are symmetric about the
-# middle of the motion, where half of the paper's sine turns.
+# The page Provenance shows these notes.
 ORDER = 5
+"""Frequency of the second sine over that of the first. Odd: then both are symmetric about the
+middle of the motion, where half of the paper's sine turns."""
 
-SHARE = 2.0  # Largest acceleration of the second sine over that of the first one at 45 degrees
+SHARE = 2.0
+"""Largest acceleration of the second sine over that of the first one at 45 degrees."""
 
-NEUTRAL = (-0.35, -0.55)  # Joint angles about which the hand's circle lies, rad
+NEUTRAL = (-0.35, -0.55)
+"""Joint angles about which the hand's circle lies, rad: inside the family's range."""
 
 
 def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
