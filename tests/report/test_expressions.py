@@ -7,7 +7,7 @@ import pytest
 
 from workshop.report import results
 from workshop.report.evidence.claims import Claim, _MeasureError
-from workshop.report.evidence.expressions import _find
+from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import DRAWS
 
 RNG = np.random.default_rng(0)
@@ -38,7 +38,7 @@ def planted(monkeypatch):
 
 
 def found(text="{value}", arguments=None, **entry):
-    return _find({"text": text, **entry}, arguments)
+    return find({"text": text, **entry}, arguments)
 
 
 def test_values_by_hand():
@@ -203,7 +203,7 @@ def test_words():
         ("{other:p .2f}", f"{(1 + 3) / (1 + 5):.2f}"),  # 6, 8 and 10 of 5, and itself
     ):
         names = {"count": "r/count", "other": "s/a", "small": 1e-9}
-        given = _find({"median": "r/few", "of": names, "text": template}, {"colour": "red"})
+        given = find({"median": "r/few", "of": names, "text": template}, {"colour": "red"})
         assert given.text == wanted, template
 
 

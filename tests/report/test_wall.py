@@ -37,7 +37,7 @@ def tiles(text) -> list[str]:
 
 def code_of(claim) -> str:
     if not claim.measure:
-        return f"{expressions.__name__.replace('.', '/')}.html#_find"
+        return f"{expressions.__name__.replace('.', '/')}.html#find"
     function = claims._function(claim.measure)
     return f"{function.__module__.replace('.', '/')}.html#{claim.measure.split('.')[-1]}"
 

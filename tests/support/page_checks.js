@@ -66,7 +66,7 @@
   prose.querySelectorAll(set).forEach((el) => el.replaceWith("•"));
   const raw = prose.textContent.match(/\\[([]|\$\$|\\begin\{|\\(frac|tau|ddot|dot|text)\b/);
   if (raw) found.push(`raw TeX: ${prose.textContent.substr(raw.index, 60)}`);
-  const twice = prose.textContent.match(/\b(the|an?|of|to|in|and|is|are)\s+\1\b(?!\W*[_^=])/i);
+  const twice = prose.textContent.match(/\b(the|an?|of|to|in|and|is|are)(?:[ \t]+|[ \t]*\n[ \t]*)\1\b(?!\W*[_^=])/i);
   if (twice) found.push(`twice: ${prose.textContent.substr(twice.index - 20, 60)}`);
   return found;
 }

@@ -58,7 +58,7 @@ import yaml
 from ddlib._check import one_of
 from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
-from workshop.report.evidence.expressions import _find
+from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import VERDICTS, Measured, _fresh, _shares, _stands
 
 _FILE = BOOK / "claims.yml"  # Where the claims are kept
@@ -266,7 +266,7 @@ def _function(measure: str) -> Callable:
 def _measure(way: str) -> Measured:
     """What a function of some name or an expression finds with some arguments."""
     measure, expression, arguments = json.loads(way)
-    result = _function(measure)(**arguments) if measure else _find(expression, arguments)
+    result = _function(measure)(**arguments) if measure else find(expression, arguments)
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()

@@ -1,4 +1,4 @@
-"""Measures that only read committed results, written down in ``book/claims.yml`` as ``_find``.
+"""Measures that only read committed results, written down in ``book/claims.yml`` as ``find``.
 
 A *path* leads into a result: ``table-6-1/slope``. At a list a number takes one place, ``:`` goes on
 from each, ``:5`` from the first five, ``width=21&rate=100`` takes the one row with these entries;
@@ -105,7 +105,7 @@ _TOLD = {
 _FIXED = "fixed"
 
 
-def _find(expression: Mapping, arguments: Mapping | None = None) -> Measured:
+def find(expression: Mapping, arguments: Mapping | None = None) -> Measured:
     """What an expression finds in the committed results: value, text, replicates."""
     return _Expression(expression, dict(arguments or {})).measured()
 

@@ -26,7 +26,7 @@ from workshop.report.evidence.claims import (
     _sure,
     here,
 )
-from workshop.report.evidence.expressions import _find
+from workshop.report.evidence.expressions import find
 from workshop.report.evidence.ledger_tables import _HEADS, _bands, _page_of, window
 from workshop.report.evidence.verdicts import VERDICTS
 
@@ -174,7 +174,7 @@ def _links(claim: Claim, on: str) -> str:
 
 def _source(claim: Claim) -> str:
     """Address of the lines that measure a claim, from the page of a chapter."""
-    measure = inspect.unwrap(_function(claim.measure) if claim.measure else _find)
+    measure = inspect.unwrap(_function(claim.measure) if claim.measure else find)
     return f"{_CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
