@@ -14,7 +14,7 @@ An entry has these fields:
     The page of the book that deals with it; `_LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
-``_printed``
+``printed``
     The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
 ``measure`` or ``find``, ``with``
     A function of `workshop.report.measures` as "module.function", and its keyword arguments; or an
@@ -70,7 +70,7 @@ _LEDGER = "ledger"  # The page of all claims, and the chapter of those that no o
 # a new folder for other code or results.
 SHARED = "DDLIB_MEASURED"
 
-# As `_printed`: a claim of this book, to explain what the paper's section reports. It is judged
+# As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
 # like the others, in its chapter, and is not counted among the paper's.
 _OWN = "not in the paper"
 
