@@ -10,9 +10,9 @@ import numpy as np
 import traitlets as t
 
 from ddlib._check import number, one_of
-from ddlib.widgets.baking.baked import Baked, evaluate
-from ddlib.widgets.baking.still import Still, still_picture
-from ddlib.widgets.parts.common import checked_presets, default_code, filled, key_of
+from ddlib.widgets._baking.baked import Baked, evaluate
+from ddlib.widgets._baking.still import Still, still_picture
+from ddlib.widgets.parts._common import checked_presets, default_code, filled, key_of
 from ddlib.widgets.parts.panels import Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 

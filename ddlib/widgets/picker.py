@@ -19,8 +19,8 @@ from ddlib.setups import HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine.live import LiveWidget
-from ddlib.widgets.engine.plain import ENGINE, SLIDING, gains, lean, networks, plant
+from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.engine._plain import ENGINE, SLIDING, gains, lean, networks, plant
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 

@@ -24,9 +24,9 @@ from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, Recording, follow
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine.live import LiveWidget
-from ddlib.widgets.engine.loops import LOOPS
-from ddlib.widgets.engine.plain import ENGINE, gains, lean, plant
+from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.engine._loops import LOOPS
+from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 

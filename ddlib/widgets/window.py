@@ -11,8 +11,8 @@ from ddlib._check import finite_array
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
-from ddlib.widgets.engine.live import LiveWidget
-from ddlib.widgets.engine.plain import ENGINE, SLIDING, lean, networks
+from ddlib.widgets.engine._live import LiveWidget
+from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, networks
 from ddlib.widgets.hinton import JOINTS, _check_models, width_choice
 from ddlib.widgets.parts.parameters import Choice
 

@@ -7,7 +7,7 @@ from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
-from ddlib.widgets.baking.baked import _MAX_BYTES
+from ddlib.widgets._baking.baked import _MAX_BYTES
 from workshop.beyond.studies.loop.stirring import PICKER, PLACES
 from workshop.chapters.widgets.stirring import _LINES, StirringPicker
 

@@ -1,6 +1,7 @@
 """What keeps the house small: lines of each room, sizes of modules and packages, public names."""
 
 import ast
+import re
 from pathlib import Path
 
 from book_pages import ROOT
@@ -41,7 +42,13 @@ def lines_of(room: str) -> int:
 
 
 def public_names(path: Path) -> list[str]:
-    """What a module defines at its top level without an underscore in front."""
+    """What a module defines at its top level without an underscore in front.
+
+    Nothing, if it or a package above it begins with an underscore: "an interface is also considered
+    internal if any containing namespace (package, module or class) is considered internal" (PEP 8).
+    """
+    if any(re.match("_[a-z]", part) for part in path.relative_to(ROOT).parts):
+        return []
     names = []
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):

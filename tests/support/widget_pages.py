@@ -13,7 +13,7 @@ import numpy as np
 from ipywidgets.embed import embed_data
 
 from ddlib.widgets import module
-from ddlib.widgets.engine import plain
+from ddlib.widgets.engine import _plain as plain
 
 ROOT = Path(__file__).resolve().parents[2]
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()

@@ -23,7 +23,7 @@ from ddlib.learning import sliding_windows
 from ddlib.setups import JOINT_DAMPING, KP, SETUPS, STATE_FEEDBACK, split
 from ddlib.simulation import follow
 from ddlib.trajectories import pick_and_place, time_grid
-from ddlib.widgets.engine import plain
+from ddlib.widgets.engine import _plain as plain
 from workshop.report import results
 
 STEP = 0.002

@@ -9,7 +9,7 @@ from widget_pages import settings
 from widget_samples import DEPENDS, axes, make, make_kinds, oscillation, parts, wave
 
 from ddlib.widgets import Parameter
-from ddlib.widgets.baking.baked import Baked
+from ddlib.widgets._baking.baked import Baked
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from widget_pages import code_of
 
-from ddlib.widgets.parts.common import filled
+from ddlib.widgets.parts._common import filled
 
 STATES = {
     "EXPLORER_CODE": (

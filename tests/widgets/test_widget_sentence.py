@@ -8,7 +8,7 @@ from widget_pages import functions, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.widgets import LoopSentence, TorqueSentence
-from ddlib.widgets.engine import loops
+from ddlib.widgets.engine import _loops as loops
 
 SPACE = "\u00a0"
 ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"

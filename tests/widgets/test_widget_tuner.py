@@ -14,7 +14,7 @@ from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.engine import loops
+from ddlib.widgets.engine import _loops as loops
 from ddlib.widgets.tuner import (
     _QUESTIONS,
     _START,

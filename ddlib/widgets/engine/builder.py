@@ -13,9 +13,9 @@ from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, split, true_states
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
-from ddlib.widgets.engine.plain import lean
+from ddlib.widgets.engine._plain import lean
 from ddlib.widgets.parts.panels import Panel
 
 _WIDTH = 21  # stems of the window

@@ -14,11 +14,11 @@ from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP
-from ddlib.widgets.baking.still import START, encoded
+from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import _FRAME, STYLE, _PageWidget, module
-from ddlib.widgets.engine.loops import LOOPS, linear, modes
-from ddlib.widgets.engine.plain import ENGINE, lean, plant
-from ddlib.widgets.parts.common import key_of
+from ddlib.widgets.engine._loops import LOOPS, linear, modes
+from ddlib.widgets.engine._plain import ENGINE, lean, plant
+from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 
 _SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains

@@ -12,9 +12,9 @@ from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
-from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import STYLE, _PageWidget, module
-from ddlib.widgets.engine.plain import ENGINE, _weight_bytes, gains, lean, network, plant
+from ddlib.widgets.engine._plain import ENGINE, _weight_bytes, gains, lean, network, plant
 from ddlib.widgets.parts.panels import Panel
 
 _REST = 0.4  # s between two motions that are played: longer than half a window

@@ -12,9 +12,9 @@ from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rat
 from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets.baking.still import still_picture
+from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
-from ddlib.widgets.engine.plain import _FIELDS, _TRAINING, ENGINE, lean
+from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean
 from ddlib.widgets.parts.panels import Panel
 
 _WIDTH = 21  # samples of the window

@@ -1,1 +1,1 @@
-"""Parameters, panels and pads as plain descriptions, and what every widget has."""
+"""Parameters, panels and pads as plain descriptions."""

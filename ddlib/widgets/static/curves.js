@@ -13,7 +13,7 @@ const QUIET = 700; // ms without a change after which the figure is described an
 // parameter, see frame.js) with changed(), and resets (called by Reset).
 const extras = [];
 
-// What a widget that computes in the page sets (engine/live.py): the view's curves by name; they end
+// What a widget that computes in the page sets (engine/_live.py): the view's curves by name; they end
 // in NaN where a run is over.
 let live = null;
 

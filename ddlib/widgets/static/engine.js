@@ -1,7 +1,7 @@
 // The live engine: an arm under sampled control, and window networks. Follows physics.js, which
 // holds the equations; descent.js trains. As in ddlib, whose numbers it gives (tests/widgets/
 // test_engine.py): angles in rad, torques in N m, times in s, [shoulder, elbow] in every pair.
-// A plant is what plain.py writes: { arm, lengths, viscous, coulomb, smoothing, encoder, limit }.
+// A plant is what _plain.py writes: { arm, lengths, viscous, coulomb, smoothing, encoder, limit }.
 
 const JOINTS = [0, 1];
 const NAMES = ["shoulder", "elbow"];

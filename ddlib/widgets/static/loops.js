@@ -1,5 +1,5 @@
 // PID loops whose torque may come late: their runs, and the linear loop around a posture. Follows
-// engine.js. `modes` is what engine/loops.py writes.
+// engine.js. `modes` is what engine/_loops.py writes.
 
 // A law whose torque comes some control periods late; zero until its first comes.
 function behind(periods, law) {

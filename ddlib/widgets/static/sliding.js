@@ -1,5 +1,5 @@
 // Window networks along a recording. Follows engine.js. Layouts, scalings and weights are what
-// `networks` in plain.py writes.
+// `networks` in _plain.py writes.
 
 function modelsOf(layouts, bytes) {
   const all = numbersOf(bytes, "Float32");

@@ -11,7 +11,7 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 
 
 class _Computed:
-    """What `ddlib.widgets.baking.baked.Baked` is for a widget without a table."""
+    """What `ddlib.widgets._baking.baked.Baked` is for a widget without a table."""
 
     groups = ()
 

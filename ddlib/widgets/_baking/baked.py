@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from ddlib._check import finite_array, integer, one_of
-from ddlib.widgets.baking.compress import _TINY, _Table
+from ddlib.widgets._baking.compress import _TINY, _Table
 
 _MAX_BYTES = 400_000  # of the baked values of one widget
 _MAX_VALUES = 6_000_000  # settings times samples that are computed to be baked
