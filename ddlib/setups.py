@@ -169,12 +169,14 @@ def train_windows(
     *,
     seed=0,
     snapshots=(),
+    whiten=True,
     progress=True,
 ) -> tuple[TorqueModel, History, dict[int, Weights]]:
     """Train networks of one window size on runs 1 to 5 of Appendix I, following run 6.
 
     `seed` is of the first network's weights; `snapshots`, `progress` and what is returned are those
-    of `ddlib.learning.train_ensemble`. A set-up with Levenberg-Marquardt `steps` has no snapshots.
+    of `ddlib.learning.train_ensemble`. A set-up with Levenberg-Marquardt `steps` has no snapshots;
+    `whiten` is that of `ddlib.learning.solve`.
     """
     from ddlib.learning import solve, train_ensemble
 
@@ -188,7 +190,8 @@ def train_windows(
         "label": f"{setup.name}, window {width}",
     }
     if setup.steps:
-        solution = solve(weights, data, decay=setup.decay, steps=setup.steps, **shared)
+        how = {"decay": setup.decay, "steps": setup.steps, "whiten": whiten}
+        solution = solve(weights, data, **how, **shared)
         return solution.model, solution.history, {}
     return train_ensemble(
         weights,

@@ -1,7 +1,7 @@
 """Error, gradient and second derivatives of a window network, for Levenberg-Marquardt.
 
-Windows vary some hundred thousand times more in one direction than in another. The parameters are
-therefore taken in coordinates in which the inputs have unit mean square in every direction.
+Windows vary some hundred thousand times more in one direction than in another. The parameters may
+therefore be taken in coordinates in which the inputs have unit mean square in every direction.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ class _Objective:
     The vector holds a row for each hidden unit, then for each output unit (the weights
     from the window, then the bias), and then the hidden-to-output weights. A row w is
     held as ``C'w`` with ``CC'`` the mean square of the inputs and the penalty, so that the
-    inputs ``C^-1 [x, 1]`` are white.
+    inputs ``C^-1 [x, 1]`` are white; or, unless `whiten`, as it is (``C = I``).
     """
 
-    def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, test=None):
+    def __init__(self, weights: Weights, data: TrainingSet, decay=0.0, test=None, whiten=True):
         self._hidden, *self._window = weights.hidden_weights.shape
         self._outputs = len(weights.output_bias)
         self._rows = self._hidden + self._outputs
@@ -40,11 +40,14 @@ class _Objective:
         self._decay = decay
         matrix = _zeros(self._inputs, self._inputs)
         matrix.diagonal()[:-1] = decay  # no penalty on the bias
-        power, axes = torch.linalg.eigh((x @ x.T + matrix) / cases)
-        idle = power < 1e-14 * power[-1]  # nothing but rounding: weights stay as they are
-        power[idle] = power[-1]
-        self._colour, self._whiten = axes * power.sqrt(), axes / power.sqrt()
-        busy = torch.where(idle, 0.0, self._whiten).T
+        if whiten:
+            power, axes = torch.linalg.eigh((x @ x.T + matrix) / cases)
+            idle = power < 1e-14 * power[-1]  # nothing but rounding: weights stay as they are
+            power[idle] = power[-1]
+            self._colour, self._whiten = axes * power.sqrt(), axes / power.sqrt()
+            busy = torch.where(idle, 0.0, self._whiten).T
+        else:
+            busy = self._colour = self._whiten = torch.eye(self._inputs, dtype=x.dtype)
         self._z, self._y = busy @ x, _float64(data.y).T.contiguous()
         self._test = (self._whiten.T @ _columns(test[0]), _float64(test[1]).T) if test else None
         self._penalty = busy @ matrix @ busy.T

@@ -1,9 +1,9 @@
 """Levenberg-Marquardt: the optimum of a window network, where the path does not matter.
 
 Each step solves ``(J'J + mu I) step = -gradient`` with J the derivatives of all residuals by all
-parameters (Hagan & Menhaj 1994); the damping mu follows Nielsen (1999). Near the end all second
-derivatives take the place of ``J'J`` (Dennis, Gay & Welsch 1981): where residuals remain, ``J'J``
-alone converges slowly.
+parameters (Hagan & Menhaj 1994), by default in coordinates in which the inputs are white; the
+damping mu follows Nielsen (1999). Near the end all second derivatives take the place of ``J'J``
+(Dennis, Gay & Welsch 1981): where residuals remain, ``J'J`` alone converges slowly.
 """
 
 from __future__ import annotations
@@ -60,6 +60,7 @@ def solve(
     steps: int = 300,
     tolerance: float = 1e-6,
     target_rmss: float | None = None,
+    whiten: bool = True,
     progress: bool = True,
     label: str = "solving",
 ) -> Solution:
@@ -83,7 +84,20 @@ def solve(
         Largest cosine, at the end, between the residuals, penalty included, and a column of J.
     target_rmss : float, optional
         Training RMSS at which a member may stop.
+    whiten : bool
+        What the damping holds back. If true, each direction of the windows is measured by how much
+        they vary along it: one along which they hardly vary is learnt as fast as any other, and a
+        step without decay does not see a linear change of the inputs. If false, it is the weights
+        as they are, and such a direction takes small steps. The objective is the same in both,
+        the way to its minimum is not.
+
+    Raises
+    ------
+    TypeError
+        If `whiten` is neither True nor False.
     """
+    if not isinstance(whiten, bool):
+        raise TypeError(f"whiten must be True or False, got {whiten!r}")
     _check(weights, data, test)
     integer("steps", steps, 1)
     number("tolerance", tolerance, 0.0, 1.0)
@@ -101,7 +115,7 @@ def solve(
 
     def work(member: Weights):
         torch.set_num_threads(1)  # of this thread: one core for each member
-        objective = _Objective(member, data, decay, test)
+        objective = _Objective(member, data, decay, test, whiten)
         end = _descend(objective, objective.pack(member), steps, tolerance, target_rmss, tell)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end

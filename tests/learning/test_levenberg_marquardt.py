@@ -78,13 +78,14 @@ def quietly(*args, **options):
         return solve(*args, progress=False, **options)
 
 
+@pytest.mark.parametrize("whiten", [True, False])
 @pytest.mark.parametrize("hidden, outputs, decay", [(1, 1, 0.0), (5, 4, 1e-3)])
-def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay):
+def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay, whiten):
     windows, torque = smooth_cases(40, noise=0.01)
     mixed = np.random.default_rng(0).normal(size=(2, outputs))
     data = TrainingSet.from_arrays(windows, torque @ mixed)
     w = Weights.random(1, WIDTH, hidden, 2, outputs, initial=1.0, seed=hidden)[0]
-    objective = _Objective(w, data, decay)
+    objective = _Objective(w, data, decay, whiten=whiten)
     vector, rest = objective.pack(w), (w, data, decay)
     value, gradient = by_hand(*rest)
     j, bent = jacobian(flat(w), *rest), hessian(flat(w), *rest)
@@ -93,6 +94,7 @@ def test_value_gradient_and_matrix_are_those_of_autograd(hidden, outputs, decay)
     units = [objective.pack(unflat(unit, w)).numpy() for unit in np.eye(j.shape[1])]
     to_vector = np.column_stack(units)
     to_weights = np.linalg.inv(to_vector)
+    assert np.allclose(to_vector @ to_vector.T, np.eye(len(to_vector))) != whiten
     for _ in range(2):  # the second time what is kept of the first is used
         for exact, expected in ((False, j.T @ j), (True, bent)):
             lower, slopes, lengths = (x.numpy() for x in objective.normal(vector, exact))
@@ -116,10 +118,11 @@ def test_at_the_end_the_gradient_is_zero(data, start):
         assert np.abs(gradient).max() < 1e-5 * np.abs(before[1]).max()
 
 
-def test_scipy_finds_the_same_optimum(data):
+@pytest.mark.parametrize("whiten", [True, False])
+def test_scipy_finds_the_same_optimum(data, whiten):
     """By a trust region with autograd's Hessian, from each of three starts."""
     starts = Weights.random(3, WIDTH, 1)
-    ours = solve(starts, data, decay=0.05, progress=False)
+    ours = solve(starts, data, decay=0.05, whiten=whiten, progress=False)
     for k in range(len(starts)):
         rest = (starts[k], data, 0.05)
         theirs = minimize(
@@ -135,6 +138,26 @@ def test_scipy_finds_the_same_optimum(data):
             unflat(theirs.x, starts[k]).activity(data.x)[1],
             atol=1e-4,
         )
+
+
+def test_a_step_for_white_inputs_does_not_see_a_linear_change_of_the_inputs(data, start):
+    """The same network of stretched and mixed inputs goes the same way; else it does not."""
+    mix = np.eye(WIDTH) + 0.5 * np.random.default_rng(0).normal(size=(WIDTH, WIDTH))
+    mix *= np.logspace(0, 2, WIDTH)
+    back = np.linalg.inv(mix).T
+    parts = {name: getattr(start[0], name) @ back for name in ("hidden_weights", "direct_weights")}
+    pairs = ((start[0], data), (replace(start[0], **parts), replace(data, x=data.x @ mix)))
+    for whiten in (True, False):
+        told = []
+        for weights, cases in pairs:
+            objective = _Objective(weights, cases, whiten=whiten)
+            vector = objective.pack(weights)
+            matrix, gradient, _ = (each.numpy() for each in objective.normal(vector))
+            matrix = np.tril(matrix) + np.tril(matrix, -1).T
+            step = np.linalg.solve(matrix + np.eye(len(matrix)), gradient)
+            told.append(objective.unpack(vector - torch.as_tensor(step)).activity(cases.x)[1])
+        assert np.abs(told[0] - start[0].activity(data.x)[1]).max() > 0.1
+        assert np.allclose(*told, atol=1e-8) == whiten
 
 
 def test_an_ensemble_is_its_members(data, other, start):
@@ -171,6 +194,8 @@ def test_unfit_weights_and_data_are_refused(data, start):
     ):
         with pytest.raises(ValueError, match=re.escape(message)):
             solve(weights, cases, progress=False)
+    with pytest.raises(TypeError, match="whiten must be True or False, got 1"):
+        solve(start, data, whiten=1, progress=False)
 
 
 def test_a_saturated_network_does_not_pass_for_an_optimum(data, start):
