@@ -14,6 +14,7 @@ from sphinx import addnodes
 SHOWN = (
     "workshop.report.measures",
     "workshop.beyond.measures",
+    "workshop.chapters",
     "workshop.report.evidence.expressions",
 )
 """Packages and modules whose source has pages."""

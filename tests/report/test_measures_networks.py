@@ -1,45 +1,14 @@
 """Measures of networks and windows, on planted ones with answers known by hand."""
 
-from math import erf
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ddlib.analysis import savitzky_golay
-from ddlib.learning import History
 from ddlib.simulation import LOG_STEP
 from workshop.report import committed
-from workshop.report.measures import backpropagation, networks, windows
-
-# --- the unit, the rule, parity ------------------------------------------------------------------
-
-
-def test_best_possible_answers_to_noisy_parity():
-    """A bit is read rightly with the chance p of staying below half a step; parity then has
-    (1 + (2p - 1)^3) / 2.
-    """
-    found = backpropagation.fine_distinctions()
-    p = 0.5 * (1 + erf(0.5 / 0.25 / np.sqrt(2)))
-    best = float(found.text.split("at best ")[1].split(" %")[0])
-    assert best == pytest.approx(50 * (1 + (2 * p - 1) ** 3), abs=1.5)
-    assert 0.5 < found.value <= 1.001  # chance, and as good as can be
-
-
-def test_parity_takes_every_product_of_bits_and_one_of_signs():
-    """As +1 or -1 it is the product of all 1 - 2 x: of bits all 2^n products, of signs one."""
-    found = backpropagation.polynomial("bits", 8)
-    assert found.value == pytest.approx(1.0)
-    assert found.text == "4 at 2 bits, 256 at 8"
-    assert backpropagation.polynomial("signs", 8).value == pytest.approx(0, abs=1e-12)
-
-
-def test_when_errors_reach_a_level():
-    errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
-    history = History(np.array([10, 20, 40]), errors, None)
-    np.testing.assert_allclose(backpropagation.reach(history, 0.75), [25.0, 10.0, np.inf])
-    np.testing.assert_allclose(backpropagation.reach(history, 0.9), [15.0, 10.0, np.inf])
-
+from workshop.report.measures import networks, windows
 
 # --- windows -------------------------------------------------------------------------------------
 

@@ -7,5 +7,5 @@
 - ``measures``: what claims measure; ``committed``: recordings and networks that several look at
 - ``evidence``: claims, verdicts, the ledger
 - ``exact_states``: section 6; ``two_harmonics``: other motions; ``knobs``: what decides Table 4-1;
-  ``parity_networks``: the example of section 1.1
+  ``parity``: the example of section 1.1
 """

@@ -22,7 +22,6 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
-from workshop.report.measures.backpropagation import learning
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -176,6 +175,44 @@ def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -
 # --- ddlib.learning.span: the directions of the windows
 
 
+def _learning(width: int, case: int) -> dict:
+    """A cell of the study "span": `case` 0, inputs 0 to 1; 1, -1 to 1; 2, damped joints."""
+    return results.read("span")["cells"][len(WINDOWS) * case + WINDOWS.index(width)]
+
+
+def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
+    """Epoch at which some directions' parts of the error are half, over that of others.
+
+    Of several directions the geometric mean counts.
+    """
+    cell, epochs = _learning(width, case), {}
+    for who in ("measured", "predicted"):
+        halves = np.log(np.array(cell[who]["halves"], float))
+        epochs[who] = [halves[:, np.array(group) - 1].mean(1) for group in (first, then)]
+    ratios = {who: np.exp(late - early) for who, (early, late) in epochs.items()}
+    text = f"{spread(ratios['measured'])}; predicted {spread(ratios['predicted'])}"
+    return judged(median, ratios["measured"], text=text)
+
+
+def centred(name: str = "rmss") -> Measured:
+    """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows."""
+    cells = [[_learning(w, case) for case in (0, 1)] for w in WINDOWS]
+    pairs = {
+        who: [tuple(np.array(c[who][name]) for c in both) for both in cells]
+        for who in ("measured", "predicted")
+    }
+    shown = {
+        who: ", ".join(significant(np.median(a) / np.median(b), 2) for a, b in each)
+        for who, each in pairs.items()
+    }
+
+    def least(*drawn):
+        return np.min([median(a) / median(b) for a, b in drawn], axis=0)
+
+    text = f"{shown['measured']}; predicted {shown['predicted']}"
+    return judged(least, *[(a, b) for a, b in pairs["measured"]], text=text)
+
+
 def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
     """Share of a change of the input weights that no combination of the windows gives.
 
@@ -208,7 +245,7 @@ def direction_purity(count: int = 9) -> Measured:
 
 def noise_left(width: int = 41) -> Measured:
     """Correlation of trained with initial weights in directions predicted not to be learnt."""
-    learnt = int(np.median(learning(width, 0)["predicted"]["learnt"]))
+    learnt = int(np.median(_learning(width, 0)["predicted"]["learnt"]))
     along = Directions.of(TrainingSet.from_recording(committed.training(), width))
     models = committed.networks(width), committed._untrained(width)
     ends = [along.along(model.weights)[..., learnt:] for model in models]
@@ -226,6 +263,6 @@ def learnt_by_solver(width: int = 41) -> Measured:
     along = Directions.of(TrainingSet.from_recording(committed.training(name), width))
     trained, start = (m(width, name).weights for m in (committed.networks, committed._untrained))
     share = (along.energy(trained, start) > along.energy(start)).mean(-1)
-    descent = np.array(learning(width, 2)["measured"]["learnt"]) / along.values.size
+    descent = np.array(_learning(width, 2)["measured"]["learnt"]) / along.values.size
     text = f"{significant(np.median(share), 2)} of the directions; by descent "
     return judged(median, share, text=f"{text}{significant(np.median(descent), 2)}")

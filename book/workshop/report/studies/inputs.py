@@ -9,8 +9,8 @@ from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ense
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP, Recording
-from workshop.report import parity_networks
 from workshop.report.code_hash import study
+from workshop.report.parity import learn
 
 _RACED = 0.9  # Acceleration in a race at one step size: the share of the last step that is repeated
 
@@ -137,7 +137,7 @@ def _race_on_parity(bits: int, members: int) -> dict:
     """Epochs until parity is learnt, or all there are if it never is, without and with it."""
     learned = {}
     for name, (momentum, length) in zip(("without", "with"), _LENGTHS.items()):
-        _, epochs = parity_networks.learn(
+        _, epochs = learn(
             bits, bits, members=members, momentum=momentum, epochs=2 * length, every=10
         )
         learned[name] = np.minimum(epochs, 2 * length)  # infinite if never

@@ -1,17 +1,171 @@
-"""Sections 1.1, 1.2 and 3.3: the unit, the rule, acceleration, and parity as an example."""
+"""What *Backpropagation* shows: parity as a polynomial and as networks; its claims' measures.
+
+`monomials` counts what a polynomial needs, exactly; `NETWORKS` have weights set by hand.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from ddlib import paper
+from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork
 from ddlib.setups import STATE_FEEDBACK, WINDOWS
 from ddlib.tables import scientific, significant, spread
-from workshop.report import committed, parity_networks, results
+from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured, judged, median
+from workshop.report.parity import CODINGS, parity, parity_cases, patterns, right
+
+
+def monomials(values, coding: str = "bits") -> np.ndarray:
+    """Coefficients of the polynomial that equals a function of bits on all its inputs.
+
+    No variable appears squared in it, since a bit (or a sign) squared is nothing new; so the
+    polynomial is unique. Its coefficients come from the Möbius transform for bits and from the
+    Walsh-Hadamard transform for signs, and are exact: whole numbers for bits, whole numbers over
+    ``2**bits`` for signs.
+    """
+    values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
+    bits = values.size.bit_length() - 1
+    shaped("values", values, (2 ** integer("bits of values", bits, 1),))
+    if (values != np.round(values)).any():
+        raise ValueError("values must be whole numbers")
+    table = values.astype(np.int64).reshape((2,) * bits)  # one axis for each bit
+    for axis in range(bits):
+        off, on = np.split(table, 2, axis)
+        pair = (off, on - off) if coding == "bits" else (off + on, off - on)
+        table = np.concatenate(pair, axis)
+    flat = table.ravel()
+    return flat if coding == "bits" else flat / 2**bits
+
+
+@dataclass(frozen=True)
+class _UnitNetwork:
+    """Units one after the other, each seeing the inputs and any unit before it.
+
+    The last unit is the output. Weights and biases are small whole or half numbers; `activity`
+    multiplies them by a gain.
+    """
+
+    weights: np.ndarray  # (units, inputs + units); 0 means no connection
+    bias: np.ndarray  # (units,)
+
+    @property
+    def inputs(self) -> int:
+        """Number of inputs."""
+        return self.weights.shape[1] - self.bias.size
+
+    @property
+    def connections(self) -> int:
+        """Number of weights that are not zero, biases not counted."""
+        return int(np.count_nonzero(self.weights))
+
+    @property
+    def coefficients(self) -> int:
+        """Number of weights and biases."""
+        return self.connections + self.bias.size
+
+    @property
+    def word(self) -> int:
+        """Bits that the largest weight or bias needs: counted in halves, with its sign."""
+        largest = max(np.abs(self.weights).max(), np.abs(self.bias).max())
+        return int(np.ceil(2 * largest)).bit_length() + 1
+
+    @property
+    def depth(self) -> int:
+        """Units on the longest way from an input to the output."""
+        depth = np.zeros(self.bias.size, int)
+        for k, row in enumerate(self.weights[:, self.inputs :]):
+            depth[k] = 1 + max(depth[row != 0], default=0)
+        return int(depth[-1])
+
+    def activity(self, x, gain: float = np.inf) -> np.ndarray:
+        """Activities of all units, shape (..., units)."""
+        x = finite_array("x", x, self.inputs)
+        if gain != np.inf:
+            number("gain", gain, 0.0, open_low=True)
+        seen = np.concatenate([x, np.zeros((*x.shape[:-1], self.bias.size))], -1)
+        for k, (row, bias) in enumerate(zip(self.weights, self.bias)):
+            net = seen @ row + bias
+            on = net > 0 if gain == np.inf else 0.5 * (1 + np.tanh(0.5 * gain * net))
+            seen[..., self.inputs + k] = on
+        return seen[..., self.inputs :]
+
+    def output(self, x, gain: float = np.inf) -> np.ndarray:
+        """Activity of the last unit, shape (...), for inputs and gain as for `activity`."""
+        return self.activity(x, gain)[..., -1]
+
+
+def _build(inputs: int, rows) -> _UnitNetwork:
+    """A network from a pair for each unit: weights by place, units after the inputs, and bias."""
+    weights = np.zeros((len(rows), inputs + len(rows)))
+    for k, (links, _) in enumerate(rows):
+        weights[k, list(links)] = list(links.values())
+    return _UnitNetwork(weights, np.array([bias for _, bias in rows], float))
+
+
+def _one_layer(bits: int) -> _UnitNetwork:
+    """Parity by one hidden layer: unit k is on if k bits or more are on (Rumelhart et al. 1986)."""
+    bits = integer("bits", bits, 1)
+    hidden = [(dict.fromkeys(range(bits), 1), 0.5 - k) for k in range(1, bits + 1)]
+    return _build(bits, [*hidden, ({bits + k: -((-1) ** k) for k in range(bits)}, 0.5)])
+
+
+def _direct(bits: int) -> _UnitNetwork:
+    """Parity by half as many hidden units and direct weights (Hohil, Liu & Smith 1999)."""
+    bits = integer("bits", bits, 1)
+    hidden = [(dict.fromkeys(range(bits), 1), 0.5 - 2 * k) for k in range(1, bits // 2 + 1)]
+    above = dict.fromkeys(range(bits, bits + len(hidden)), 2)
+    return _build(bits, [*hidden, (dict.fromkeys(range(bits), -1) | above, 0.5)])
+
+
+def _counter(bits: int) -> _UnitNetwork:
+    """Parity by a counter: each unit is a binary digit of the number of bits that are on.
+
+    A unit sees all inputs and the higher digits, which take their value away from the number;
+    the lowest digit is parity. About ``bits log2(bits)`` weights, in a depth of ``log2(bits)``.
+    """
+    bits = integer("bits", bits, 1)
+    higher = [2**j for j in range(bits.bit_length() - 1, 0, -1)]
+    places, inputs = range(bits, bits + len(higher)), dict.fromkeys(range(bits), 1)
+    known = dict(zip(places, (-value for value in higher)))
+    rows = [(inputs | {i: known[i] for i in range(bits, p)}, 0.5 + known[p]) for p in places]
+    lowest = {place: -weight for place, weight in (inputs | known).items()}
+    return _build(bits, [*rows, (lowest, 0.5)])
+
+
+def _tree(bits: int) -> _UnitNetwork:
+    """Parity by a tree of two-bit parities, two units each: seven coefficients for a bit more."""
+    bits = integer("bits", bits, 1)
+    rows, ends = [], list(range(bits))  # places of what is still to be joined
+    while len(ends) > 1:
+        joined = []
+        for a, b in zip(ends[::2], ends[1::2]):
+            both = bits + len(rows)
+            rows.append(({a: 1, b: 1}, -1.5))
+            rows.append(({a: 1, b: 1, both: -2}, -0.5))
+            joined.append(both + 1)
+        ends = joined + ends[len(joined) * 2 :]
+    if not rows:  # a single bit
+        rows = [({0: 1}, -0.5)]
+    links, bias = rows[-1]
+    rows[-1] = ({place: -weight for place, weight in links.items()}, -bias)  # odd to even
+    return _build(bits, rows)
+
+
+# Networks that compute parity, by name: functions of the number of bits
+NETWORKS = {
+    "one hidden layer": _one_layer,
+    "with direct weights": _direct,
+    "binary counter": _counter,
+    "tree of pairs": _tree,
+}
+
+
+# --- what the claims of the chapter measure
 
 _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
 
@@ -90,7 +244,7 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
     The task is parity of a few bits, so that neighbours in every direction differ, with
     Gaussian noise on the inputs of training and test. Best possible: the nearest corner.
     """
-    x, y = parity_networks.parity_cases(bits)
+    x, y = parity_cases(bits)
     rng = np.random.default_rng(0)
 
     def draw(copies):
@@ -102,11 +256,9 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
     descent = Descent(start, training, targets, 8.0 / len(training), 0.9)
     for _ in range(1500):
         descent.epoch()
-    share = parity_networks.right(descent.weights(), fresh, wanted)
+    share = right(descent.weights(), fresh, wanted)
     corner = np.round(fresh[:, 0]).clip(0, 1)
-    best = np.mean(
-        parity_networks.parity(corner) == parity_networks.parity(np.repeat(x[:, 0], 250, axis=0))
-    )
+    best = np.mean(parity(corner) == parity(np.repeat(x[:, 0], 250, axis=0)))
     text = f"{spread(100 * share, 3)} % right, at best {significant(100 * best, 3)} %"
     return judged(median, share / best, text=text)
 
@@ -114,25 +266,20 @@ def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
 def polynomial(coding: str = "bits", most: int = 10) -> Measured:
     """Growth of the number of coefficients of parity as a polynomial, in doublings per bit."""
     bits = np.arange(2, most + 1)
-    counts = [
-        np.count_nonzero(
-            parity_networks.monomials(parity_networks.parity(parity_networks.patterns(n)), coding)
-        )
-        for n in bits
-    ]
+    counts = [np.count_nonzero(monomials(parity(patterns(n)), coding)) for n in bits]
     growth = float(np.polyfit(bits, np.log2(counts), 1)[0])
     return Measured(growth, f"{counts[0]} at {bits[0]} bits, {counts[-1]:,} at {most}")
 
 
 def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> Measured:
     """Growth of a network's coefficients beyond ``n log2 n``, from few bits to many."""
-    make = parity_networks.NETWORKS[name]
+    make = NETWORKS[name]
     for n in range(2, most + 1):
-        x = parity_networks.patterns(n)
-        if (make(n).output(x) != parity_networks.parity(x)).any():
+        x = patterns(n)
+        if (make(n).output(x) != parity(x)).any():
             raise AssertionError(f"{name} is wrong at {n} bits")
     x = np.tri(large + 1, large, -1)
-    if (make(large).output(x) != parity_networks.parity(x)).any():
+    if (make(large).output(x) != parity(x)).any():
         raise AssertionError(f"{name} is wrong at {large} bits")
     few, many = (make(n).coefficients for n in (most, large))
     ratio = many / (large * np.log2(large)) / (few / (most * np.log2(most)))
@@ -192,44 +339,3 @@ def settling(steepest: float = 0.1) -> Measured:
         (needed,), (flat,) = settled(at, slopes[None])
         words.append(f"{needed:,}" if flat else f"over {needed:,}")
     return judged(latest, *cells, text="epochs: " + ", ".join(words))
-
-
-# --- ddlib.learning.span: what is learnt along them
-
-
-def learning(width: int, case: int) -> dict:
-    """A cell of the study "span": `case` 0, inputs 0 to 1; 1, -1 to 1; 2, damped joints."""
-    return results.read("span")["cells"][len(WINDOWS) * case + WINDOWS.index(width)]
-
-
-def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
-    """Epoch at which some directions' parts of the error are half, over that of others.
-
-    Of several directions the geometric mean counts.
-    """
-    cell, epochs = learning(width, case), {}
-    for who in ("measured", "predicted"):
-        halves = np.log(np.array(cell[who]["halves"], float))
-        epochs[who] = [halves[:, np.array(group) - 1].mean(1) for group in (first, then)]
-    ratios = {who: np.exp(late - early) for who, (early, late) in epochs.items()}
-    text = f"{spread(ratios['measured'])}; predicted {spread(ratios['predicted'])}"
-    return judged(median, ratios["measured"], text=text)
-
-
-def centred(name: str = "rmss") -> Measured:
-    """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows."""
-    cells = [[learning(w, case) for case in (0, 1)] for w in WINDOWS]
-    pairs = {
-        who: [tuple(np.array(c[who][name]) for c in both) for both in cells]
-        for who in ("measured", "predicted")
-    }
-    shown = {
-        who: ", ".join(significant(np.median(a) / np.median(b), 2) for a, b in each)
-        for who, each in pairs.items()
-    }
-
-    def least(*drawn):
-        return np.min([median(a) / median(b) for a, b in drawn], axis=0)
-
-    text = f"{shown['measured']}; predicted {shown['predicted']}"
-    return judged(least, *[(a, b) for a, b in pairs["measured"]], text=text)

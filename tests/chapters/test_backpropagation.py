@@ -1,14 +1,16 @@
 """Parity: exact polynomials, networks that are right on every input, and learning."""
 
 import itertools
+from math import erf
 
 import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib.learning import Weights
-from workshop.report import parity_networks
-from workshop.report.parity_networks import NETWORKS, monomials, patterns
+from ddlib.learning import History, Weights
+from workshop.chapters import backpropagation
+from workshop.chapters.backpropagation import NETWORKS, monomials
+from workshop.report.parity import CODINGS, learn, parity, parity_cases, patterns, right
 
 
 def in_words(row) -> int:
@@ -18,8 +20,8 @@ def in_words(row) -> int:
 
 def test_parity_is_the_papers_function():
     x = patterns(5)
-    assert parity_networks.parity(x).tolist() == [in_words(row) for row in x]
-    assert parity_networks.parity(x.reshape(4, 8, 5)).shape == (4, 8)
+    assert parity(x).tolist() == [in_words(row) for row in x]
+    assert parity(x.reshape(4, 8, 5)).shape == (4, 8)
 
 
 def evaluate(coefficients, x):
@@ -46,7 +48,7 @@ def test_polynomials_take_the_given_values(values):
 
 @pytest.mark.parametrize("bits", [1, 2, 3, 10])
 def test_how_many_coefficients_parity_needs(bits):
-    values = parity_networks.parity(patterns(bits))
+    values = parity(patterns(bits))
     by_bits, by_signs = monomials(values), monomials(values, "signs")
     assert np.count_nonzero(by_bits) == 2**bits
     assert np.count_nonzero(1 - values) and np.count_nonzero(monomials(1 - values)) == 2**bits - 1
@@ -61,7 +63,7 @@ def test_networks_compute_parity_on_every_input(name, bits):
     network, x = NETWORKS[name](bits), patterns(bits)
     assert network.inputs == bits
     np.testing.assert_array_equal(network.output(x), [in_words(row) for row in x])
-    assert np.abs(network.output(x, 20.0) - parity_networks.parity(x)).max() < 1e-4
+    assert np.abs(network.output(x, 20.0) - parity(x)).max() < 1e-4
 
 
 @pytest.mark.parametrize("bits", [2, 3, 4, 7, 8, 16, 33, 100])
@@ -78,26 +80,24 @@ def test_counts_by_formula(bits):
 
 def test_the_counters_units_are_binary_digits():
     x = patterns(6)
-    digits = parity_networks._counter(6).activity(x)
+    digits = backpropagation._counter(6).activity(x)
     for row, total in zip(digits, x.sum(1)):
         assert "".join(str(int(d)) for d in row[:-1]) == f"{total:03b}"[:-1]
         assert row[-1] == 1 - total % 2
 
 
 def test_learning_finds_exclusive_or_and_says_when():
-    weights, epochs = parity_networks.learn(2, 2, members=4, epochs=600, every=10)
+    weights, epochs = learn(2, 2, members=4, epochs=600, every=10)
     assert isinstance(weights, Weights) and len(weights) == 4
     assert np.isfinite(epochs).all() and (epochs % 10 == 0).all()
-    x, y = parity_networks.parity_cases(2)
-    assert (parity_networks.right(weights, x, y) == 1).all()
-    early, none = parity_networks.learn(2, 2, members=4, epochs=10, every=10)
-    assert np.isinf(none).all() and (parity_networks.right(early, x, y) < 1).all()
+    x, y = parity_cases(2)
+    assert (right(weights, x, y) == 1).all()
+    early, none = learn(2, 2, members=4, epochs=10, every=10)
+    assert np.isinf(none).all() and (right(early, x, y) < 1).all()
 
 
 def test_cases_in_both_codings():
-    (bits, y), (signs, same) = (
-        parity_networks.parity_cases(3, coding) for coding in parity_networks.CODINGS
-    )
+    (bits, y), (signs, same) = (parity_cases(3, coding) for coding in CODINGS)
     assert bits.shape == signs.shape == (8, 1, 3) and set(np.unique(signs)) == {-1, 1}
     np.testing.assert_array_equal(signs, 1 - 2 * bits)
     np.testing.assert_array_equal(y, same)
@@ -108,14 +108,43 @@ def test_cases_in_both_codings():
     "call, words",
     [
         (lambda: patterns(0), "bits must be an integer from 1 to 16, got 0"),
-        (lambda: parity_networks.parity([0, 2]), "x must hold zeros and ones"),
+        (lambda: parity([0, 2]), "x must hold zeros and ones"),
         (lambda: monomials([1, 0, 1]), "values must have shape"),
         (lambda: monomials([0.5, 0]), "values must be whole numbers"),
         (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
-        (lambda: parity_networks.learn(2, 2, momentum=1.0), "momentum must lie in"),
-        (lambda: parity_networks.learn(2, 2, epochs=5), "epochs must be an integer from 20"),
+        (lambda: learn(2, 2, momentum=1.0), "momentum must lie in"),
+        (lambda: learn(2, 2, epochs=5), "epochs must be an integer from 20"),
     ],
 )
 def test_refusals(call, words):
     with pytest.raises(ValueError, match=words):
         call()
+
+
+# --- what the claims of the chapter measure -----------------------------------------------------
+
+
+def test_best_possible_answers_to_noisy_parity():
+    """A bit is read rightly with the chance p of staying below half a step; parity then has
+    (1 + (2p - 1)^3) / 2.
+    """
+    found = backpropagation.fine_distinctions()
+    p = 0.5 * (1 + erf(0.5 / 0.25 / np.sqrt(2)))
+    best = float(found.text.split("at best ")[1].split(" %")[0])
+    assert best == pytest.approx(50 * (1 + (2 * p - 1) ** 3), abs=1.5)
+    assert 0.5 < found.value <= 1.001  # chance, and as good as can be
+
+
+def test_parity_takes_every_product_of_bits_and_one_of_signs():
+    """As +1 or -1 it is the product of all 1 - 2 x: of bits all 2^n products, of signs one."""
+    found = backpropagation.polynomial("bits", 8)
+    assert found.value == pytest.approx(1.0)
+    assert found.text == "4 at 2 bits, 256 at 8"
+    assert backpropagation.polynomial("signs", 8).value == pytest.approx(0, abs=1e-12)
+
+
+def test_when_errors_reach_a_level():
+    errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
+    history = History(np.array([10, 20, 40]), errors, None)
+    np.testing.assert_allclose(backpropagation.reach(history, 0.75), [25.0, 10.0, np.inf])
+    np.testing.assert_allclose(backpropagation.reach(history, 0.9), [15.0, 10.0, np.inf])
