@@ -6,6 +6,7 @@ from .coverage import (
     shared_cells as shared_cells,
     used_dimensions as used_dimensions,
 )
+from .excitation import half_penalty as half_penalty, ridge_filters as ridge_filters
 from .filters import (
     CLASSES as CLASSES,
     DERIVATIVES as DERIVATIVES,
