@@ -7,9 +7,7 @@ from scipy.integrate import cumulative_simpson, solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive.craig import CraigHsuSastry
-from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import PARAMETERS, CraigHsuSastry, SlotineLi, mixed_regressor
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])

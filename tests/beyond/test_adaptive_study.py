@@ -8,9 +8,7 @@ from ddlib.effects import IDEAL
 from ddlib.setups import KD, STATE_FEEDBACK
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I, pick_and_place
-from workshop.beyond.control.adaptive.regressor import mixed_regressor
-from workshop.beyond.control.adaptive.running import Watched
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import SlotineLi, Watched, mixed_regressor
 from workshop.beyond.studies.loop.runs import adaptive as runs
 
 HALF = 0.5 * runs.TRUTH

@@ -6,9 +6,7 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
-from workshop.beyond.control.adaptive.regressor import PARAMETERS
-from workshop.beyond.control.adaptive.running import Watched
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import PARAMETERS, SlotineLi, Watched
 from workshop.beyond.control.feedback_error import (
     FeedbackErrorLearning,
     MotionMemory,

@@ -6,7 +6,7 @@ import pytest
 from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
-from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.guarded import REASONS, Guarded
 
 STABLE, WILD = (300.0, 90.0), (8e5, 2e5)

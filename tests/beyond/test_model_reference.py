@@ -9,10 +9,7 @@ from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive.craig import CraigHsuSastry
-from workshop.beyond.control.adaptive.model_reference import ModelReference
-from workshop.beyond.control.adaptive.running import Watched
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import CraigHsuSastry, ModelReference, SlotineLi, Watched
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])

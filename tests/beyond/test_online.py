@@ -9,7 +9,7 @@ from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import follow, record
 from ddlib.trajectories import Trajectory, pick_and_place, time_grid
-from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.online import (
     Abreast,
     LastLayer,

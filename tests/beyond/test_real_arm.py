@@ -8,7 +8,7 @@ from scipy.optimize import approx_fprime
 from ddlib.identification import joint_terms
 from ddlib.learning import Weights
 from workshop.beyond.others import staubli
-from workshop.beyond.studies import real_arm, tx40_networks
+from workshop.beyond.studies import real_arm, tx40
 from workshop.beyond.studies.tx40 import (
     BLOCKS,
     Ridge,
@@ -84,7 +84,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     data = Windowed.of(100, 5)
     x, y, decay = data.x[:200:4], data.current[:200:4], 1e-2
     start = Weights.random(1, 5, 2, 6, 6)[0]
-    model = tx40_networks._decayed(x, y, start, decay, steps=2000)
+    model = tx40._decayed(x, y, start, decay, steps=2000)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")
     scaled, wanted = model.scaled(x), model.outputs.scale(y)
     parts = [getattr(model.weights, n) for n in names]
@@ -105,7 +105,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
 
 def test_the_study_in_small(monkeypatch):
     monkeypatch.setattr(real_arm, "RATES", {100: (5,)})
-    monkeypatch.setattr(real_arm, "trained", partial(tx40_networks.trained, epochs=20))
+    monkeypatch.setattr(real_arm, "trained", partial(tx40.trained, epochs=20))
     monkeypatch.setattr(real_arm, "_DECAYS", (0.0, 1e-2))
     row = real_arm._grid(1)[0]
     assert row["network"].shape == (5, 1) and row["ridge"].shape == (5,)

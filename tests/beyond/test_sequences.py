@@ -7,8 +7,8 @@ from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.learning import Weights, sliding_windows
+from workshop.beyond.rivals.networks import Convolution, Recurrent, as_convolution
 from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.rivals.sequences import Convolution, Recurrent, as_convolution
 
 
 def test_the_window_network_is_a_convolution():

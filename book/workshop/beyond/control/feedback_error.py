@@ -15,14 +15,14 @@ from scipy.ndimage import gaussian_filter1d
 from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
+from workshop.beyond.control.adaptive import PARAMETERS, mixed_regressor
 
 
 @dataclass(frozen=True)
 class RigidBodyTerms:
     """The regressor's columns and friction: terms that can represent the arm exactly.
 
-    `names` are those of `workshop.beyond.control.adaptive.regressor.PARAMETERS`.
+    `names` are those of `workshop.beyond.control.adaptive.PARAMETERS`.
     """
 
     names: Sequence[str] = PARAMETERS[:3]

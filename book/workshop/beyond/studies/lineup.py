@@ -12,9 +12,8 @@ from workshop.beyond.rivals.cmac import CMAC
 from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures, SemiParametric
 from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.lagrangian import LagrangianNetwork
-from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver
+from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver, Convolution, Recurrent
 from workshop.beyond.rivals.protocol import Rival
-from workshop.beyond.rivals.sequences import Convolution, Recurrent
 from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
 
 _DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train

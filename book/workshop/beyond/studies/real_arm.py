@@ -22,16 +22,21 @@ from ddlib.trajectories import OutsideFamilyWarning
 from workshop.beyond.rivals.gaussian import GaussianProcess
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies.tx40 import (
+    _EPOCHS,
+    _HIDDEN,
     BLOCKS,
     RATES,
     Ridge,
     Windowed,
     _best_penalty,
+    _both,
+    _decayed,
     identified,
     known_structure,
     least_squares,
+    trained,
+    wrong,
 )
-from workshop.beyond.studies.tx40_networks import _EPOCHS, _HIDDEN, _both, _decayed, trained, wrong
 from workshop.report.code_hash import study
 
 _COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988

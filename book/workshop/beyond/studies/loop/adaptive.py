@@ -19,7 +19,7 @@ from ddlib.setups import (
 )
 from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import SlotineLi
 from workshop.beyond.studies.loop.runs import adaptive as batch
 from workshop.beyond.studies.loop.runs.adaptive import LAWS
 from workshop.report.code_hash import study

@@ -17,7 +17,7 @@ from ddlib.learning import TorqueModel, Weights
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, time_grid
-from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.feedback_error import (
     FeedbackErrorLearning,
     GenericTerms,

@@ -12,7 +12,7 @@ from ddlib.dynamics import Arm, end_point_error, with_load
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place
-from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.feedback_error import GenericTerms, RigidBodyTerms
 from workshop.beyond.control.guarded import Guarded
 from workshop.beyond.control.online import Abreast

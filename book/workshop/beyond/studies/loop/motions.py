@@ -18,10 +18,12 @@ from ddlib.trajectories import (
     MAX_EXTENT_DEG,
     MOTION_SECONDS,
     Trajectory,
+    pick_and_place,
     random_extents,
     time_grid,
 )
 from workshop.beyond.rivals.protocol import Cases
+from workshop.beyond.studies.loop.run_time_parts import _on_days
 
 # 1,500 cases each; "both": every second case of the first two
 _FAMILIES = ("pick and place", "circles", "both", "via points")
@@ -250,3 +252,37 @@ def coverage(setup: Setup, tests: dict, members: int) -> dict:
             )
         }
     return found
+
+
+_TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training
+
+
+def _on_several_days(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
+    """Drive the arm along the references of each day, and log what its sensors say.
+
+    Each day has its own zero of the encoders, each run its own torque noise, whatever else is
+    recorded.
+    """
+    days = shaped("days", days, f"({len(references)},)").astype(int)
+    together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
+    today = replace(setup, effects=_on_days(setup.effects, setup, days))
+    seeds = 1000 * (1 + days[:, None]) + np.arange(together.q.shape[1])
+    log = recorded(today, together, seed=seeds)
+    return [log[k] for k in range(len(days))]
+
+
+def training(setup: Setup, days) -> list[dict[str, Recording]]:
+    """Recordings of five motions of each family, for each day, which is the seed of their draw."""
+    t = times()
+    references = {
+        "pick and place": lambda day: pick_and_place(APPENDIX_I[:_TRAINED], t),
+        "circles": lambda day: stirred(setup.arm, random_circles(_TRAINED, day), t),
+        "via points": lambda day: _via_points(_random_points(_TRAINED, _VIA, day), t),
+    }
+    each = [[make(day) for make in references.values()] for day in days]
+    joined = [Trajectory(*(np.concatenate(parts) for parts in zip(*day))) for day in each]
+    logs = _on_several_days(setup, joined, days)
+    return [
+        {name: log[k * _TRAINED : (k + 1) * _TRAINED] for k, name in enumerate(references)}
+        for log in logs
+    ]

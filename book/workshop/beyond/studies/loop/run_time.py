@@ -16,7 +16,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
-from workshop.beyond.control.adaptive.running import Watched
+from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.guarded import Guarded
 from workshop.beyond.control.windowed import (
     MeasuredWindows,

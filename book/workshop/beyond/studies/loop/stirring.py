@@ -29,8 +29,8 @@ from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating, Rival
 from workshop.beyond.studies.loop import motions
+from workshop.beyond.studies.loop.motions import training
 from workshop.beyond.studies.loop.run_time_parts import _through_window, exact
-from workshop.beyond.studies.loop.runs.days import training
 from workshop.report import results
 from workshop.report.code_hash import study
 

@@ -14,11 +14,14 @@ from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
 from ddlib.setups import KD, Setup
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place
-from workshop.beyond.control.adaptive.craig import CraigHsuSastry
-from workshop.beyond.control.adaptive.model_reference import ModelReference
-from workshop.beyond.control.adaptive.regressor import PARAMETERS, mixed_regressor
-from workshop.beyond.control.adaptive.running import Watched
-from workshop.beyond.control.adaptive.slotine_li import SlotineLi
+from workshop.beyond.control.adaptive import (
+    PARAMETERS,
+    CraigHsuSastry,
+    ModelReference,
+    SlotineLi,
+    Watched,
+    mixed_regressor,
+)
 from workshop.beyond.control.guarded import Guarded
 
 _RIGID = PARAMETERS[:3]

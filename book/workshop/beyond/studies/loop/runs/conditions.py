@@ -36,7 +36,6 @@ from workshop.beyond.studies.loop import (
     stirring,
 )
 from workshop.beyond.studies.loop.chain import _Sample, chain, extents, recorded
-from workshop.beyond.studies.loop.runs.days import _recorded as recorded_days
 from workshop.report.code_hash import study
 
 _COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
@@ -87,7 +86,7 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
     }
     steps, models = [], {"chosen": [], "60": [], "identified": []}
     for day, run in zip(
-        days, recorded_days(setup, [pick_and_place(APPENDIX_I[:5], t)] * len(days), days)
+        days, motions._on_several_days(setup, [pick_and_place(APPENDIX_I[:5], t)] * len(days), days)
     ):
         whole = _cases(run, 1)
         steps.append(_chosen_steps(run, day))
@@ -99,7 +98,7 @@ def _stopped(setup: Setup, days, circles: bool) -> dict:
         drawn = [motions.stirred(setup.arm, motions.random_circles(20, day), t) for day in days]
         models["twenty circles"] = [
             _fitted(_STEPS[-1], _cases(run, 4), day)
-            for day, run in zip(days, recorded_days(setup, drawn, days))
+            for day, run in zip(days, motions._on_several_days(setup, drawn, days))
         ]
     today = setup.repeated(_TEST)
     hands = {motion: _hands(today, models, reference) for motion, reference in asked.items()}
