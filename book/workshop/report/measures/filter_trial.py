@@ -15,9 +15,8 @@ from ddlib.analysis import calibrated as gains_of
 from ddlib.learning import MATCHED, cases, p_value
 from ddlib.setups import JOINT_DAMPING, SETUPS, true_states
 from ddlib.tables import spread
-from ddlib.trajectories import MOTION_SECONDS
 from workshop.report import committed, results
-from workshop.report.evidence.verdicts import Measured, judged, median
+from workshop.report.evidence.verdicts import Measured, judged
 
 
 def row(where: int | str = 21) -> dict:
@@ -82,12 +81,19 @@ def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
     return judged(lambda each: _off(each, true), real, text=f"{told} {_UNITS['inertia']}")
 
 
-def stiffness(width: int = 21) -> Measured:
-    """Stiffness of the trial's networks at the shoulder, which the arm has none of."""
-    found = np.array(row(width)["real"]["gains"])[:, 0, 0, 0]
-    worth = (np.pi / MOTION_SECONDS) ** 2 * arm_gains()[0, 0, 2]
-    text = f"K₁₁ {spread(found, 2)} N m/rad; the inertia is worth {worth:.1f}"
-    return judged(lambda each: np.abs(median(each)) / worth, found, text=text)
+def response(width: int = 21, trajectories: tuple = (1, 2, 6)) -> Measured:
+    """How far the trial's networks, as linear filters, are from the arm in torque per acceleration.
+
+    At the shoulder, along the worst of some trajectories; see the study `filter_responses`.
+    """
+    found = results.read("filter-responses")
+    places = [found["trajectories"].index(number) for number in trajectories]
+    cell = found["windows"][str(width)]
+    real, own = np.array(cell["response"])[:, places], np.array(found["arm"])[places]
+    told = zip(trajectories, np.median(real, 0), own)
+    text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in told)
+    text += f" kg m²; K₁₁ {spread(cell['stiffness'], 2)} N m/rad"
+    return judged(lambda each: _off(each, own), real, text=text)
 
 
 def _entries(what, gains, wanted) -> tuple[np.ndarray, np.ndarray, str]:

@@ -133,12 +133,19 @@ def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     return judged(median, share, text=f"{now:.0f} % of the time, {then:.0f} % before training")
 
 
-def transition(width: int) -> Measured:
-    """Median width of the transition region in standard deviations of the net input."""
+def in_transition(width: int) -> Measured:
+    """Median share of cases in which a hidden unit is in its transition region, 0.1 to 0.9."""
     windows, _ = cases(committed.training(), width)
-    found, before = _both(lambda models: transition_width(net_inputs(models(width), windows)))
-    now, then = (significant(np.median(x), 2) for x in (found, before))
-    return judged(median, found, text=f"{now} standard deviations, {then} before training")
+
+    def often(models):
+        net = net_inputs(models(width), windows)
+        return 1 - saturated(1 / (1 + np.exp(-net))), transition_width(net)
+
+    (share, region), (before, _) = _both(often)
+    now, then = (100 * np.median(x) for x in (share, before))
+    text = f"{now:.0f} % of the time, {then:.0f} % before training; the region is "
+    text += f"{significant(np.median(region), 2)} standard deviations of the net input wide"
+    return judged(median, share, text=text)
 
 
 def spare_units(width: int, worse: float = 1.1) -> Measured:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ddlib import paper
 from ddlib.analysis import content, savitzky_golay
+from ddlib.effects import Quantisation
 from ddlib.learning import (
     Directions,
     TrainingSet,
@@ -17,11 +20,19 @@ from ddlib.learning import (
     with_ones,
 )
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, results
-from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
+from workshop.report.evidence.verdicts import (
+    Measured,
+    judged,
+    largest_median,
+    mean,
+    median,
+    turns_at,
+)
+from workshop.report.studies.windows import _acceleration_error
 
 
 def estimates(orders: list, widths: list) -> Measured:
@@ -266,3 +277,35 @@ def learnt_by_solver(width: int = 41) -> Measured:
     descent = np.array(_learning(width, 2)["measured"]["learnt"]) / along.values.size
     text = f"{significant(np.median(share), 2)} of the directions; by descent "
     return judged(median, share, text=f"{text}{significant(np.median(descent), 2)}")
+
+
+def memorised(width: int = 41, days: int = 5) -> Measured:
+    """Error on the training motions recorded anew over that on the training set.
+
+    On other days noise and the encoders' zero differ, motions and arm do not.
+    """
+    training, told = committed.training(), []
+    anew = [split(STATE_FEEDBACK.repeated(1 + k).record())[0] for k in range(days)]
+    for size in (width, 21):
+        model = committed.networks(size)
+        errors = [rmss(model.torque(x), y) for x, y in (cases(r, size) for r in (training, *anew))]
+        told.append(np.array(errors[1:]).T / errors[0][:, None])
+    text = f"{spread(told[0], 3)} times the training error; {significant(np.median(told[1]), 3)}"
+    return judged(median, told[0], text=f"{text} at 21")
+
+
+def short_window(bits: tuple = (16, 15, 14, 13, 12, 11), more: float = 1.1) -> Measured:
+    """Resolution of the encoders from which on window 11 has the worse acceleration than 21.
+
+    In bits a turn: where the error at 11 is `more` times that at 21.
+    """
+    ratios = []
+    for each in bits:
+        rounded = Quantisation(2 * np.pi / 2**each)
+        effects = replace(STATE_FEEDBACK.effects, encoder=(rounded,))
+        run = split(replace(STATE_FEEDBACK, effects=effects).record())[0]
+        ratios.append(_acceleration_error(run, 11) / _acceleration_error(run, 21))
+    turn = turns_at([2.0**-each for each in bits], ratios, more)
+    text = f"{significant(ratios[0], 2)} times the error at 21 with the assumed {bits[0]} bits"
+    text += f"; {significant(more, 2)} times with {-np.log2(turn):.1f} bits"
+    return Measured(float(-np.log2(turn)), text)

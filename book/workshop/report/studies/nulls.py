@@ -16,6 +16,7 @@ from ddlib.analysis import (
     decoded,
     decoded_sign,
     heard,
+    mean_gradient,
     pure_part,
     refitted,
     roughness,
@@ -29,6 +30,7 @@ from ddlib.learning import MATCHED, TorqueModel, TrainingSet, Weights, cases, re
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
+from ddlib.trajectories import APPENDIX_I
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
 
@@ -283,6 +285,46 @@ def filter_trial_elsewhere(
     for name, setup in slow.items():
         found[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
     return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": found}
+
+
+def _response(torque, states) -> np.ndarray:
+    """Slope of torques ``(..., time)`` over the acceleration: kg m^2 of an arm.
+
+    By least squares on acceleration, velocity and a constant, of one joint's `states` ``(time, 3)``
+    of position, velocity and acceleration. Position is left out: along a sine it is the
+    acceleration's mirror image, so that a stiffness takes away from what an inertia gives.
+    """
+    known = np.column_stack([states[:, 2], states[:, 1], np.ones(len(states))])
+    return np.linalg.lstsq(known, np.moveaxis(torque, -1, 0), rcond=None)[0][0]
+
+
+@study
+def filter_responses(members: int = 15) -> dict:
+    """How the first networks of `filter_trial` answer the shoulder's motion, as linear filters.
+
+    For each window the mean gradient of the shoulder's torque along the shoulder's window, and what
+    it makes of each trajectory's windows, per true acceleration (`_response`), ``(networks,
+    trajectories)``, kg m^2. Beside it the same of the arm, whose torque is its inertia at the
+    shoulder, elbow where it is, times the acceleration.
+    """
+    recording = TRIAL.record()
+    states = true_states(recording, TRIAL)
+    moving = np.flatnonzero(APPENDIX_I[:, 0])
+    inertia = TRIAL.arm.mass_matrix(states[..., 0])[..., 0, 0]
+    own = [_response(inertia[k] * states[k, :, 0, 2], states[k, :, 0]) for k in moving]
+    windows = {}
+    for width in WINDOWS:
+        trial = _Trial(TRIAL, recording, width)
+        weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
+        filters = mean_gradient(trial.model(weights), trial.windows)[:, 0, 0]
+        answers = [filters @ cases(recording[k : k + 1], width)[0][:, 0].T for k in moving]
+        windows[str(width)] = {
+            "stiffness": filters.sum(-1),
+            "response": np.stack(
+                [_response(x, states[k, :, 0]) for k, x in zip(moving, answers)], -1
+            ),
+        }
+    return {"members": members, "trajectories": moving + 1, "arm": own, "windows": windows}
 
 
 @study
