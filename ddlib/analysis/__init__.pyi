@@ -10,7 +10,6 @@ from .excitation import half_penalty as half_penalty, ridge_filters as ridge_fil
 from .filters import (
     CLASSES as CLASSES,
     DERIVATIVES as DERIVATIVES,
-    NAMED_CLASSES as NAMED_CLASSES,
     basis as basis,
     classify as classify,
     content as content,

@@ -90,7 +90,7 @@ def shares(f) -> np.ndarray:
     return np.concatenate([parts, np.clip(1 - parts.sum(-1, keepdims=True), 0, None)], -1)
 
 
-NAMED_CLASSES = (
+_NAMED_CLASSES = (
     "velocity",
     "acceleration",
     "jerk",
@@ -98,7 +98,7 @@ NAMED_CLASSES = (
     "acceleration + jerk",
 )
 _OTHER_MIX, _NOT_ANALYSABLE = "other mix", "not analysable"
-CLASSES = (*NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
+CLASSES = (*_NAMED_CLASSES, _OTHER_MIX, _NOT_ANALYSABLE)
 """Names that `classify` gives."""
 
 _PURE = 0.8  # share of the cubic part's energy from which one derivative, or two, give the name
@@ -117,7 +117,7 @@ def classify(f) -> np.ndarray:
     varying = 1 - share[..., 0]
     rough = (share[..., 4] > (1 - _SMOOTH) * varying) | (varying < 1e-12)
     conditions = [rough, *(x >= _PURE for x in (v, a, j, v + a, a + j))]
-    return np.select(conditions, [_NOT_ANALYSABLE, *NAMED_CLASSES], _OTHER_MIX)
+    return np.select(conditions, [_NOT_ANALYSABLE, *_NAMED_CLASSES], _OTHER_MIX)
 
 
 def purest(f, name: str) -> np.ndarray:

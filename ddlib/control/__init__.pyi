@@ -21,7 +21,6 @@ from .velocity import (
     EstimatedVelocity as EstimatedVelocity,
     difference as difference,
     end_slope as end_slope,
-    lag as lag,
     noise_gain as noise_gain,
     stacked as stacked,
 )

@@ -46,13 +46,6 @@ def noise_gain(weights) -> np.ndarray:
     return np.linalg.norm(finite_array("weights", weights), axis=-1)
 
 
-def lag(weights, step: float) -> np.ndarray:
-    """How late an estimate is, s: the true velocity of that long ago, to first order."""
-    weights = finite_array("weights", weights)
-    age = np.arange(weights.shape[-1])[::-1] * number("step", step, 0.0, open_low=True)
-    return weights @ age**2 / -2
-
-
 @dataclass(frozen=True)
 class EstimatedVelocity:
     """A controller whose velocity comes from readings; before the first the arm is at rest."""

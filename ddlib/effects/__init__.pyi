@@ -20,5 +20,4 @@ from .real_arm import (
     EncoderZero as EncoderZero,
     Noise as Noise,
     Quantisation as Quantisation,
-    started as started,
 )

@@ -166,7 +166,7 @@ def _fits(effect, part: str) -> bool:
     return any(hasattr(effect, method) for method in _METHODS[part])
 
 
-def started(effects: tuple, initial) -> Callable:
+def _started(effects: tuple, initial) -> Callable:
     """A signal path ``path(x, rng)``, whose memories hold `initial` (..., 2) at first."""
     steps = [e.start(initial) if hasattr(e, "start") else e.apply for e in effects]
 

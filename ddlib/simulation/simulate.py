@@ -7,7 +7,8 @@ import numpy as np
 from ddlib._check import finite_array, integer, number, one_of, shaped
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
-from ddlib.effects import IDEAL, Effects, started
+from ddlib.effects import IDEAL, Effects
+from ddlib.effects.real_arm import _started
 from ddlib.simulation.plant import _Plant, _substeps
 from ddlib.simulation.recording import Recording, _equal_steps
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, pick_and_place, time_grid
@@ -178,8 +179,8 @@ def follow(
     plant, parts = _Plant(arm, effects), _substeps(arm, effects, step)
     x, v = _moving(plant, *start)
     tau = np.zeros_like(start[0])
-    encoder = started(effects.encoder, x[..., -2:])
-    actuator, torque_sensor = (started(e, tau) for e in (effects.actuator, effects.torque_sensor))
+    encoder = _started(effects.encoder, x[..., -2:])
+    actuator, torque_sensor = (_started(e, tau) for e in (effects.actuator, effects.torque_sensor))
     reading = encoder(x[..., -2:] - step * v[..., -2:], rng)  # one period ago
     log = []
     for k in range(t.size):

@@ -11,7 +11,6 @@ import traitlets as t
 from ddlib._check import integer
 from ddlib.analysis import (
     CLASSES,
-    NAMED_CLASSES,
     basis,
     classify,
     content,
@@ -20,6 +19,7 @@ from ddlib.analysis import (
     purest,
     shares,
 )
+from ddlib.analysis.filters import _NAMED_CLASSES
 from ddlib.learning import TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
@@ -151,7 +151,7 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, 
     every = weights[width].hidden_weights[list(members)]
     names = classify(every)
     presets = {}
-    for name in NAMED_CLASSES:
+    for name in _NAMED_CLASSES:
         if (names == name).any():
             place = np.argwhere((every == purest(every, name)).all(-1))[0]
             member, unit, joint = map(int, place)

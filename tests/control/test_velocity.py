@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import savgol_coeffs
 
-from ddlib.control import EstimatedVelocity, difference, end_slope, lag, noise_gain, pd
+from ddlib.control import EstimatedVelocity, difference, end_slope, noise_gain, pd
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import Effects, Quantisation
 from ddlib.simulation import follow
@@ -24,7 +24,8 @@ def test_end_slope_against_scipy(width, degree):
 @pytest.mark.parametrize("periods", [1, 2, 10, 40])
 def test_lag_and_noise_of_a_difference_in_closed_form(periods):
     weights = difference(periods, STEP)
-    assert lag(weights, STEP) == pytest.approx(periods * STEP / 2)
+    age = np.arange(periods, -1, -1) * STEP
+    assert weights @ age**2 / -2 == pytest.approx(periods * STEP / 2)
     assert noise_gain(weights) == pytest.approx(np.sqrt(2) / (periods * STEP))
 
 
@@ -33,7 +34,6 @@ def test_lag_is_the_delay_of_a_slow_sine(width):
     """From the phase at a low frequency; a parabola has none."""
     for degree, expected in ((1, (width - 1) / 2 * STEP), (2, 0.0)):
         weights = end_slope(width, degree, STEP)
-        assert lag(weights, STEP) == pytest.approx(expected, abs=1e-9)
         t = np.arange(1 - width, 1) * STEP
         answer = weights @ np.exp(2j * np.pi * 0.1 * t) / (2j * np.pi * 0.1)
         assert -np.angle(answer) / (2 * np.pi * 0.1) == pytest.approx(expected, abs=2e-5)
