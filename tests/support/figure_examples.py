@@ -184,10 +184,6 @@ EXAMPLES = {
     "intervals": partial(
         windows.intervals, INTERVALS, "factor", "Rows.", log=True, band=(0.7, 1.4)
     ),
-    "intervals, ends": partial(
-        windows.intervals, {"all": {"a": {"gain": (-0.5, 0.0, 0.9)}}}, "place", "Rows with ends.",
-        marks={"all": {"gain": 0.3}}, ends={"gain": ("300", "900")},
-    ),
     "clusters": partial(
         filters.clusters, {"left": (GROUPS, 4.0), "right": (GROUPS, 0.0)}, "N m", "Groups."
     ),
@@ -296,7 +292,6 @@ SHOWN = {
         ],
         [[(0.2, 0), (0.4, 0)], [(0.3, 0)]],
     ],
-    "intervals, ends": [[[(-0.5, 0), (0.9, 0)], [(0, 0)], [(0.3, 0)]]],
     "clusters": [
         [
             *xy([-0.25, 0, 0.25], GROUPS["few, one"]), [(-0.36, 2), (0.36, 2)],

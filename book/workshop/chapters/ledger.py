@@ -162,7 +162,7 @@ def _runs() -> str:
     runs = [run["windows"] for rows in methods.values() for run in rows]
     least = [WINDOWS[int(np.argmin(_medians(run, "test")))] for run in runs]
     times = ", ".join(f"{w} in {least.count(w)}" for w in WINDOWS)
-    return f"of {len(runs)} runs with all knobs turned, test least at window {times}"
+    return f"of {len(runs)} runs with all choices changed at once, test least at window {times}"
 
 
 def _table_6_1() -> dict[str, str]:

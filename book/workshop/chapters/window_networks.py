@@ -1,4 +1,4 @@
-"""Figures of the chapter *Window networks*."""
+"""What the chapter *Window networks* draws, and what its screening design tells."""
 
 from __future__ import annotations
 
@@ -11,6 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from matplotlib.ticker import NullLocator
 from scipy.spatial import ConvexHull
+from scipy.special import softmax
+from scipy.stats import qmc
+from sklearn.linear_model import BayesianRidge
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import PolynomialFeatures
 
 from ddlib._check import finite_array
 from ddlib.figures.maps import COLOUR_MAP, SIGNS
@@ -103,8 +108,6 @@ def intervals(
     *,
     log: bool = False,
     band: tuple[float, float] | None = None,
-    marks: Mapping[str, Mapping[str, float]] | None = None,
-    ends: Mapping[str, tuple[str, str]] | None = None,
 ) -> Illustration:
     """Panels of rows, each with a point and an interval for every series."""
     rows = list(dict.fromkeys(r for series in panels.values() for s in series.values() for r in s))
@@ -116,35 +119,22 @@ def intervals(
                     raise ValueError(f"interval of {row!r} must be in order, got {tuple(point)}")
 
     def draw(figure: Figure):
-        together = ends is None
-        axes = figure.subplots(1, len(panels), sharex=together, sharey=together, squeeze=False)[0]
+        axes = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
         for axis, (title, series) in zip(axes, panels.items()):
-            own = rows if ends is None else list(next(iter(series.values())))
             if band is not None:
                 axis.axvspan(*band, color=FAINT, alpha=0.2, lw=0)
             for k, (name, points) in enumerate(series.items()):
                 offset = (k - (len(series) - 1) / 2) * 0.6 / len(series)
                 for row, (low, middle, high) in points.items():
-                    y = own.index(row) + offset
+                    y = rows.index(row) + offset
                     axis.plot([low, high], [y, y], color=COLOURS[k], lw=1.6)
                     axis.plot([middle], [y], SIGNS[k], color=COLOURS[k], ms=5, label=name)
-            for row, x in (marks or {}).get(title, {}).items():
-                axis.plot([x], [own.index(row)], "D", mfc="none", mec=COLOURS[3], ms=7, mew=1.5,
-                          clip_on=False)  # fmt: skip
-            axis.set_yticks(range(len(own)), own)
-            axis.set_ylim(len(own) - 0.5, -0.5)
+            axis.set_yticks(range(len(rows)), rows)
+            axis.set_ylim(len(rows) - 0.5, -0.5)
             axis.set(xlabel=x_label, title=title, xscale="log" if log else "linear")
             axis.grid(False, axis="y")
             if log:
                 plain_ticks(axis.xaxis)
-            if ends is not None:
-                axis.set_xlim(-1, 1)
-                axis.set_xticks([-1, 0, 1], [])
-                for row, (left, right) in ends.items():
-                    if row in own:
-                        y = own.index(row) + 0.42
-                        axis.text(-1, y, left, fontsize=7, ha="left", va="center")
-                        axis.text(1, y, right, fontsize=7, ha="right", va="center")
         named = {}
         for axis in axes:
             named |= dict(zip(*reversed(axis.get_legend_handles_labels())))
@@ -152,3 +142,44 @@ def intervals(
             legend_above(figure, list(named.values()), list(named))
 
     return illustrate(draw, alt, 7.0, 1.1 + 0.33 * len(rows))
+
+
+def effects(design, logs, count: int) -> tuple[np.ndarray, float]:
+    """Factors by which `count` quantities move each error from their low end to their high one.
+
+    Main effects of a screening design, shape (count, errors), on errors given as logarithms, shape
+    (runs, errors). The largest factor of the columns that are left over, which move nothing, is
+    the second value.
+    """
+    slopes = design.T @ logs / (design**2).sum(0)[:, None]
+    factors = np.exp(2 * slopes)
+    return factors[:count], float(np.exp(2 * np.abs(slopes[count:])).max())
+
+
+def width_left(places, logs, printed, settings: int = 2**14) -> dict[str, float]:
+    """Width of the ranges that printed errors leave, in percent, as a geometric mean.
+
+    A polynomial of second order through the runs of a design (places: (runs, quantities); logs of
+    errors: (runs, networks, errors)) stands in for all settings. Each is weighed by how likely it
+    prints the table, with the polynomial's own error "counted", or as if it were "exact".
+    """
+    runs, networks, count = logs.shape
+    apart = (logs - logs.mean(1, keepdims=True)).reshape(-1, count)
+    scatter = apart.T @ apart / (runs * (networks - 1))  # of one network on one recording
+    x = 2 * qmc.Sobol(np.shape(places)[1], rng=0).random(settings) - 1
+    fits = [
+        make_pipeline(PolynomialFeatures(2, include_bias=False), BayesianRidge())
+        .fit(places, values)
+        .predict(x, return_std=True)
+        for values in logs.mean(1).T
+    ]
+    means, errors = np.transpose(fits, (1, 2, 0))
+    left = {}
+    for name, own in (("counted", errors), ("exact", np.zeros_like(errors))):
+        total = scatter + own[:, :, None] ** 2 * np.eye(count)
+        miss = printed - means
+        fit = (miss * np.linalg.solve(total, miss[..., None])[..., 0]).sum(1)
+        weights = softmax(-0.5 * (fit + np.linalg.slogdet(total)[1]))
+        deviation = np.sqrt(np.cov(x.T, aweights=weights, ddof=0).diagonal())
+        left[name] = float(100 * np.exp(np.mean(np.log(np.sqrt(3) * deviation))))
+    return left

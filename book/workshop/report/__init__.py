@@ -6,6 +6,6 @@
 - ``sweeps``: one experiment over many settings, kept and resumed
 - ``measures``: what claims measure; ``committed``: recordings and networks that several look at
 - ``evidence``: claims, verdicts, the ledger
-- ``exact_states``: section 6; ``two_harmonics``: other motions; ``knobs``: what decides Table 4-1;
+- ``exact_states``: section 6; ``two_harmonics``: other motions;
   ``parity``: the example of section 1.1
 """

@@ -6,7 +6,6 @@ committed results is written there, for ``evidence/expressions.py``.
 
 - ``dynamics``, ``backpropagation``, ``control``: sections 1 to 3, the arm and the method
 - ``trajectories``, ``windows``: sections 2 to 4, motions and what windows hold
-- ``knobs``: Table 4-1, which knobs decide it and what it speaks for
 - ``networks``: Table 6-1, counts, and what the weights of networks show
 - ``filters``: sections 5 and 7, what filters show
 - ``filter_trial``: the same beside networks trained on unrelated torques

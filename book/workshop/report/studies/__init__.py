@@ -3,7 +3,7 @@
 A study is a function without required arguments and with the decorator `study`, which returns a
 plain dictionary. ``python -m workshop.report.reproduce NAME`` runs one.
 
-- ``table``, ``knobs``: Table 4-1, on other days, longer, with clean sensors; which knobs decide it
+- ``table``, ``screening``: Table 4-1, on other days, longer, with clean sensors; what moves it
 - ``windows``, ``inputs``: window sizes, hidden units, states in place of windows, acceleration
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
