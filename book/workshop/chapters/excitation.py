@@ -1,0 +1,189 @@
+"""The arm's mass under regularisation: figure and widget of the chapter *Convolution filters*."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ddlib.analysis import gains, half_penalty, ridge_filters
+from ddlib.figures.style import COLOURS, INK, Illustration, illustrate, legend_above
+from ddlib.setups import split, true_states
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.hinton import CENTRE
+from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice, Parameter
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured, judged, median
+from workshop.report.studies.excitation import DRIVES, later, training_set
+
+_STEPS = (0.0, 0.25, 0.5, 1.0)  # seconds that the widget can leave out
+
+_SHOWN = (
+    "damped joints", "state feedback", "stiffer, well damped", "state feedback, two sines",
+)  # fmt: skip
+
+
+def cell(drive: str, seconds: float = 0.0) -> dict:
+    """A cell of the study "excitation": of a drive, with some seconds of the motion left out."""
+    cells = results.read("excitation")["cells"]
+    return next(c for c in cells if (c["drive"], c["left out"]) == (drive, seconds))
+
+
+def half_measured(found: Mapping) -> np.ndarray:
+    """Penalty at which half of the arm's inertia is left, by day; NaN where it is never reached."""
+    places = np.log(results.read("excitation")["penalties"])
+    halves = []
+    for mass in np.array(found["ridge"]) / found["arm"] - 0.5:
+        k = np.flatnonzero(mass > 0)[-1:]  # the last penalty with more than half
+        share = mass[k] / (mass[k] - mass[k + 1])
+        halves.append(np.exp(places[k] + share * (places[k + 1] - places[k])) if k.size else np.nan)
+    return np.array([float(np.squeeze(half)) for half in halves])
+
+
+def half_foretold() -> Measured:
+    """Largest factor between the penalty that leaves half of the mass and its prediction.
+
+    Of the recordings in which a small penalty finds more than half of the mass on every day.
+    """
+    pairs = [(half_measured(c), np.array(c["half"])) for c in results.read("excitation")["cells"]]
+    pairs = [pair for pair in pairs if np.isfinite(pair[0]).all()]
+
+    def worst(*drawn):
+        factors = [np.abs(np.median(np.log(a / b), -1)) for a, b in drawn]
+        return np.exp(np.max(factors, axis=0))
+
+    text = "off by a factor of {:.2f} at most, " + f"{len(pairs)} recordings"
+    return judged(worst, *pairs, text=text.format)
+
+
+def mass_of_networks(drive: str, seconds: float = 0.0) -> Measured:
+    """Inertia of networks after all epochs, as a share of the arm's: the median."""
+    found = cell(drive, seconds)
+    share = np.array(found["descent"]["M11"])[-1] / found["arm"]
+    error = np.median(found["descent"]["error"][-1])
+    text = "{:.2f} of the arm's inertia, " + f"training RMSS {error:.2f}"
+    return judged(median, share, text=text.format)
+
+
+def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
+    """The shoulder's inertia in linear filters over the penalty, and in networks over the epochs.
+
+    `shown` gives the name of each curve and its drive and seconds left out, as in `cell`.
+    """
+    chosen = {name: cell(*key) for name, key in shown.items()}
+    study = results.read("excitation")
+    penalties, epochs = np.array(study["penalties"]), np.array(study["epochs"])
+    apart = epochs[-1] * 3.0  # where the solver's networks stand
+
+    def draw(figure: Figure):
+        left, right = figure.subplots(1, 2, sharey=True)
+        arm = np.mean([found["arm"] for found in chosen.values()])
+        for axis in (left, right):
+            axis.axhline(arm, color=INK, ls="--", lw=1.0)
+            axis.set(xscale="log", ylim=(-0.5, 9.0))
+        for k, (name, found) in enumerate(chosen.items()):
+            style = {"color": COLOURS[k % len(COLOURS)], "ls": ("-", "--")[found["left out"] > 0]}
+            left.plot(penalties, np.median(found["ridge"], 0), lw=1.9, **style)
+            half = np.median(found["half"])
+            left.plot(half, found["arm"] / 2, "D", color=style["color"], mfc="none", ms=6, mew=1.6)
+            mass = np.array(found["descent"]["M11"])  # epoch, member
+            right.plot(epochs, np.median(mass, 1), lw=1.9, label=name, **style)
+            for x, values in ((epochs[-1], mass[-1]), (apart * 1.3**k, found["solver"]["M11"])):
+                low, middle, high = np.percentile(values, (0, 50, 100))
+                right.plot([x, x], [low, high], color=style["color"], lw=1.2)
+                right.plot(x, middle, "os^Dv*"[k % 6], color=style["color"], ms=4)
+        left.set(xlabel="penalty, share of the cases", ylabel="inertia in the filters, kg m²")
+        left.set_title("linear filters, by ridge")
+        right.set(xlabel="epochs of descent")
+        right.set_title("networks; right end: solver")
+        handles, names = right.get_legend_handles_labels()
+        handles += [
+            Line2D([], [], color=INK, ls="--", lw=1.0),
+            Line2D([], [], color=INK, ls="", marker="D", mfc="none", mew=1.6),
+        ]
+        legend_above(figure, handles, [*names, "the arm", "half of it, predicted"])
+
+    return illustrate(draw, alt, 7.0, 3.6)
+
+
+def described(shown: Mapping[str, Sequence]) -> str:
+    """The picture of `mass_survives` in words, for those who cannot see it."""
+    study, told = results.read("excitation"), []
+    for name, key in shown.items():
+        found = cell(*key)
+        ridge, trained = np.median(found["ridge"], 0), np.median(found["descent"]["M11"], 1)
+        told.append(
+            f"{name}: linear filters {ridge[0]:.1f} with the least penalty, half of the arm's at "
+            f"a penalty of {np.median(found['half']):.0e} by theory; networks {trained[-1]:.1f} "
+            f"after {study['epochs'][-1]:,} epochs, {np.median(found['solver']['M11']):.1f} by the "
+            "solver"
+        )
+    return "Inertia of the shoulder, kg m². " + "; ".join(told) + "."
+
+
+class MassAndPenalty(CurveWidget):
+    """Leave out the start of a recording, turn up the penalty, and see the arm's mass go.
+
+    Linear filters of the window of 21 samples by ridge regression, on the recordings of the study
+    "excitation" by name of their drive.
+    """
+
+    def __init__(self, drives: Sequence[str] = _SHOWN, **options):
+        penalties = np.geomspace(1e-9, 1.0, 46)
+        self._cells = {}
+        for drive in drives:
+            setup, record = DRIVES[drive]
+            whole = record(setup)
+            for seconds in _STEPS:
+                recording = later(whole, seconds)
+                data, states = training_set(recording), true_states(split(recording)[0], setup)
+                arm = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
+                curve = gains(ridge_filters(data, penalties))[:, 0, 0, 2]
+                half = half_penalty(data, states.reshape(-1, 2, 3))
+                self._cells[drive, seconds] = data, arm, curve, half
+        time = (np.arange(21) - 10) * LOG_STEP * 1e3
+        places, arm = np.log10(penalties), self._cells[drives[0], 0.0][1]
+        super().__init__(
+            self._curves,
+            [
+                Choice("drive", "Recording", list(drives), drives[0]),
+                Choice("skip", "Left out", {s: f"{s:g} s" for s in _STEPS}, 0.0, "slider"),
+                Parameter("penalty", "Penalty", 1e-9, 1.0, 1e-6, grid=28, scale="log"),
+            ],
+            [
+                Panel(
+                    "Inertia of the shoulder, kg m²", {"mass": "in the filter"}, "penalty", places,
+                    x_scale="power", cursor="place", fixed={"the arm": np.full(places.size, arm)},
+                    y_range=(-1.0, 9.0),
+                ),
+                Panel(
+                    "Filter from the shoulder's window to its torque, N m/rad", ("filter",),
+                    CENTRE, time, kind="stems", y_fit=True,
+                ),
+            ],
+            **{
+                "alt": "The shoulder's inertia in a linear filter over the penalty, which falls "
+                "from the arm's to zero, and the filter at one penalty.",
+                "title": "The arm's mass under a penalty",
+                "scalars": [
+                    Scalar("now", "Inertia in the filter", "kg m²", 2),
+                    Scalar("half", "Half of the arm's is left at", scale="power"),
+                ],
+                "depends": {"mass": ("drive", "skip"), "half": ("drive", "skip"),
+                            "place": ("penalty",)},
+                "note": "Mean over the training cases of five runs, window 21, inputs centred.",
+                **options,
+            },
+        )  # fmt: skip
+
+    def _curves(self, drive, skip, penalty) -> dict:
+        data, _, mass, half = self._cells[drive, skip]
+        f = ridge_filters(data, [penalty])[0, 0, 0]
+        return {
+            "mass": mass, "filter": f, "now": gains(f)[2], "half": np.log10(half),
+            "place": np.log10(penalty),
+        }  # fmt: skip
