@@ -7,7 +7,12 @@ from scipy.integrate import cumulative_simpson, solve_ivp
 
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, Arm
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import PARAMETERS, CraigHsuSastry, SlotineLi, mixed_regressor
+from workshop.beyond.control.adaptive import (
+    _PARAMETERS,
+    SlotineLi,
+    _CraigHsuSastry,
+    mixed_regressor,
+)
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])
@@ -36,14 +41,14 @@ def test_regressor_is_linear_form_of_the_equations_of_motion(numbers):
     arm = REYES_KELLY_ARM
     base = [arm.a, arm.b, arm.d, *arm.gravity_moments]
     expected = arm.mass_matrix(q) @ a + arm.coriolis_matrix(q, qd) @ v + arm.gravity(q)
-    found = mixed_regressor(q, qd, v, a, PARAMETERS[:5]) @ base
+    found = mixed_regressor(q, qd, v, a, _PARAMETERS[:5]) @ base
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(
-        mixed_regressor(q, qd, qd, a, PARAMETERS[:5]), Arm.regressor(q, qd, a), atol=1e-12
+        mixed_regressor(q, qd, qd, a, _PARAMETERS[:5]), Arm.regressor(q, qd, a), atol=1e-12
     )
     viscous, level = np.array([5.0, 2.0]), np.array([3.0, 1.0])
     friction = viscous * v + level * np.clip(v / 0.02, -1, 1)
-    found = mixed_regressor(q, qd, v, a, PARAMETERS[5:]) @ [*viscous, *level]
+    found = mixed_regressor(q, qd, v, a, _PARAMETERS[5:]) @ [*viscous, *level]
     np.testing.assert_allclose(found, friction, atol=1e-12)
 
 
@@ -78,7 +83,7 @@ def test_lyapunov_function_of_slotine_and_li_never_rises():
 
 
 def test_errors_of_craigs_loop_obey_their_linear_equation_and_parameters_are_found():
-    law = CraigHsuSastry(
+    law = _CraigHsuSastry(
         (60.0, 60.0), (16.0, 16.0), (8.0, 8.0), (4.0, 0.5, 0.2), 0.9 * TRUTH, **BOX
     )
 
@@ -123,10 +128,10 @@ CRAIG = dict(
         (SlotineLi, SLOTINE, dict(gain=(0.0, 1.0)), "gain must be above 0"),
         (SlotineLi, SLOTINE, dict(rate=(-1.0, 1.0, 1.0)), "rate"),
         (SlotineLi, SLOTINE, dict(names=("a", "b", "mass")), "names"),
-        (CraigHsuSastry, CRAIG, dict(weight=(16.0, 1.0)), "weight must be below kd"),
-        (CraigHsuSastry, CRAIG, dict(low=0.0 * TRUTH), "positive definite"),
-        (CraigHsuSastry, CRAIG, dict(estimate=2.0 * TRUTH), "between low and high"),
-        (CraigHsuSastry, CRAIG, dict(names=("b", "a", "d")), "begin with a, b, d"),
+        (_CraigHsuSastry, CRAIG, dict(weight=(16.0, 1.0)), "weight must be below kd"),
+        (_CraigHsuSastry, CRAIG, dict(low=0.0 * TRUTH), "positive definite"),
+        (_CraigHsuSastry, CRAIG, dict(estimate=2.0 * TRUTH), "between low and high"),
+        (_CraigHsuSastry, CRAIG, dict(names=("b", "a", "d")), "begin with a, b, d"),
     ],
 )
 def test_what_makes_no_sense_is_refused(law, fine, change, message):

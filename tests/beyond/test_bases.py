@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev, polynomial
 
-from workshop.beyond.rivals.bases import Fourier, Polynomial
+from workshop.beyond.rivals.bases import Polynomial, _Fourier
 from workshop.beyond.rivals.protocol import Cases, _NotFitted
 
 RNG = np.random.default_rng(3)
@@ -47,7 +47,7 @@ def test_a_fourier_series_is_recovered():
         angle = np.pi / 2 * at.reshape(len(at), 6) @ waves.T
         return np.stack([np.cos(angle).sum(1) + 0.3, np.sin(angle).sum(1)], -1)
 
-    rival = Fourier(2).fit(cases(x, torque(x)))
+    rival = _Fourier(2).fit(cases(x, torque(x)))
     np.testing.assert_allclose(rival.torque(asked), torque(asked), atol=1e-8)
 
 
@@ -76,7 +76,7 @@ def test_operations_are_counted_by_hand():
     assert plain == (6 + 6 + 15 + 56, 6 + 56, 0, 0)
     assert Polynomial(2).fit(data).operations()[:2] == (12 + 6 + 15 + 56, 6 + 6 + 56)
     # six waves along an axis; 13 functions for two torques
-    assert Fourier(1).fit(data).operations() == (6 + 26, 6 + 26, 0, 12)
+    assert _Fourier(1).fit(data).operations() == (6 + 26, 6 + 26, 0, 12)
     assert Polynomial(2).fit(data).count() == 56 + 2 + 12
 
 
@@ -85,7 +85,7 @@ def test_operations_are_counted_by_hand():
     [
         (lambda: Polynomial(2, "legendre"), ValueError, "kind must be one of"),
         (lambda: Polynomial(9).fit(cases(states(), states()[..., 0])), ValueError, "5000 .* 5005"),
-        (lambda: Fourier(2, period=0.5), ValueError, "period"),
+        (lambda: _Fourier(2, period=0.5), ValueError, "period"),
         (lambda: Polynomial(2).with_ridge(1.0), _NotFitted, r"Polynomial.* has learnt nothing"),
     ],
 )

@@ -6,7 +6,7 @@ import pytest
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
-from workshop.beyond.control.adaptive import PARAMETERS, SlotineLi, Watched
+from workshop.beyond.control.adaptive import _PARAMETERS, SlotineLi, Watched
 from workshop.beyond.control.feedback_error import (
     FeedbackErrorLearning,
     MotionMemory,
@@ -15,7 +15,7 @@ from workshop.beyond.control.feedback_error import (
 
 GAIN, SLOPE = 30.0, np.array([8.0, 6.0])
 RATE = np.array([2.0, 0.5, 0.2, 10.0, 4.0])
-NAMES = (*PARAMETERS[:3], "F_v1", "F_v2")
+NAMES = (*_PARAMETERS[:3], "F_v1", "F_v2")
 TEACHER = pd(tuple(GAIN * SLOPE), (GAIN, GAIN))
 
 

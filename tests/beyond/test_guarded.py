@@ -7,14 +7,14 @@ from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.guarded import REASONS, Guarded
+from workshop.beyond.control.guarded import REASONS, _Guarded
 
 STABLE, WILD = (300.0, 90.0), (8e5, 2e5)
 DAMPING = (35.0, 10.0)
 
 
 def driven(kp, extents, **limits):
-    watched = Watched(Guarded(pd(kp, DAMPING), **limits))
+    watched = Watched(_Guarded(pd(kp, DAMPING), **limits))
     return record(ARM, watched, extents, rest=0.1), watched.law.stops
 
 
@@ -54,4 +54,4 @@ def test_the_first_limit_that_is_passed_is_the_reason_with_its_time():
 @pytest.mark.parametrize("name", ["angles", "speeds"])
 def test_limits_must_be_positive(name):
     with pytest.raises(ValueError, match=name):
-        Guarded(proportional(STABLE), **{name: (0.0, 1.0)})
+        _Guarded(proportional(STABLE), **{name: (0.0, 1.0)})

@@ -21,7 +21,7 @@ def test_learners_from_nothing_give_no_torque(draw):
     one = Trajectory(*(x[None] for x in motion))
     plain = Feedforward(lambda q, qd, qdd: 0 * q, draw.setup.controller)
     alone, _ = learning._trial(draw, [plain], [1], one, t)
-    for name, learner in learners.lineup(draw).items():
+    for name, learner in learners._lineup(draw).items():
         errors, stops = learning._trial(draw, [learner.controller(False)], [1], one, t)
         np.testing.assert_allclose(errors, alone, rtol=1e-6, err_msg=name)
         assert not np.any(stops.stopped)

@@ -22,9 +22,9 @@ def row(joints, motions, error):
 def test_what_is_needed_lies_between_the_numbers_tried(plant):
     plant(windows=[row(3, 5, 0.8), row(3, 20, 0.2), row(3, 80, 0.05)])
     for level, motions in ((0.4, 10), (0.1, 40), (0.9, 5), (0.01, np.inf)):
-        assert measures.needed(3, level)[0] == pytest.approx(motions)
+        assert measures._needed(3, level)[0] == pytest.approx(motions)
     plant(windows=[row(3, 5, 0.1), row(3, 10, 0.8), row(3, 40, 0.2)])
-    assert measures.needed(3, 0.4)[0] == pytest.approx(20)  # until the last crossing
+    assert measures._needed(3, 0.4)[0] == pytest.approx(20)  # until the last crossing
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0])

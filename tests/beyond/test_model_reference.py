@@ -9,7 +9,7 @@ from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import CraigHsuSastry, ModelReference, SlotineLi, Watched
+from workshop.beyond.control.adaptive import SlotineLi, Watched, _CraigHsuSastry, _ModelReference
 
 ARM = CMU_DD_ARM_II
 TRUTH = np.array([ARM.a, ARM.b, ARM.d])
@@ -36,7 +36,7 @@ def by_scipy(t):
 
 
 def law(estimate, rate=SPEEDS, **options):
-    return ModelReference(A0, A1, A1 / 2, rate, estimate, **options)
+    return _ModelReference(A0, A1, A1 / 2, rate, estimate, **options)
 
 
 def test_the_model_is_the_linear_system_that_scipy_integrates():
@@ -89,7 +89,7 @@ def test_a_function_of_errors_and_gains_never_rises_and_the_error_dies():
 def test_what_makes_no_sense_is_refused(change, message):
     fine = dict(stiffness=A0, damping=A1, weight=A1 / 2, rate=SPEEDS, estimate=MATCHED)
     with pytest.raises(ValueError, match=message):
-        ModelReference(**{**fine, **change})
+        _ModelReference(**{**fine, **change})
 
 
 def test_a_dead_zone_stops_learning_and_leakage_forgets():
@@ -108,7 +108,7 @@ def test_a_dead_zone_stops_learning_and_leakage_forgets():
 def craig(**options):
     box = dict(low=(2.6, 0.0, 0.3), high=(14.0, 4.0, 2.5))
     fine = dict(kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), estimate=0.7 * TRUTH)
-    return CraigHsuSastry(**{**fine, **box, **options})
+    return _CraigHsuSastry(**{**fine, **box, **options})
 
 
 def test_an_estimated_mass_matrix_stays_invertible_outside_the_reach_of_the_box():

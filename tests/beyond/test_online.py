@@ -11,10 +11,10 @@ from ddlib.simulation import follow, record
 from ddlib.trajectories import Trajectory, pick_and_place, time_grid
 from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.online import (
-    Abreast,
     LastLayer,
-    OnlineDescent,
     OnlineFeedforward,
+    _Abreast,
+    _OnlineDescent,
 )
 
 WIDTH = 5
@@ -36,7 +36,7 @@ def windows(seed=1, cases=6):
 @pytest.mark.parametrize("part", ["hidden", "output"])
 def test_a_step_of_descent_is_the_gradient_by_differences(part):
     wanted = np.random.default_rng(2).uniform(-20, 20, (6, 2))
-    before = OnlineDescent(model(1), rate=1.0)
+    before = _OnlineDescent(model(1), rate=1.0)
     before.hidden, before.output = before.hidden[0], before.output[0]
 
     def cost(learner):
@@ -118,7 +118,7 @@ def test_several_controllers_run_abreast():
     alone = [record(ARM, law, extents, **SHORT) for law in laws]
     t = time_grid(0.002, 0.1, 1.0)
     both = Trajectory(*(np.stack([x, x]) for x in pick_and_place(extents, t, 1.0)))
-    watched = Watched(Abreast(laws, [1, 1]))
+    watched = Watched(_Abreast(laws, [1, 1]))
     run = follow(ARM, watched, both, t, duration=1.0)
     for k in range(2):
         np.testing.assert_allclose(run.q_true[k], alone[k].q_true, atol=1e-12)
@@ -130,4 +130,4 @@ def test_several_controllers_run_abreast():
 )
 def test_values_out_of_range_are_refused(change, name):
     with pytest.raises(ValueError, match=name):
-        OnlineFeedforward(OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, **change})
+        OnlineFeedforward(_OnlineDescent(model(), 0.1), FEEDBACK, **{"width": 5, **change})

@@ -4,7 +4,7 @@ import numpy as np
 
 from ddlib.learning import Weights
 from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.tables import Nearest
+from workshop.beyond.rivals.tables import _Nearest
 from workshop.beyond.studies import lineup, rivals
 from workshop.report import results
 
@@ -17,9 +17,9 @@ def test_the_budget_is_the_papers_network():
 
 
 def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
-    nearest = lineup.Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
-    filters = lineup.Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
-    monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
+    nearest = lineup._Line(lambda *_: _Nearest(beyond="edge"), (1,), "cases", "tables", 1)
+    filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
+    monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "_DAYS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}

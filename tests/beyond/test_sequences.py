@@ -7,7 +7,7 @@ from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.learning import Weights, sliding_windows
-from workshop.beyond.rivals.networks import Convolution, Recurrent, as_convolution
+from workshop.beyond.rivals.networks import _Convolution, _Recurrent, as_convolution
 from workshop.beyond.rivals.protocol import Cases
 
 
@@ -50,7 +50,7 @@ def arrays(module) -> dict:
 
 def test_convolutions_are_sums_along_the_window():
     data = windows(40)
-    rival = Convolution(3, epochs=3).fit(data)
+    rival = _Convolution(3, epochs=3).fit(data)
     w = arrays(rival.network)
 
     def layer(x, weight, bias):
@@ -72,7 +72,7 @@ def test_convolutions_are_sums_along_the_window():
 
 def test_the_recurrent_unit_is_gated():
     data = windows(40)
-    rival = Recurrent(4, epochs=3).fit(data)
+    rival = _Recurrent(4, epochs=3).fit(data)
     w = {name.removeprefix("recurrent."): x for name, x in arrays(rival.network).items()}
     h = np.zeros((40, 4))
     for x in np.moveaxis(scaled(rival, data.x), -1, 0):
@@ -91,8 +91,8 @@ def test_the_recurrent_unit_is_gated():
 
 def test_what_makes_no_sense_is_refused():
     with pytest.raises(ValueError, match="windows must have 9 samples or more, got 7"):
-        Convolution(2).fit(windows(20, 7))
+        _Convolution(2).fit(windows(20, 7))
     still = windows(20)
     still.x[:, 1] = 0.3
     with pytest.raises(ValueError, match="x and torque must vary in each joint"):
-        Recurrent(2).fit(still)
+        _Recurrent(2).fit(still)

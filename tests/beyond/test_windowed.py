@@ -8,10 +8,10 @@ from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.windowed import (
-    MeasuredWindows,
     PlannedTorque,
     WindowFeedforward,
-    poles_inside,
+    _MeasuredWindows,
+    _poles_inside,
 )
 
 T = np.arange(0, 400) * 0.002
@@ -54,7 +54,7 @@ def weight(windows):
     return 20 * windows[..., 0] - 30 * windows[..., 2] + 5 * windows[..., 4]
 
 
-@pytest.mark.parametrize("law", [PlannedTorque, MeasuredWindows])
+@pytest.mark.parametrize("law", [PlannedTorque, _MeasuredWindows])
 def test_a_loop_that_cannot_make_the_windows_is_refused(law):
     right, wrong = (WindowFeedforward(weight, 5, every, step=0.01) for every in (5, 4))
     with pytest.raises(ValueError, match=r"0.002 s are 0.008 s.* 0.01 s apart"):
@@ -70,7 +70,7 @@ def test_a_loop_that_cannot_make_the_windows_is_refused(law):
 def test_what_has_been_is_measured_and_what_is_to_come_desired(tap, late):
     """A model that passes on one sample of its window."""
     made = WindowFeedforward(lambda windows: windows[..., tap], 5)
-    law = MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
+    law = _MeasuredWindows(made, lambda *_: np.zeros(2)).start(Trajectory(Q, 0 * Q, 0 * Q), 0.002)
     measured = Q + 0.1 * np.random.default_rng(0).standard_normal(Q.shape)
     passed = np.array([law(k, measured[k], 0 * measured[k]) for k in range(60)])
     if late < 0:
@@ -97,7 +97,7 @@ OTHER_GAINS = np.hstack([np.diag([300.0, 90.0]) - PRESENT[..., 2], np.diag([35.0
 def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
     feedback, past, late, gain, delay
 ):
-    inside = np.abs(poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
+    inside = np.abs(_poles_inside(JOINTS, feedback, past, 0.002, late=late)).max()
     wanted = np.abs(late_poles(JOINTS, gain, 0.002, delay)).max()
     assert inside == pytest.approx(wanted, abs=1e-12)
 
@@ -108,9 +108,9 @@ def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
         (lambda: WindowFeedforward(middle, 4), "width"),
         (lambda: WindowFeedforward(middle, 5, between="x"), "between"),
         (lambda: WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q), "model"),
-        (lambda: poles_inside(JOINTS, PID((1, 1), (1, 1)), PAST, 0.002), "integral"),
-        (lambda: poles_inside(JOINTS, FEEDBACK, PAST[0], 0.002), "past"),
-        (lambda: MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1), "share"),
+        (lambda: _poles_inside(JOINTS, PID((1, 1), (1, 1)), PAST, 0.002), "integral"),
+        (lambda: _poles_inside(JOINTS, FEEDBACK, PAST[0], 0.002), "past"),
+        (lambda: _MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1), "share"),
     ],
 )
 def test_what_makes_no_sense_is_refused(make, name):

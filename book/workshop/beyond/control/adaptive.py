@@ -1,8 +1,8 @@
 """Controllers that adapt while they control: the ones that section 1.1 cites.
 
-`SlotineLi` and `CraigHsuSastry` adapt base parameters and friction, in which the torque is linear.
+`SlotineLi` and `_CraigHsuSastry` adapt base parameters and friction, in which the torque is linear.
 The first needs position and velocity only; the second needs the acceleration, too, and an estimated
-mass matrix that can be inverted. `ModelReference` adapts the gains of each joint by itself. A law
+mass matrix that can be inverted. `_ModelReference` adapts the gains of each joint by itself. A law
 that is started keeps its estimates: ``law.estimates`` after a run, ``law.estimate`` the last.
 Gains, rates and estimates may have leading axes, of runs.
 """
@@ -20,24 +20,24 @@ from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
-PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
+_PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
 """What can be adapted: base parameters (kg m^2), gravity moments (N m), viscous (N m s/rad) and
 Coulomb (N m) friction of both joints."""
 
 _SIGN_SPEED = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
 
 
-def mixed_regressor(q, qd, v, a, names: Sequence[str] = PARAMETERS[:3]) -> np.ndarray:
+def mixed_regressor(q, qd, v, a, names: Sequence[str] = _PARAMETERS[:3]) -> np.ndarray:
     """Matrix Y with ``Y @ parameters = M(q) a + C(q, qd) v + g(q) + friction(v)``.
 
     With ``v = qd`` and ``a = qdd`` it is `ddlib.dynamics.Arm.regressor` and friction. C is the
     matrix that makes ``dM/dt - 2 C`` skew-symmetric (`ddlib.dynamics.Arm.coriolis_matrix`).
     The form is that of Slotine & Li 1987, for two links; its shape is (..., 2, parameters), and
-    `names` are some of `PARAMETERS`.
+    `names` are some of `_PARAMETERS`.
     """
     pairs = zip(("q", "qd", "v", "a"), (q, qd, v, a))
     for name in names:
-        one_of("names", name, PARAMETERS)
+        one_of("names", name, _PARAMETERS)
     return _unchecked_regressor(*(finite_array(n, x, 2) for n, x in pairs), names)
 
 
@@ -71,7 +71,7 @@ def _unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
 def _check_parameters(controller) -> None:
     """Refuse names, rates and estimates of a controller that do not fit together."""
     for name in controller.names:
-        one_of("names", name, PARAMETERS)
+        one_of("names", name, _PARAMETERS)
     count = f"(..., {len(controller.names)})"
     non_negative("rate", shaped("rate", controller.rate, count))
     shaped("estimate", controller.estimate, count)
@@ -141,7 +141,7 @@ class SlotineLi:
     slope: tuple[float, float]  # how fast an error would die out on s = 0, 1/s
     rate: Sequence[float]  # (..., parameters), their unit per N m rad; 0: it is not adapted
     estimate: Sequence[float]  # (..., parameters): what the run begins with
-    names: Sequence[str] = PARAMETERS[:3]
+    names: Sequence[str] = _PARAMETERS[:3]
     at: str = "measured"  # or "desired": the state at which Y is taken
     dead_zone: tuple[float, float] = (0.0, 0.0)  # of s, rad/s: taken off, nothing is learnt within
     leakage: float = 0.0  # rate at which the estimate goes back to what the run began with, 1/s
@@ -205,7 +205,7 @@ _MARGIN = 0.9  # largest b as a share of that which makes the mass matrix singul
 
 
 @dataclass(frozen=True)
-class CraigHsuSastry:
+class _CraigHsuSastry:
     """Adaptive computed torque (Craig, Hsu & Sastry 1987): it needs the acceleration.
 
     The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
@@ -221,7 +221,7 @@ class CraigHsuSastry:
     estimate: Sequence[float]
     low: Sequence[float]  # the box of the estimates, with d above 0 and below a
     high: Sequence[float]
-    names: Sequence[str] = PARAMETERS[:3]  # they begin with a, b, d
+    names: Sequence[str] = _PARAMETERS[:3]  # they begin with a, b, d
     acceleration: Callable | None = None  # of q, qd and the torque held; default: by difference
 
     def __post_init__(self):
@@ -230,7 +230,7 @@ class CraigHsuSastry:
         if not (np.asarray(self.weight) < self.kd).all():
             raise ValueError(f"weight must be below kd={self.kd}, got {self.weight}")
         _check_parameters(self)
-        if tuple(self.names[:3]) != PARAMETERS[:3]:
+        if tuple(self.names[:3]) != _PARAMETERS[:3]:
             raise ValueError(f"names must begin with a, b, d, got {self.names}")
         low, high = (shaped(n, getattr(self, n), (len(self.names),)) for n in ("low", "high"))
         inside = (low <= self.estimate) & (np.asarray(self.estimate) <= high)
@@ -286,7 +286,7 @@ def _mass(estimate, q) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class ModelReference:
+class _ModelReference:
     """Gains of each joint by itself that adapt until it follows a linear model.
 
     The model answers ``command = qdd_ref + a1 qd_ref + a0 q_ref`` with

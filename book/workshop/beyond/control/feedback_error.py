@@ -15,17 +15,17 @@ from scipy.ndimage import gaussian_filter1d
 from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import PARAMETERS, mixed_regressor
+from workshop.beyond.control.adaptive import _PARAMETERS, mixed_regressor
 
 
 @dataclass(frozen=True)
 class RigidBodyTerms:
     """The regressor's columns and friction: terms that can represent the arm exactly.
 
-    `names` are those of `workshop.beyond.control.adaptive.PARAMETERS`.
+    `names` are those of `workshop.beyond.control.adaptive._PARAMETERS`.
     """
 
-    names: Sequence[str] = PARAMETERS[:3]
+    names: Sequence[str] = _PARAMETERS[:3]
 
     def __call__(self, q, qd, qdd) -> np.ndarray:
         """Terms of each joint along a motion, shape (..., 2, terms)."""

@@ -16,7 +16,7 @@ _SPEEDS = (20.0, 20.0)  # rad/s: several times what the family of Appendix I ask
 
 
 @dataclass(frozen=True)
-class Guarded:
+class _Guarded:
     """A controller whose motors are switched off where the arm leaves its limits.
 
     From then on the run's torque is zero, and the controller inside is shown the reference in
@@ -65,7 +65,7 @@ class _Stops:
 
 
 class _Law:
-    def __init__(self, guard: Guarded, reference: Trajectory, step: float):
+    def __init__(self, guard: _Guarded, reference: Trajectory, step: float):
         self._reference, self._step = reference, step
         self._limits = np.concatenate([guard.angles, guard.speeds]).astype(float)
         self._reason = np.zeros((), int)

@@ -92,7 +92,7 @@ class _OnlineNetwork:
         return back @ seen / count, delta @ features / count
 
 
-class OnlineDescent(_OnlineNetwork):
+class _OnlineDescent(_OnlineNetwork):
     """All weights learn by gradient descent, a step for each sample."""
 
     def __init__(
@@ -150,7 +150,7 @@ class LastLayer(_OnlineNetwork):
         self.output = self.estimate.weights
 
 
-class LinearFilter:
+class _LinearFilter:
     """A linear filter of scaled windows, without hidden units, by recursive least squares.
 
     Its weights are ``(..., 2, joint width + 1)``, N m for a scaled unit.
@@ -182,7 +182,7 @@ class LinearFilter:
 class OnlineFeedforward:
     """A learner of windows as feedforward that goes on learning while it controls.
 
-    The learner is `OnlineDescent`, `LastLayer`, `LinearFilter` or the like: ``torque(windows)``
+    The learner is `_OnlineDescent`, `LastLayer`, `_LinearFilter` or the like: ``torque(windows)``
     and, by what teaches it, ``learn(windows, torque)`` or ``correct(windows, feedback)`` of one
     window for each run. It outlives the run. Its teacher is the applied torque, with measured
     windows; the feedback's torque, with desired windows; or nobody: then it is kept as it is when
@@ -248,7 +248,7 @@ class _Law:
 
 
 @dataclass(frozen=True)
-class Abreast:
+class _Abreast:
     """Several controllers in one batch, each for so many rows of the first axis of runs."""
 
     controllers: Sequence[Controller]
@@ -266,11 +266,11 @@ class Abreast:
             raise ValueError(
                 f"reference must have {sum(self.rows)} rows of runs, got {reference.q.shape}"
             )
-        return _Abreast(self, reference, step)
+        return _AbreastLaw(self, reference, step)
 
 
-class _Abreast:
-    def __init__(self, controller: Abreast, reference: Trajectory, step: float):
+class _AbreastLaw:
+    def __init__(self, controller: _Abreast, reference: Trajectory, step: float):
         ends = np.cumsum(controller.rows)
         self._parts = [slice(end - n, end) for end, n in zip(ends, controller.rows)]
         self.laws = [

@@ -107,7 +107,7 @@ class PlannedTorque:
 
 
 @dataclass(frozen=True)
-class MeasuredWindows:
+class _MeasuredWindows:
     """A model of windows inside the loop: what has been is measured, what is to come is desired.
 
     The nearest thing to computed torque that a model of windows allows: up to the centre its
@@ -153,7 +153,7 @@ class MeasuredWindows:
         return law
 
 
-def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
+def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     """How a model's torque changes with past samples of its windows, the mean over cases.
 
     By central differences, shape (torque, joint, width // 2 + 1), N m/rad: the oldest sample first,
@@ -170,12 +170,12 @@ def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     return found
 
 
-def poles_inside(
+def _poles_inside(
     joints: control.StateSpace, feedback: PID, past, period: float, every: int = 5, late: int = 0
 ) -> np.ndarray:
-    """Poles of a sampled loop with a linear model of windows inside (`MeasuredWindows`).
+    """Poles of a sampled loop with a linear model of windows inside (`_MeasuredWindows`).
 
-    `past` are the slopes (N m/rad) of `past_slopes`, times the share that is measured; the torque
+    `past` are the slopes (N m/rad) of `_past_slopes`, times the share that is measured; the torque
     comes late by so many control periods. The feedback has no integral.
     """
     n = joints.ninputs

@@ -8,7 +8,7 @@ from ddlib import paper
 from ddlib.learning import Weights
 from ddlib.tables import significant, spread
 from workshop.beyond.rivals.tables import table_size
-from workshop.beyond.studies.rivals_1988 import KINDS, practised_distance
+from workshop.beyond.studies.rivals_1988 import KINDS, _practised_distance
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median
 
@@ -35,7 +35,7 @@ def row(name: str, **wanted) -> dict:
 def around(over: str) -> np.ndarray:
     """Errors of what learnt one trajectory, by day and by distance from it."""
     errors = np.array(results.read("rivals-tables")["around"][KINDS[1]][over]["errors"])
-    far = practised_distance()
+    far = _practised_distance()
     return np.stack([np.median(errors[:, far == d], axis=1) for d in (0, 5, 10, 15, 20)], 1)
 
 
@@ -122,7 +122,7 @@ def orders(name: str) -> list[int]:
     return sorted({row["order"] for row in _rows("rivals-bases", basis=name, kind=KINDS[1])})
 
 
-def chosen(name: str, where: str) -> np.ndarray:
+def _chosen(name: str, where: str) -> np.ndarray:
     """Errors, by day, of the order and penalty that leaving out trajectories chose."""
     picked = results.read("rivals-bases")["chosen"][name]
     return np.array(
@@ -136,7 +136,7 @@ def medium() -> Measured:
     ends = np.min([basis("chebyshev", k)["outside"] for k in (tried[0], tried[-1])], axis=0)
     picked = results.read("rivals-bases")["chosen"]["chebyshev"]
     degrees = ", ".join(str(k) for k in sorted({each["order"] for each in picked}))
-    errors = chosen("chebyshev", "outside")
+    errors = _chosen("chebyshev", "outside")
     text = f"{significant(np.median(errors), 3)} for {significant(np.median(ends), 3)}"
     return judged(median, errors / ends, text=f"{text}; chosen degree {degrees}")
 
@@ -153,7 +153,7 @@ def penalty() -> Measured:
 
 def good(name: str = "chebyshev") -> Measured:
     """Error on trajectory 6 of the order and penalty chosen."""
-    errors = chosen(name, "trajectory 6")
+    errors = _chosen(name, "trajectory 6")
     return judged(median, errors, text=spread(errors))
 
 

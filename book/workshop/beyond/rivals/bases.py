@@ -166,7 +166,7 @@ class Polynomial(_Basis):
         )
 
 
-class Fourier(_Basis):
+class _Fourier(_Basis):
     """A Fourier series of the state: sines and cosines of waves in all directions.
 
     `order` is the largest sum of a wave's whole numbers of periods along all axes, `period` that

@@ -153,7 +153,7 @@ class GaussianProcess(Rival):
         )
 
 
-class SemiParametric(Rival):
+class _SemiParametric(Rival):
     """The arm's equations with friction, and Gaussian processes for what they leave.
 
     The parameters `names` come first, by weighted least squares; `options` are those of
@@ -197,7 +197,7 @@ class SemiParametric(Rival):
         return both._replace(additions=both.additions + 2)
 
 
-class RandomFeatures(Rival):
+class _RandomFeatures(Rival):
     """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007).
 
     Their products approach a squared exponential kernel as they become more, so this is a Gaussian

@@ -22,7 +22,7 @@ from workshop.beyond.rivals.protocol import Rival, _NotFitted
 
 _GRAVITIES = ("potential", "vector", "none")
 _DIAGONALS = ("softplus", "relu")
-AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
+_AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
     "diagonal": "relu",
@@ -124,7 +124,7 @@ class LagrangianNetwork(Rival):
     """A Deep Lagrangian Network, trained on states and torques.
 
     Adam on minibatches with squared weights as penalty, then, if asked for, L-BFGS in double
-    precision on all cases. `AS_PUBLISHED` has the settings of the public code; the defaults differ
+    precision on all cases. `_AS_PUBLISHED` has the settings of the public code; the defaults differ
     in scaled units, a larger step that falls to zero along half a cosine, and a smooth diagonal.
     """
 

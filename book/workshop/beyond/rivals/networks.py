@@ -79,7 +79,7 @@ class _Network(Rival):
         return Operations(each + outputs, each + units + outputs, units, units)
 
 
-class ByDescent(_Network):
+class _ByDescent(_Network):
     """The network by batch descent with momentum, as `ddlib.learning.train_ensemble`."""
 
     def __init__(
@@ -117,7 +117,7 @@ class BySolver(_Network):
         return found.model
 
 
-class ByAdam(_Network):
+class _ByAdam(_Network):
     """The network by Adam with decoupled weight decay, all cases at once, inputs from -1 to 1."""
 
     def __init__(self, hidden=HIDDEN_UNITS, epochs=3000, *, rate=0.02, decay=0.01, **options):
@@ -256,7 +256,7 @@ class _Sequence(Rival):
         return numbers + 4 * len(self.scale[0][0]) + 2 * self.offset.size
 
 
-class Convolution(_Sequence):
+class _Convolution(_Sequence):
     """Two layers of convolutions along the window, then a linear one over all that is left."""
 
     TAPS = 5  # samples that a filter sees
@@ -290,7 +290,7 @@ class Convolution(_Sequence):
         return Operations(products + units, products + units, units, units)
 
 
-class Recurrent(_Sequence):
+class _Recurrent(_Sequence):
     """A gated recurrent unit that reads the window; its last state gives the torques."""
 
     def __init__(self, channels=16, epochs=60, **options):

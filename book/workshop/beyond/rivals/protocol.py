@@ -92,11 +92,11 @@ class Cases:
         """The states that a polynomial of this degree through each window gives at its centre."""
         if self.kind != "windows":
             raise ValueError(f"kind must be 'windows' to estimate states, got {self.kind!r}")
-        filters = derivative_filters(self.x.shape[-1], self.step, degree)
+        filters = _derivative_filters(self.x.shape[-1], self.step, degree)
         return Cases(self.x @ filters.T, self.torque, "states", self.step)
 
 
-def derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
+def _derivative_filters(width: int, step: float, degree: int = 3) -> np.ndarray:
     """Filters of a window for position, velocity and acceleration at its centre, (3, width)."""
     return np.stack([savitzky_golay(width, k, step, degree) for k in range(3)])
 
@@ -182,7 +182,7 @@ class Estimating(Rival):
         return f"{self.rival!r} on estimated states"
 
     def _fit(self, x, torque):
-        self.filters = derivative_filters(x.shape[-1], self.step, self.degree)
+        self.filters = _derivative_filters(x.shape[-1], self.step, self.degree)
         self.rival.fit(Cases(x @ self.filters.T, torque, "states", self.step))
 
     def _torque(self, x):

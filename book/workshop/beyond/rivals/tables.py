@@ -63,7 +63,7 @@ def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     return nodes, weights
 
 
-def full_table(
+def _full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
     """What a table would answer that has the right torque in every cell, shape (cases, joint).
@@ -136,7 +136,7 @@ def _inside(x, low, high, beyond) -> np.ndarray:
     return np.clip(u, 0.0, 1.0)
 
 
-class Nearest(_Bounded):
+class _Nearest(_Bounded):
     """All training cases are kept; the torque is that of the nearest.
 
     Distances are in units of the training states' standard deviation, each quantity its own.

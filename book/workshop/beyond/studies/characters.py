@@ -16,14 +16,14 @@ import numpy as np
 from ddlib.dynamics import Arm
 from ddlib.identification import GRAVITY, RIGID
 from workshop.beyond.others import _Characters, characters as data
-from workshop.beyond.rivals.bases import Fourier, Polynomial
+from workshop.beyond.rivals.bases import Polynomial, _Fourier
 from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures
+from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures
 from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.lagrangian import AS_PUBLISHED, LagrangianNetwork
-from workshop.beyond.rivals.networks import ByAdam, BySolver
+from workshop.beyond.rivals.lagrangian import _AS_PUBLISHED, LagrangianNetwork
+from workshop.beyond.rivals.networks import BySolver, _ByAdam
 from workshop.beyond.rivals.protocol import Cases, Rival
-from workshop.beyond.rivals.tables import CellTable, Nearest
+from workshop.beyond.rivals.tables import CellTable, _Nearest
 from workshop.report.code_hash import study
 
 _SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}  # characters of the test
@@ -50,15 +50,15 @@ _ENTRIES = {
     "equations, identified": _Entry(lambda _: Identified(RIGID + GRAVITY)),
     "Lagrangian network": _Entry(lambda k: LagrangianNetwork(epochs=100, finish=150, seed=k), True),
     "Gaussian process": _Entry(lambda k: GaussianProcess("states", restarts=0, seed=k), True),
-    "random features": _Entry(lambda k: RandomFeatures("states", seed=k), True),
+    "random features": _Entry(lambda k: _RandomFeatures("states", seed=k), True),
     "network, by solver": _Entry(lambda k: BySolver(kind="states", steps=40, seed=k), True),
-    "network, by Adam": _Entry(lambda k: ByAdam(kind="states", epochs=1000, seed=k), True),
+    "network, by Adam": _Entry(lambda k: _ByAdam(kind="states", epochs=1000, seed=k), True),
     "polynomial": _Entry(lambda _: Polynomial(4, ridge=1e-6)),
-    "Fourier series": _Entry(lambda _: Fourier(3, ridge=1e-6)),
+    "Fourier series": _Entry(lambda _: _Fourier(3, ridge=1e-6)),
     "CMAC": _Entry(lambda _: CMAC(beyond="edge")),
     "table of states": _Entry(lambda _: CellTable(beyond="edge")),
     "table of configurations": _Entry(lambda _: CellTable(over="configurations", beyond="edge")),
-    "nearest case": _Entry(lambda _: Nearest(beyond="edge")),
+    "nearest case": _Entry(lambda _: _Nearest(beyond="edge")),
     "linear": _Entry(lambda _: Linear("states")),
 }
 
@@ -148,7 +148,7 @@ def _as_published() -> dict:
     cases, asked = states(training, 0.0), states(test, 0.0).x
 
     def untrained(seed):
-        return LagrangianNetwork(**AS_PUBLISHED, epochs=0, seed=seed).fit(cases)
+        return LagrangianNetwork(**_AS_PUBLISHED, epochs=0, seed=seed).fit(cases)
 
     rows = []
     for seed in range(_SEEDS):
@@ -158,7 +158,7 @@ def _as_published() -> dict:
             if epoch in _MARKS:
                 row["course"].append(_errors(_parts(rival._torque, asked), test))
 
-        rival = LagrangianNetwork(**AS_PUBLISHED, epochs=_MARKS[-1], seed=seed, watch=watch)
+        rival = LagrangianNetwork(**_AS_PUBLISHED, epochs=_MARKS[-1], seed=seed, watch=watch)
         began = time.process_time()
         rival.fit(cases)
         row |= {"seconds": time.process_time() - began, "dead at end": _dead(rival, training.q)}

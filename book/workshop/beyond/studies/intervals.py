@@ -10,7 +10,7 @@ from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, split
 from ddlib.trajectories import OutsideFamilyWarning
-from workshop.beyond.rivals.gaussian import GaussianProcess, SemiParametric
+from workshop.beyond.rivals.gaussian import GaussianProcess, _SemiParametric
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Estimating
 from workshop.report.code_hash import study
@@ -23,7 +23,7 @@ _PROCESSES = {
     "directions of the window": lambda: GaussianProcess(directions=_DIRECTIONS, restarts=0),
     "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
     "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
-    "beside known structure": lambda: Estimating(SemiParametric(RIGID + FRICTION, restarts=0)),
+    "beside known structure": lambda: Estimating(_SemiParametric(RIGID + FRICTION, restarts=0)),
 }
 
 

@@ -7,19 +7,19 @@ from typing import NamedTuple
 
 from ddlib.identification import FRICTION, RIGID
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
-from workshop.beyond.rivals.bases import Fourier, Polynomial
+from workshop.beyond.rivals.bases import Polynomial, _Fourier
 from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.gaussian import GaussianProcess, RandomFeatures, SemiParametric
+from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
 from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.lagrangian import LagrangianNetwork
-from workshop.beyond.rivals.networks import ByAdam, ByDescent, BySolver, Convolution, Recurrent
+from workshop.beyond.rivals.networks import BySolver, _ByAdam, _ByDescent, _Convolution, _Recurrent
 from workshop.beyond.rivals.protocol import Rival
-from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest
+from workshop.beyond.rivals.tables import CellTable, GridTable, _Nearest
 
 _DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
 
 
-class Line(NamedTuple):
+class _Line(NamedTuple):
     """A rival at several sizes."""
 
     make: Callable[[object, int], Rival]  # of a size and a seed
@@ -37,7 +37,7 @@ def _descent(hidden, seed, **options):
     """As `STATE_FEEDBACK` is trained: the book's reading of 1988."""
     here = STATE_FEEDBACK
     options = {"epochs": here.epochs, "rate": here.rate / 21, **options}
-    return ByDescent(
+    return _ByDescent(
         hidden, momentum=here.momentum, warm_up=here.warm_up, initial=INITIAL, seed=seed, **options
     )
 
@@ -64,68 +64,68 @@ def _table(over):
     return lambda cells, _: CellTable(cells, over, beyond="edge")
 
 
-LINES: dict[str, Line] = {
+_LINES: dict[str, _Line] = {
     # tables
-    "nearest case": Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables"),
-    "table of states": Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
-    "table of configurations": Line(
+    "nearest case": _Line(lambda *_: _Nearest(beyond="edge"), (1,), "cases", "tables"),
+    "table of states": _Line(_table("states"), (3, 10, 40), "cells an axis", "tables"),
+    "table of configurations": _Line(
         _table("configurations"), (1, 2, 3, 10), "cells an axis", "tables"
     ),
-    "multilinear table": Line(
+    "multilinear table": _Line(
         lambda cells, _: GridTable(cells, beyond="edge"), (1, 2), "cells an axis", "tables"
     ),
-    "CMAC": Line(
+    "CMAC": _Line(
         lambda width, _: CMAC(width=width, beyond="edge"), (1.0, 0.7, 0.3), "width of a cube",
         "tables",
     ),
     # bases
-    "polynomial": Line(
+    "polynomial": _Line(
         lambda degree, _: Polynomial(degree, ridge=_PENALTY), (1, 2, 3, 5), "degree", "polynomials"
     ),
-    "Fourier series": Line(
-        lambda order, _: Fourier(order, ridge=_PENALTY), (1, 2), "order", "polynomials"
+    "Fourier series": _Line(
+        lambda order, _: _Fourier(order, ridge=_PENALTY), (1, 2), "order", "polynomials"
     ),
     # known structure
-    "identified": Line(_identified, (3, 7), "parameters", "known structure"),
-    "linear filter": Line(
+    "identified": _Line(_identified, (3, 7), "parameters", "known structure"),
+    "linear filter": _Line(
         lambda width, _: Linear(width=width), (5, 11, 21), "samples", "known structure"
     ),
-    "Lagrangian network": Line(_lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
+    "Lagrangian network": _Line(_lagrangian, (8, 16), "units a layer", "known structure", _FEWER),
     # Gaussian processes
-    "Gaussian process": Line(
+    "Gaussian process": _Line(
         lambda directions, seed: GaussianProcess(directions=directions, seed=seed, **_SEARCH),
         (6, 9, 12), "directions", "Gaussian processes", _FEWER,
     ),
-    "process on states": Line(
+    "process on states": _Line(
         lambda _, seed: GaussianProcess("states", seed=seed, **_SEARCH), (6,), "quantities",
         "Gaussian processes", _FEWER,
     ),
-    "structure and process": Line(
-        lambda _, seed: SemiParametric(RIGID + FRICTION, seed=seed, **_SEARCH), (6,),
+    "structure and process": _Line(
+        lambda _, seed: _SemiParametric(RIGID + FRICTION, seed=seed, **_SEARCH), (6,),
         "quantities", "Gaussian processes", _FEWER,
     ),
-    "random features": Line(
-        lambda features, seed: RandomFeatures(features=features, directions=9, seed=seed),
+    "random features": _Line(
+        lambda features, seed: _RandomFeatures(features=features, directions=9, seed=seed),
         (10, 50, 200), "features", "Gaussian processes", _FEWER,
     ),
     # the paper's network
-    REFERENCE: Line(_descent, (2, 10), "hidden units", "the paper's network"),
-    "second-order steps": Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
-    "Adam": Line(
-        lambda hidden, seed: ByAdam(hidden, seed=seed), (2, 10), "hidden units",
+    REFERENCE: _Line(_descent, (2, 10), "hidden units", "the paper's network"),
+    "second-order steps": _Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
+    "Adam": _Line(
+        lambda hidden, seed: _ByAdam(hidden, seed=seed), (2, 10), "hidden units",
         "the paper's network", _FEWER,
     ),
-    "on states": Line(
+    "on states": _Line(
         lambda hidden, seed: _solver(hidden, seed, kind="states"), (2, 5, 10),
         "hidden units", "the paper's network",
     ),
     # other networks
-    "convolutions": Line(
-        lambda channels, seed: Convolution(channels, seed=seed), (4, 6, 12), "channels",
+    "convolutions": _Line(
+        lambda channels, seed: _Convolution(channels, seed=seed), (4, 6, 12), "channels",
         "other networks", _FEWER,
     ),
-    "recurrent": Line(
-        lambda units, seed: Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
+    "recurrent": _Line(
+        lambda units, seed: _Recurrent(units, 40, seed=seed), (5, 10), "units", "other networks",
         _FEWER,
     ),
 }  # fmt: skip

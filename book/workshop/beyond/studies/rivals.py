@@ -12,7 +12,7 @@ from ddlib.setups import JOINT_DAMPING, split, square, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import OutsideFamilyWarning
 from workshop.beyond.rivals.protocol import Cases, Estimating, trial
-from workshop.beyond.studies.lineup import _DAYS, LINES, REFERENCE
+from workshop.beyond.studies.lineup import _DAYS, _LINES, REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
@@ -72,7 +72,7 @@ def _floors(sets: dict) -> dict:
 
 @study
 def rivals() -> dict:
-    """Every line of `LINES` at all its sizes, on several days.
+    """Every line of `_LINES` at all its sizes, on several days.
 
     A row for each rival, size and kind of inputs; errors and times have a value for each day. The
     torques of the first day go into `TORQUES`.
@@ -81,7 +81,7 @@ def rivals() -> dict:
     for day in range(1, _DAYS + 1):
         sets, asked = recorded(day)
         floor = floor or _floors(sets["positions"])
-        for name, line in LINES.items():
+        for name, line in _LINES.items():
             for inputs, size in product(_INPUTS, line.sizes if day <= line.days else ()):
                 rival = _seen(line, inputs, size, day)
                 if rival is None:
@@ -103,7 +103,7 @@ def rivals() -> dict:
         "budget": _BUDGET,
         "floor": floor,
         "lines": {
-            name: {"varied": line.varied, "family": line.family} for name, line in LINES.items()
+            name: {"varied": line.varied, "family": line.family} for name, line in _LINES.items()
         },
         "rows": list(rows.values()),
     }

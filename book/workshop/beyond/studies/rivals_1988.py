@@ -12,12 +12,12 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, square, true_states
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning, random_extents
-from workshop.beyond.rivals.bases import Fourier, Polynomial
-from workshop.beyond.rivals.cmac import CMAC, Diverged
+from workshop.beyond.rivals.bases import Polynomial, _Fourier
+from workshop.beyond.rivals.cmac import CMAC, _Diverged
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Rival
-from workshop.beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
-from workshop.beyond.studies.loop.run_time_parts import exact as equations, square_extents
+from workshop.beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
+from workshop.beyond.studies.loop.run_time_parts import _square_extents, exact as equations
 from workshop.report.code_hash import study
 
 _DAYS = (1, 2, 3, 4, 5)
@@ -51,7 +51,7 @@ def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
     today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + _LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
-    inside = inside_hull(square_extents(POINTS))
+    inside = inside_hull(_square_extents(POINTS))
     return {
         "training": _cases(today, recording[:5], kind),
         "again": _cases(later, _recorded(day + _LATER, "six")[:5], kind),
@@ -95,7 +95,7 @@ _FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
 
 def _table(over: str, cells: int) -> Rival:
     if over == "nearest":
-        return Nearest(beyond="edge")
+        return _Nearest(beyond="edge")
     if over == "multilinear":
         return GridTable(cells, beyond="edge")
     return CellTable(cells, over, beyond="edge")
@@ -151,7 +151,7 @@ def _around(kind: str, days) -> dict:
         setups = [JOINT_DAMPING.repeated(number) for number in numbers]
         runs = [_recorded(number, "practised") for number in numbers[:-1]]
         later, recording = setups[-1], _recorded(numbers[-1], "square")
-        practised = practised_distance() == 0
+        practised = _practised_distance() == 0
         everywhere = _cases(later, recording, kind, _STRIDE)
         choice = _cases(setups[-2], runs[-1][0], kind)
         by_amount = [
@@ -206,7 +206,7 @@ def _full() -> dict:
         reached.append(1 - float(table.empty(states).mean()))
     errors = {
         name: [
-            float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
+            float(rmss(_full_table(torque, states, limits, n, interpolated=smooth), exact))
             for n in _FULL
         ]
         for name, smooth in (("constant", False), ("multilinear", True))
@@ -244,7 +244,7 @@ def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
     rival = CMAC(**setting, epochs=_EPOCHS, beyond="edge")
     try:
         errors, diverged = _errors(rival.fit(sets["training"]), sets), False
-    except Diverged:
+    except _Diverged:
         errors, diverged = dict.fromkeys(sets, np.nan), True
     return {
         **errors,
@@ -301,7 +301,7 @@ RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
     "chebyshev": (Polynomial, 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
-    "fourier": (Fourier, 3),
+    "fourier": (_Fourier, 3),
 }
 
 
@@ -353,6 +353,6 @@ def _left_out(make, highest: int, training: Cases) -> dict:
     return {"order": order, "ridge": ridge, "left out": float(np.sqrt(total[order, ridge] / 5))}
 
 
-def practised_distance() -> np.ndarray:
+def _practised_distance() -> np.ndarray:
     """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `square`."""
-    return np.abs(square_extents(POINTS) - PRACTISED).max(1)
+    return np.abs(_square_extents(POINTS) - PRACTISED).max(1)

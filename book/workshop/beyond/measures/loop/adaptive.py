@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from workshop.beyond.studies.loop.adaptive import BED
-from workshop.beyond.studies.loop.runs.adaptive import FULL
+from workshop.beyond.studies.loop.runs.adaptive import _FULL
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged
 
@@ -56,5 +56,5 @@ def bent(effect: str) -> Measured:
     return judged(
         lambda x: np.abs(np.median(x, axis=1)).max(-1),
         _added(effect),
-        text=f"{100 * off[k]:+.0f} % of {_told(FULL[k])}",
+        text=f"{100 * off[k]:+.0f} % of {_told(_FULL[k])}",
     )

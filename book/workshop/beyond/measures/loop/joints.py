@@ -60,7 +60,7 @@ def two_joints(reading: str, motions: int, kind: str = "closed loop", taps: int 
 # --- growth -------------------------------------------------------------------------------
 
 
-def needed(joints: int, level: float) -> tuple[float, np.ndarray]:
+def _needed(joints: int, level: float) -> tuple[float, np.ndarray]:
     """Training motions from which on the median RMSS is below a level, and in each draw.
 
     Between the numbers tried both go linearly on logarithmic scales. Infinite if the largest number
@@ -98,7 +98,7 @@ def law(level: float = 0.2) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     Of motions, ``(draws + 1, joints)``, and exponents the medians come first, then the replicates.
     """
     joints = np.array([n for n in numbers() if n >= 2])
-    each = [needed(n, level) for n in joints]
+    each = [_needed(n, level) for n in joints]
     motions = np.column_stack([np.append(value, drawn) for value, drawn in each])
     x = np.log(joints) - np.log(joints).mean()
     return joints, motions, np.log(motions) @ x / (x @ x)

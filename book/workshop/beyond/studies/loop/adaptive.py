@@ -54,18 +54,18 @@ def _course(setup: Setup, seed: int = 1) -> dict:
     """Errors and estimates from trial to trial, before and after a load is taken up."""
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {
-        **batch.fixed(setup),
+        **batch._fixed(setup),
         **{law: batch.make(law, setup, start) for law in LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
-    extents, effects = batch.drawn(_SEEDS, 2 * TRIALS, seed), batch.rounding(setup, _SEEDS, seed)
-    found, laws = batch.trials(laws, extents[:TRIALS], setup.arm, effects)
-    loaded, laws = batch.trials(laws, extents[TRIALS:], with_load(setup.arm, _PICKED), effects)
+    extents, effects = batch._drawn(_SEEDS, 2 * TRIALS, seed), batch._rounding(setup, _SEEDS, seed)
+    found, laws = batch._trials(laws, extents[:TRIALS], setup.arm, effects)
+    loaded, laws = batch._trials(laws, extents[TRIALS:], with_load(setup.arm, _PICKED), effects)
     found += loaded
     known = [n for n in laws if n.startswith(LAWS)]
     return {
-        "settled": batch.by_law(found, laws),
-        "hand": batch.by_law(found, laws, "hand"),
+        "settled": batch._by_law(found, laws),
+        "hand": batch._by_law(found, laws, "hand"),
         "stopped": int(sum(t.stops.stopped.sum() for t in found)),
         "estimates": {
             n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
@@ -76,14 +76,14 @@ def _course(setup: Setup, seed: int = 1) -> dict:
 
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
-    laws = {**batch.fixed(setup), **{law: batch.make(law, setup) for law in LAWS}}
-    extents, effects = batch.drawn(_SEEDS, 2, seed), batch.rounding(setup, _SEEDS, seed)
+    laws = {**batch._fixed(setup), **{law: batch.make(law, setup) for law in LAWS}}
+    extents, effects = batch._drawn(_SEEDS, 2, seed), batch._rounding(setup, _SEEDS, seed)
     rows: list = []
     settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        found, _ = batch.trials(laws, extents, with_load(setup.arm, mass), slow)
-        rows.append({"load": mass, "late": late, "settled": batch.by_law(found, laws)})
+        found, _ = batch._trials(laws, extents, with_load(setup.arm, mass), slow)
+        rows.append({"load": mass, "late": late, "settled": batch._by_law(found, laws)})
     return {"rows": rows}
 
 
@@ -91,8 +91,8 @@ def _sensors(seed: int = 3) -> dict:
     """The third and fourth motion over the encoder, with a tachometer and without."""
     runs, setup = len(BITS) * _SEEDS, JOINT_DAMPING
     step = np.repeat(2 * np.pi / 2 ** np.array(BITS), _SEEDS)
-    effects, rows = batch.rounding(setup, runs, seed, step), {}
-    extents = np.tile(batch.drawn(_SEEDS, TRIALS, seed), (1, len(BITS), 1))
+    effects, rows = batch._rounding(setup, runs, seed, step), {}
+    extents = np.tile(batch._drawn(_SEEDS, TRIALS, seed), (1, len(BITS), 1))
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (runs, 3))
 
     def exact(q, qd, torque):
@@ -105,13 +105,13 @@ def _sensors(seed: int = 3) -> dict:
         "Craig, exact": batch.make("measured acceleration", setup, start, acceleration=exact),
     }
     for velocity in ("tachometer", "difference"):
-        found, after = batch.trials(laws, extents, setup.arm, effects, velocity=velocity)
+        found, after = batch._trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
                 "settled": errors[-1].reshape(len(BITS), _SEEDS),
                 "estimate": after[name].estimate.reshape(len(BITS), _SEEDS, -1),
             }
-            for name, errors in batch.by_law(found, laws).items()
+            for name, errors in batch._by_law(found, laws).items()
         }
     return rows
 
@@ -143,7 +143,7 @@ def _lyapunov() -> dict:
         ("family", pick_and_place(APPENDIX_I, grid)),
     ):
         reference = Trajectory(*(np.broadcast_to(x, (3, *x.shape)) for x in reference))
-        effects = Effects(encoder=(batch.Rounded(step[:, None, None], np.zeros(2)),))
+        effects = Effects(encoder=(batch._Rounded(step[:, None, None], np.zeros(2)),))
         values = batch.sampled_lyapunov(law, reference, grid, effects)
         for bits, each in zip(("perfect", "16 bits", "12.5 bits"), values):
             rows[f"{name}, {bits}"] = [_rises(v, grid) for v in each]
@@ -169,17 +169,17 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
     """What is found along single motions, repeated, and along the family; no friction."""
     extents = np.concatenate([APPENDIX_I, APPENDIX_I[:1]])
     course = np.broadcast_to(extents, (count, *extents.shape)).copy()
-    course[:, -1] = batch.drawn(1, count, seed)[:, 0]
+    course[:, -1] = batch._drawn(1, count, seed)[:, 0]
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3))
     laws = {
         "learning": batch.make("rigid body", STATE_FEEDBACK, start),
         "knowing": batch.make("rigid body", STATE_FEEDBACK, factor=0.0),
         "not learning": batch.make("rigid body", STATE_FEEDBACK, start, factor=0.0),
     }
-    found, laws = batch.trials(laws, course, CMU_DD_ARM_II, IDEAL)
+    found, laws = batch._trials(laws, course, CMU_DD_ARM_II, IDEAL)
     return {
         "eigenvalues": np.linalg.eigvalsh(batch.excitation(APPENDIX_I)),
-        "settled": batch.by_law(found, laws),
+        "settled": batch._by_law(found, laws),
         "estimate": laws["learning"].estimate / batch.TRUTH,
     }
 
@@ -199,9 +199,9 @@ def _drift(seed: int = 5, count: int = 10) -> dict:
     }
     step = np.where(np.arange(runs) < _SEEDS, setup.effects.encoder[0].step, 0.0)
     course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
-    found, _ = batch.trials(laws, course, setup.arm, batch.rounding(setup, runs, seed, step))
+    found, _ = batch._trials(laws, course, setup.arm, batch._rounding(setup, runs, seed, step))
     return {
-        "settled": batch.by_law(found, laws),
+        "settled": batch._by_law(found, laws),
         "estimates": {
             n: np.stack([t.laws[n].estimate for t in found])[..., :3] / batch.TRUTH for n in laws
         },
@@ -213,7 +213,7 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     viscous, coulomb = (np.asarray(f.slope if k == 0 else f.level) for k, f in
                         enumerate(setup.effects.friction))  # fmt: skip
     right = np.concatenate([batch.TRUTH, viscous, coulomb])
-    only = np.where(np.arange(len(batch.FULL)) < 3, 0.0, 1.0)
+    only = np.where(np.arange(len(batch._FULL)) < 3, 0.0, 1.0)
     laws = {
         "none": batch.make("with friction", setup, factor=0.0),
         "adapted": batch.make("with friction", setup, np.broadcast_to(batch.TRUTH, (_SEEDS, 3))),
@@ -221,11 +221,11 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     }
     inner = laws["adapted"].controller
     laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
-    found, after = batch.trials(
-        laws, batch.drawn(_SEEDS, TRIALS, seed), setup.arm, batch.rounding(setup, _SEEDS, seed)
+    found, after = batch._trials(
+        laws, batch._drawn(_SEEDS, TRIALS, seed), setup.arm, batch._rounding(setup, _SEEDS, seed)
     )
     return {
-        "settled": batch.by_law(found, laws),
+        "settled": batch._by_law(found, laws),
         "estimate": after["adapted"].estimate[:, 3:],
         "truth": right[3:],
     }
@@ -245,10 +245,10 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
     }
     for k, (name, added) in enumerate(BED.items()):
         given = laws if k else {**laws, **bare}
-        effects = added(batch.rounding(setup, _SEEDS, seed))
-        found, after = batch.trials(given, batch.drawn(_SEEDS, count, seed), setup.arm, effects)
+        effects = added(batch._rounding(setup, _SEEDS, seed))
+        found, after = batch._trials(given, batch._drawn(_SEEDS, count, seed), setup.arm, effects)
         rows[name] = {
-            "settled": {n: x[-1] for n, x in batch.by_law(found, given).items()},
+            "settled": {n: x[-1] for n, x in batch._by_law(found, given).items()},
             "estimate": after["adapted"].estimate / _FRICTION_TRUTH,
         }
         if given is not laws:

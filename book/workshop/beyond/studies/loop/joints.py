@@ -28,7 +28,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
 from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.protocol import Cases, derivative_filters
+from workshop.beyond.rivals.protocol import Cases, _derivative_filters
 from workshop.beyond.studies.loop import chain as arms
 from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
@@ -113,7 +113,7 @@ def _equations(made: arms._Chain, windows, degree: int) -> np.ndarray:
 
     Its states are those of polynomials of this degree through the windows.
     """
-    states = windows @ derivative_filters(windows.shape[-1], _REST, degree).T
+    states = windows @ _derivative_filters(windows.shape[-1], _REST, degree).T
     speed, own = states[..., 1], np.eye(made.joints)
     rigid = regressor(made.arm, *np.moveaxis(states, -1, 0))
     sign = np.clip(speed / SIGN_SPEED, -1, 1)

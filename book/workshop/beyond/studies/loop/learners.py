@@ -24,7 +24,12 @@ from workshop.beyond.control.feedback_error import (
     MotionMemory,
     RigidBodyTerms,
 )
-from workshop.beyond.control.online import LastLayer, LinearFilter, OnlineDescent, OnlineFeedforward
+from workshop.beyond.control.online import (
+    LastLayer,
+    OnlineFeedforward,
+    _LinearFilter,
+    _OnlineDescent,
+)
 from workshop.report import results
 
 SEEDS = 10
@@ -182,13 +187,13 @@ def _last_layer(model: TorqueModel, draw: Draw, penalty: float = _PENALTY) -> _W
 def _linear_filter(draw: Draw) -> _Windows:
     """A linear filter of the window that learns in the same way, from nothing."""
     zero = np.zeros((1, draw.seeds, 2, 2 * _WIDTH + 1))
-    return _Windows(LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
+    return _Windows(_LinearFilter(draw.trained.inputs, zero, _recursion(_PENALTY)), "torque", draw)
 
 
 def _by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> _Windows:
     """The network that learns from desired windows and the feedback's torque."""
     rate = _BY_FEEDBACK[draw.setup.name] * np.asarray(times)
-    return _Windows(OnlineDescent(model, rate), "feedback", draw)
+    return _Windows(_OnlineDescent(model, rate), "feedback", draw)
 
 
 def _tiled(weights: Weights, count: int) -> Weights:
@@ -196,7 +201,7 @@ def _tiled(weights: Weights, count: int) -> Weights:
     return Weights(*(np.repeat(x, count, axis=0) for x in vars(weights).values()))
 
 
-def lineup(draw: Draw) -> dict[str, object]:
+def _lineup(draw: Draw) -> dict[str, object]:
     """The learners that practise one motion, all from nothing."""
     return {
         "exact terms": Terms(RigidBodyTerms(NAMES), draw),
@@ -211,14 +216,16 @@ def lineup(draw: Draw) -> dict[str, object]:
 def _candidates(draw: Draw) -> dict[str, object]:
     """The learners of the family: from nothing, and from networks trained off-line."""
     return {
-        "one pass": _Windows(OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
-        "replay": _Windows(OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw),
+        "one pass": _Windows(_OnlineDescent(draw.untrained, _ONE_PASS), "torque", draw),
+        "replay": _Windows(
+            _OnlineDescent(draw.untrained, _REPLAYED, replay=REPLAY), "torque", draw
+        ),
         "last layer": _last_layer(draw.untrained, draw),
         "by feedback": _by_feedback(draw.untrained, draw),
         "linear filter": _linear_filter(draw),
-        "off-line, as it is": _Windows(OnlineDescent(draw.trained, 0.0), "nobody", draw),
+        "off-line, as it is": _Windows(_OnlineDescent(draw.trained, 0.0), "nobody", draw),
         "off-line, replay": _Windows(
-            OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
+            _OnlineDescent(draw.trained, _TRAINED, replay=REPLAY), "torque", draw
         ),
         "off-line, last layer": _last_layer(draw.trained, draw, TRUST),
         "off-line, by feedback": _by_feedback(draw.trained, draw),

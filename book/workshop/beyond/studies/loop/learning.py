@@ -14,8 +14,8 @@ from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place
 from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.feedback_error import GenericTerms, RigidBodyTerms
-from workshop.beyond.control.guarded import Guarded
-from workshop.beyond.control.online import Abreast
+from workshop.beyond.control.guarded import _Guarded
+from workshop.beyond.control.online import _Abreast
 from workshop.beyond.studies.loop import learners
 from workshop.report.code_hash import study
 
@@ -28,9 +28,9 @@ def _trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | Non
     """End-point errors (mm, RMS over the motion) and stops of one trial of controllers abreast.
 
     Errors have shape (rows, seeds), references (rows, seeds, time, 2); ``rows`` are those of each
-    controller, as in `Abreast`.
+    controller, as in `_Abreast`.
     """
-    arm, guard = arm or draw.setup.arm, Watched(Guarded(Abreast(controllers, rows)))
+    arm, guard = arm or draw.setup.arm, Watched(_Guarded(_Abreast(controllers, rows)))
     run = follow(arm, guard, references, t, effects=draw.effects)
     off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)
     during = (run.t > -1e-9) & (run.t < -10 * t[0] - 1e-9)  # the rest is a tenth of the motion
@@ -61,7 +61,7 @@ def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
 
 def _motion(draw: learners.Draw) -> dict:
     """Practise one motion, be asked for others, go on to the other extents."""
-    pupils, asked = learners.lineup(draw), learners.motions(draw)
+    pupils, asked = learners._lineup(draw), learners.motions(draw)
     t, reference = asked["the same"]
     first = _practise(draw, pupils, reference, t)
     tests = {}

@@ -218,7 +218,7 @@ def states(recording: Recording, setup: Setup) -> np.ndarray:
     return true_states(recording, setup)[:, ::5].reshape(-1, 6)
 
 
-def coverage(setup: Setup, tests: dict, members: int) -> dict:
+def _coverage(setup: Setup, tests: dict, members: int) -> dict:
     """Whether two families share their states, both ways, beside a second draw of the same one.
 
     Of the cells that the first family reaches, the share that the second one reaches; and the

@@ -17,12 +17,12 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, 
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
 from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.guarded import Guarded
+from workshop.beyond.control.guarded import _Guarded
 from workshop.beyond.control.windowed import (
-    MeasuredWindows,
     WindowFeedforward,
-    past_slopes,
-    poles_inside,
+    _MeasuredWindows,
+    _past_slopes,
+    _poles_inside,
 )
 from workshop.beyond.rivals.gaussian import GaussianProcess
 from workshop.beyond.rivals.identified import Identified, Linear
@@ -72,7 +72,7 @@ def _lines(setup: Setup) -> dict[str, list]:
         "exact": [parts.exact(setup)],
         "exact, with its impulses": [parts._with_impulse(setup)],
         **{f"exact, window {w}": [parts._through_window(parts.exact(setup), w)] for w in WINDOWS},
-        **{f"network, window {w}": parts.networks(setup, _MEMBERS, w) for w in WINDOWS},
+        **{f"network, window {w}": parts._networks(setup, _MEMBERS, w) for w in WINDOWS},
     }
 
 
@@ -82,7 +82,7 @@ def _few(setup: Setup) -> dict[str, list]:
         "none": [_nothing],
         "exact": [parts.exact(setup)],
         "exact, window": [parts._through_window(parts.exact(setup))],
-        "network": parts.networks(setup, _FEW),
+        "network": parts._networks(setup, _FEW),
     }
 
 
@@ -181,7 +181,7 @@ def _rates(setup: Setup, reference) -> dict:
     """What is done between the samples of the log, and windows at the wrong period."""
     options: dict = {between: {"between": between} for between in ("window", "line", "hold")}
     options["2 ms apart"] = {"every": 1, "step": None}
-    lines = {name: parts.networks(setup, _FEW, **how) for name, how in options.items()}
+    lines = {name: parts._networks(setup, _FEW, **how) for name, how in options.items()}
     return parts._errors(setup, _made(lines, reference), reference)
 
 
@@ -272,7 +272,7 @@ def _inside(setup: Setup) -> dict:
             row: dict = {"stopped": [], "error": [], "poles": []}
             for model in several:
                 law = Watched(
-                    Guarded(MeasuredWindows(model, setup.controller, shares), speeds=_LIMIT)
+                    _Guarded(_MeasuredWindows(model, setup.controller, shares), speeds=_LIMIT)
                 )
                 log = follow(setup.arm, law, reference, parts._T, effects=effects, duration=3.0)
                 row["stopped"].append(law.law.stops.stopped.mean(1))
@@ -287,11 +287,11 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
     windows = sliding_windows(reference.q[..., 250:1750:5, :], parts._WIDTH).reshape(
         -1, 2, parts._WIDTH
     )
-    past = past_slopes(model.model, windows[::10])
+    past = _past_slopes(model.model, windows[::10])
     viscous = np.asarray(setup.effects.friction[0].coefficient)
     joints = plant(setup.arm.mass_matrix([0.0, float(windows[:, 1].mean())]), viscous)
     poles = [
-        poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in _SHARES
+        _poles_inside(joints, setup.controller, s * past, CONTROL_STEP, late=late) for s in _SHARES
     ]
     return [float(np.abs(each).max()) for each in poles]
 

@@ -17,20 +17,20 @@ from ddlib.setups import Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place, time_grid
 from workshop.beyond.control.windowed import WindowFeedforward
-from workshop.beyond.rivals.protocol import derivative_filters
+from workshop.beyond.rivals.protocol import _derivative_filters
 from workshop.report import results
 
 _WIDTH = 21  # samples of a window: the paper's best
 POINTS = 7  # trajectories in a row of the square of extents
 
 
-def square_extents(points: int) -> np.ndarray:
+def _square_extents(points: int) -> np.ndarray:
     """Extents of a square, degrees, shape (runs, 2); the elbow's change fastest."""
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
     return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
 
 
-_EXTENTS = square_extents(POINTS)
+_EXTENTS = _square_extents(POINTS)
 EDGE = _EXTENTS[:POINTS, 1]
 _INSIDE = inside_hull(_EXTENTS)  # the hull of the training trajectories
 _FEWER = _EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
@@ -59,7 +59,7 @@ def _with_impulse(setup: Setup) -> _Model:
 
 def _through_window(torque: _Model, width: int = _WIDTH) -> WindowFeedforward:
     """Equations of a state that see windows: a polynomial in each gives the state."""
-    filters = derivative_filters(width, LOG_STEP)
+    filters = _derivative_filters(width, LOG_STEP)
 
     def model(windows):
         return torque(*np.moveaxis(windows @ filters.T, -1, 0))
@@ -67,7 +67,7 @@ def _through_window(torque: _Model, width: int = _WIDTH) -> WindowFeedforward:
     return WindowFeedforward(model, width, step=LOG_STEP)
 
 
-def networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[WindowFeedforward]:
+def _networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[WindowFeedforward]:
     """The first networks of a cell of Table 4-1 as feedforwards."""
     model = results.networks(width, setup.name)
     options = {"step": model.step, **options}

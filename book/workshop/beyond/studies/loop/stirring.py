@@ -132,7 +132,7 @@ def off(setup: Setup, log: Recording) -> np.ndarray:
     return 1000 * np.sqrt((error**2).sum(-1).mean(-1))
 
 
-def hands(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict[str, np.ndarray]:
+def _hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict:
     """Errors of the hand (mm), shape (models, runs), by the name of the feedforward torques."""
     every = np.stack([torque for several in torques.values() for torque in several])
     ends = np.cumsum([len(several) for several in torques.values()])[:-1]
@@ -168,7 +168,7 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
     found: dict = {name: {} for name in named}
     for motion, reference in references.items():
         torques = {name: [f(*reference) for f in ms] for name, ms in named.items()}
-        for name, off_by in hands(today, torques, reference).items():
+        for name, off_by in _hand_errors(today, torques, reference).items():
             found[name][motion] = off_by
     return found
 
@@ -280,7 +280,7 @@ def stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
         row = {
             "deviations": {n: Cases.windows(r, _WIDTH).torque.std(0) for n, r in tests.items()},
             "errors": table,
-            "coverage": motions.coverage(setup, tests, members),
+            "coverage": motions._coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),
         }
         if main:

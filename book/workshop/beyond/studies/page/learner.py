@@ -12,12 +12,12 @@ from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
 from workshop.beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
 from workshop.beyond.studies.loop.runs.adaptive import (
-    FULL,
+    _FULL,
     SMOOTH,
-    Behind,
-    drawn,
+    _Behind,
+    _drawn,
+    _rates,
     make,
-    rates,
     trial,
 )
 from workshop.report.code_hash import study
@@ -45,9 +45,9 @@ class _FeedbackError:
 
     def start(self, reference, step):
         # with one gain for all joints it would be Slotine & Li's law at the desired state
-        rate = rates("with friction", JOINT_DAMPING, self.factor) / KD[0]
+        rate = _rates("with friction", JOINT_DAMPING, self.factor) / KD[0]
         feedback = pd(JOINT_DAMPING.controller.kp, KD)
-        learner = FeedbackErrorLearning(RigidBodyTerms(FULL), rate, self.estimate, feedback)
+        learner = FeedbackErrorLearning(RigidBodyTerms(_FULL), rate, self.estimate, feedback)
         return _Kept(learner.start(reference, step))
 
 
@@ -86,15 +86,15 @@ def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
         LEARNERS[0]: make("with friction", setup, factor=0.0),
         LEARNERS[1]: make("with friction", setup, factor=factor),
         LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        LEARNERS[3]: Behind(_FeedbackError(begin, factor), SMOOTH),
+        LEARNERS[3]: _Behind(_FeedbackError(begin, factor), SMOOTH),
     }
-    errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(FULL)))]
-    for extents in drawn(1, MOTIONS, seed=11):
+    errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(_FULL)))]
+    for extents in _drawn(1, MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
         laws = done.laws
         errors.append(np.minimum(done.settled, 1e3))  # of a stopped run it is infinite
         estimates.append(
-            np.stack([np.broadcast_to(x.estimate, (runs, len(FULL))) for x in laws.values()])
+            np.stack([np.broadcast_to(x.estimate, (runs, len(_FULL))) for x in laws.values()])
         )
     errors, estimates = np.stack(errors, -1), np.stack(estimates, -2)
     shape = (2, len(speeds))

@@ -15,18 +15,18 @@ from ddlib.setups import KD, Setup
 from ddlib.simulation import CONTROL_STEP, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place
 from workshop.beyond.control.adaptive import (
-    PARAMETERS,
-    CraigHsuSastry,
-    ModelReference,
+    _PARAMETERS,
     SlotineLi,
     Watched,
+    _CraigHsuSastry,
+    _ModelReference,
     mixed_regressor,
 )
-from workshop.beyond.control.guarded import Guarded
+from workshop.beyond.control.guarded import _Guarded
 
-_RIGID = PARAMETERS[:3]
-_FRICTION = PARAMETERS[5:]
-FULL = (*_RIGID, *_FRICTION)
+_RIGID = _PARAMETERS[:3]
+_FRICTION = _PARAMETERS[5:]
+_FULL = (*_RIGID, *_FRICTION)
 TRUTH = np.array([CMU_DD_ARM_II.a, CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # without a load
 _INERTIA = np.array([CMU_DD_ARM_II.a + 2 * CMU_DD_ARM_II.b, CMU_DD_ARM_II.d])  # kg m^2, stretched
 
@@ -72,14 +72,14 @@ class _Together:
 
 
 @dataclass(frozen=True)
-class Behind:
+class _Behind:
     """A controller that follows the motion of a linear model in place of the reference.
 
     Where the reference's velocity jumps, the model's does not.
     """
 
     controller: Controller
-    model: ModelReference
+    model: _ModelReference
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law of the controller along the model's motion."""
@@ -93,14 +93,14 @@ class Behind:
 
 _POLE = 7.0  # 1/s, twice: without a load the arm stays below `LIMITS` at the largest jump
 
-SMOOTH = ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zeros(8), np.zeros(8))
+SMOOTH = _ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zeros(8), np.zeros(8))
 
 
 def _taught(controller: Controller, estimate) -> Controller:
     """The controller with other estimates to begin with; others than adaptive ones as they are."""
     if not hasattr(controller, "estimate"):
         return controller
-    if isinstance(controller, Behind):
+    if isinstance(controller, _Behind):
         return replace(controller, controller=_taught(controller.controller, estimate))
     return replace(controller, estimate=estimate)
 
@@ -122,12 +122,12 @@ class _AbleSlotineLi(_Able, SlotineLi):
     """`SlotineLi` that learns while the motors are able."""
 
 
-class _AbleCraig(_Able, CraigHsuSastry):
-    """`CraigHsuSastry` that learns while the motors are able."""
+class _AbleCraig(_Able, _CraigHsuSastry):
+    """`_CraigHsuSastry` that learns while the motors are able."""
 
 
-class _AbleModelReference(_Able, ModelReference):
-    """`ModelReference` that learns while the motors are able."""
+class _AbleModelReference(_Able, _ModelReference):
+    """`_ModelReference` that learns while the motors are able."""
 
 
 def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
@@ -139,7 +139,7 @@ def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
     return slope, np.stack([slope * KD / _INERTIA, slope + KD / _INERTIA])
 
 
-def rates(law: str, setup: Setup, factor=1.0) -> np.ndarray:
+def _rates(law: str, setup: Setup, factor=1.0) -> np.ndarray:
     """Speeds of adaptation of a `law` in a `setup`, times a `factor` of shape (...)."""
     speed = _RATES[setup.name][law] * np.asarray(factor, float)[..., None]
     if law == "joint models":
@@ -156,14 +156,14 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     """
     slope, (a0, a1) = gains(setup)
     start = TRUTH if start is None else np.asarray(start, float)
-    rate = rates(law, setup, factor)
+    rate = _rates(law, setup, factor)
     if law == "joint models":
         own = np.stack([start[..., 0] + 2 * start[..., 1], start[..., 2]], -1)
         each = np.stack([own, a0 * own, a1 * own, 0 * own], -1)
         return _AbleModelReference(
             a0, a1, a1 / 2, rate, each.reshape(*own.shape[:-1], 8), **options
         )
-    names = _RIGID if law == "rigid body" else FULL
+    names = _RIGID if law == "rigid body" else _FULL
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
@@ -171,15 +171,15 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     else:
         kind = SlotineLi if jumps else _AbleSlotineLi
         made = kind(KD, slope, rate, first, names, **options)
-    return made if jumps else Behind(made, SMOOTH)
+    return made if jumps else _Behind(made, SMOOTH)
 
 
-def fixed(setup: Setup) -> dict[str, Controller]:
+def _fixed(setup: Setup) -> dict[str, Controller]:
     """What the adaptive laws are compared with: PD, and computed torque without a load."""
     _, (a0, a1) = gains(setup)
     return {
         "PD": pd(setup.controller.kp, KD),
-        "computed torque": Behind(ComputedTorque(CMU_DD_ARM_II, a0, a1), SMOOTH),
+        "computed torque": _Behind(ComputedTorque(CMU_DD_ARM_II, a0, a1), SMOOTH),
     }
 
 
@@ -200,7 +200,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
     t = steps * CONTROL_STEP
     reference = pick_and_place(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
-    guard = Watched(Guarded(_Beside(tuple(laws.values()))))
+    guard = Watched(_Guarded(_Beside(tuple(laws.values()))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
     hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
     off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
@@ -220,7 +220,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
 
 
 @dataclass(frozen=True)
-class Rounded:
+class _Rounded:
     """Readings rounded to a step of each run's own, after a shift of its own; 0: not rounded."""
 
     step: np.ndarray
@@ -233,14 +233,14 @@ class Rounded:
         return np.where(self.step > 0, found, x)
 
 
-def rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
+def _rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
     """The set-up's effects, in each run with an encoder's zero (and step) of its own."""
     step = np.full(runs, setup.effects.encoder[0].step) if step is None else np.asarray(step)
     shift = np.random.default_rng(seed).uniform(0, 1, (runs, 2)) * step[:, None]
-    return replace(setup.effects, encoder=(Rounded(step[:, None], shift),))
+    return replace(setup.effects, encoder=(_Rounded(step[:, None], shift),))
 
 
-def trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
+def _trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
     """Motions ``(trials, runs, 2)`` one after another, and the laws with what they have learnt."""
     found = []
     for each in extents:
@@ -249,12 +249,12 @@ def trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_
     return found, laws
 
 
-def drawn(runs: int, count: int, seed: int) -> np.ndarray:
+def _drawn(runs: int, count: int, seed: int) -> np.ndarray:
     """Random extents of the family, degrees, shape `(count, runs, 2)`, by a `seed`."""
     return np.random.default_rng(seed).uniform(0, MAX_EXTENT_DEG, (count, runs, 2))
 
 
-def by_law(found: list[_Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
+def _by_law(found: list[_Trial], laws, what: str = "settled") -> dict[str, np.ndarray]:
     """Errors of trials (an attribute of theirs) by law, shape (trials, runs), mm."""
     return {name: np.stack([getattr(t, what)[k] for t in found]) for k, name in enumerate(laws)}
 

@@ -49,7 +49,7 @@ def _copies(setup: Setup, days) -> dict:
     plan, equations = run_time.rounded(run_time._FEWER, 0.0), run_time.exact(setup)
     torques = {"none": 0 * plan.q[None]}
     torques |= {f"{s:g}": equations(*run_time.rounded(run_time._FEWER, s))[None] for s in _COPIES}
-    torques["network"] = run_time._planned(run_time.networks(setup, len(days)), plan)
+    torques["network"] = run_time._planned(run_time._networks(setup, len(days)), plan)
     made = {name: (torque, days) for name, torque in torques.items()}
     return run_time._errors(setup, made, plan)
 
@@ -113,7 +113,7 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
             for name, several in models.items()
         }
     torques = {"none": [0 * reference.q], **torques}
-    hands = stirring.hands(setup, torques, reference)
+    hands = stirring._hand_errors(setup, torques, reference)
     return {name: np.median(errors, -1) for name, errors in hands.items()}
 
 
