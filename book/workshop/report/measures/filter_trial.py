@@ -14,7 +14,6 @@ import numpy as np
 from ddlib.analysis import calibrated as gains_of
 from ddlib.learning import MATCHED, cases, p_value
 from ddlib.setups import JOINT_DAMPING, SETUPS, true_states
-from ddlib.tables import spread
 from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured, judged
 
@@ -81,19 +80,28 @@ def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Mea
     return judged(lambda each: _off(each, true), real, text=f"{told} {_UNITS['inertia']}")
 
 
-def response(width: int = 21, trajectories: tuple = (1, 2, 6)) -> Measured:
-    """How far the trial's networks, as linear filters, are from the arm in torque per acceleration.
+def response(width: int = 21) -> Measured:
+    """How far the trial's networks are from the arm in torque per acceleration on slow motions.
 
-    At the shoulder, along the worst of some trajectories; see the study `filter_responses`.
+    At the shoulder, along the worst of three trajectories; see the study `filter_responses`.
     """
     found = results.read("filter-responses")
-    places = [found["trajectories"].index(number) for number in trajectories]
-    cell = found["windows"][str(width)]
-    real, own = np.array(cell["response"])[:, places], np.array(found["arm"])[places]
-    told = zip(trajectories, np.median(real, 0), own)
-    text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in told)
-    text += f" kg m²; K₁₁ {spread(cell['stiffness'], 2)} N m/rad"
-    return judged(lambda each: _off(each, own), real, text=text)
+    numbers, (cell, own) = found["trajectories"], responses(width)
+    pairs = list(zip(numbers, np.median(cell["network"], 0), own))
+    text = ", ".join(f"{one:.1f} on trajectory {k} (arm {arm:.1f})" for k, one, arm in pairs)
+    filters = ", ".join(f"{one:.1f}" for one in np.median(cell["filter"], 0))
+    text += f" kg m²; as linear filters {filters}"
+    return judged(lambda each: _off(each, own), cell["network"], text=text)
+
+
+def responses(width: int = 21, motion: str = "slow") -> tuple[dict, np.ndarray]:
+    """Torque per acceleration by trajectory: of "network" and "filter", one for each, and the arm.
+
+    Along the motion as it was "recorded", swings included, or a "slow" sine as it was desired.
+    """
+    found = results.read("filter-responses")[motion]
+    cell = {way: np.array(each) for way, each in found["windows"][str(width)].items()}
+    return cell, np.array(found["arm"])
 
 
 def _entries(what, gains, wanted) -> tuple[np.ndarray, np.ndarray, str]:

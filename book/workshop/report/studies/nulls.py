@@ -26,11 +26,19 @@ from ddlib.analysis import (
     with_filters,
     with_jerk,
 )
-from ddlib.learning import MATCHED, TorqueModel, TrainingSet, Weights, cases, related, surrogates
+from ddlib.learning import (
+    MATCHED,
+    TorqueModel,
+    TrainingSet,
+    Weights,
+    cases,
+    related,
+    sliding_windows,
+    surrogates,
+)
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
-from ddlib.trajectories import APPENDIX_I
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
 
@@ -287,10 +295,13 @@ def filter_trial_elsewhere(
     return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": found}
 
 
-def _response(torque, states) -> np.ndarray:
-    """Slope of torques ``(..., time)`` over the acceleration: kg m^2 of an arm.
+_SLOW = (1, 2, 6)  # Trajectories that move the shoulder by more than 30 degrees
 
-    By least squares on acceleration, velocity and a constant, of one joint's `states` ``(time, 3)``
+
+def _response(torque, states) -> np.ndarray:
+    """Torques ``(..., time)`` per acceleration of a joint, kg m^2 as an arm's inertia.
+
+    The slope by least squares on acceleration, velocity and a constant, of `states` ``(time, 3)``
     of position, velocity and acceleration. Position is left out: along a sine it is the
     acceleration's mirror image, so that a stiffness takes away from what an inertia gives.
     """
@@ -300,31 +311,41 @@ def _response(torque, states) -> np.ndarray:
 
 @study
 def filter_responses(members: int = 15) -> dict:
-    """How the first networks of `filter_trial` answer the shoulder's motion, as linear filters.
+    """How the first networks of `filter_trial` answer the shoulder's motion, kg m^2 (`_response`).
 
-    For each window the mean gradient of the shoulder's torque along the shoulder's window, and what
-    it makes of each trajectory's windows, per true acceleration (`_response`), ``(networks,
-    trajectories)``, kg m^2. Beside it the same of the arm, whose torque is its inertia at the
-    shoulder, elbow where it is, times the acceleration.
+    Along trajectories `_SLOW`: as they were recorded, swings included, and as they were desired, a
+    slow sine. There the ends are left out, where the sine starts with a jump of velocity. For each
+    window the responses ``(networks, trajectories)`` of the networks, and of their mean gradient as
+    a linear filter. Beside them that of the rigid arm.
     """
     recording = TRIAL.record()
-    states = true_states(recording, TRIAL)
-    moving = np.flatnonzero(APPENDIX_I[:, 0])
-    inertia = TRIAL.arm.mass_matrix(states[..., 0])[..., 0, 0]
-    own = [_response(inertia[k] * states[k, :, 0, 2], states[k, :, 0]) for k in moving]
-    windows = {}
+    margin, chosen = max(WINDOWS) // 2 + 1, np.array(_SLOW) - 1
+    desired = np.stack(recording.reference, -1)[:, recording.motion]
+    motions = {  # positions, states, samples that count
+        "recorded": (recording.q, true_states(recording, TRIAL), slice(None)),
+        "slow": (recording.reference.q, desired, slice(margin, -margin)),
+    }
+    found: dict = {name: {"arm": [], "windows": {}} for name in motions}
+    for name, (_, states, inside) in motions.items():
+        for k in chosen:
+            torque = TRIAL.arm.inverse_dynamics(*np.moveaxis(states[k], -1, 0))[:, 0]
+            found[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
     for width in WINDOWS:
         trial = _Trial(TRIAL, recording, width)
         weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
-        filters = mean_gradient(trial.model(weights), trial.windows)[:, 0, 0]
-        answers = [filters @ cases(recording[k : k + 1], width)[0][:, 0].T for k in moving]
-        windows[str(width)] = {
-            "stiffness": filters.sum(-1),
-            "response": np.stack(
-                [_response(x, states[k, :, 0]) for k, x in zip(moving, answers)], -1
-            ),
-        }
-    return {"members": members, "trajectories": moving + 1, "arm": own, "windows": windows}
+        model = trial.model(weights)
+        filters = mean_gradient(model, trial.windows)[:, 0]
+        for name, (positions, states, inside) in motions.items():
+            cell: dict = {"network": [], "filter": []}
+            for k in chosen:
+                windows = sliding_windows(positions[k], width, recording.motion)
+                linear = np.einsum("mjw,njw->mn", filters, windows)
+                for way, torque in (("network", model.torque(windows)[..., 0]), ("filter", linear)):
+                    cell[way].append(_response(torque[:, inside], states[k, inside, 0]))
+            found[name]["windows"][str(width)] = {
+                way: np.stack(each, -1) for way, each in cell.items()
+            }
+    return {"members": members, "trajectories": _SLOW, **found}
 
 
 @study
