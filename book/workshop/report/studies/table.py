@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib.analysis import saturated
+from ddlib.analysis import roughness, saturated
 from ddlib.control import pd
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS
-from ddlib.learning import TorqueModel, Weights, cases
+from ddlib.learning import Directions, TorqueModel, TrainingSet, Weights, cases
 from ddlib.setups import (
     COURSE,
     JOINT_DAMPING,
@@ -100,29 +100,61 @@ def _ablations() -> dict:
     }
 
 
+def _on_days(setup, days, networks, whiten=True) -> dict:
+    """By window what `_row` tells, each of shape ``(days, networks)`` (`Setup.repeated`)."""
+    cells = {str(w): [] for w in WINDOWS}
+    for day in range(1, days + 1):
+        recording = setup.repeated(day).record()
+        for w in WINDOWS:
+            model, history, _ = train_windows(
+                setup, recording, w, networks, seed=100 * day, whiten=whiten, progress=False
+            )
+            ends = _saturated(model, recording, w)
+            cells[str(w)].append({**_row(model, history, recording), "saturated": ends})
+    return {w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()}
+
+
 @study
 def recordings(days=5, networks=5, fewer=1) -> dict:
-    """Joint damping and its ablations on several days (`Setup.repeated`).
+    """Joint damping and its ablations on several days.
 
-    `networks` for each day and window of the set-up itself, `fewer` of the ablations. Errors and
-    largest weights have the shape ``(days, networks)``.
+    `networks` for each day and window of the set-up itself, `fewer` of the ablations.
     """
-    rows = {}
-    for name, setup in _ablations().items():
-        members = networks if setup is JOINT_DAMPING else fewer
-        cells = {str(w): [] for w in WINDOWS}
-        for day in range(1, days + 1):
-            recording = setup.repeated(day).record()
-            for w in WINDOWS:
-                model, history, _ = train_windows(
-                    setup, recording, w, members, seed=100 * day, progress=False
-                )
-                ends = _saturated(model, recording, w)
-                cells[str(w)].append({**_row(model, history, recording), "saturated": ends})
-        rows[name] = {
-            w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()
-        }
+    rows = {
+        name: _on_days(setup, days, networks if setup is JOINT_DAMPING else fewer)
+        for name, setup in _ablations().items()
+    }
     return {"days": days, "networks": networks, "fewer": fewer, "setups": rows}
+
+
+@study
+def whitening(days=5, networks=5, members=8, width=41) -> dict:
+    """Joint damping without whitening, on the days of `recordings`; and what whitening learns.
+
+    Along each direction of the windows of one recording, the steepest first: the change of the
+    weights over their start, with whitening, without, and by descent on the same inputs.
+    """
+    recording = JOINT_DAMPING.record()
+    along = Directions.of(TrainingSet.from_recording(split(recording)[0], width))
+    start = Weights.random(members, width, initial=JOINT_DAMPING.initial)
+    descent = replace(JOINT_DAMPING, steps=0, decay=0.0)
+    ways = {"whitened": (JOINT_DAMPING, True), "plain": (JOINT_DAMPING, False)}
+    found = {}
+    for name, (setup, whiten) in {**ways, "descent": (descent, True)}.items():
+        model, history, _ = train_windows(setup, recording, width, members, whiten=whiten)
+        change = along.energy(model.weights, start) / along.energy(start)
+        found[name] = {
+            **_row(model, history, recording),
+            "learnt": (change > 1).sum(-1),
+            "change over start": np.sqrt(np.median(change, 0)),
+            "roughness": np.median(roughness(model.weights.hidden_weights), (-2, -1)),
+        }
+    return {
+        **{"days": days, "networks": networks, "members": members, "width": width},
+        "variance": (along.values / along.values[0]) ** 2,
+        "directions": found,
+        "plain": _on_days(JOINT_DAMPING, days, networks, whiten=False),
+    }
 
 
 def _saturated(model, recording, width) -> np.ndarray:
