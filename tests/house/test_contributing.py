@@ -11,9 +11,9 @@ from book_pages import ROOT
 from chapter_rules import CHAPTER, EVERYWHERE
 
 from ddlib.setups import SETUPS
+from workshop.chapters import dynamics
 from workshop.report import code_hash, reproduce, results
 from workshop.report.evidence import claims
-from workshop.report.measures import dynamics
 
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 ADDED = {"book/results/following.json"}  # by an example

@@ -25,7 +25,7 @@ FLOATS = [
 
 
 def make(**changes) -> Claim:
-    measure = dict(verdict="reproduced", measure="networks.untrained", band={"factor": 1.5})
+    measure = dict(verdict="reproduced", measure="filters.untrained", band={"factor": 1.5})
     return Claim(**{**PLAIN, "printed": 2.0, **measure, **changes})
 
 
@@ -98,9 +98,9 @@ def test_a_failing_measure_names_its_claim(changes, words):
 
 @pytest.mark.parametrize("result", [Measured(float("nan"), "text"), Measured(1.0, " "), 1.0])
 def test_measures_that_cannot_be_judged(monkeypatch, result):
-    from workshop.report.measures import networks
+    from workshop.report.measures import filters
 
-    monkeypatch.setattr(networks, "untrained", lambda wrong: result)
+    monkeypatch.setattr(filters, "untrained", lambda wrong: result)
     with pytest.raises(_MeasureError, match=r"claim 'a' could not be measured.* must return"):
         make(arguments={"wrong": repr(result)}).measured()
 
@@ -217,14 +217,14 @@ def test_printed_numbers_keep_their_digits(tmp_path):
 
 
 def test_measured_once_by_all_who_share_a_folder(monkeypatch, tmp_path):
-    from workshop.report.measures import networks
+    from workshop.report.measures import windows
 
-    claim = next(c for c in MEASURED if c.measure == "networks.multiplications")
+    claim = next(c for c in MEASURED if c.measure == "windows.multiplications")
     monkeypatch.setenv(claims.SHARED, str(tmp_path))
     claims._measured.cache_clear()
     first = claim.measured()
     claims._measured.cache_clear()
-    monkeypatch.setattr(networks, "multiplications", lambda **_: Measured(-1.0, "again"))
+    monkeypatch.setattr(windows, "multiplications", lambda **_: Measured(-1.0, "again"))
     assert claim.measured() == first and isinstance(claim.measured(), Measured)
     monkeypatch.delenv(claims.SHARED)
     claims._measured.cache_clear()

@@ -8,7 +8,7 @@ import pytest
 from ddlib.analysis import savitzky_golay
 from ddlib.simulation import LOG_STEP
 from workshop.report import committed
-from workshop.report.measures import networks, windows
+from workshop.report.measures import windows
 
 # --- windows -------------------------------------------------------------------------------------
 
@@ -16,9 +16,9 @@ from workshop.report.measures import networks, windows
 def test_multiplications_and_weights_by_hand():
     """21 samples of two joints to 10 hidden and 2 output units, 20 between; no biases."""
     count = 42 * 10 + 42 * 2 + 10 * 2
-    assert networks.multiplications(21).value == count * 5 * 300
-    assert networks.weights_against_nwh([21]).value == pytest.approx(count / (2 * 21 * 10))
-    found = networks.weights_against_nwh()
+    assert windows.multiplications(21).value == count * 5 * 300
+    assert windows.weights_against_nwh([21]).value == pytest.approx(count / (2 * 21 * 10))
+    found = windows.weights_against_nwh()
     assert found.value == pytest.approx(1.2 + 1 / 11)  # n w h and direct weights, 20 more
     assert (
         found.text == "weights for n w h: 284 for 220 at 11, 524 for 420 at 21, 1004 for 820 at 41"

@@ -21,7 +21,7 @@ def make(monkeypatch):
     def made(band, draws=None, printed="no number", **changes) -> Claim:
         fields = {
             "id": "a", "where": "section 4", "chapter": "verdict", "claim": "c < d", "why": "w",
-            "refuted": "r", "verdict": "reproduced", "measure": "networks.untrained",
+            "refuted": "r", "verdict": "reproduced", "measure": "filters.untrained",
             "printed": printed, "band": band, **changes,
         }  # fmt: skip
         found = Measured(0.5, "told", None if draws is None else np.array(draws, float))
@@ -104,3 +104,17 @@ def test_what_would_have_changed_the_verdict(make, monkeypatch):
         monkeypatch.setattr(Claim, "judge", lambda self: self.verdict)
         text = wall.Tiles([claim])._repr_markdown_()
         assert f"*{head}:* r" in text and "c &lt; d" in text
+
+
+@pytest.mark.parametrize(
+    "value, edges, text",
+    [
+        (0.98, [0.9, 0.98], "0.98"),  # on the edge: it may look so
+        (0.9, [0.98], "0.90"),
+        (1.54, [1.52], "1.54"),  # 1.5 would be on the other side
+        (-0.29999, [-0.3], "-0.29999"),
+        (34.4, [], "34"),
+    ],
+)
+def test_a_value_is_told_from_an_edge(value, edges, text):
+    assert wall._number_beside(value, edges) == text

@@ -1,4 +1,4 @@
-"""Figures of the chapter *What feedback does*."""
+"""Figures of the chapter *What feedback does*, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from ddlib._check import finite_array
+from ddlib.effects import Effects
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
+from ddlib.simulation import Load
+from ddlib.tables import significant
+from ddlib.trajectories import APPENDIX_I
+from workshop.chapters.feedforward import _errors, _geared, _rms
+from workshop.report.evidence.verdicts import Measured
 
 
 def root_loci(loops: Mapping[str, control.TransferFunction], gains) -> Illustration:
@@ -98,3 +104,23 @@ def _nearest(loop, answers, frequencies) -> tuple[float, complex]:
     values = np.ravel(loop(1j * fine))
     best = int(np.abs(1 + values).argmin())
     return float(fine[best]), complex(values[best])
+
+
+# --- what the claims of the chapter measure
+
+
+def disturbances(load: float = 5.0) -> Measured:
+    """How many times smaller feedback makes the error under a constant load."""
+    effects = Effects(actuator=(Load((load, 0.0)),))
+    with_, without = _rms(_errors([1, 1], [1, 0], effects))
+    text = f"{load:g} N m on the shoulder: {significant(with_, 2)}° for "
+    text += f"{significant(without, 2)}° without"
+    return Measured(float(without / with_), text)
+
+
+def backdriven(gear: float = 100.0) -> Measured:
+    """How far the moving shoulder throws the elbow off, without gears over behind gears."""
+    direct, geared = np.abs(_geared(gear, False, tuple(APPENDIX_I[3]))[..., 1]).max(1)
+    text = f"the shoulder throws a resting elbow off by {direct:.1f}°, "
+    text += f"behind gears of {gear:g} to 1 by {geared:.2f}°"
+    return Measured(float(direct / geared), text)

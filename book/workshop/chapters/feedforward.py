@@ -1,13 +1,31 @@
-"""Figures of the chapter *What feedforward adds*."""
+"""The figure of the chapter *What feedforward adds*, and what its claims measure."""
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch
 
+from ddlib.control import PID, ComputedTorque, Feedforward, pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, PUMA_560_ROTORS
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects
 from ddlib.figures.style import COLOURS, FAINT, INK, NARROW, Illustration, illustrate
+from ddlib.setups import KD, KP
+from ddlib.simulation import (
+    CONTROL_STEP,
+    LOG_STEP,
+    SecondOrderModel,
+    feedforward_system,
+    follow,
+    run_system,
+    smooth_pick_and_place,
+)
+from ddlib.tables import scientific, significant
+from ddlib.trajectories import APPENDIX_I, pick_and_place
+from workshop.report.evidence.verdicts import Measured
 
 
 def feedforward_loop() -> Illustration:
@@ -105,3 +123,189 @@ def _arrow(axis: Axes, *points):
     head = {"arrowstyle": "-|>", "color": INK, "lw": 1.1, "shrinkA": 0, "shrinkB": 0}
     axis.annotate("", points[-1], points[-2], arrowprops=head)
     axis.text((x0 + x1) / 2, y0 + 0.1, name, ha="center", va="bottom")
+
+
+# --- what the claims of the chapter measure
+
+_EXTENTS = APPENDIX_I[0]
+_TIMES = np.arange(1500) * CONTROL_STEP
+# Inertia that each joint has by itself, the arm stretched, kg m^2
+_OWN = np.diag(ARM.mass_matrix([0.0, 0.0]))
+
+
+def _rms(x) -> np.ndarray:
+    """Root mean square over time and joints, for each run."""
+    return np.sqrt(np.mean(np.square(x), axis=(-2, -1)))
+
+
+def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0, extents=_EXTENTS):
+    """Tracking errors on the smooth motion, degrees, ``(runs, time, 2)``.
+
+    Each run has a factor, the share of the needed torque that its model gives, and another on
+    the gains of the feedback.
+    """
+    factors, gains = (np.array(x, dtype=float)[:, None] for x in (factors, gains))
+    t = np.arange(round(3 / speed / CONTROL_STEP)) * CONTROL_STEP
+    reference = smooth_pick_and_place(np.broadcast_to(extents, (len(factors), 2)), t, speed)
+
+    def model(*motion):
+        return factors[:, None] * ARM.inverse_dynamics(*motion)
+
+    law = Feedforward(model, pd(gains * KP, gains * KD))
+    return np.rad2deg(follow(ARM, law, reference, t, effects=effects).tracking_error)
+
+
+@cache
+def _real(speed: float) -> np.ndarray:
+    """RMS errors with all effects: PD alone, models of 1, 0.8, 1.2 with PD, 0.8, 1.2 alone."""
+    return _rms(
+        _errors([0, 1, 0.8, 1.2, 0.8, 1.2], [1, 1, 1, 1, 0, 0], CMU_DD_ARM_II_EFFECTS, speed)
+    )
+
+
+def perfect_model() -> Measured:
+    """Largest error of feedforward alone over the extent, ideal arm and smooth motion."""
+    held, none = np.abs(_errors([1, 0], [0, 1])).max((1, 2))
+    continuous = np.abs(_track(np.zeros((1, 2)), [False], ARM.inverse_dynamics, [[0, 0]])).max()
+    text = f"{held:.2f}° on a smooth motion without feedback, torque held for 2 ms; "
+    text += f"{scientific(continuous)}° with a continuous torque ({none:.1f}° by PD alone)"
+    return Measured(float(held / _EXTENTS.max()), text)
+
+
+def perfect_model_on_family() -> Measured:
+    """Largest error over the extent on the paper's own references, perfect model and PD."""
+    law = Feedforward(ARM, pd(KP, KD))
+    run = follow(ARM, law, pick_and_place(APPENDIX_I, _TIMES), _TIMES)
+    largest = np.rad2deg(np.abs(run.tracking_error).max((1, 2)))
+    share = largest / APPENDIX_I.max(1)
+    text = f"largest error {largest.min():.1f} to {largest.max():.1f}°, at the jump of the start"
+    return Measured(float(share.max()), text)
+
+
+def feedback() -> Measured:
+    """How many times smaller feedback makes the error that a model 20 % off leaves."""
+    with_, without = _real(1.0)[2:].reshape(2, 2)
+    text = "model 20 % off, all effects: " + ", ".join(
+        f"{significant(a, 2)}° for {significant(b, 2)}° without" for a, b in zip(with_, without)
+    )
+    return Measured(float((without / with_).min()), text)
+
+
+def coupling() -> Measured:
+    """Error under PID that models of the joints by themselves leave, over the coupled model's."""
+    motion = smooth_pick_and_place(np.broadcast_to(_EXTENTS, (3, 2)), _TIMES)
+
+    def model(q, qd, qdd):
+        return np.stack([0 * qdd[0], _OWN * qdd[1], SecondOrderModel(ARM)(q, qd, qdd)[2]])
+
+    law = Feedforward(model, PID(KP, np.array(KP) / 2, KD))
+    alone, own, coupled = _rms(np.rad2deg(follow(ARM, law, motion, _TIMES).tracking_error))
+    text = f"independent PID {significant(alone, 2)}°, with models of single joints "
+    text += f"{significant(own, 2)}°, of second order with coupling {significant(coupled, 2)}°"
+    return Measured(float(own / coupled), text)
+
+
+def off_line() -> Measured:
+    """Whether computed torque and feedforward give the same torque on the reference."""
+    motion = smooth_pick_and_place(_EXTENTS, _TIMES)
+    law = ComputedTorque(ARM, tuple(KP / _OWN), tuple(KD / _OWN)).start(motion, CONTROL_STEP)
+    on_line = np.array([law(k, motion.q[k], motion.qd[k]) for k in range(_TIMES.size)])
+    gap = np.abs(on_line - ARM.inverse_dynamics(*motion)).max()
+    text = "the same torque wherever the arm is on its reference "
+    text += f"(difference {significant(gap, 1)} N m)"
+    return Measured(bool(gap < 1e-9), text)
+
+
+def figure_2_1() -> Measured:
+    """Largest difference between Figure 2-1 as a program and the sampled simulator, degrees."""
+    t = _TIMES[::5]
+    drawn = run_system(feedforward_system(ARM, ARM, KP, KD), smooth_pick_and_place(_EXTENTS, t), t)
+    law = Feedforward(ARM, pd(KP, KD))
+    built = follow(ARM, law, smooth_pick_and_place(_EXTENTS, _TIMES), _TIMES, log_every=5)
+    gap = float(np.rad2deg(np.abs(drawn.q - built.q_true).max()))
+    text = f"drawn and run: {significant(gap, 2)}° at most from the sampled simulation"
+    return Measured(gap, text)
+
+
+def _track(rotors, frozen, model, gains, speed: float = 1.0, extents=_EXTENTS) -> np.ndarray:
+    """Tracking errors of changed arms under continuous PD control and feedforward, shape (runs,
+    time, 2).
+
+    Several arms at once on the smooth motion, by Runge-Kutta steps of a log sample.
+    """
+    frozen = np.asarray(frozen)[:, None]
+    rotors = np.asarray(rotors, dtype=float)[:, None] * np.eye(2)
+    kp, kd = np.asarray(gains) * KP, np.asarray(gains) * KD
+    samples = round(3 / speed / LOG_STEP)
+    half = np.arange(2 * samples + 1) * LOG_STEP / 2
+    motion = smooth_pick_and_place(np.broadcast_to(extents, (len(frozen), 2)), half, speed)
+    ahead = model(*motion)
+
+    def rate(k, q, qd):
+        tau = ahead[:, k] + kp * (motion.q[:, k] - q) + kd * (motion.qd[:, k] - qd)
+        posture, turning = np.where(frozen, 0.0, q), np.where(frozen, 0.0, qd)
+        torque = tau - ARM.inverse_dynamics(posture, turning, np.zeros_like(q))
+        inertia = ARM.mass_matrix(posture) + rotors
+        return np.stack([qd, np.linalg.solve(inertia, torque[..., None])[..., 0]])
+
+    x = np.zeros((2, len(frozen), 2))
+    errors = [x[0]]
+    for k in range(0, 2 * samples - 2, 2):
+        first = rate(k, *x)
+        second = rate(k + 1, *(x + LOG_STEP / 2 * first))
+        third = rate(k + 1, *(x + LOG_STEP / 2 * second))
+        fourth = rate(k + 2, *(x + LOG_STEP * third))
+        x = x + LOG_STEP / 6 * (first + 2 * second + 2 * third + fourth)
+        errors.append(motion.q[:, k + 2] - x[0])
+    return np.rad2deg(np.moveaxis(errors, 0, 1))
+
+
+def linearised(speed: float = 2.0) -> Measured:
+    """By how much feedforward shrinks what a linear arm does not explain of the error.
+
+    The arm and one frozen in its stretched posture follow the same motion, with PD alone and
+    with feedforward from a model that is 20 % too small.
+    """
+    frozen = np.array([False, True, False, True])
+
+    def model(*motion):
+        full = 0.8 * ARM.inverse_dynamics(*motion)
+        full[:2] = 0.0
+        full[3] = 0.8 * SecondOrderModel(ARM)(*motion)[3]
+        return full
+
+    errors = _track(np.zeros((4, 2)), frozen, model, np.ones((4, 2)), speed)
+    alone, ahead = _rms(errors[0] - errors[1]), _rms(errors[2] - errors[3])
+    text = f"what a linear arm does not explain falls from {significant(alone, 2)}° to "
+    text += f"{significant(ahead, 2)}° (model 20 % off, {speed:g} times the speed)"
+    return Measured(float(alone / ahead), text)
+
+
+def faster(speed: float = 2.0) -> Measured:
+    """The error of PD alone over that with a model, arm with all effects, at higher speed."""
+    slow, fast = _real(1.0), _real(speed)
+    text = f"{significant(fast[1], 2)}° with a model, {significant(fast[0], 2)}° without "
+    text += f"at {speed:g} times the speed; "
+    text += f"{significant(slow[1], 2)}° and {significant(slow[0], 2)}° at the paper's"
+    return Measured(float(fast[0] / fast[1]), text)
+
+
+@cache
+def _geared(gear: float, own_model: bool, extents: tuple) -> np.ndarray:
+    """Errors of the arm without and with gears, the joints' own loops equally fast."""
+    rotors = np.array([[0.0, 0.0], [gear**2 * PUMA_560_ROTORS[0]] * 2])
+    inertia = _OWN + rotors
+
+    def model(q, qd, qdd):
+        return own_model * inertia[:, None] * qdd
+
+    return _track(rotors, [False, False], model, inertia / _OWN, extents=np.array(extents))
+
+
+def target_for_models(gear: float = 100.0) -> Measured:
+    """What a model of each joint by itself leaves of PD's error: without over behind gears."""
+    left = [_rms(_geared(gear, own, tuple(_EXTENTS))) for own in (True, False)]
+    direct, geared = left[0] / left[1]
+    text = f"a model without coupling leaves {100 * direct:.0f} % of PD's error, "
+    text += f"{100 * geared:.0f} % behind gears of {gear:g} to 1"
+    return Measured(float(direct / geared), text)

@@ -1,4 +1,4 @@
-"""Figures of the chapter *The whole state space*."""
+"""Figures of the chapter *The whole state space*, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import NullLocator
 
+from ddlib import paper
 from ddlib._check import shaped
+from ddlib.analysis import shuffled, transition_range
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -20,8 +22,12 @@ from ddlib.figures.style import (
     plain_ticks,
 )
 from ddlib.figures.weights import dots, largest_weight
-from ddlib.learning import Weights
-from ddlib.tables import significant
+from ddlib.learning import TorqueModel, Weights
+from ddlib.metrics import rmss
+from ddlib.tables import significant, spread
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured, judged, mean, median
+from workshop.report.exact_states import random_states, states_along, torque
 
 _SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")  # the six inputs in their order
 _UNITS = ("rad", "rad/s", "rad/s²") * 2
@@ -188,3 +194,48 @@ def responses(values, activity) -> Illustration:
 def _short(size: int) -> str:
     """A number for a crowded axis: 30,000 as 30k."""
     return f"{size // 1000}k" if size >= 1000 and size % 1000 == 0 else str(size)
+
+
+# --- what the claims of the chapter measure
+
+
+def _networks() -> TorqueModel:
+    return TorqueModel.load(results.FOLDER / "networks-state-space.npz")
+
+
+def trajectory_shoulder() -> Measured:
+    """Error of the shoulder's torque on trajectory 6, by its own deviation: the median."""
+    states = states_along(paper.APPENDIX_I_EXTENTS_DEG[paper.TEST_TRAJECTORY - 1])
+    errors = rmss(_networks().torque(states), torque(states), pooled=False)[:, 0]
+    return judged(median, errors, text=f"RMSS {spread(errors)}")
+
+
+def shoulder_position() -> Measured:
+    """Change of the torque when q1 is shuffled over the mean change for the other inputs."""
+    states = random_states(2000, seed=77)
+    scale = torque(states).std(0)
+    changes = shuffled(_networks().torque, states, scale).reshape(6, -1)
+    ratio = changes[0] / changes[1:].mean(0)
+    text = f"RMSS of the change {spread(changes[0])}, other inputs {spread(changes[1:].mean(0))}"
+    return judged(median, ratio, text=text)
+
+
+def velocity_ranges() -> Measured:
+    """Share of hidden units with a transition region within the range of shoulder velocity."""
+    along = transition_range(_networks().weights)
+    within = {name: along[..., j, k] < 1 for name, j, k in (("v1", 0, 1), ("q2", 1, 0))}
+    found, elbow = (f"{100 * share.mean():.0f} %" for share in within.values())
+    return judged(mean, within["v1"], text=f"{found} of the units; of elbow position {elbow}")
+
+
+def best_of_sizes() -> Measured:
+    """Least median error on 5,000 random states over all numbers of hidden units.
+
+    There are three networks of each, too few to draw from: no replicates.
+    """
+    found = results.read("state-space-sizes")
+    rows = {row["units"]: row["solver"]["test"] for row in found["units"] if row["solver"]}
+    best = min(rows, key=lambda units: np.median(rows[units]))
+    samples = found["solver's samples in units"]
+    text = f"RMSS {spread(rows[best])} with {best} units, {samples:,} samples"
+    return Measured(float(np.median(rows[best])), text)

@@ -39,9 +39,12 @@ def _untrained(width: int, setup: str = STATE_FEEDBACK.name) -> TorqueModel:
     return TorqueModel(start, trained.inputs, trained.outputs)
 
 
-def filters(
-    width: int, layer: str, model: Callable = networks, setup: str = STATE_FEEDBACK.name
-) -> np.ndarray:
-    """Weights along the window of all units, shape ``(networks, filters, width)``."""
-    weights = getattr(model(width, setup).weights, f"{layer}_weights")
-    return weights.reshape(len(weights), -1, width)
+def both(of: Callable) -> list:
+    """What a function makes of the trained networks, and of the same before training."""
+    return [of(models) for models in (networks, _untrained)]
+
+
+def filters(width: int, layer: str, setup: str = STATE_FEEDBACK.name) -> list[np.ndarray]:
+    """Weights along the window of all units, shape ``(networks, filters, width)``; as in `both`."""
+    every = both(lambda models: getattr(models(width, setup).weights, f"{layer}_weights"))
+    return [weights.reshape(len(weights), -1, width) for weights in every]

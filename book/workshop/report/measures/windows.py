@@ -58,6 +58,21 @@ def estimates(orders: list, widths: list) -> Measured:
     return Measured(max(errors[k] for k in orders), f"relative error {shown}")
 
 
+def multiplications(width: int = 21) -> Measured:
+    """Weights of a network times the cases of an epoch."""
+    cases = len(paper.TRAINING_TRAJECTORIES) * paper.SAMPLES_PER_TRAJECTORY
+    count = Weights.random(1, width)[0].count() * cases
+    return Measured(float(count), f"{count:,} at window {width}")
+
+
+def weights_against_nwh(widths=WINDOWS) -> Measured:
+    """Weights of a network over ``n w h``, two joints and ten hidden units; furthest from 1."""
+    counts = {w: (Weights.random(1, w)[0].count(), 2 * w * paper.HIDDEN_UNITS) for w in widths}
+    ratios = [count / product for count, product in counts.values()]
+    text = ", ".join(f"{count} for {product} at {w}" for w, (count, product) in counts.items())
+    return Measured(max(ratios, key=lambda r: abs(np.log(r))), f"weights for n w h: {text}")
+
+
 def paths(width: int = 11) -> Measured:
     """Whether inputs reach the outputs through hidden units and directly, and no other way."""
     network = Weights.random(1, width)[0]
@@ -114,6 +129,19 @@ def scaling() -> Measured:
 
 def _mean_of_cells(*cells) -> np.ndarray:
     return np.mean([mean(cell) for cell in cells], axis=0)
+
+
+def training_error_falls() -> Measured:
+    """Share of steps to the next larger window at which the median training error falls."""
+    rows = results.read("window-sizes")["rows"]
+    sizes = {row["width"]: np.array(row["training"]) for row in rows}
+    steps = len(sizes) - 1
+
+    def falls(*cells):
+        return (np.diff([median(cell) for cell in cells], axis=0) < 0).mean(0)
+
+    text = f"of {steps} steps from {min(sizes)} to {max(sizes)} samples"
+    return judged(falls, *sizes.values(), text=lambda value: f"{value * steps:.0f} {text}")
 
 
 def training_is_monotone(other: int = 2) -> Measured:

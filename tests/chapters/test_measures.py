@@ -14,10 +14,16 @@ from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 from ddlib.setups import KD, KP
 from ddlib.simulation import SecondOrderModel, follow, rms, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
-from workshop.report.measures import control, dynamics, trajectories
-from workshop.report.measures.control import _EXTENTS, _TIMES, _track
+from workshop.chapters import (
+    dynamics,
+    feedback,
+    feedforward,
+    trajectories_and_recording as trajectories,
+    what_lagrange_euler_leaves_out as left_out,
+)
+from workshop.chapters.feedforward import _EXTENTS, _TIMES, _track
 
-EFFECTS = dynamics._SETUP.effects
+EFFECTS = left_out._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))
 
 # --- the loop ------------------------------------------------------------------------------------
@@ -66,7 +72,7 @@ def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
 @pytest.mark.parametrize("effects", [IDEAL, CMU_DD_ARM_II_EFFECTS], ids=["ideal", "all effects"])
 def test_runs_of_a_batch_are_runs_by_themselves(effects):
     t = np.arange(750) * 0.002
-    found = control._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0, extents=_EXTENTS)
+    found = feedforward._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0, extents=_EXTENTS)
     assert found.shape == (2, 150, 2)  # logged a hundred times a second
     motion = smooth_pick_and_place(_EXTENTS, t, 2.0)
     laws = (
@@ -80,7 +86,7 @@ def test_runs_of_a_batch_are_runs_by_themselves(effects):
 
 def test_a_stiffer_loop_under_load_by_statics():
     """At rest under a load the error of PD is the load over its gain."""
-    found = control.disturbances(2.0)
+    found = feedback.disturbances(2.0)
     with_it = float(found.text.split(": ")[1].split("°")[0])
     assert with_it == pytest.approx(np.rad2deg(2.0 / KP[0]) / np.sqrt(2), rel=0.1)
 
@@ -138,14 +144,14 @@ def test_looking_ahead_in_closed_form():
     covariance = np.linalg.inv(np.vander(x, 3).T @ np.vander(x, 3))
     at = np.array([2 * 10.0, 1.0, 0.0]), np.array([0.0, 1.0, 0.0])
     ends, middle = (np.sqrt(row @ covariance @ row) for row in at)
-    assert dynamics.looking_ahead(21).value == pytest.approx(ends / middle, rel=1e-6)
+    assert left_out.looking_ahead(21).value == pytest.approx(ends / middle, rel=1e-6)
 
 
 def test_rounding_in_differences():
     """Rounding is uniform: the difference of two readings has a sixth of a step squared."""
-    step = dynamics._SETUP.effects.encoder[0].step
-    found = dynamics.differencing()
-    torque = dynamics._SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
+    step = left_out._SETUP.effects.encoder[0].step
+    found = left_out.differencing()
+    torque = left_out._SETUP.controller.kd[0] * step / np.sqrt(6) / 0.002
     assert float(found.text.split()[0]) == pytest.approx(torque, rel=0.1)
     x = np.arange(-18, 1)
     covariance = np.linalg.inv(np.vander(x, 3).T @ np.vander(x, 3))
@@ -155,12 +161,12 @@ def test_rounding_in_differences():
 
 def test_second_differences_of_rounded_positions():
     """Rounding errors e, uniform: (e1 - 2 e0 + e-1) / T^2 has sqrt(6/12) steps over T^2."""
-    run = dynamics._ideal()
+    run = left_out._ideal()
     gain = np.sqrt((ARM.mass_matrix(run.q_true) ** 2).sum(-1).mean(0)) * np.sqrt(6 / 12) / 0.01**2
     share = gain / np.sqrt((run.tau_true[run.motion] ** 2).mean(0))
     steps = {bits: 2 * np.pi / 2**bits for bits in range(14, 21)}
-    slight = [bits for bits, step in steps.items() if (step * share).max() < dynamics._SIGNIFICANT]
-    found = dynamics.sensor_noise()
+    slight = [bits for bits, step in steps.items() if (step * share).max() < left_out._SIGNIFICANT]
+    found = left_out.sensor_noise()
     assert found.value == min(slight)
     told = [int(word) for word in found.text.split() if word.isdigit()]
     np.testing.assert_allclose(told[2:4], 100 * steps[16] * share, rtol=0.1)
@@ -168,17 +174,17 @@ def test_second_differences_of_rounded_positions():
 
 def test_where_late_position_feedback_turns():
     """With that much viscous friction the slowest pole lies on the unit circle."""
-    found = dynamics.sampling()
-    viscous = found.value * np.array(dynamics._SETUP.effects.friction[0].coefficient)
-    joints = dynamics.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
+    found = left_out.sampling()
+    viscous = found.value * np.array(left_out._SETUP.effects.friction[0].coefficient)
+    joints = left_out.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous)
     gain = np.hstack([np.diag(KP), np.zeros((2, 2))])
-    poles = np.abs(dynamics.late_poles(joints, gain, 0.002, 0.0012))
+    poles = np.abs(left_out.late_poles(joints, gain, 0.002, 0.0012))
     assert poles.max() == pytest.approx(1.0, abs=1e-6)
     assert "1.2 ms late" in found.text
     # the text's growth: from the logarithm of the default's largest pole
-    joints = dynamics.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous / found.value)
+    joints = left_out.linear.plant(ARM.mass_matrix([0.0, 0.0]), viscous / found.value)
     late, held = (
-        np.log(np.abs(dynamics.late_poles(joints, gain, 0.002, delay)).max()) / 0.002
+        np.log(np.abs(left_out.late_poles(joints, gain, 0.002, delay)).max()) / 0.002
         for delay in (0.0012, 0.0)
     )
     told = [float(x) for x in re.findall(r"(-?[\d.]+) 1/s", found.text.replace("−", "-"))]
@@ -187,7 +193,7 @@ def test_where_late_position_feedback_turns():
 
 def test_the_snap_that_is_measured_is_the_snap_of_the_reference():
     """Twist: torque through the shaft over its stiffness; left: motor inertia times its qdd."""
-    shaft = dynamics._SHAFT
+    shaft = left_out._SHAFT
     motors, stiffness = np.array(shaft.motor_inertia), np.array(shaft.stiffness)
     through = ARM.inverse_dynamics(*REFERENCE) - motors * REFERENCE.qdd
     twist = through / stiffness
@@ -195,7 +201,7 @@ def test_the_snap_that_is_measured_is_the_snap_of_the_reference():
     expected = rms(left[:, None])[0] / EFFECTS.torque_sensor[0].std[0]
     slowest = shaft.mode_frequencies(ARM, [0.0, 0.0]).min() / (2 * np.pi)
     # ten times softer: ten times the torque, and a mode slower by the root of ten
-    assert np.isclose(dynamics.snap().value, slowest * np.sqrt(expected), rtol=0.02)
+    assert np.isclose(left_out.snap().value, slowest * np.sqrt(expected), rtol=0.02)
 
 
 # --- the family and its recordings ---------------------------------------------------------------

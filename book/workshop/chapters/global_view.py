@@ -1,0 +1,138 @@
+"""What the claims of the chapter *The global view* measure: hidden units at work."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from scipy.linalg import orth
+
+from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated, transition_width
+from ddlib.learning import cases
+from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS
+from ddlib.simulation import LOG_STEP
+from ddlib.tables import significant
+from workshop.report import committed
+from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
+
+
+def in_transition(width: int) -> Measured:
+    """Median share of cases in which a hidden unit is in its transition region, 0.1 to 0.9."""
+    windows, _ = cases(committed.training(), width)
+
+    def often(models):
+        net = net_inputs(models(width), windows)
+        return 1 - saturated(1 / (1 + np.exp(-net))), transition_width(net)
+
+    (share, region), (before, _) = committed.both(often)
+    now, then = (100 * np.median(x) for x in (share, before))
+    text = f"{now:.0f} % of the time, {then:.0f} % before training; the region is "
+    text += f"{significant(np.median(region), 2)} standard deviations of the net input wide"
+    return judged(median, share, text=text)
+
+
+def spare_units(width: int, worse: float = 1.1) -> Measured:
+    """Median number of hidden units of ten that can be held still at almost no loss.
+
+    The training error then grows by less than the factor `worse`.
+    """
+    windows, torque = cases(committed.training(), width)
+
+    def spare_of(models):
+        every = models(width)
+        return np.array(
+            [
+                (
+                    ablation(one, windows, torque)[1] < worse * rmss(one.torque(windows), torque)
+                ).sum()
+                for one in (every[k] for k in range(len(every.weights)))
+            ]
+        )
+
+    spare, before = committed.both(spare_of)
+    text = f"{np.median(spare):.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "
+    return judged(median, spare, text=f"{text}{np.median(before):.0f} before training")
+
+
+def weights_and_saturation() -> Measured:
+    """Rank correlation of a unit's largest weight and the time it is saturated, all windows."""
+    cells = []
+    for width in WINDOWS:
+        model, (windows, _) = committed.networks(width), cases(committed.training(), width)
+        activity = model.weights.activity(model.scaled(windows))[0]
+        largest = np.abs(model.weights.hidden_weights).max((-2, -1))
+        cells.append((largest, saturated(activity)))
+
+    def correlation(*drawn):
+        x, y = (np.concatenate([c[k].reshape(len(c[k]), -1) for c in drawn], -1) for k in (0, 1))
+        return rank_correlation(x, y)
+
+    units = f"over {sum(largest.size for largest, _ in cells)} units"
+    return judged(correlation, *cells, text=lambda value: f"rank correlation {value:.2f} {units}")
+
+
+_RUNS = ("training", "trajectory 6")  # Where errors are taken
+
+
+@cache
+def _features(width: int, setup: str) -> tuple:
+    """Windows and hidden activities in rows, and torques, in training and on trajectory 6."""
+    runs = committed.training(setup), committed.recording(setup)[5]
+    model, found = committed.networks(width, setup), []
+    for run in runs:
+        windows, torque = cases(run, width)
+        hidden = model.weights.activity(model.scaled(windows))[0]
+        found.append((windows.reshape(len(windows), -1), hidden, torque))
+    return tuple(found)
+
+
+def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray:
+    """Errors of a linear filter of the window, by least squares: training, trajectory 6."""
+    (x, _, y), (new, _, answer) = _features(width, setup)
+    return refitted(x, y, new, answer)
+
+
+def hidden_units_add(
+    width: int = 21, setup: str = JOINT_DAMPING.name, runs: str = "training"
+) -> Measured:
+    """Error of a linear filter alone over that with the hidden units, both fitted anew."""
+    (x, hidden, y), (new, held, answer) = _features(width, setup)
+    alone = linear_alone(width, setup)[_RUNS.index(runs)]
+    pairs = [
+        refitted(np.column_stack([x, h]), y, np.column_stack([new, t]), answer)
+        for h, t in zip(hidden, held)
+    ]
+    both = np.array(pairs)[:, _RUNS.index(runs)]
+    text = f"{significant(alone, 2)} alone, {significant(np.median(both), 2)} with hidden units"
+    return judged(median, alone / both, text=text)
+
+
+def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
+    """Share of the hidden units' non-linear part that friction and rigid body explain.
+
+    Least squares takes what is linear in the window out of the hidden units' sum, of the true
+    friction torque and of the rigid body's. What is left of the sum is fitted by what is left of
+    both together; R², the better of two joints, medians over networks.
+    """
+    run, chosen = committed.training(setup), SETUPS[setup]
+    x, hidden, _ = _features(width, setup)[0]
+    weights = committed.networks(width, setup).weights
+    sums = np.einsum("mnh,moh->mno", hidden, weights.output_weights)
+    speed = run.qd_true[..., run.motion, :]
+    acceleration = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :]
+    rigid = chosen.arm.inverse_dynamics(run.q_true[..., run.motion, :], speed, acceleration)
+    axes = orth(np.column_stack([x, np.ones(len(x))]), rcond=1e-9)
+
+    def curved(y):
+        return y - axes @ (axes.T @ y)
+
+    known = [curved(y.reshape(-1, 2)) for y in (chosen.effects.friction_torque(speed), rigid)]
+    rest, told = [curved(each) for each in sums], []
+    for name, parts in (("friction", known[:1]), ("rigid body", known[1:]), ("together", known)):
+        fits = np.array(
+            [[explained(x[:, j], *(k[:, j] for k in parts)) for j in (0, 1)] for x in rest]
+        )
+        told.append("{} {:.2f} and {:.2f}".format(name, *np.median(fits, axis=0)))
+    text = f"R² {'; '.join(told)}, shoulder and elbow"
+    return judged(lambda each: np.median(each, axis=1).max(-1), fits, text=text)
