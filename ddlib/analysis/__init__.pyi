@@ -29,7 +29,6 @@ from .following import (
     followed as followed,
     gains as gains,
     mean_gradient as mean_gradient,
-    summary as summary,
 )
 from .hidden_units import (
     ablation as ablation,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ddlib._check import finite_array, number, shaped
-from ddlib.analysis.filters import CLASSES, DERIVATIVES, _odd_width, classify
+from ddlib.analysis.filters import DERIVATIVES, _odd_width
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
 
@@ -103,23 +103,3 @@ def gains(f, step: float = LOG_STEP) -> np.ndarray:
     number("step", step, 0.0, open_low=True)
     x = step * (np.arange(f.shape[-1]) - f.shape[-1] // 2)
     return np.stack([f.sum(-1), f @ x, f @ x**2 / 2], -1)
-
-
-def summary(model: TorqueModel, windows, states) -> dict:
-    """Names of an ensemble's filters and what they follow, network by network.
-
-    For each of `LAYERS` the shares of its filters by class and by the quantity that they follow
-    best, and medians of the unique shares, ``(members, 3)``; then the whole networks' gains.
-    """
-    layers: dict = {}
-    for layer, attribute in LAYERS.items():
-        f = getattr(model.weights, attribute)
-        if f.ndim != 4:
-            raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
-        names, heard = classify(f), followed(f, windows, states)
-        layers[layer] = {
-            "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
-            "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
-            "unique": np.median(heard.unique, (1, 2)),
-        }
-    return {**layers, "gains": gains(mean_gradient(model, windows))}

@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 
 from ddlib.analysis import (
-    LAYERS,
     explained,
     followed,
     gains,
     mean_gradient,
     savitzky_golay,
-    summary,
 )
 from ddlib.learning import Scaler, TorqueModel, Weights
 
@@ -76,19 +74,3 @@ def test_gains_of_textbook_filters_are_one():
     np.testing.assert_allclose(gains(TAPS, STEP), np.eye(3), atol=1e-9)
     assert gains(np.zeros((4, 2, 2, 21))).shape == (4, 2, 2, 3)
     np.testing.assert_allclose(gains([0.0, 0.0, 1.0], 0.5), [1.0, 0.5, 0.125])
-
-
-def test_a_summary_counts_network_by_network():
-    model = ensemble()
-    weights = model.weights
-    for unit, order in enumerate((2, 2, 1, 0)):
-        weights.hidden_weights[:, unit] = TAPS[order]
-    weights.hidden_weights[1, 0] = TAPS[1]  # network 1: one acceleration filter fewer
-    weights.direct_weights[:] = TAPS[2]
-    found = summary(model, WINDOWS, STATES)
-    np.testing.assert_allclose(found["hidden"]["classes"]["acceleration"][[0, 2]], 0.75)
-    np.testing.assert_allclose(found["hidden"]["follow"]["acceleration"], [0.5, 0.25, 0.5])
-    for layer in LAYERS:
-        np.testing.assert_allclose(sum(found[layer]["classes"].values()), 1)
-        assert found[layer]["unique"].shape == (3, 3)
-    np.testing.assert_allclose(found["gains"], gains(mean_gradient(model, WINDOWS)))

@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ddlib.analysis import summary
-from ddlib.learning import cases
+import numpy as np
+
+from ddlib.analysis import (
+    CLASSES,
+    LAYERS,
+    QUANTITIES,
+    classify,
+    followed,
+    gains,
+    mean_gradient,
+)
+from ddlib.learning import TorqueModel, cases
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows, true_states
 from workshop.report import results
 from workshop.report.code_hash import study
@@ -15,6 +25,26 @@ _NAME = "two harmonics"  # Name of the setup, under which its networks are kept
 
 # Orders of the second sine and seeds of its amplitudes that are tried besides
 _VARIED = ((ORDER, 1), (3, 0))
+
+
+def _summary(model: TorqueModel, windows, states) -> dict:
+    """Names of an ensemble's filters and what they follow, network by network.
+
+    For each of `LAYERS` the shares of its filters by class and by the quantity that they follow
+    best, and medians of the unique shares, ``(members, 3)``; then the whole networks' gains.
+    """
+    layers: dict = {}
+    for layer, attribute in LAYERS.items():
+        f = getattr(model.weights, attribute)
+        if f.ndim != 4:
+            raise ValueError(f"model must be an ensemble, got weights of shape {f.shape}")
+        names, heard = classify(f), followed(f, windows, states)
+        layers[layer] = {
+            "classes": {name: (names == name).mean((1, 2)) for name in CLASSES},
+            "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
+            "unique": np.median(heard.unique, (1, 2)),
+        }
+    return {**layers, "gains": gains(mean_gradient(model, windows))}
 
 
 def _cell(order, seed, width, members):
@@ -32,7 +62,7 @@ def _cell(order, seed, width, members):
         "best test": history.best_test,
         "derailed": history.derailed,
         "largest weight": model.weights.largest,
-        **summary(model, windows, states),
+        **_summary(model, windows, states),
     }
     return cell, model
 
