@@ -134,6 +134,19 @@ def _shares(verdicts) -> dict[str, float]:
     return {str(names[k]): float(counts[k] / counts.sum()) for k in order}
 
 
+def share_told(share: float) -> str:
+    """A share of the draws in words: no page says how much more than `DECIDED` it is.
+
+    Networks trained anew, even from the same seeds on a processor that rounds otherwise, are
+    another ensemble, and its share is another one.
+    """
+    if share > DECIDED:
+        return f"more than {100 * DECIDED:.0f} %"
+    if share < 1 - DECIDED:
+        return f"less than {100 * (1 - DECIDED):.0f} %"
+    return f"{100 * share:.0f} %"
+
+
 def _fresh(found: Mapping[str, float]) -> str:
     """The verdict that shares of draws give by themselves; "undecided" if none is decided."""
     best = max(found, key=found.get)
