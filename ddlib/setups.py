@@ -206,7 +206,7 @@ def train_windows(
 
 
 @dataclass(frozen=True)
-class Errors:
+class _Errors:
     """RMSS on an Appendix I recording, in each way the paper may have meant."""
 
     training: np.ndarray  #: Pooled, divided by the training set's own deviation.
@@ -218,10 +218,11 @@ class Errors:
 
     def named(self) -> dict[str, np.ndarray]:
         """The same under the names that results and tables use."""
-        return {NAMES[field.name]: getattr(self, field.name) for field in fields(self)}
+        return {_NAMES[field.name]: getattr(self, field.name) for field in fields(self)}
 
 
-NAMES = {
+# What results and tables call the fields of `_Errors`
+_NAMES = {
     "training": "training",
     "test": "test",
     "by_training_deviation": "test by training deviation",
@@ -229,18 +230,22 @@ NAMES = {
     "elbow": "test elbow",
     "desired": "test, desired positions",
 }
-"""What results and tables call the fields of `Errors`."""
 
 
-def errors(model: TorqueModel, recording: Recording) -> Errors:
-    """RMSS of a model on an Appendix I recording, one value per member each."""
+def errors(model: TorqueModel, recording: Recording) -> _Errors:
+    """RMSS of a model on an Appendix I recording, one value per member each.
+
+    Of what is returned `training` and `test` are as in Table 4-1; `shoulder`, `elbow`, `desired`
+    (the reference in place of measured positions) and `by_training_deviation` are other readings
+    of `test`. `named()` gives all by the names that tables use.
+    """
     width = model.weights.width
     training, test = split(recording)
     (x, y), (x6, y6) = cases(training, width), cases(test, width)
     desired = sliding_windows(test.reference.q, width, test.motion)
     predicted = model.torque(x6)
     by_joint = rmss(predicted, y6, pooled=False)
-    return Errors(
+    return _Errors(
         training=rmss(model.torque(x), y),
         test=rmss(predicted, y6),
         by_training_deviation=rmss(predicted, y6, scale=y.std(0)),
@@ -264,13 +269,13 @@ def predict(model: TorqueModel, recording: Recording) -> np.ndarray:
     return model.torque(sliding_windows(recording.q, model.weights.width, recording.motion))
 
 
-HULL = ConvexHull(APPENDIX_I[:5])  # of the extents of the training trajectories
+_HULL = ConvexHull(APPENDIX_I[:5])  # of the extents of the training trajectories
 
 
 def inside_hull(extents_deg) -> np.ndarray:
     """Whether extents (degrees, shape (..., 2)) lie in the hull of the training trajectories."""
     extents_deg = finite_array("extents_deg", extents_deg, 2)
-    distances = extents_deg @ HULL.equations[:, :2].T + HULL.equations[:, 2]
+    distances = extents_deg @ _HULL.equations[:, :2].T + _HULL.equations[:, 2]
     return (distances <= 1e-9).all(-1)
 
 

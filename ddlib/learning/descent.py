@@ -24,7 +24,7 @@ from ddlib.learning.training import (
     default_rate,
 )
 
-WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
+_WORKERS = min(2, torch.get_num_threads())  # threads of `train_ensemble`: OMP_NUM_THREADS, or two
 _BLOCK = 8  # most members that a thread trains side by side: what fits into a core's cache
 
 # Whether products with the inputs may go through oneDNN, by the operators that torch's compiler
@@ -100,7 +100,7 @@ def train_ensemble(
         targets = shaped("targets", targets, (members, *data.y.shape))
     integer("warm_up", warm_up, 0)
     snapshots = {integer("snapshots", e, 0, epochs) for e in snapshots}
-    count = WORKERS * math.ceil(members / (WORKERS * _BLOCK))
+    count = _WORKERS * math.ceil(members / (_WORKERS * _BLOCK))
     blocks = np.array_split(np.arange(members), min(count, members))
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
 
@@ -113,7 +113,7 @@ def train_ensemble(
     threads = torch.get_num_threads()
     torch.set_num_threads(1)  # one core for each block: no waiting at every product
     try:
-        with ThreadPoolExecutor(min(WORKERS, len(blocks))) as pool:
+        with ThreadPoolExecutor(min(_WORKERS, len(blocks))) as pool:
             parts = list(pool.map(work, blocks))
     finally:
         torch.set_num_threads(threads)

@@ -18,7 +18,7 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, number, shaped
-from ddlib.learning.descent import WORKERS
+from ddlib.learning.descent import _WORKERS
 from ddlib.learning.gauss_newton import _Objective
 from ddlib.learning.network import TorqueModel, Weights
 from ddlib.learning.training import History, TrainingSet
@@ -121,7 +121,7 @@ def solve(
         return objective.unpack(end.vector), end
 
     threads = torch.get_num_threads()
-    pool = ThreadPoolExecutor(min(WORKERS, len(members)))
+    pool = ThreadPoolExecutor(min(_WORKERS, len(members)))
     try:
         solved, ends = zip(*pool.map(work, members))
     finally:

@@ -15,7 +15,7 @@ from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
-from ddlib.setups import HULL, STATE_FEEDBACK, Setup, inside_hull
+from ddlib.setups import _HULL, STATE_FEEDBACK, Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
@@ -214,7 +214,7 @@ def _pad() -> Pad:
         Mark(x, y, str(k), "test" if k == TEST_TRAJECTORY else "training")
         for k, (x, y) in enumerate(APPENDIX_I.tolist(), 1)
     ]
-    corners = _TRAINING[HULL.vertices].tolist()
+    corners = _TRAINING[_HULL.vertices].tolist()
     label = "hull of the training set"
     return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=_SNAP)
 
