@@ -96,10 +96,14 @@ def mass_survives(shown: Mapping[str, Sequence], alt: str) -> Illustration:
                 low, middle, high = np.percentile(values, (0, 50, 100))
                 right.plot([x, x], [low, high], color=style["color"], lw=1.2)
                 right.plot(x, middle, "os^Dv*"[k % 6], color=style["color"], ms=4)
-        left.set(xlabel="penalty, share of the cases", ylabel="inertia in the filters, kg m²")
+        left.set(xlabel="penalty on squared weights", ylabel="inertia in the filters, kg m²")
         left.set_title("linear filters, by ridge")
         right.set(xlabel="epochs of descent")
-        right.set_title("networks; right end: solver")
+        right.set_title("networks")
+        solver = apart * 1.3 ** (len(chosen) / 2)
+        right.axvline(epochs[-1] * 1.7, color=INK, lw=0.6)
+        right.minorticks_off()
+        right.set_xticks([100, 1000, 10_000, solver], ["100", "1,000", "10,000", "solver"])
         handles, names = right.get_legend_handles_labels()
         handles += [
             Line2D([], [], color=INK, ls="--", lw=1.0),
