@@ -133,11 +133,11 @@ def test_bands(finds):
 
 def test_replicates_decide(finds):
     for good, fresh, sure in (
-        (100, "reproduced", "reproduced, 100 % of draws"),
+        (100, "reproduced", "reproduced, more than 95 % of draws"),
         (95, "reproduced", "reproduced, 95 % of draws"),
         (90, "undecided", "reproduced, 90 % of draws"),  # what is written still stands
         (60, "undecided", "reproduced, 60 % of draws"),
-        (3, "not reproduced", "not reproduced, 97 % of draws"),
+        (3, "not reproduced", "not reproduced, more than 95 % of draws"),
     ):
         finds(2.0, np.repeat([2.0, 9.0], [good, 100 - good]))
         claim = make()

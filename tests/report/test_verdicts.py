@@ -14,6 +14,7 @@ from workshop.report.evidence.verdicts import (
     _stands,
     bootstrap,
     mean,
+    share_told,
     turns_at,
 )
 
@@ -102,3 +103,9 @@ def test_where_a_share_reaches_a_level():
     assert turns_at(values, 0.4 / values**2, 0.2) == pytest.approx(np.sqrt(2))  # falling
     with pytest.raises(ValueError, match=r"shares must reach across 0\.5"):
         turns_at(values, 0.05 * values, 0.5)
+
+
+def test_a_share_is_told_no_more_sharply_than_it_decides():
+    told = [share_told(share) for share in (0.0, 0.049, 0.051, 0.5, DECIDED, 0.951, 1.0)]
+    ends = ["less than 5 %"] * 2, ["more than 95 %"] * 2
+    assert told == [*ends[0], "5 %", "50 %", "95 %", *ends[1]]
