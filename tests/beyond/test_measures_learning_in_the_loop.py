@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.measures.loop import learning
+from workshop.chapters import learning_in_the_loop as learning
 
 
 def test_trials_to_half_the_error(monkeypatch):

@@ -7,8 +7,9 @@ from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
 from ddlib.learning import Weights, sliding_windows
-from workshop.beyond.rivals.networks import _Convolution, _Recurrent, as_convolution
+from workshop.beyond.rivals.networks import _Convolution, _Recurrent
 from workshop.beyond.rivals.protocol import Cases
+from workshop.chapters.rivals import as_convolution
 
 
 def test_the_window_network_is_a_convolution():

@@ -16,10 +16,6 @@ _FOLDER = BOOK / "data"
 _PUBLISHED_TEST = ("e", "q", "v")  # kept for the test by the loader of Deep Lagrangian Networks
 _RATE = 1000  # samples a second of the real arm's recording
 
-# from the configuration of the TX40's source
-REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)  # turns of a motor; motor 6 turns joint 5, too
-COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)  # friction of the joints, N m
-
 
 @dataclass(frozen=True)
 class _Characters:

@@ -1,4 +1,4 @@
-"""Figures of *Three and four joints*: errors and needs by number of joints, couplings."""
+"""*Three and four joints*: errors by what was tried; figures of errors, needs and couplings."""
 
 from __future__ import annotations
 
@@ -17,6 +17,9 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
+from workshop.beyond.measures.loop.joints import DAMPED, row
+
+FED = "windows, state feedback"  # as `DAMPED`, under the other reading of the controller
 
 _MARKERS = "os^Dv*"
 
@@ -106,3 +109,19 @@ def couplings(inertia, real, unrelated, label: str, alt: str) -> Illustration:
         legend_above(figure, *axes[0].get_legend_handles_labels())
 
     return illustrate(draw, alt, 6.4, 2.7)
+
+
+def cell(joints: int, motions: int, reading: str = DAMPED) -> dict:
+    """Errors of window networks for a number of joints and of training motions."""
+    return row(reading, joints=joints, motions=motions)
+
+
+def states(joints: int, samples: int, units: int = 10) -> np.ndarray:
+    """Test errors on random states, one for each seed."""
+    return np.array(row("random states", joints=joints, units=units, samples=samples)["test"])
+
+
+def two_joints(reading: str, motions: int, kind: str = "closed loop", taps: int = 5) -> np.ndarray:
+    """Test errors on two joints, one for each seed, by how motions are followed."""
+    how = {"reading": reading, "motions": motions, "kind": kind, "taps": taps}
+    return np.array(row("closed loops", **how)["test"])

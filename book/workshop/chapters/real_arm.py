@@ -1,4 +1,4 @@
-"""Figures of *A real arm*: friction joint by joint, gains beside their nulls."""
+"""*A real arm*: its configured friction; figures of friction and gains, joint by joint."""
 
 from __future__ import annotations
 
@@ -6,7 +6,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ddlib._check import integer
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, dots_in_one, illustrate
+
+# from the configuration of the TX40's source
+REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)  # turns of a motor; motor 6 turns joint 5, too
+COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)  # friction of the joints, N m
 
 
 def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: str) -> Illustration:
@@ -72,3 +77,9 @@ def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustrati
         figure.legend(*handles, loc="outside upper left", ncols=3)
 
     return illustrate(draw, alt, 5.4, 3.0)
+
+
+def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """Medians of speed and current in groups of equally many cases of like speed."""
+    groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
+    return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))

@@ -1,10 +1,13 @@
-"""Figure of *Torques at run time*: what predicts the end-point error."""
+"""*Torques at run time*: a model of windows as feedforward; what predicts the error, drawn."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from ddlib.control import ControlLaw, Controller, Feedforward
 from ddlib.figures import (
     COLOURS,
     FAINT,
@@ -14,6 +17,8 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
+from ddlib.trajectories import Trajectory
+from workshop.beyond.control.windowed import WindowFeedforward
 
 _MARKERS = "osD^v"
 
@@ -48,3 +53,20 @@ def against(
         legend_above(figure, [handles[name] for name in names], names)
 
     return illustrate(draw, alt, 7.0, 2.9)
+
+
+@dataclass(frozen=True)
+class PlannedTorque:
+    """Torques of a planned motion by a model of windows, added to a feedback law (Figure 2-1).
+
+    `ddlib.control.Feedforward` does the same for any model; this one knows that a model of windows
+    has a sampling period, and refuses a loop that does not give it.
+    """
+
+    feedforward: WindowFeedforward
+    feedback: Controller
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s."""
+        self.feedforward.check(step)
+        return Feedforward(self.feedforward, self.feedback).start(reference, step)

@@ -1,4 +1,4 @@
-"""Figures of *Stirring*: two families' states, errors traded, paths of the hand."""
+"""*Stirring*: errors day by day; figures of two families' states, errors traded, paths."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
+from ddlib.setups import JOINT_DAMPING
+from workshop.beyond.measures.loop.stirring import row
 
 _MARKERS = "os^Dv"
 _PLANES = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
@@ -88,3 +90,17 @@ def two_families(states: dict[str, np.ndarray], alt: str) -> Illustration:
         figure.legend(handles=handles, loc="outside upper left", ncols=3)
 
     return illustrate(draw, alt, 7.0, 2.9)
+
+
+def error(
+    rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name, width: int = 21
+) -> np.ndarray:
+    """RMS torque errors of both joints together on a test, N m, one for each day."""
+    found = row(setup)
+    rows = found["errors"][rival] if width == 21 else found["wider"][str(width)]
+    return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))
+
+
+def pooled_rmss(rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name) -> np.ndarray:
+    """RMSS by the test's own deviation, one for each day."""
+    return np.array(row(setup)["errors"][rival][learnt][asked])[:, 0]

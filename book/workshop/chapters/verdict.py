@@ -1,28 +1,55 @@
-"""The ledger's picture: verdicts by section of the paper."""
+"""*The verdict*: verdicts by section of the paper and by reading, and how many would change."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 
 from matplotlib.figure import Figure
 
-from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
+from ddlib._check import one_of
+from ddlib.figures import COLOURS, INK, Illustration, illustrate, legend_above
+from ddlib.tables import Table, typeset
+from workshop.report.evidence.cards import of_kind, tally, worded
+from workshop.report.evidence.claims import SECTIONS, Claim, here, load, printed, sure
+from workshop.report.evidence.wall import window
 
-# How a bar's parts look, in the order of the verdicts
+# How a bar's parts look, in the order of the words
 _LOOKS = (
     {"color": COLOURS[2]},
     {"color": COLOURS[0], "alpha": 0.75},
+    {"facecolor": f"{COLOURS[2]}33", "edgecolor": COLOURS[2], "lw": 1},
     {"color": COLOURS[1]},
     {"color": COLOURS[3], "alpha": 0.75},
-    {"facecolor": f"{COLOURS[2]}33", "edgecolor": COLOURS[2], "lw": 1},
-    {"facecolor": "none", "edgecolor": FAINT, "lw": 1},
 )
 
 _DIGIT = 5.4  # Width of a digit in a bar, points
 
 
+def by_section() -> dict[str, dict[str, int]]:
+    """How many sentences of each section of the paper have which word."""
+    groups: dict[str, list] = {}
+    for card in sorted(of_kind("system", "methods"), key=lambda card: card.deciding[0].place()):
+        groups.setdefault(SECTIONS[card.deciding[0].place()[0]], []).append(card)
+    return {section: tally(group) for section, group in groups.items()}
+
+
+def chosen(ids: Iterable[str]) -> Table:
+    """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
+    known, rows = {claim.id: claim for claim in load()}, []
+    for claim in (known[one_of("ids", name, tuple(known))] for name in ids):
+        width, found = window(claim), here(claim)
+        told = rf"(window|at) {width}\b|\b{width} samples"
+        if width and not re.search(told, f"{claim.claim} {found}"):
+            found += f" (window {width})"
+        sentence = f"{claim.claim} ({{doc}}`{claim.chapter}`)"
+        rows.append((sentence, printed(claim), found, worded(claim, sure(claim)), claim.why))
+    header = ("claim", "printed", "here", "verdict", "why")
+    return Table(header, [tuple(map(typeset, row)) for row in rows])
+
+
 def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
-    """Verdicts by section: one bar each below its title, a part for every verdict.
+    """Sentences by section: one bar each below its title, a part for every word.
 
     A part has its number in it, unless it is too narrow to hold that.
     """
@@ -35,7 +62,7 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         starts = [0] * len(counts)
         places = range(len(counts))
         most = max(sum(row.values()) for row in counts.values())
-        room = (72 * figure.get_figwidth() - 24) / (1.05 * most)  # points for each claim
+        room = (72 * figure.get_figwidth() - 24) / (1.05 * most)  # points for each sentence
         for name, look in zip(names, _LOOKS):
             numbers = [row[name] for row in counts.values()]
             bars = axis.barh(places, numbers, left=starts, height=0.5, label=name, **look)
@@ -49,7 +76,7 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         axis.set_ylim(len(counts) - 0.6, -0.85)
         axis.set_xlim(0, 1.05 * most)
         axis.spines["left"].set_visible(False)
-        axis.set_xlabel("claims")
+        axis.set_xlabel("sentences")
         legend_above(figure, *axis.get_legend_handles_labels())
 
     rows = "; ".join(
@@ -57,4 +84,23 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
         for section, row in counts.items()
     )
     height = 1.3 + 0.46 * len(counts)
-    return illustrate(draw, f"Verdicts by section of the paper. {rows}.", 7.0, height)
+    return illustrate(draw, f"Sentences by section of the paper. {rows}.", 7.0, height)
+
+
+def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
+    """Verdicts of sentences by reading: a row for each, those that agree last."""
+    readings, rows = tuple(readings), []
+    for group in groups:
+        first = min(group.values(), key=lambda claim: len(claim.claim))
+        verdicts = [group[name].verdict if name in group else "–" for name in readings]
+        same = len({claim.verdict for claim in group.values()}) == 1
+        rows.append((same, (f"{first.claim} ({first.where})", *verdicts)))
+    rows.sort(key=lambda row: row[0])
+    return Table(("sentence", *readings), [tuple(map(typeset, row)) for _, row in rows])
+
+
+def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
+    """How many decided verdicts rest on draws, and how many of them another draw would change."""
+    decided = [claim for claim in sentences if claim.verdict != "undecided"]
+    agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
+    return len(agree), float(len(agree) - sum(agree))

@@ -37,15 +37,3 @@ def better(part: str = "trajectory 6") -> Measured:
 
     won = [one["rival"] for one, (a, b) in zip(within, cells) if np.median(a / b) < 1]
     return judged(share, *cells, text=f"{len(won)} of {len(within)}: {', '.join(won)}")
-
-
-def tested(rival: str, part: str = "torque", split: str = "loader") -> np.ndarray:
-    """Errors of a rival on the test characters, one for each seed: squares, in (N m)²."""
-    rows = results.read("characters")["rivals"][split][rival]["test"]
-    return np.array([row[part] for row in rows])
-
-
-def asked(process: str, part: str = "trajectory 6", what: str = "covered") -> np.ndarray:
-    """What ``gaussian-intervals`` found each day: the share covered, or the "rmss"."""
-    rows = results.read("gaussian-intervals")["processes"][process][part]
-    return np.array([row[what] for row in rows])

@@ -169,40 +169,6 @@ def _adam(
 _BATCH = 100  # cases of a step of descent
 
 
-def as_convolution(weights: Weights) -> nn.Module:
-    """The window network as a convolutional one, in double precision.
-
-    It takes scaled positions ``(recordings, joint, time)`` to output activities ``(recordings,
-    output, time - width + 1)``: no window is cut, and none is computed twice.
-    """
-    if weights.hidden_bias.ndim != 1:
-        raise ValueError(f"weights must be of one network, got {weights!r}")
-    return _Slid(weights)
-
-
-class _Slid(nn.Module):
-    """Two convolutions of the window's width, and one of width 1 from hidden to output units."""
-
-    def __init__(self, weights: Weights):
-        super().__init__()
-        (hidden, joints, width), outputs = weights.hidden_weights.shape, weights.output_bias.size
-        self.hidden = nn.Conv1d(joints, hidden, width)
-        self.direct = nn.Conv1d(joints, outputs, width)
-        self.output = nn.Conv1d(hidden, outputs, 1, bias=False)
-        given = {
-            self.hidden.weight: weights.hidden_weights,
-            self.hidden.bias: weights.hidden_bias,
-            self.direct.weight: weights.direct_weights,
-            self.direct.bias: weights.output_bias,
-            self.output.weight: weights.output_weights[..., None],
-        }
-        for parameter, values in given.items():
-            parameter.data = torch.tensor(values, dtype=torch.float64)
-
-    def forward(self, x):
-        return torch.sigmoid(self.direct(x) + self.output(torch.sigmoid(self.hidden(x))))
-
-
 class _Sequence(Rival):
     """A network over the window as a sequence, trained by Adam; its layers are left open.
 

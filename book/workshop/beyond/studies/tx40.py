@@ -183,12 +183,6 @@ def identified(states, current) -> _Identified:
     return _Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
 
 
-def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
-    """Medians of speed and current in groups of equally many cases of like speed."""
-    groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
-    return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))
-
-
 _HIDDEN = 10  # as in 1988
 
 # Per sample of a window: one of six joints has three times the inputs of one of two.

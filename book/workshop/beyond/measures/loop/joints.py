@@ -10,8 +10,7 @@ from ddlib.tables import significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
 
-# Parts of the result with the errors of window networks, by the reading of the controller
-DAMPED, FED = "windows", "windows, state feedback"
+DAMPED = "windows"  # part with the errors of window networks under joint damping
 
 
 def read(part: str):
@@ -19,20 +18,16 @@ def read(part: str):
     return results.read("joints")[part]
 
 
-def _row(part: str, **wanted) -> dict:
+def row(part: str, **wanted) -> dict:
     """The one row of a part whose entries have these values."""
-    (row,) = [r for r in read(part) if all(r[key] == value for key, value in wanted.items())]
-    return row
-
-
-def cell(joints: int, motions: int, reading: str = DAMPED) -> dict:
-    """Errors of window networks for a number of joints and of training motions."""
-    return _row(reading, joints=joints, motions=motions)
+    rows = [r for r in read(part) if all(r[key] == value for key, value in wanted.items())]
+    (found,) = rows
+    return found
 
 
 def errors(joints: int, motions: int, what: str = "test", reading: str = DAMPED) -> np.ndarray:
     """One error for each seed of a cell: "test", "training", or "linear" of a linear filter."""
-    return np.array(cell(joints, motions, reading)[what])
+    return np.array(row(reading, joints=joints, motions=motions)[what])
 
 
 def ladder(joints: int, what: str = "test") -> tuple[np.ndarray, list[np.ndarray]]:
@@ -44,17 +39,6 @@ def ladder(joints: int, what: str = "test") -> tuple[np.ndarray, list[np.ndarray
 def numbers() -> list[int]:
     """Numbers of joints that were tried."""
     return sorted({row["joints"] for row in read(DAMPED)})
-
-
-def states(joints: int, samples: int, units: int = 10) -> np.ndarray:
-    """Test errors on random states, one for each seed."""
-    return np.array(_row("random states", joints=joints, units=units, samples=samples)["test"])
-
-
-def two_joints(reading: str, motions: int, kind: str = "closed loop", taps: int = 5) -> np.ndarray:
-    """Test errors on two joints, one for each seed, by how motions are followed."""
-    row = _row("closed loops", reading=reading, motions=motions, kind=kind, taps=taps)
-    return np.array(row["test"])
 
 
 # --- growth -------------------------------------------------------------------------------

@@ -15,20 +15,6 @@ def row(setup: str = JOINT_DAMPING.name) -> dict:
     return results.read("stirring")["setups"][setup]
 
 
-def error(
-    rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name, width: int = 21
-) -> np.ndarray:
-    """RMS torque errors of both joints together on a test, N m, one for each day."""
-    found = row(setup)
-    rows = found["errors"][rival] if width == 21 else found["wider"][str(width)]
-    return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))
-
-
-def pooled_rmss(rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name) -> np.ndarray:
-    """RMSS by the test's own deviation, one for each day."""
-    return np.array(row(setup)["errors"][rival][learnt][asked])[:, 0]
-
-
 def hand(name: str, motion: str = "circles", setup: str = JOINT_DAMPING.name) -> np.ndarray:
     """The hand's RMS error with a feedforward: median over a family, one for each day, mm."""
     return np.median(row(setup)["hands"][name][motion], axis=1)

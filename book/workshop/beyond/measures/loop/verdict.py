@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib.tables import Table, typeset
 from workshop.report.evidence import claims
 from workshop.report.evidence.claims import Claim
 from workshop.report.evidence.verdicts import Measured
@@ -26,18 +25,6 @@ def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
             key, setup = claim.but_for_reading()
             groups.setdefault(key, {})[setup] = claim
     return [group for group in groups.values() if len(group) > 1]
-
-
-def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
-    """Verdicts of sentences by reading: a row for each, those that agree last."""
-    readings, rows = tuple(readings), []
-    for group in groups:
-        first = min(group.values(), key=lambda claim: len(claim.claim))
-        verdicts = [group[name].verdict if name in group else "–" for name in readings]
-        same = len({claim.verdict for claim in group.values()}) == 1
-        rows.append((same, (f"{first.claim} ({first.where})", *verdicts)))
-    rows.sort(key=lambda row: row[0])
-    return Table(("sentence", *readings), [tuple(map(typeset, row)) for _, row in rows])
 
 
 class _Agreement(NamedTuple):
@@ -63,13 +50,6 @@ def agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
     drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(_SHUFFLES)])
     expected = sum((first == v).sum() * (second == v).sum() for v in set(first)) / len(pairs)
     return _Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
-
-
-def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
-    """How many decided verdicts rest on draws, and how many of them another draw would change."""
-    decided = [claim for claim in sentences if claim.verdict != "undecided"]
-    agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
-    return len(agree), float(len(agree) - sum(agree))
 
 
 def changed_by_reading() -> Measured:
