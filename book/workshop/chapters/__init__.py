@@ -1,4 +1,5 @@
 """What one chapter alone shows: a module for each, with the chapter's name.
 
-``ledger`` and ``status`` have tables, ``widgets`` what is handled; the others have figures.
+Most have its figures and what its claims measure, ``ledger`` and ``status`` their tables,
+``widgets`` what is handled.
 """

@@ -4,11 +4,9 @@ A study is a function without required arguments and with the decorator `study`,
 plain dictionary. ``python -m workshop.report.reproduce NAME`` runs one.
 
 - ``table``, ``screening``: Table 4-1, on other days, longer, with clean sensors; what moves it
-- ``windows``, ``inputs``: window sizes, hidden units, states in place of windows, acceleration
+- ``windows``: window sizes, hidden units, states in place of windows, acceleration
 - ``nulls``, ``harmonics``: unrelated torques, other starts and ends; other motions
 - ``span``: learning curves along the directions of the windows
-- ``states``, ``states_sizes``: section 6
-- ``beyond``: Part IV, rivals and a real arm
-- ``loop``: Part IV, closing the loop
-- ``page``: what readers try in the pages: networks trained there, a learner in the loop
+- ``states``: section 6
+- ``page``: networks that readers train in the pages
 """
