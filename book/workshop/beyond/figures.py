@@ -19,11 +19,7 @@ def maps(
     *,
     mark=None,  # a place to mark
 ) -> Illustration:
-    """The same square once for each rival, with one scale of colours.
-
-    `edge` holds places along both axes, equally spaced; the first axis of the errors, all above 0,
-    goes to the right. The labels are those of the x axes, the y axes and the colours.
-    """
+    """The same square once for each rival; the errors' first axis, all above 0, goes right."""
     edge = shaped("edge", edge, "(places,)")
     if not errors:
         raise ValueError("errors must hold a panel or more, got none")

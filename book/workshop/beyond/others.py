@@ -19,10 +19,7 @@ _RATE = 1000  # samples a second of the real arm's recording
 
 @dataclass(frozen=True)
 class _Characters:
-    """Characters that a simulated two-joint arm with gravity draws, one after the other.
-
-    Angles are rad, the first one counted from the horizontal, torque and its parts N m.
-    """
+    """Characters that a simulated two-joint arm draws; angles from the horizontal, rad; N m."""
 
     labels: np.ndarray
     length: np.ndarray  # samples of each character

@@ -78,11 +78,7 @@ def _check_parameters(controller) -> None:
 
 
 class _RunningLaw:
-    """A running adaptive law.
-
-    Its controller's ``advance(law, estimate, wanted, q, qd)`` gives the torque and the next
-    estimate; `memory` is the controller's to use.
-    """
+    """A running adaptive law; `memory` is its controller's to use."""
 
     def __init__(self, controller, reference: Trajectory, step: float):
         self.step = number("step", step, 0.0, open_low=True)
@@ -102,7 +98,6 @@ class _RunningLaw:
 
     @property
     def estimate(self) -> np.ndarray:
-        """Estimates after the last call, shape (..., parameters)."""
         return self._kept[-1]
 
 
@@ -209,9 +204,7 @@ class _CraigHsuSastry:
     """Adaptive computed torque (Craig, Hsu & Sastry 1987): it needs the acceleration.
 
     The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
-    move by ``rate Y(q, qd, qdd)' M^-1 (de/dt + weight e)`` and are held in a box, and b where M can
-    be inverted. With `weight` below `kd` the error's equation passes energy on without gaining any
-    (it is strictly positive real).
+    move by ``rate Y(q, qd, qdd)' M^-1 (de/dt + weight e)`` and stay in a box where M is invertible.
     """
 
     kp: tuple[float, float]  # 1/s^2
@@ -255,11 +248,9 @@ class _CraigHsuSastry:
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`; the acceleration is the difference of velocities."""
         return _RunningLaw(self, reference, step)
 
     def advance(self, law, estimate, wanted, q, qd):
-        """Torque of a running law, and its estimate one period later."""
         before, held = (qd, np.zeros(2)) if law.memory is None else law.memory
         if self.acceleration is None:
             qdd = (qd - before) / law.step
@@ -287,15 +278,12 @@ def _mass(estimate, q) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _ModelReference:
-    """Gains of each joint by itself that adapt until it follows a linear model.
+    """Gains of each joint by itself that adapt until it follows a linear model (Parks 1966).
 
     The model answers ``command = qdd_ref + a1 qd_ref + a0 q_ref`` with
     ``qdd_m = command - a1 qd_m - a0 q_m``. The torque is ``phi' estimate`` with
-    ``phi = (command, -q, -qd, 1)`` of the joint, and the estimate moves by
-    ``rate phi (de/dt + weight e)`` with ``e = q_m - q``: for a joint with inertia and viscous
-    friction alone a function of e and the gains' errors never rises.
-
-    Source: Parks 1966, for each joint by itself as in Dubowsky & DesForges 1979.
+    ``phi = (command, -q, -qd, 1)``, and the estimate moves by ``rate phi (de/dt + weight e)`` with
+    ``e = q_m - q``.
     """
 
     stiffness: tuple[float, float]  # a0 of each joint's model, 1/s^2
@@ -315,7 +303,6 @@ class _ModelReference:
         number("leakage", self.leakage, 0.0)
 
     def model(self, reference: Trajectory, step: float) -> Trajectory:
-        """Motion of the model, from rest at the reference's first place, sampled every `step` s."""
         a0, a1 = np.asarray(self.stiffness), np.asarray(self.damping)
         first = reference.q[..., :1, :]
         command = reference.qdd + a1 * reference.qd + a0 * (reference.q - first)
@@ -350,10 +337,8 @@ class _ModelReference:
         return (phi * gains).sum(-1), change - drawn
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows the model of `reference`, called every `step` s."""
         return _RunningLaw(self, self.model(reference, step), step)
 
     def advance(self, law, estimate, wanted, q, qd):
-        """Torque of a running law, and its estimate one period later."""
         torque, change = self.output(estimate, wanted, q, qd)
         return torque, estimate + law.step * change

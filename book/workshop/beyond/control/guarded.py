@@ -17,12 +17,7 @@ _SPEEDS = (20.0, 20.0)  # rad/s: several times what the family of Appendix I ask
 
 @dataclass(frozen=True)
 class _Guarded:
-    """A controller whose motors are switched off where the arm leaves its limits.
-
-    From then on the run's torque is zero, and the controller inside is shown the reference in
-    place of the arm, so that a learner has nothing to learn from. Other runs go on. Limits are the
-    largest magnitudes of angles, rad, and of velocities, rad/s, of shoulder and elbow.
-    """
+    """Switches the motors off where the arm leaves its limits; a learner inside sees the plan."""
 
     controller: Controller
     angles: tuple[float, float] = _ANGLES
@@ -33,7 +28,6 @@ class _Guarded:
             positive(name, getattr(self, name), (2,))
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The guarded law; ``law.stops`` says what happened, ``law.inner`` is the law inside."""
         return _Law(self, reference, step)
 
 

@@ -36,12 +36,7 @@ def _with_one(x):
 
 
 class _OnlineNetwork:
-    """The window network with its scaling, in plain arrays that a learner replaces.
-
-    Leading axes of the weights are runs. The hidden units' weights are ``(..., hidden, joint width
-    + 1)`` with the bias last, the output units' ``(..., 2, hidden + joint width + 1)``: of hidden
-    units, of the window, the bias.
-    """
+    """The window network in plain arrays that a learner replaces; leading axes are runs."""
 
     def __init__(self, model):
         w = model.weights
@@ -76,11 +71,7 @@ class _OnlineNetwork:
         return self.outputs.low + (activity - self.outputs.target[0]) / self.outputs.gain
 
     def gradient(self, windows, error=None, torque=None) -> tuple[np.ndarray, np.ndarray]:
-        """Backpropagation: how half the squared error falls, in scaled units, mean over cases.
-
-        It is of the shapes of both layers' weights, and the direction to go. Either the wanted
-        torque is given, ``(..., cases, 2)``, N m, or what it is beyond the network's (`error`).
-        """
+        """Backpropagation of the wanted torque, or of what it is beyond the network's (`error`)."""
         seen, features = self.features(windows)
         o = self.activity(features)
         error = self.scaled(torque) - o if error is None else error * self.outputs.gain
@@ -111,7 +102,6 @@ class _OnlineDescent(_OnlineNetwork):
         self._rng, self._kept, self._steps = np.random.default_rng(seed), [], (0.0, 0.0)
 
     def learn(self, windows, torque) -> None:
-        """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
         cases = [(windows, torque)]
         if self.replay:
             drawn = self._rng.integers(0, len(self._kept), self.replay) if self._kept else ()
@@ -151,10 +141,7 @@ class LastLayer(_OnlineNetwork):
 
 
 class _LinearFilter:
-    """A linear filter of scaled windows, without hidden units, by recursive least squares.
-
-    Its weights are ``(..., 2, joint width + 1)``, N m for a scaled unit.
-    """
+    """A linear filter of scaled windows, without hidden units, by recursive least squares."""
 
     def __init__(self, inputs, weights, recursion):
         self._target, self._low, self._gain = (
@@ -173,7 +160,6 @@ class _LinearFilter:
         return self._features(windows) @ np.swapaxes(self.weights, -1, -2)
 
     def learn(self, windows, torque) -> None:
-        """Learn that windows ``(..., joint, width)`` go with torques ``(..., 2)``, N m."""
         self.estimate.update(self._features(windows), torque)
         self.weights = self.estimate.weights
 
@@ -182,15 +168,9 @@ class _LinearFilter:
 class OnlineFeedforward:
     """A learner of windows as feedforward that goes on learning while it controls.
 
-    The learner is `_OnlineDescent`, `LastLayer`, `_LinearFilter` or the like: ``torque(windows)``
-    and, by what teaches it, ``learn(windows, torque)`` or ``correct(windows, feedback)`` of one
-    window for each run. It outlives the run. Its teacher is the applied torque, with measured
-    windows; the feedback's torque, with desired windows; or nobody: then it is kept as it is when
-    the run begins.
-
-    It learns from samples at which the reference of any run moves. Measured windows are learnt
-    half a window late, when their last sample is there. Before its first and after its last
-    sample the reference is taken to rest.
+    The learner, `LastLayer` or the like, has ``torque(windows)`` and, by what teaches it,
+    ``learn(windows, torque)`` or ``correct(windows, feedback)`` of one window for each run.
+    Measured windows are learnt half a window late; outside its samples the reference rests.
     """
 
     learner: object
@@ -261,7 +241,6 @@ class _Abreast:
             integer("rows", count, 1)
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law of all of them; ``law.laws`` are theirs."""
         if reference.q.ndim < 3 or len(reference.q) != sum(self.rows):
             raise ValueError(
                 f"reference must have {sum(self.rows)} rows of runs, got {reference.q.shape}"

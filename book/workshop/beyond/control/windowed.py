@@ -22,11 +22,7 @@ _BETWEEN = ("window", "line", "hold")
 
 
 def _reference_windows(q, width: int, every: int) -> np.ndarray:
-    """A view of the windows around all samples of a reference, ``(..., time, joint, width)``.
-
-    Before the first and after the last sample the reference is taken to rest; `every` is the number
-    of steps between two samples of a window.
-    """
+    """Windows around a reference's samples, ``(..., time, joint, width)``; it rests outside."""
     reach = width // 2 * every
     ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
     padded = np.concatenate([ends[0], q, ends[1]], -2)
@@ -93,10 +89,7 @@ class WindowFeedforward:
 class _MeasuredWindows:
     """A model of windows inside the loop: what has been is measured, what is to come is desired.
 
-    The nearest thing to computed torque that a model of windows allows: up to the centre its
-    window holds measured positions, after it the plan. The model is part of the feedback then,
-    and can make the loop unstable. With `share` only so much of the measured deviation from the
-    plan is put into the windows: 0 is `PlannedTorque`, 1 what was measured. Its axes are runs.
+    So much of the measured deviation as `share` says is put into the windows; its axes are runs.
     """
 
     feedforward: WindowFeedforward
@@ -112,7 +105,6 @@ class _MeasuredWindows:
             )
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`, called every `step` s."""
         made = self.feedforward
         made.check(step)
         feedback = as_controller(self.feedback).start(reference, step)
@@ -137,11 +129,7 @@ class _MeasuredWindows:
 
 
 def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
-    """How a model's torque changes with past samples of its windows, the mean over cases.
-
-    By central differences, shape (torque, joint, width // 2 + 1), N m/rad: the oldest sample first,
-    the centre last.
-    """
+    """Mean slopes of a model's torque by past samples, N m/rad: (torque, joint, width // 2 + 1)."""
     windows = shaped("windows", windows, "(cases, joint, width)")
     joints, width = windows.shape[1:]
     found = np.empty((joints, joints, width // 2 + 1))
@@ -156,11 +144,7 @@ def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
 def _poles_inside(
     joints: control.StateSpace, feedback: PID, past, period: float, every: int = 5, late: int = 0
 ) -> np.ndarray:
-    """Poles of a sampled loop with a linear model of windows inside (`_MeasuredWindows`).
-
-    `past` are the slopes (N m/rad) of `_past_slopes`, times the share that is measured; the torque
-    comes late by so many control periods. The feedback has no integral.
-    """
+    """Poles of a sampled loop with a linear model of these slopes (`_past_slopes`) inside."""
     n = joints.ninputs
     past = shaped("past", past, f"({n}, {n}, samples)")
     integer("every", every, 1), integer("late", late, 0)

@@ -89,11 +89,7 @@ def _pearson(a, b) -> np.ndarray:
 
 
 def beyond_null(what: str = "friction", width: int = 11) -> Measured:
-    """At how many joints the typical gain is nearer the identified one than chance brings it.
-
-    The typical network has the median of the distances of single networks; chance is all but a
-    twentieth of the networks of either kind of nulls.
-    """
+    """At how many joints the typical gain is nearer the identified one than 19 of 20 nulls."""
     true, real, nulls = _gains(what, width)
     edge = np.min([np.percentile(np.abs(x / true - 1), 5, axis=0) for x in nulls], axis=0)
 
@@ -106,12 +102,7 @@ def beyond_null(what: str = "friction", width: int = 11) -> Measured:
 
 
 def follow(what: str = "friction", width: int = 11) -> Measured:
-    """Correlation over six joints of gains with the identified values, less that by chance.
-
-    Both in units of the joint's own deviations, of current over those of velocity or acceleration,
-    so that large motors do not count by their size. The median of single networks; by chance: the
-    95th percentile of single networks of unrelated currents.
-    """
+    """Correlation over joints of gains with identified values, less that by chance (95 %)."""
     unit = np.array(row(width)["deviations"][WORTH[what][0]])
     true, real, nulls = _gains(what, width)
     true, real = true * unit, real * unit
@@ -125,11 +116,7 @@ def follow(what: str = "friction", width: int = 11) -> Measured:
 
 
 def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
-    """At how many joints the own filter follows a quantity more than on unrelated currents.
-
-    Of the direct weights from a joint to its own motor: what the quantity explains of the filter's
-    output, and position and the other one do not. More than 19 of 20 networks of either null.
-    """
+    """At how many joints the own filter follows a quantity more than 19 of 20 nulls."""
     real, nulls = _members(width, f"unique {what}")
     edge = np.max([np.percentile(x, 95, axis=0) for x in nulls], axis=0)
     pairs = zip(np.median(real, 0), edge)
@@ -152,11 +139,7 @@ def shares_follow(width: int = 21) -> Measured:
 
 
 def compensate_friction(width: int = 21) -> Measured:
-    """Share of the hidden units' non-linear part that friction and rigid body explain.
-
-    Median of six outputs, beside it what single networks of unrelated currents reach; least squares
-    takes out what is linear in the window.
-    """
+    """Share of the hidden units' non-linear part that friction and rigid body explain."""
     found = row(width)
     curved = np.array(found["curved"])
     told = ", ".join(significant(x, 2) for x in np.median(curved, 0))

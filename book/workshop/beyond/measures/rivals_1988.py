@@ -51,10 +51,7 @@ def degrades(over: str = "states") -> Measured:
 
 
 def full_cells(way: str) -> int:
-    """Cells of each axis at which a table of the whole square is as good as the network.
-
-    They hold one torque ("constant"), or are interpolated between corners ("multilinear").
-    """
+    """Cells of each axis at which a table of the whole square is as good as the network."""
     full = results.read("rivals-tables")["full"]
     good = np.array(full[way]) <= PRINTED
     if not good.any():

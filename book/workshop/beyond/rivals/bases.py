@@ -82,11 +82,7 @@ class _Solution(NamedTuple):
 
 
 class _Basis(Rival):
-    """Torque as a sum of functions of the state, fitted by least squares.
-
-    States are scaled so that the training states' box has edges from -1 to 1. The mean torque is
-    free of the penalty `ridge` on squared coefficients.
-    """
+    """Torque as a sum of functions of the state, scaled to -1 to 1, fitted by least squares."""
 
     def __init__(self, ridge: float = 0.0):
         self.ridge = number("ridge", ridge, 0.0)
@@ -125,7 +121,6 @@ class _Basis(Rival):
         return self._functions(((x - self.centre) / self.half).reshape(len(x), -1))
 
     def count(self):
-        """Numbers kept."""
         return self.coefficients.size + self.mean.size + self.centre.size + self.half.size
 
 
@@ -167,11 +162,7 @@ class Polynomial(_Basis):
 
 
 class _Fourier(_Basis):
-    """A Fourier series of the state: sines and cosines of waves in all directions.
-
-    `order` is the largest sum of a wave's whole numbers of periods along all axes, `period` that
-    of the longest wave in edges of the box: over 1, so that opposite sides may differ.
-    """
+    """A Fourier series of the state; `period` of the longest wave is in edges of the box."""
 
     def __init__(self, order: int = 2, period: float = 2.0, ridge: float = 0.0):
         super().__init__(ridge)
@@ -189,7 +180,6 @@ class _Fourier(_Basis):
         return np.concatenate([np.ones((len(u), 1)), np.cos(angle), np.sin(angle)], 1)
 
     def operations(self):
-        """Arithmetic of one prediction."""
         (waves, variables), (terms, joints) = self.waves.shape, self.coefficients.shape
         steps = int(np.abs(self.waves).sum()) - waves  # sums of the scaled axes
         return Operations(

@@ -27,12 +27,7 @@ _TINY = 1e-9  # share of the torque below which what is left over counts as roun
 
 
 class _Inputs:
-    """Inputs of a kernel: each number standardised, or the leading directions of the windows.
-
-    Neighbouring positions are nearly equal, and what tells a torque is their small differences.
-    Directions are the principal ones of the training inputs, each scaled to unit variance, so that
-    a kernel sees small ones as well as large ones.
-    """
+    """Inputs of a kernel: each number standardised, or the leading directions of the windows."""
 
     def __init__(self, x, directions: int | None = None):
         flat = x.reshape(len(x), -1)
@@ -53,11 +48,9 @@ class _Inputs:
         return (x.reshape(len(x), -1) - self.mean) @ self.matrix
 
     def count(self) -> int:
-        """Stored numbers."""
         return self.mean.size + (self.mean.size if self.diagonal else self.matrix.size)
 
     def operations(self) -> Operations:
-        """Arithmetic of one case."""
         inputs, features = self.matrix.shape
         if self.diagonal:
             return Operations(inputs, inputs)
@@ -154,11 +147,7 @@ class GaussianProcess(Rival):
 
 
 class _SemiParametric(Rival):
-    """The arm's equations with friction, and Gaussian processes for what they leave.
-
-    The parameters `names` come first, by weighted least squares; `options` are those of
-    `GaussianProcess` (Nguyen-Tuong & Peters 2010).
-    """
+    """The arm's equations, and Gaussian processes for the rest (Nguyen-Tuong & Peters 2010)."""
 
     def __init__(self, names: Sequence[str] = (*RIGID, *GRAVITY, *FRICTION), **options):
         self.known = Identified(names)
@@ -185,11 +174,9 @@ class _SemiParametric(Rival):
         return np.zeros(x.shape[:2]) if self.exact else self.rest._deviation(x)
 
     def count(self):
-        """Stored numbers: the parameters, and the processes."""
         return self.known.count() + (0 if self.exact else self.rest.count())
 
     def operations(self):
-        """Arithmetic of the equations and the processes."""
         own = self.known.operations()
         if self.exact:
             return own
@@ -198,12 +185,7 @@ class _SemiParametric(Rival):
 
 
 class _RandomFeatures(Rival):
-    """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007).
-
-    Their products approach a squared exponential kernel as they become more, so this is a Gaussian
-    process at a fixed number of stored numbers. The length of the kernel and the penalty are those
-    of the least error when each case in turn is left out.
-    """
+    """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007)."""
 
     PENALTIES = tuple(np.logspace(-10, 2, 13))
 
@@ -241,12 +223,10 @@ class _RandomFeatures(Rival):
         return self.level + self.unit * found.reshape(len(x), -1)
 
     def count(self):
-        """Stored numbers: cosines, weights and scaling."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
         return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
 
     def operations(self):
-        """Arithmetic of all cosines and their sum."""
         inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
         return Operations(
             own.multiplications + self.features * (inputs + joints),

@@ -65,10 +65,7 @@ class _Units(NamedTuple):
 
 
 class _Energies(nn.Module):
-    """The network: from positions to a lower triangle, a gravity torque, and their derivatives.
-
-    Derivatives by the positions go forward through the layers, beside the activities.
-    """
+    """The network: from positions to a lower triangle, a gravity torque, and their derivatives."""
 
     def __init__(self, joints, hidden, gravity, diagonal, gain, bias, friction, generator):
         super().__init__()
@@ -95,10 +92,7 @@ class _Energies(nn.Module):
         self.register_buffer("places", places.flatten(1))
 
     def forward(self, q, slope):
-        """Triangle ``(n, j, j)``, its derivatives ``(k, n, j, j)``, gravity and potential.
-
-        `q` holds scaled positions, `slope` their derivatives by the positions, (joint,).
-        """
+        """Triangle ``(n, j, j)``, its derivatives ``(k, n, j, j)``, gravity and potential."""
         x, d = q, torch.diag(slope)[:, None]
         for layer in self.layers:
             a = layer(x)

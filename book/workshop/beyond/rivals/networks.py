@@ -27,12 +27,7 @@ from workshop.beyond.rivals.protocol import _KINDS, Rival
 
 
 class _Network(Rival):
-    """A network with sigmoid hidden units and direct weights; how it is trained is left open.
-
-    Positions of a window are scaled by the joint's range, states by that of each quantity. The
-    scaling of the inputs goes into the weights and biases and is not stored for itself. Initial
-    weights are uniform in plus or minus `initial`.
-    """
+    """A network with sigmoid hidden units and direct weights; how it is trained is left open."""
 
     def __init__(
         self, hidden=HIDDEN_UNITS, kind="windows", *, initial=0.3, scaling=(0.0, 1.0), seed=0
@@ -67,12 +62,10 @@ class _Network(Rival):
         return self.model.torque(self._even(x))
 
     def count(self):
-        """Stored numbers: weights, biases, and the scaling of the torques."""
         weights = self.model.weights
         return weights.count(biases=True) + 2 * weights.output_bias.size
 
     def operations(self):
-        """As section 3.2 counts, with the sigmoids: each weight one product and one sum."""
         weights = self.model.weights
         units = weights.hidden_bias.size + weights.output_bias.size
         each, outputs = weights.count(), weights.output_bias.size
@@ -137,12 +130,7 @@ class _ByAdam(_Network):
 def _adam(
     module: torch.nn.Module, x, y, epochs: int, rate: float, decay: float, batch=None, seed=0
 ) -> float:
-    """Train a module in place by Adam with decoupled weight decay (Loshchilov & Hutter 2019).
-
-    It takes scaled inputs ``(cases, joint, rows)`` to targets ``(cases, output)``. The step size
-    falls from `rate` along half a cosine; a `batch` of cases is drawn anew in each epoch, by
-    default all. The mean squared error of the last step's cases before it is returned.
-    """
+    """Train a module in place by Adam with decoupled weight decay (Loshchilov & Hutter 2019)."""
     number("rate", rate, 0.0, open_low=True)
     number("decay", decay, 0.0)
     x, y = (torch.as_tensor(np.array(each), dtype=torch.float32) for each in (x, y))
@@ -170,11 +158,7 @@ _BATCH = 100  # cases of a step of descent
 
 
 class _Sequence(Rival):
-    """A network over the window as a sequence, trained by Adam; its layers are left open.
-
-    Each joint's window enters as its middle position and the deviations from it, both scaled to
-    a deviation of 1; torques likewise. The scaling counts among the stored numbers.
-    """
+    """A network over the window as a sequence, by Adam: its middle, and deviations from it."""
 
     kind = "windows"
 
@@ -217,7 +201,6 @@ class _Sequence(Rival):
         return self.offset + self.spread * found.numpy().astype(float)
 
     def count(self):
-        """Stored numbers: weights, biases and all scaling."""
         numbers = sum(p.numel() for p in self.network.parameters())
         return numbers + 4 * len(self.scale[0][0]) + 2 * self.offset.size
 
@@ -244,7 +227,6 @@ class _Convolution(_Sequence):
         )
 
     def operations(self):
-        """Arithmetic of both convolutions with their units, and of the last layer."""
         products = units = 0
         length = self._shape[1]
         for layer in self.network:
@@ -266,7 +248,6 @@ class _Recurrent(_Sequence):
         return _LastState(2 * joints, self.channels, outputs)
 
     def operations(self):
-        """Arithmetic of all steps of the unit along the window, and of the last layer."""
         steps, units = self._shape[1], self.channels
         gates = self.network.recurrent
         products = gates.weight_ih_l0.numel() + gates.weight_hh_l0.numel() + 3 * units

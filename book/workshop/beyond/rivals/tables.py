@@ -43,11 +43,7 @@ def table_size(
 
 
 def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes around points of the unit cube, and their weights in multilinear interpolation.
-
-    Of points ``(points, axes)`` they are of shape ``(points, 2**axes, axes)`` and ``(points,
-    2**axes)``.
-    """
+    """Nodes around points ``(points, axes)`` of the unit cube, and their multilinear weights."""
     u = shaped("u", u, "(points, axes)")
     low = np.clip(np.floor(u * cells).astype(int), 0, cells - 1)
     part = u * cells - low
@@ -66,12 +62,7 @@ def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
 def _full_table(
     function: Callable, x, limits, cells: int, *, interpolated: bool = True
 ) -> np.ndarray:
-    """What a table would answer that has the right torque in every cell, shape (cases, joint).
-
-    `function` gives the torques of states, and is asked at the nodes that are needed alone: at the
-    corners of the cells, between which it is multilinear, or at the middles. `limits` are the least
-    and the largest values, shape (2, joint, 3).
-    """
+    """What a table would answer that has the right torque in every cell, shape (cases, joint)."""
     low, high = limits = shaped("limits", limits, "(2, joint, 3)")
     x = shaped("x", x, f"(cases, {limits.shape[1]}, 3)")
     u = _inside(x, low, high, "refuse").reshape(len(x), -1)
@@ -89,12 +80,7 @@ def _full_table(
 
 
 class _Bounded(Rival):
-    """A rival that has room for a box of states and no other.
-
-    The box is given by `limits`, the least and largest states, or else that of the training states,
-    wider by `MARGIN` of its edge on each side. A state outside is refused by a ValueError, or, with
-    ``beyond="edge"``, taken to the edge.
-    """
+    """A rival with room for a box of states alone; one outside is refused, or taken to the edge."""
 
     def __init__(self, limits=None, beyond: str = "refuse"):
         self.limits = limits if limits is None else shaped("limits", limits, "(2, joint, 3)")
@@ -137,10 +123,7 @@ def _inside(x, low, high, beyond) -> np.ndarray:
 
 
 class _Nearest(_Bounded):
-    """All training cases are kept; the torque is that of the nearest.
-
-    Distances are in units of the training states' standard deviation, each quantity its own.
-    """
+    """All training cases are kept; the torque is that of the nearest, in deviations."""
 
     def _fit(self, x, torque):
         self._bound(x)
@@ -153,11 +136,9 @@ class _Nearest(_Bounded):
         return self._torques[self._tree.query((x / self.deviation).reshape(len(x), -1))[1]]
 
     def count(self):
-        """Numbers kept."""
         return self._tree.data.size + self._torques.size + self.deviation.size
 
     def operations(self):
-        """Arithmetic of one prediction."""
         cases, axes = self._tree.data.shape
         return Operations(axes + cases * axes, cases * (2 * axes - 1))
 

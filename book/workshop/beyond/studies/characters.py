@@ -64,19 +64,13 @@ _ENTRIES = {
 
 
 def states(drawn: _Characters, turned: float = np.pi / 2) -> Cases:
-    """States and torques of characters, the first angle from hanging down.
-
-    Without being turned it is as the public code takes it, from the horizontal.
-    """
+    """States and torques of characters, the first angle turned to count from hanging down."""
     q = drawn.q + np.array([turned, 0.0])
     return Cases(np.stack([q, drawn.qd, drawn.qdd], -1), drawn.tau, "states", drawn.STEP)
 
 
 def _parts(torque: Callable, x) -> dict[str, np.ndarray]:
-    """Parts of the torques (N m) that a predictor gives for states ``(cases, joint, 3)``.
-
-    Also its mass matrix, ``(cases, joint, joint)``, kg m^2; the rest is ``(cases, joint)``.
-    """
+    """Torque, its parts (N m) and mass matrix (kg m^2) that a predictor gives for states."""
     rest, moved, pushed = x.copy(), x.copy(), x.copy()
     rest[..., 1:], moved[..., 2], pushed[..., 1] = 0.0, 0.0, 0.0
     gravity = torque(rest)

@@ -42,10 +42,7 @@ def _asked(rival, cases: Cases) -> dict:
 
 @study
 def gaussian_intervals() -> dict:
-    """Share of measured torques in the intervals of several processes, on several days.
-
-    They are asked for the windows of trajectories 1 to 5 that were kept out, and for trajectory 6.
-    """
+    """Share of measured torques in the intervals of several processes, on several days."""
     rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in _PROCESSES}
     for day in range(1, _DAYS + 1):
         training, six = split(JOINT_DAMPING.repeated(day).record())

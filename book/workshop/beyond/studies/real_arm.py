@@ -133,10 +133,7 @@ def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.nda
 
 
 def _described(model: TorqueModel, data: Windowed, targets) -> dict:
-    """Of each network: errors, gains on the joint's own motion, names and shares of filters.
-
-    Of all pairs, ``(quantile, output, joint, 2)``, the gains on velocity and acceleration.
-    """
+    """Of each network: errors, gains on the joint's own motion, names and shares of filters."""
     w = model.weights
     whole = gains(mean_gradient(model, data.x), data.step)
     own = np.arange(6)
@@ -301,11 +298,7 @@ def _memory(members: int) -> dict:
 
 @study
 def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
-    """Errors by blocks and windows, what changes them, and the filters beside their nulls.
-
-    Errors are mean squares over the whole recording's variance, one for each block, network and
-    output; gains are in A s/rad and A s^2/rad.
-    """
+    """Errors by blocks and windows, what changes them, and the filters beside their nulls."""
     return {
         "members": members,
         "filters": filters,

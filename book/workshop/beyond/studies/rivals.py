@@ -28,11 +28,7 @@ _INPUTS = ("positions", "exact states")  # windows of measured positions, or sta
 
 
 def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
-    """What rivals learn from and are tested on, on one day; and windows of the whole square.
-
-    For each of `_INPUTS` there are cases by name: training, trajectory 6; inside and outside, the
-    trajectories of the square on either side of the training hull.
-    """
+    """Cases of one day by `_INPUTS` and name (inside and outside the hull), and the square's."""
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
     whole = square(setup, GRID)
@@ -72,11 +68,7 @@ def _floors(sets: dict) -> dict:
 
 @study
 def rivals() -> dict:
-    """Every line of `_LINES` at all its sizes, on several days.
-
-    A row for each rival, size and kind of inputs; errors and times have a value for each day. The
-    torques of the first day go into `TORQUES`.
-    """
+    """Every line of `_LINES` at all its sizes, on several days; torques go into `TORQUES`."""
     rows, torques, floor = {}, {}, None
     for day in range(1, _DAYS + 1):
         sets, asked = recorded(day)

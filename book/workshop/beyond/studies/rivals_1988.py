@@ -138,12 +138,7 @@ def _families() -> dict[str, list[Rival]]:
 
 
 def _around(kind: str, days) -> dict:
-    """What learnt one trajectory: its error there by repetitions, and all over the square.
-
-    Errors are in units of the practised trajectory's deviation. Of each family of tables the
-    number of cells is the one that does best on the same trajectory on a day of its own. "Varied":
-    the same tables from as many different trajectories, drawn at random.
-    """
+    """What learnt one trajectory: its error there by repetitions, and all over the square."""
     names = (*_families(), *(f"{name}, varied" for name in _VARIED))
     found, floor = {name: [] for name in names}, []
     for day in days:
@@ -307,10 +302,7 @@ _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 
 @study
 def rivals_bases(days=_DAYS) -> dict:
-    """Errors of polynomials and Fourier series by degree and penalty; which one is chosen.
-
-    On exact states Chebyshev's polynomials alone; choices are made on positions only.
-    """
+    """Errors of polynomials and Fourier series by degree and penalty; which one is chosen."""
     rows, chosen = [], {}
     for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}

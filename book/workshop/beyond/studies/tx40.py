@@ -132,10 +132,7 @@ def _best_penalty(data: Windowed, training) -> float:
 
 
 def known_structure(states, current, new, friction: bool = True) -> np.ndarray:
-    """Currents ``(others, 6)`` at `new` states by least squares on known terms, joint by joint.
-
-    States ``(cases, 6, 3)`` and currents ``(cases, 6)`` are fitted, with or without friction.
-    """
+    """Currents ``(others, 6)`` at `new` states by least squares on known terms, by joint."""
     return np.stack(
         [
             _fitted(joint_columns(states, j, friction), current[:, j])
@@ -193,11 +190,7 @@ _EPOCHS = 2000  # of all networks but the longest
 
 def trained(x, y, members: int, seed: int, width: int, snapshots=(), targets=None, hidden=_HIDDEN,
             epochs: int = _EPOCHS) -> tuple[TorqueModel, dict, TrainingSet]:  # fmt: skip
-    """Networks by descent on windows ``(cases, 6, width)`` and currents ``(cases, outputs)``.
-
-    ``targets`` ``(members, cases, outputs)`` are currents of each network in place of `y`. With
-    the model come models of the epochs in ``snapshots``, and the data.
-    """
+    """Networks by descent on windows and currents; models of `snapshots`; the data."""
     data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     start = Weights.random(members, width, hidden, x.shape[1], y.shape[1], seed=seed)
     scaled = None if targets is None else data.outputs.scale(targets)
@@ -221,10 +214,7 @@ def _both(model: TorqueModel, data: Windowed, fold) -> list[np.ndarray]:
 
 
 def _decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueModel:
-    """One network by quasi-Newton steps on half the mean squared error with weight decay.
-
-    Half of the decay times the sum of squared weights, biases left out, is added.
-    """
+    """One network by quasi-Newton steps on half the mean squared error with weight decay."""
     data = TrainingSet.from_arrays(x, y, scaling=_SCALING)
     flat = data.x.reshape(len(data.x), -1)
     names = ("hidden_weights", "hidden_bias", "output_weights", "direct_weights", "output_bias")

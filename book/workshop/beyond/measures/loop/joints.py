@@ -45,11 +45,7 @@ def numbers() -> list[int]:
 
 
 def _needed(joints: int, level: float) -> tuple[float, np.ndarray]:
-    """Training motions from which on the median RMSS is below a level, and in each draw.
-
-    Between the numbers tried both go linearly on logarithmic scales. Infinite if the largest number
-    is not enough; the least number tried if that is.
-    """
+    """Training motions from which on the median RMSS is below a level, and in each draw."""
     motions, cells = ladder(joints)
     crossing = _crossing(motions, level)
     # a seed's motions are among those of its longer draws: seeds are drawn for a whole ladder
@@ -77,10 +73,7 @@ def _crossing(motions, level) -> Callable:
 
 
 def law(level: float = 0.2) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Joints, motions that they need, and exponents of a power law from two joints on.
-
-    Of motions, ``(draws + 1, joints)``, and exponents the medians come first, then the replicates.
-    """
+    """Joints, motions that they need, exponents of a power law: medians first, then replicates."""
     joints = np.array([n for n in numbers() if n >= 2])
     each = [_needed(n, level) for n in joints]
     motions = np.column_stack([np.append(value, drawn) for value, drawn in each])

@@ -7,12 +7,7 @@ from workshop.report.evidence.verdicts import Measured
 
 
 def multiplications(hidden: int = 10, inputs: int = 42, every: int = 5, replay: int = 15) -> dict:
-    """Multiplications of the torque, and of each way to learn, in a control period on average.
-
-    Of `hidden` units, two outputs and `inputs` numbers in a window; a learner works `every` so many
-    control periods, and may learn `replay` samples again. Sigmoids, divisions and scaling are not
-    counted.
-    """
+    """Multiplications of the torque and of each way to learn, in a control period on average."""
     features = hidden + inputs + 1
     torque = hidden * inputs + 2 * (hidden + inputs)
     # delta: o (1 - o) e; through the output weights and h (1 - h); all products times the rate

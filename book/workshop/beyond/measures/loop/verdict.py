@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from workshop.report.evidence import claims
+from workshop.report.evidence import cards, claims
 from workshop.report.evidence.claims import Claim
 from workshop.report.evidence.verdicts import Measured
 
@@ -15,10 +15,7 @@ _SHUFFLES = 10_000  # permutations that stand for chance
 
 
 def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
-    """Sentences judged under two or more readings of "a proportional controller".
-
-    Of each its claims by the name of the reading, as `Claim.but_for_reading` tells them apart.
-    """
+    """Sentences judged under two or more readings of section 4: claims by the reading's name."""
     groups: dict[tuple, dict[str, Claim]] = {}
     for claim in sentences:
         if claim.is_measured:
@@ -28,11 +25,7 @@ def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
 
 
 class _Agreement(NamedTuple):
-    """How often two lists of verdicts agree, and shuffled ones do.
-
-    ``expected`` is how many would be alike if one list were shuffled, ``chance`` the share of the
-    shuffles in which at least as many are.
-    """
+    """How many pairs are alike, how many would be, shuffled, and how often as many are."""
 
     pairs: int
     same: int
@@ -73,8 +66,7 @@ def pairs_on(arm: str) -> list[tuple[str, str]]:
 
 
 def reproduced_share() -> Measured:
-    """Share of reproduced sentences among the paper's that could have been refuted."""
-    left_out = ("by construction", "not testable")
-    verdicts = [c.verdict for c in claims.of_the_paper() if c.verdict not in left_out]
-    count = verdicts.count("reproduced")
-    return Measured(count / len(verdicts), f"{count} of {len(verdicts)}")
+    """Share of the paper's sentences that are reproduced, each counted once."""
+    found = cards.tally(cards.of_kind("system", "methods"))
+    count, total = found["reproduced"], sum(found.values())
+    return Measured(count / total, f"{count} of {total}")

@@ -57,10 +57,7 @@ class _Chain:
         return self.arm.inverse_dynamics(q, qd, qdd) + friction
 
     def answer(self, t_steps: int, before: int, motion: str = "answered") -> np.ndarray:
-        """States ``(t_steps, joint, 3)``, `LOG_STEP` apart, that answer a reference of 1 rad.
-
-        The motion begins after so many samples ``before`` it, and is one of `_MOTIONS`.
-        """
+        """States ``(t_steps, joint, 3)`` that answer 1 rad, asked for after `before` samples."""
         one_of("motion", motion, _MOTIONS)
         omega = np.pi / MOTION_SECONDS
         if motion == "sine":
@@ -120,18 +117,12 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> _Chain:
 
 
 def extents(joints: int, motions: int, seed: int) -> np.ndarray:
-    """Extents drawn in the way of Appendix I, degrees, ``(motions, joints)``.
-
-    The first motions of a longer draw are those of a shorter one.
-    """
+    """Extents as in Appendix I, degrees; the first of a longer draw are those of a shorter one."""
     return np.random.default_rng((seed, joints)).uniform(0.0, MAX_EXTENT_DEG, (motions, joints))
 
 
 def moved(chain: _Chain, extents_deg, motion: str = "answered") -> np.ndarray:
-    """True states ``(runs, time, joint, 3)`` of motions with `_REACH` samples of rest around them.
-
-    Extents are in degrees, ``(runs, joint)``; states in rad, rad/s and rad/s^2.
-    """
+    """True states ``(runs, time, joint, 3)`` of motions with `_REACH` samples of rest around."""
     extents_deg = shaped("extents_deg", extents_deg, f"(runs, {chain.joints})")
     samples = round(MOTION_SECONDS / LOG_STEP) + 2 * _REACH
     unit = chain.answer(samples, _REACH, motion)

@@ -55,10 +55,7 @@ _REST = arms._SPACING * LOG_STEP  # s, from one tap of a window to the next
 
 
 def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) -> Solution:
-    """One network trained on windows (or states) and torques; ``test`` holds both, too.
-
-    ``seed`` is that of the initial weights; ``**options`` are the solver's, and ``initial``.
-    """
+    """One network trained on windows (or states) and torques; ``test`` holds both, too."""
     joints, width = windows.shape[1:]
     data = TrainingSet.from_arrays(windows, torque)
     initial = options.pop("initial", INITIAL)
@@ -90,10 +87,7 @@ def linear(training: arms._Sample, test: arms._Sample) -> float:
 def _identified(
     made: arms._Chain, training: arms._Sample, test: arms._Sample
 ) -> tuple[float, float]:
-    """Errors (training, test) of the equations with friction, by least squares.
-
-    States come from a polynomial through each window, of the degree, 3 or 4, that fits better.
-    """
+    """Errors (training, test) of the equations with friction, of the better of two degrees."""
     scale, found = training.torque.std(0), []
     for degree in (3, 4):
         first = _equations(made, training.windows, degree)
@@ -109,10 +103,7 @@ def _identified(
 
 
 def _equations(made: arms._Chain, windows, degree: int) -> np.ndarray:
-    """Regressor of rigid body and friction, ``(cases, joint, parameters)``.
-
-    Its states are those of polynomials of this degree through the windows.
-    """
+    """Regressor of rigid body and friction at states of polynomials through the windows."""
     states = windows @ _derivative_filters(windows.shape[-1], _REST, degree).T
     speed, own = states[..., 1], np.eye(made.joints)
     rigid = regressor(made.arm, *np.moveaxis(states, -1, 0))

@@ -152,7 +152,6 @@ class _Windows:
         self.feedback, self.limit = draw.setup.controller, draw.limit
 
     def controller(self, learning=True):
-        """A controller for one run, learning or as it is now."""
         teacher = self.teacher if learning else "nobody"
         return OnlineFeedforward(self.learner, self.feedback, _WIDTH, teacher, limit=self.limit)
 
@@ -167,11 +166,9 @@ class _Memory:
         self.memory = MotionMemory(draw.setup.controller, *MEMORY[draw.setup.name])
 
     def controller(self, learning=True):
-        """A controller for one run, learning or as it is now."""
         return Watched(self.memory)
 
     def keep(self, watched):
-        """Go on from what the controller of a run has learnt."""
         self.memory.learn(watched.law)
 
 

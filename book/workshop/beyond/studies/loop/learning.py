@@ -25,11 +25,7 @@ _RATES = (0.1, 0.3, 1.0, 3.0, 10.0)  # multiples of the rates chosen
 
 
 def _trial(draw: learners.Draw, controllers, rows, references, t, arm: Arm | None = None):
-    """End-point errors (mm, RMS over the motion) and stops of one trial of controllers abreast.
-
-    Errors have shape (rows, seeds), references (rows, seeds, time, 2); ``rows`` are those of each
-    controller, as in `_Abreast`.
-    """
+    """End-point errors (mm, RMS), (rows, seeds), and stops of one trial of controllers abreast."""
     arm, guard = arm or draw.setup.arm, Watched(_Guarded(_Abreast(controllers, rows)))
     run = follow(arm, guard, references, t, effects=draw.effects)
     off = np.linalg.norm(end_point_error(arm, run.reference.q, run.q_true), axis=-1)

@@ -95,11 +95,7 @@ def random_circles(runs: int, seed: int) -> Circles:
 
 
 def _pace(t, start: str = "jump") -> np.ndarray:
-    """Time as a motion sees it, with its two derivatives, shape (3, time).
-
-    "jump": full speed from the first moment to the last, as in Appendix I; "smooth": speed rises
-    and falls within `_RAMP` with continuous acceleration, so that the motion goes less far.
-    """
+    """Time as a motion sees it, with two derivatives; speed jumps, or rises within `_RAMP`."""
     t = shaped("t", t, "(time,)")
     one_of("start", start, ("jump", "smooth"))
     inside = np.clip(t, 0.0, MOTION_SECONDS)
@@ -130,10 +126,7 @@ def stirred(
 
 
 def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
-    """From rest at zero through points ``(runs, points, 2)``, rad, and back, by quintic splines.
-
-    Points follow each other at equal times; the first two derivatives vanish at both ends.
-    """
+    """From rest at zero through points, rad, and back, by quintic splines; equal times."""
     points, t = shaped("points", points, "(runs, points, 2)"), shaped("t", t, "(time,)")
     number("seconds", seconds, 0.0, open_low=True)
     y = np.pad(points, ((0, 0), (1, 1), (0, 0))).swapaxes(0, 1)
@@ -188,10 +181,7 @@ def _small_circles(runs: int, seed: int) -> Circles:
 
 
 def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording]:
-    """Recordings of the tests: another draw of each family, and what lies beyond both.
-
-    Motions with via points are quick (all in 3 s) and steady (`_LEG` from point to point).
-    """
+    """Recordings of the tests: another draw of each family, and what lies beyond both."""
     today, t, arm = setup.repeated(TEST_DAY), times(), setup.arm
     circles = random_circles(members, TEST_DAY)
     references = {
@@ -219,12 +209,7 @@ def states(recording: Recording, setup: Setup) -> np.ndarray:
 
 
 def _coverage(setup: Setup, tests: dict, members: int) -> dict:
-    """Whether two families share their states, both ways, beside a second draw of the same one.
-
-    Of the cells that the first family reaches, the share that the second one reaches; and the
-    median distance from a state of the first to the nearest of the second, in standard
-    deviations of all states. "tied": correlation of position and acceleration, by joint.
-    """
+    """Shared cells and distances of two families, both ways, beside a second draw of the same."""
     today, pair = setup.repeated(TEST_DAY), ("pick and place", "circles")
     again = (
         today.record(random_extents(members, TEST_DAY + 1)),
@@ -258,11 +243,7 @@ _TRAINED = 5  # motions of a family on a day: as many as Appendix I has for trai
 
 
 def _on_several_days(setup: Setup, references: list[Trajectory], days) -> list[Recording]:
-    """Drive the arm along the references of each day, and log what its sensors say.
-
-    Each day has its own zero of the encoders, each run its own torque noise, whatever else is
-    recorded.
-    """
+    """Recordings of references of each day, with its own zero of the encoders and noise."""
     days = shaped("days", days, f"({len(references)},)").astype(int)
     together = Trajectory(*(np.stack(parts) for parts in zip(*references)))
     today = replace(setup, effects=_on_days(setup.effects, setup, days))

@@ -235,10 +235,7 @@ def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
 
 
 def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
-    """Largest answer of the linear loop to bounded torques, and what networks make of theirs.
-
-    The torques of a network and of exact equations behind a window differ by a bounded signal.
-    """
+    """Largest answer of the linear loop to bounded torques, and what networks make of theirs."""
     elbow = float(reference.q[..., 1].mean())
     system = parts.linear_loop(setup, elbow)
     knock = np.zeros((2, 5000, 2))
@@ -298,10 +295,7 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
 
 @study
 def run_time() -> dict:
-    """Feedforwards of the square of extents under two readings of the controller.
-
-    End-point errors are RMS over a motion, mm; each member's is the median over the square.
-    """
+    """Feedforwards of the square of extents, two readings: end-point errors, RMS, mm."""
     reference = parts.rounded(parts._EXTENTS, 0.0)
     found: dict = {
         "points": parts.POINTS,

@@ -78,10 +78,7 @@ def _networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[
 
 
 def _computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:
-    """Computed torque with the friction of the reference, at the measured state.
-
-    As stiff as the set-up's feedback with the arm stretched, and critically damped.
-    """
+    """Computed torque with the reference's friction, as stiff as the feedback."""
     kp = np.asarray(setup.controller.kp) / np.diag(setup.arm.mass_matrix(np.zeros(2)))
     kd = 2 * np.sqrt(kp)
     law = ComputedTorque(arm or setup.arm, tuple(kp), tuple(kd))
@@ -146,11 +143,7 @@ def drive(setup: Setup, controller, reference, days, *, arm=None, effects=None) 
 def _driven(
     setup: Setup, made: dict, reference: Trajectory, **changed
 ) -> tuple[Recording, dict[str, slice]]:
-    """Recording of all lines, and which part of it belongs to each.
-
-    ``made`` has by the name of a line its torques (N m), ``(days or 1, runs, time, 2)``, and its
-    days; ``changed`` is another arm or other effects.
-    """
+    """Recording of all lines ``{name: (torques, days)}``, and which part of it belongs to each."""
     every, days, parts = [], [], {}
     for name, (torque, own) in made.items():
         parts[name] = slice(len(days), len(days) + len(own))
@@ -248,11 +241,7 @@ def through_loop(system, torque) -> np.ndarray:
 
 
 def _predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
-    """End-point error that the linear loop predicts for a feedforward, RMS in mm, shape (...).
-
-    No motion is simulated: the missing torque goes through `linear_loop`, and joint errors to the
-    hand by the Jacobian of the plan.
-    """
+    """End-point error that the linear loop and the plan's Jacobian predict, RMS in mm."""
     system = linear_loop(setup, float(reference.q[..., 1].mean()))
     moving = (_T >= 0) & (_T < MOTION_SECONDS)
     error = through_loop(system, torque - _with_impulse(setup)(*reference))[..., moving, :]
@@ -261,11 +250,7 @@ def _predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:
 
 
 def _logged_error(setup: Setup, model: TorqueModel, run: Recording) -> np.ndarray:
-    """What each member's error on a recorded motion would do to the hand, RMS in mm.
-
-    Nothing of it needs the model as a feedforward: a log, the feedback's gains and the arm's
-    inertia are enough.
-    """
+    """What each member's error on a recorded motion would do to the hand, RMS in mm."""
     moving = run.motion
     missed = model.torque(sliding_windows(run.q, model.weights.width, moving)) - run.tau[moving]
     held = np.repeat(missed, round(run.step / CONTROL_STEP), axis=-2)

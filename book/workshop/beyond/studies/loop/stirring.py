@@ -140,10 +140,7 @@ def _hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) 
 
 
 def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
-    """All that may stand in the box "inverse arm" of Figure 2-1, by name.
-
-    Besides lists of models of windows: none, the exact equations, and these behind a window.
-    """
+    """All that may stand in the box "inverse arm" of Figure 2-1, by name."""
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
         "exact equations": [exact(setup)],
@@ -259,11 +256,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 
 @study
 def stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
-    """Networks and rivals of each family of motions on all others, and their hands' errors.
-
-    Also which states the families visit, filters beside a null, and files with a network of each
-    family and with the picker's torques.
-    """
+    """Networks and rivals of each family of motions on all others, and their hands' errors."""
     found: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (
         (JOINT_DAMPING, _NAMES, motions._FAMILIES),

@@ -64,11 +64,7 @@ class _Kept:
 
 
 def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
-    """Errors (mm) and estimates of all learners, without friction and with it, at all rates.
-
-    Errors have shape (friction, rate, motions), estimates (friction, rate, motions + 1,
-    parameters).
-    """
+    """Errors (mm; friction, rate, motions) and estimates of all learners."""
     setup, speeds = JOINT_DAMPING, list(SPEEDS.values())
     runs = 2 * len(speeds)
     factor = np.tile(speeds, 2)

@@ -54,7 +54,6 @@ class _Beside:
     controllers: tuple[Controller, ...]
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """One law for all; ``law.laws`` are the controllers' own."""
         return _Together(
             [
                 as_controller(c).start(Trajectory(*(x[i] for x in reference)), step)
@@ -73,21 +72,16 @@ class _Together:
 
 @dataclass(frozen=True)
 class _Behind:
-    """A controller that follows the motion of a linear model in place of the reference.
-
-    Where the reference's velocity jumps, the model's does not.
-    """
+    """A controller that follows the motion of a linear model: its velocity never jumps."""
 
     controller: Controller
     model: _ModelReference
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law of the controller along the model's motion."""
         return self.controller.start(self.model.model(reference, step), step)
 
     @property
     def estimate(self):
-        """That of the controller."""
         return self.controller.estimate
 
 
@@ -112,7 +106,6 @@ class _Able:
     """Mixed into a law: it learns nothing while it asks for more torque than the motors have."""
 
     def advance(self, law, estimate, wanted, q, qd):
-        """Torque of a running law, and its estimate one period later."""
         torque, after = super().advance(law, estimate, wanted, q, qd)
         able = (np.abs(torque) <= LIMITS).all(-1, keepdims=True)
         return torque, np.where(able, after, estimate)
@@ -131,10 +124,7 @@ class _AbleModelReference(_Able, _ModelReference):
 
 
 def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of a set-up, 1/s, and its linear loop: (a0, a1) of ``e'' + a1 e' + a0 e``.
-
-    With the right parameters all laws have this loop at the stretched arm without a load.
-    """
+    """Slope of a set-up, 1/s, and its linear loop: (a0, a1) of ``e'' + a1 e' + a0 e``."""
     slope = np.asarray(setup.controller.kp) / KD
     return slope, np.stack([slope * KD / _INERTIA, slope + KD / _INERTIA])
 
@@ -227,7 +217,6 @@ class _Rounded:
     shift: np.ndarray
 
     def apply(self, x, rng=None):
-        """The readings of `x`, rad."""
         step = np.where(self.step > 0, self.step, 1.0)
         found = np.round((x + self.shift) / step) * step - self.shift
         return np.where(self.step > 0, found, x)
