@@ -15,7 +15,6 @@ from .filters import (
     content as content,
     decompose as decompose,
     frequency_response as frequency_response,
-    pure_part as pure_part,
     purest as purest,
     roughness as roughness,
     savitzky_golay as savitzky_golay,
@@ -38,7 +37,6 @@ from .hidden_units import (
     refitted as refitted,
     saturated as saturated,
     transition_width as transition_width,
-    with_filters as with_filters,
 )
 from .noise import (
     acceleration_noise_gain as acceleration_noise_gain,
@@ -46,11 +44,8 @@ from .noise import (
 )
 from .response import (
     calibrated as calibrated,
-    decoded as decoded,
-    decoded_sign as decoded_sign,
     heard as heard,
     unit_inputs as unit_inputs,
-    with_jerk as with_jerk,
 )
 from .sensitivity import (
     INPUTS as INPUTS,

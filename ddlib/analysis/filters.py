@@ -72,11 +72,6 @@ def content(f) -> np.ndarray:
     return f @ basis(f.shape[-1]).T
 
 
-def pure_part(f) -> np.ndarray:
-    """Projection of weight functions onto parabolas: position, velocity and acceleration."""
-    return content(f)[..., :3] @ basis(np.shape(f)[-1])[:3]
-
-
 def shares(f) -> np.ndarray:
     """Share of each derivative in the energy of weight functions ``(..., width)``, shape (..., 5).
 

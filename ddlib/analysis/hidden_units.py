@@ -6,8 +6,6 @@ Activities are ``(..., cases, hidden)``, leading axes networks; windows hold pos
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from ddlib._check import finite_array, number
@@ -72,11 +70,6 @@ def refitted(features, torque, held_out, answer) -> np.ndarray:
     x, new = (np.column_stack([a, np.ones(len(a))]) for a in (features, held_out))
     factors = np.linalg.lstsq(x, torque, rcond=None)[0]
     return np.array([rmss(x @ factors, torque), rmss(new @ factors, answer)])
-
-
-def with_filters(model: TorqueModel, hidden_weights) -> TorqueModel:
-    """Networks whose hidden units have other weights from the window, all else as it was."""
-    return replace(model, weights=replace(model.weights, hidden_weights=hidden_weights))
 
 
 def cancellation(model: TorqueModel, windows) -> np.ndarray:

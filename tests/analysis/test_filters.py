@@ -13,7 +13,6 @@ from ddlib.analysis import (
     content,
     decompose,
     frequency_response,
-    pure_part,
     roughness,
     savitzky_golay,
     shares,
@@ -84,13 +83,6 @@ def test_shares_of_a_sum_are_its_energies(width):
     np.testing.assert_allclose(content(f), np.sqrt([1, 2, 3, 4]))
     for order, pure in enumerate(known):
         np.testing.assert_allclose(shares(-2.5 * pure), np.eye(5)[order], atol=1e-12)
-
-
-def test_pure_part_keeps_polynomials_and_nothing_else():
-    x = np.linspace(-1, 1, 21)
-    rng = np.random.default_rng(1)
-    f = rng.normal(size=(3, 21))
-    assert np.allclose(pure_part(f), [Polynomial.fit(x, one, 2)(x) for one in f])
     with pytest.raises(ValueError, match="must not be zero everywhere"):
         shares(np.stack([np.ones(7), np.zeros(7)]))
 

@@ -13,18 +13,13 @@ from ddlib.analysis import (
     calibrated,
     cancellation,
     classify,
-    decoded,
-    decoded_sign,
     heard,
     mean_gradient,
-    pure_part,
     refitted,
     roughness,
     saturated,
     transition_width,
     unit_inputs,
-    with_filters,
-    with_jerk,
 )
 from ddlib.learning import (
     MATCHED,
@@ -39,6 +34,13 @@ from ddlib.learning import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
+from workshop.report._probes import (
+    decoded,
+    decoded_sign,
+    pure_part,
+    with_filters,
+    with_jerk,
+)
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
 
