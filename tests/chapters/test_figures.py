@@ -189,6 +189,7 @@ REFUSALS = [
     (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
     (filters.clusters, ({"a": ({"b": [BAD]}, 1.0)}, "N m", "A."), "values of 'b' must"),
     (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
+    (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
     (smooth.predicted_curves, (X, {"a": (X, X[:3])}, {}, (), "A."), "values of 'a' must have"),
     (states.torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
     (states.responses, (X, given.ACTIVITY[0]), "activity must have shape"),

@@ -188,6 +188,10 @@ EXAMPLES = {
         filters.clusters, {"left": (GROUPS, 4.0), "right": (GROUPS, 0.0)}, "N m", "Groups."
     ),
     "against_nulls": partial(filters.against_nulls, NULLS, "share of the filters", "Bars."),
+    "by_explained": partial(
+        filters.by_explained, NULLS["hidden"], {"mixed": GROUPS},
+        ("share of the filters", "share explained"), "Two panels.",
+    ),
     "predicted_curves": partial(
         smooth.predicted_curves, X, COURSES, ENDS, ("epoch", "change", "foreseen", "measured"),
         "Lines and dots.",
@@ -306,6 +310,12 @@ SHOWN = {
             *xy([0.4] * 3, [-0.131, -0.129, np.nan]), *xy([0.7] * 3, [0.129, 0.131, np.nan]),
         ],
         [[(0, -0.43), (0, 0.43)], [(1, 0.57), (1, 1.43)]],
+    ],
+    "by_explained": [  # means, and the middle nine tenths
+        [
+            [(0.2, -0.38), (0.2, 0.38)], [(0.1, 0.62), (0.1, 1.38)], [(0.4, 0)], [(1, 1)],
+        ],
+        [[(0, 3), (1, 5)], [(0, 1.1), (0, 5.6)], [(1, 3), (1, 8.4)]],
     ],
     "predicted_curves": [
         [*xy(X, X, 2 * X), *xy(X, X**2, X**3)],

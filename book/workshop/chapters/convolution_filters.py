@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from ddlib._check import finite_array, number, shaped
 from ddlib.figures.style import (
     COLOURS,
+    DASHES,
     FAINT,
     INK,
     Illustration,
@@ -101,3 +102,51 @@ def _dots(axis: Axes, values, height: float, k: int, name: str):
     cap = ("round", "projecting", "butt")[k % 3]
     axis.plot(x, y, color=COLOURS[k % len(COLOURS)], lw=1.5 if k % 3 == 2 else 3.4, alpha=0.7,
               solid_capstyle=cap, label=name)  # fmt: skip
+
+
+def by_explained(
+    rows: Mapping[str, Mapping[str, np.ndarray]],
+    courses: Mapping[str, Mapping[str, np.ndarray]],
+    labels: tuple[str, str],
+    alt: str,
+) -> Illustration:
+    """Shares of filters by target, and in mixtures by how much of them the windows explain.
+
+    `rows` has for each target, the topmost first, sets of one value a network: of the first set all
+    values and their mean are shown, of the others the means. Of each mixture in `courses` means,
+    and the range of nine tenths of the networks, are shown at equal steps.
+    """
+    for name, sets in [*rows.items(), *courses.items()]:
+        for what, values in sets.items():
+            shaped(f"{what!r} of {name!r}", values, "(networks,)")
+
+    def draw(figure: Figure):
+        left, right = figure.subplots(1, 2)
+        for height, sets in enumerate(rows.values()):
+            (first, values), *others = sets.items()
+            mean = np.mean(values)
+            _dots(left, values, height, 0, f"{first}, each network")
+            ends = [height - 0.38, height + 0.38]
+            left.plot([mean] * 2, ends, color=INK, lw=2.0, label=f"{first}, mean")
+            for k, (name, other) in enumerate(others, 1):
+                look = {"color": COLOURS[k], "mfc": "none", "ms": 4.5, "ls": ""}
+                left.plot([np.mean(other)], [height], "sD^"[k % 3], label=f"{name}, mean", **look)
+        left.set_yticks(range(len(rows)), list(rows))
+        left.grid(visible=False, axis="y")
+        left.set(title="By target", xlabel=check_label(labels[0]), ylim=(len(rows) - 0.4, -0.6))
+        for k, (name, sets) in enumerate(courses.items(), 2):
+            at = np.arange(len(sets)) + 0.1 * (k - 2)
+            look = {"color": COLOURS[k], "marker": "os"[k % 2], "ls": DASHES[k - 2]}
+            right.plot(at, [np.mean(x) for x in sets.values()], ms=4, label=name, **look)
+            ends = np.transpose([np.quantile(x, (0.05, 0.95)) for x in sets.values()])
+            right.vlines(at, *ends, color=COLOURS[k], lw=1.0)
+            right.set_xticks(range(len(sets)), list(sets))
+        right.set(title="Mixtures", xlabel=check_label(labels[1]), ylabel=labels[0])
+        named = {}
+        for axis in (left, right):
+            handles, names = axis.get_legend_handles_labels()
+            named |= dict(zip(names, handles))
+        named[next(iter(named))] = Line2D([], [], ls="", marker="o", ms=4, color=COLOURS[0])
+        legend_above(figure, list(named.values()), list(named))
+
+    return illustrate(draw, alt, 7.0, 3.6, 4.8)
