@@ -12,7 +12,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import importlib
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import ddlib
@@ -113,12 +113,9 @@ def _file(module: str) -> Path | None:
 
 
 def _text(module: str) -> str:
-    return _file(module).read_text(encoding="utf-8")
-
-
-def _is_package(module: str) -> bool:
+    """The source of a module of ours; of others nothing."""
     file = _file(module)
-    return file is not None and file.stem == "__init__"
+    return file.read_text(encoding="utf-8") if file else ""
 
 
 def _home(module: str, name: str | None) -> tuple[str, str | None]:
@@ -139,7 +136,8 @@ def _imported(node, module: str) -> dict[str, tuple[str, str | None]]:
         whole = {alias.asname: (alias.name, None) for alias in node.names if alias.asname}
         tops = [alias.name.split(".")[0] for alias in node.names if not alias.asname]
         return whole | {top: (top, None) for top in tops}
-    package = module.split(".") if _is_package(module) else module.split(".")[:-1]
+    file = _file(module)
+    package = module.split(".")[: None if file and file.stem == "__init__" else -1]
     above = package[: len(package) + 1 - node.level] if node.level else []
     source = ".".join([*above, *filter(None, [node.module])])
     return {alias.asname or alias.name: (source, alias.name) for alias in node.names}
@@ -161,33 +159,28 @@ def _names(module: str, text: str) -> dict[str, list[ast.stmt] | tuple[str, str 
             used = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name)]
             made = _stored(statement, _SCOPES)
             if not made or hasattr(statement, "body"):
-                ours = [n for n in used if n in names and not _is_ours(names[n])]
-                made = list(dict.fromkeys([*made, *ours]))
+                changed = [n for n in used if n in names and not _is_imported(names[n])]
+                made = list(dict.fromkeys([*made, *changed]))
         for name in made:
             earlier = names.get(name)
             names[name] = [*(earlier if isinstance(earlier, list) else []), statement]
     return names
 
 
-def _is_ours(origin) -> bool:
-    """Whether a name is imported from a module of ours."""
+def _is_imported(origin) -> bool:
+    """Whether a name comes from another module of ours."""
     return isinstance(origin, tuple) and _file(origin[0]) is not None
 
 
-def _stored(node, apart=()) -> list[str]:
-    """Names that a syntax tree assigns to, without parts of the kinds `apart`."""
+def _stored(node, apart=(), context=ast.Store) -> list[str]:
+    """Names that a syntax tree assigns to, or reads, without parts of the kinds `apart`."""
     if isinstance(node, ast.Name):
-        return [node.id] if isinstance(node.ctx, ast.Store) else []
+        return [node.id] if isinstance(node.ctx, context) else []
     inner = [child for child in ast.iter_child_nodes(node) if not isinstance(child, apart)]
-    return list(dict.fromkeys(name for child in inner for name in _stored(child, apart)))
+    return list(dict.fromkeys(name for child in inner for name in _stored(child, apart, context)))
 
 
-def _loads(node, apart=()) -> set[str]:
-    """Names that a syntax tree reads, without parts of the kinds `apart`."""
-    if isinstance(node, ast.Name):
-        return {node.id} if isinstance(node.ctx, ast.Load) else set()
-    inner = [child for child in ast.iter_child_nodes(node) if not isinstance(child, apart)]
-    return set().union(*(_loads(child, apart) for child in inner))
+_loaded = partial(_stored, context=ast.Load)
 
 
 def _outer(scope) -> list[str]:
@@ -199,8 +192,8 @@ def _outer(scope) -> list[str]:
     before += getattr(scope, "decorator_list", [])
     own = {a.arg for a in ast.walk(parameters) if isinstance(a, ast.arg)}
     own |= {n for s in body for n in _stored(s, _SCOPES)}
-    inside = set().union(*(_loads(s, _SCOPES) for s in body)) - own
-    return sorted(inside.union(*map(_loads, before)))
+    inside = {n for s in body for n in _loaded(s, _SCOPES)} - own
+    return sorted(inside.union(*map(_loaded, before)))
 
 
 # --- what a definition says -------------------------------------------------------------------
@@ -285,7 +278,7 @@ class _Writer:
             self.form.append(f"aside {name}")
             if name in _TRAINED:  # what is loaded is of a class of ours, and a study made it
                 self.form += [("ddlib.learning.network", "TorqueModel"), places()[_TRAINED[name]]]
-        elif name is not None and isinstance(self._known(module).get(name), list):
+        elif name is not None and isinstance(_names(module, _text(module)).get(name), list):
             self.form.append((module, name))
         else:
             self.form.append(f"of {module} {name}")
@@ -317,9 +310,6 @@ class _Writer:
             return _home(*origin)
         is_other = origin is not None and node.id != self.own and isinstance(node.ctx, ast.Load)
         return (self.module, node.id) if is_other else None
-
-    def _known(self, module: str) -> dict:
-        return {} if _file(module) is None else _names(module, _text(module))
 
     def _is_check(self, node: ast.Call) -> bool:
         module, _ = self._place(node.func) or ("", None)
