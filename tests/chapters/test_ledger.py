@@ -2,12 +2,10 @@
 
 import numpy as np
 import pytest
-from book_pages import CHAPTERS
 
 from ddlib.tables import significant
 from workshop.chapters import ledger
 from workshop.report import results
-from workshop.report.evidence import claims, ledger_tables
 
 
 @pytest.fixture(scope="module")
@@ -76,41 +74,3 @@ def test_open_questions_quote_the_results(questions):
     row = questions["Table 6-1: whose standard deviation?"]
     assert row[1].endswith(significant(np.median(six["own deviation"]), 2))
     assert row[2].endswith(significant(np.median(six["deviation of set A"]), 2))
-
-
-def test_main_findings_good_and_bad():
-    """One table for those who read no other: each row a claim as it is judged, with its chapter."""
-    known = {claim.id: claim for claim in claims.load()}
-    chosen = [known[name] for name in ledger_tables._FINDINGS]
-    verdicts = [claim.verdict for claim in chosen]
-    assert not {"by construction", "not testable"} & set(verdicts)
-    assert verdicts.count("not reproduced") >= 4  # no selection of what came out well
-    pages = [page.removeprefix("book/") for page in CHAPTERS]
-    places = [pages.index(claim.chapter) for claim in chosen]
-    assert places == sorted(places) and len(set(places)) >= 5
-    assert [row[4] for row in ledger_tables.findings().rows] == [claim.why for claim in chosen]
-
-
-def test_claims_under_both_readings_are_counted():
-    def claim(where, verdict, width, **setup):
-        return claims.Claim(
-            id="a", where=where, chapter="x", claim="c", printed=1.0, verdict=verdict, why="w",
-            refuted="r", measure="m.f", arguments={"width": width, **setup}, band={"from": 1},
-        )  # fmt: skip
-
-    position = {"setup": "position feedback"}
-    found = ledger_tables.readings(
-        [
-            claim("Table 4-1", "reproduced", 11),
-            claim("Table 4-1", "undecided", 11, **position),
-            claim("Table 4-1", "reproduced", 21),  # under one reading only
-            claim("Figure 5-1", "qualitative", 11),
-            claim("Figure 5-1", "reproduced", 11, **position),
-            claim("section 5.1", "reproduced", 21),
-            claim("section 5.1", "reproduced", 21, **position),
-        ]
-    )
-    assert found == {
-        "table": (1, {"position feedback": 0, "state feedback": 1}),
-        "figures": (1, {"position feedback": 1, "state feedback": 0}),
-    }

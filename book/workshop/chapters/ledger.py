@@ -1,21 +1,29 @@
-"""Two tables of the ledger page: errata of the paper, and what its open questions decide."""
+"""The ledger page: its cards, errata of the paper, and what its open questions decide."""
 
 from __future__ import annotations
 
+import html
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
 import numpy as np
 import yaml
+from scipy.stats import norm
 
 from ddlib import paper
 from ddlib.learning import Weights
-from ddlib.setups import JOINT_DAMPING, KD, KP, WINDOWS
+from ddlib.setups import JOINT_DAMPING, KD, KP, SETUPS, WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, significant, typeset
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 from workshop import BOOK
 from workshop.report import results
+from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, worded
+from workshop.report.evidence.claims import Claim, load
+from workshop.report.evidence.verdicts import DECIDED, share_told
+from workshop.report.evidence.wall import Tiles, mark, window
 from workshop.report.measures.filters import parts_sum_up
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
@@ -28,7 +36,105 @@ _FIELDS = ("where", "printed", "wrong", "here")
 # Unit named inside a figure, window by the text of section 5.1, window by the caption
 _FIGURE_UNITS = {"5-6": (52, 21, 41), "5-7": (93, 41, 81), "5-8": (85, 41, 81)}
 
+# What a list of rows is headed
+_LISTED = {
+    "by construction": "definitions, algebra and choices made as printed, which could hardly fail",
+    "not testable": "no measurement here could decide, or an assumed parameter does",
+}
+
 _SETS = ("random set A", "random set B", "trajectory 6")  # The data sets of Table 6-1
+
+
+@dataclass(frozen=True)
+class Markdown:
+    """Text that a notebook shows as Markdown."""
+
+    text: str
+
+    def _repr_markdown_(self) -> str:
+        return self.text
+
+
+def cards(kind: str) -> Markdown:
+    """The cards of a kind: word, sentence and signs outside; a grid and all rows inside."""
+    return Markdown("\n\n".join(map(_card, of_kind(kind))))
+
+
+def lists() -> Markdown:
+    """All rows that hold by construction, and all that cannot be tested: a list each."""
+    folds = []
+    for verdict in LISTS:
+        rows = [claim for claim in load() if claim.verdict == verdict]
+        head = f"{mark(verdict)} <b>{len(rows)} rows</b> <span>{verdict}: {_LISTED[verdict]}</span>"
+        folds.append(_fold(verdict.replace(" ", "-"), verdict, head, [_tiles(rows)]))
+    return Markdown("\n\n".join(folds))
+
+
+def folded(name: str, head: str, table: Table) -> Markdown:
+    """A table to open."""
+    return Markdown(_fold(name, "", f"<b>Table</b> <span>{head}</span>", [table._repr_markdown_()]))
+
+
+def legend() -> Markdown:
+    """What each sign means; with a script they are buttons that filter."""
+    told = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
+    signs = (f"<span>{mark(word)} {told.get(word, word)}</span>" for word in (*WORDS, *LISTS))
+    return Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
+
+
+def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:
+    """Sentences with these words that all readings are judged by; how many each reproduces."""
+    cells = [card.rows for card in of_kind("system") if words in f"{card.where}: {card.says}"]
+    cells = [rows for rows in cells if set(SETUPS) <= set(rows)]
+    held = {name: sum(r[name][0].verdict == "reproduced" for r in cells) for name in SETUPS}
+    return len(cells), held
+
+
+def _fold(name: str, verdict: str, head: str, inside: Iterable[str]) -> str:
+    first = f'<details class="claim card-of-rows" id="card-{name}" data-verdict="{verdict}">'
+    return "\n\n".join([f"{first}\n<summary>{head}</summary>", *inside, "</details>"])
+
+
+def _card(card: Card) -> str:
+    word, says = card.word(Claim.judge), html.escape(card.says, quote=False)
+    sign = card.sign(Claim.judge)
+    strip = "".join(mark(claim.judge()) for claim in card.deciding)
+    place = f"<small>{card.where} <span>{strip}</span></small>"
+    head = f"{mark(sign)} <b>{word}</b> <span>{says}</span> {place}"
+    rows = [claim for row in card.rows.values() for claim in row]
+    inside = [_grid(card), _tiles(rows)]
+    if card.beside:
+        inside += ["Beside it, not decisive:", _tiles(card.beside)]
+    return _fold(card.id, sign, head, filter(None, inside))
+
+
+def _tiles(claims: Iterable[Claim]) -> str:
+    return Tiles(claims)._repr_markdown_()
+
+
+def _grid(card: Card) -> str:
+    """Readings down, windows across, in each cell the signs of its rows; empty for a single row."""
+    widths = sorted({window(c) or 0 for row in card.rows.values() for c in row})
+    if len(widths) < 2 and len(card.rows) < 2:
+        return ""
+
+    def line(tag: str, cells: Iterable[str]) -> str:
+        first, *others = cells
+        rest = "".join(f"<{tag}>{cell}</{tag}>" for cell in others)
+        return f'<tr><th scope="row">{first}</th>{rest}</tr>'
+
+    def signs(row: Iterable[Claim], width: int) -> str:
+        found = (claim for claim in row if (window(claim) or 0) == width)
+        return " ".join(
+            f'<a href="#claim-{c.id}" title="{html.escape(c.claim)}">{mark(c.judge())}</a>'
+            for c in found
+        )
+
+    heads = ("reading", *(f"window {width}" if width else "any window" for width in widths))
+    lines = [line("th", heads)]
+    for name, row in card.rows.items():
+        lines.append(line("td", (name or "rows", *(signs(row, width) for width in widths))))
+    return f'<table class="claim-grid">{"".join(lines)}</table>'
 
 
 def _unit_fits(unit: int, width: int) -> bool:
@@ -185,3 +291,29 @@ def _table_6_1() -> dict[str, str]:
         "draws": str(len(table["draws"])),
         "drawn": " · ".join(f"{significant(min(x), 2)} to {significant(max(x), 2)}" for x in drawn),
     }
+
+
+def nearest_the_edge(claims: Iterable[Claim], count: int = 10) -> Table:
+    """Rows whose draws come nearest to deciding otherwise, on both sides of `DECIDED`."""
+    drawn = [(claim, claim.shares()) for claim in claims if claim.band]
+    near = sorted(
+        (row for row in drawn if row[1]), key=lambda row: abs(max(row[1].values()) - DECIDED)
+    )
+    rows = [
+        (
+            f"{claim.claim} ({{doc}}`{claim.chapter}`)",
+            worded(claim, claim.verdict),
+            worded(claim, ", ".join(f"{share_told(x)} {name}" for name, x in shares.items())),
+        )
+        for claim, shares in near[:count]
+    ]
+    return Table(("row", "verdict", "draws"), [tuple(map(typeset, row)) for row in rows])
+
+
+def less_anew(share: float = DECIDED) -> float:
+    """Share of the draws below which an ensemble trained anew falls in one case of six.
+
+    Of one that had `share`: if its value is normal it moves by the square root of two standard
+    errors, and one standard deviation below the mean lies a sixth.
+    """
+    return float(norm.cdf(norm.ppf(share) - np.sqrt(2)))

@@ -29,6 +29,9 @@ An entry has these fields:
     "by construction" if the band could hardly be missed; then it has no ``loose``, and a miss is
     "not reproduced". And "not testable"; then without bands, and a ``measure`` only tells from
     which value of an assumed parameter on the claim would turn.
+``after``
+    Left out for most. What came before the band: "trial" if a first trial had been seen, "change"
+    if it replaced another one, or "trial, change".
 ``why``
     One sentence: the reason for the verdict, the assumption that decides it.
 ``refuted``
@@ -60,7 +63,14 @@ from ddlib._check import one_of
 from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
 from workshop.report.evidence.expressions import find
-from workshop.report.evidence.verdicts import VERDICTS, Measured, _fresh, _shares, _stands
+from workshop.report.evidence.verdicts import (
+    VERDICTS,
+    Measured,
+    _fresh,
+    _shares,
+    _stands,
+    share_told,
+)
 
 _FILE = BOOK / "claims.yml"  # Where the claims are kept
 
@@ -76,7 +86,7 @@ SHARED = "DDLIB_MEASURED"
 _OWN = "not in the paper"
 
 # Titles of the paper's sections; abstract and appendix are numbered so that they sort
-_SECTIONS = {
+SECTIONS = {
     "0": "Abstract",
     "1": "1. Introduction",
     "2": "2. Problem definition",
@@ -118,6 +128,7 @@ class Claim:
     loose: Mapping = field(default_factory=dict)
     arm: str = ""
     again: str = ""
+    after: str = ""
     outcome: Mapping = field(default_factory=dict)  # side and bound in `refuted`, if it has any
 
     def __post_init__(self):
@@ -140,6 +151,7 @@ class Claim:
             raise ValueError(
                 f"claim {self.id!r} must name the arm on which it judges {self.again!r} again"
             )
+        one_of(f"after of claim {self.id!r}", self.after, ("", "trial", "change", "trial, change"))
         for bounds in (self.band, self.loose):
             self._check_band(bounds)
 
@@ -168,7 +180,7 @@ class Claim:
             )
 
     def place(self) -> tuple[str, int, int]:
-        """Where the claim stands: key of `_SECTIONS`, subsection, number of a table or figure.
+        """Where the claim stands: key of `SECTIONS`, subsection, number of a table or figure.
 
         What comes first in ``where`` counts. Tables and figures come after their section's
         text, whose subsections come in order: sort by this.
@@ -360,7 +372,7 @@ def _of_chapter(chapter: str) -> list[Claim]:
     return found
 
 
-def _printed(claim: Claim) -> str:
+def printed(claim: Claim) -> str:
     """What the paper prints, for a table."""
     if isinstance(claim.printed, (str, _Printed)):
         return getattr(claim.printed, "text", claim.printed)
@@ -372,18 +384,12 @@ def here(claim: Claim) -> str:
     return claim.measured().text if claim.is_measured else "–"
 
 
-def _sure(claim: Claim) -> str:
+def sure(claim: Claim) -> str:
     """The verdict, and in which share of the draws it comes out where that was found."""
     verdict, found = claim.judge(), claim.shares()
     if not found:
         return verdict
     if verdict == "undecided":
-        words = ", ".join(f"{100 * share:.0f} % {name}" for name, share in found.items())
+        words = ", ".join(f"{share_told(share)} {name}" for name, share in found.items())
         return f"undecided: {words} of draws"
-    return f"{verdict}, {100 * found[verdict]:.0f} % of draws"
-
-
-def of_section(section: str) -> list[Claim]:
-    """The claims of a section of the paper, in the paper's order."""
-    one_of("section", section, tuple(_SECTIONS))
-    return sorted((c for c in of_the_paper() if c.place()[0] == section), key=Claim.place)
+    return f"{verdict}, {share_told(found[verdict])} of draws"

@@ -1,87 +1,62 @@
-"""Claims as tiles: a wall of them all at a glance, and each one to open.
+"""Claims as tiles to open.
 
-A tile is a ``<details>`` with an address, ``#claim-ID``; ``book/_static/ledger.js`` adds filters on
-a page that holds a `Wall`. Both can be read without a script.
+A tile is a ``<details>`` with an address, ``#claim-ID``, that can be read without a script;
+``book/_static/ledger.js`` opens it for its address.
 """
 
 from __future__ import annotations
 
 import html
 import inspect
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ddlib.tables import significant, typeset
+from workshop.report.evidence.cards import LISTS, WORDS, worded
 from workshop.report.evidence.claims import (
+    _FILE,
     _LEDGER,
     _OWN,
-    _SECTIONS,
     Claim,
     _function,
     _of_chapter,
     _Printed,
-    _printed,
-    _sure,
     here,
+    printed,
+    sure,
 )
 from workshop.report.evidence.expressions import find
-from workshop.report.evidence.ledger_tables import _HEADS, _bands, _page_of, window
-from workshop.report.evidence.verdicts import VERDICTS
 
 # A sign for each verdict, so that colour is not all that tells them apart
-_MARKS = dict(zip(VERDICTS, "●◐✕?≡–"))
+_MARKS = dict(zip((*WORDS, *LISTS), "●◐◔✕?≡–"))
+
+# What a claim's `refuted` tells, if not what would have refuted it
+_HEADS = {
+    "not reproduced": "What would have supported it",
+    "by construction": "Why nothing could have refuted it",
+    "not testable": "What a test would need",
+}
+
+# What came before the band of a claim
+_AFTER = {
+    "trial": "set after a first trial had been seen",
+    "change": "changed after it was first written",
+    "trial, change": "set after a first trial had been seen, and changed later",
+}
 
 _CODE = "../_modules"  # The folder of the pages that show source, beside that of the chapters
 
-# Titles of the paper's subsections
-_PARTS = {
-    "1.1": "Motivation",
-    "1.2": "Backpropagation Networks",
-    "2.1": "The CMU DD Arm II",
-    "3.1": "Temporal Windows",
-    "3.2": "Network Topology",
-    "3.3": "Learning Parameters",
-    "5.1": "Weight Displays",
-    "5.2": "A More Global Perspective",
-    "5.3": "Window Size vs. Generalization",
-    "7.1": "Future Work",
-}
-
 _MIDDLE = (0.025, 0.5, 0.975)  # Quantiles of the draws that a tile's picture shows
 
-_TABLE = 10  # a table's place among subsections
 _WIDE = 20.0  # a scale is logarithmic from this ratio of its ends on
 
 
-def _mark(verdict: str) -> str:
+def mark(verdict: str) -> str:
     """A verdict's sign, for the page."""
     name = verdict.replace(" ", "-")
     return f'<span class="sign v-{name}" aria-hidden="true">{_MARKS[verdict]}</span>'
-
-
-@dataclass(frozen=True)
-class Wall:
-    """One small square for every claim, section by section: its verdict's sign and colour."""
-
-    claims: Iterable[Claim]
-
-    def __post_init__(self):
-        object.__setattr__(self, "claims", sorted(self.claims, key=Claim.place))
-
-    def _repr_markdown_(self) -> str:
-        rows = []
-        for section, title in _SECTIONS.items():
-            inside = [claim for claim in self.claims if claim.place()[0] == section]
-            if inside:
-                squares = "".join(map(_square, inside))
-                rows.append(f'<p class="wall-row"><span>{_text(title)}</span> {squares}</p>')
-        legend = " ".join(f"<span>{_mark(name)} {name}</span>" for name in VERDICTS)
-        return "\n".join(
-            ['<div class="wall" role="group" aria-label="All claims, by section and verdict">',
-             *rows, f'<p class="wall-legend">{legend}</p>', "</div>"]
-        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -103,36 +78,17 @@ def chapter_tiles(chapter: str) -> Tiles:
     return Tiles(_of_chapter(chapter), chapter)
 
 
-def _square(claim: Claim) -> str:
-    told = html.escape(f"{claim.judge()}: {typeset(claim.claim)}")
-    return f'<a href="#claim-{claim.id}" title="{told}">{_mark(claim.judge())}</a>'
-
-
 def _text(text: str) -> str:
     return html.escape(typeset(text), quote=False)
 
 
-def _part(claim: Claim) -> str:
-    """The subsection, table or figure in which a claim stands; empty for its section's own text."""
-    section, below, number = claim.place()
-    if number:
-        return f"{'Table' if below == _TABLE else 'Figure'} {section}-{number}"
-    name = f"{section}.{below}"
-    return f"{name}. {_PARTS[name]}" if below else ""
-
-
 def _tile(claim: Claim, on: str) -> str:
     verdict = claim.judge()
-    data = {
-        "verdict": verdict,
-        "section": claim.place()[0],
-        "part": _part(claim),
-        "chapter": claim.chapter,
-    }
-    given = " ".join(f'data-{name}="{html.escape(value)}"' for name, value in data.items())
+    changed = f'<span title="Band {_AFTER[claim.after]}">†</span>' if claim.after else ""
+    told = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
     lines = [
-        f'<details class="claim" id="claim-{claim.id}" {given}>',
-        f"<summary>{_mark(verdict)} <b>{verdict}</b> {_text(claim.claim)}</summary>",
+        f'<details class="claim" id="claim-{claim.id}">',
+        f"<summary>{told}</summary>",
         "",
         *_body(claim, on),
         "",
@@ -143,7 +99,7 @@ def _tile(claim: Claim, on: str) -> str:
 
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
-    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {_printed(claim)}"
+    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {printed(claim)}"
     width, found = window(claim), here(claim)
     known = width is None or str(width) in f"{claim.claim} {found}"
     lines = [
@@ -154,7 +110,10 @@ def _body(claim: Claim, on: str) -> list[str]:
     picture = _draws(claim)
     if picture:
         lines += [picture, ""]
-    judged = f"Judged: {typeset(_sure(claim))} ({typeset(_bands(claim))}). " if claim.band else ""
+    judged = ""
+    if claim.band:
+        judged = typeset(worded(claim, f"Judged: {sure(claim)} ({_bands(claim)}). "))
+        judged += f"† The band was {_AFTER[claim.after]}. " if claim.after else ""
     head = _HEADS.get(claim.verdict, "What would have refuted it")
     lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]
     lines.append(_links(claim, on))
@@ -165,7 +124,7 @@ def _links(claim: Claim, on: str) -> str:
     page, links = _page_of(claim), []
     if page and claim.chapter != on:
         links.append(f"[chapter]({page})")
-    if on != _LEDGER and claim.printed != _OWN and not claim.arm:
+    if on != _LEDGER:
         links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
         links.append(f'<a href="{_source(claim)}">code</a>')
@@ -198,7 +157,7 @@ def _draws(claim: Claim) -> str:
         parts.append(("printed", place(given)))
     told = (
         f"95 % of the draws from {significant(low)} to {significant(high)}, median "
-        f"{significant(median)}; reproduced {_words(band)}"
+        f"{significant(median)}; {worded(claim, 'reproduced')} {_words(band)}"
         + (f"; printed {claim.printed.text}" if given is not None else "")
     )
     spans = "".join(_span(*part) for part in parts)
@@ -242,3 +201,52 @@ def _scale(values: Sequence[float]):
 def _span(name: str, start: float, end: float | None = None) -> str:
     width = "" if end is None else f";width:{max(end - start, 0.5):.1f}%"
     return f'<i class="{name}" style="left:{start:.1f}%{width}"></i>'
+
+
+def window(claim: Claim) -> int | None:
+    """The window size that a claim is measured at; None if there is none or there are several."""
+    if not claim.measure:
+        return claim.arguments.get("width")
+    given = inspect.signature(_function(claim.measure)).bind(**claim.arguments)
+    given.apply_defaults()
+    return given.arguments.get("width")
+
+
+def _bands(claim: Claim) -> str:
+    """The value that is judged and what decides the verdict, in words."""
+    if not claim.band:
+        return "not judged"
+    value = claim.measured().value
+    told = _number_beside(float(value), claim.edges())
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else told
+    best = "holds" if claim.verdict == "by construction" else "reproduced"
+    text = f"{shown}; {best} {_bounds(claim.band)}"
+    return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
+
+
+def _number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
+    """A number with the digits (`most` of them) that show on which side of others it lies."""
+    edges = np.array(list(edges), dtype=float)
+    for count in range(digits, most + 1):
+        shown = float(f"{value:.{count - 1}e}")
+        if (np.sign(shown - edges) == np.sign(value - edges)).all():
+            return significant(value, count)
+    return significant(value, most)
+
+
+def _bounds(bounds: Mapping) -> str:
+    if "is" in bounds:
+        return "if yes" if bounds["is"] else "if no"
+    if "factor" in bounds:
+        return f"within a factor of {bounds['factor']:g}"
+    edges = (
+        f"{name} {significant(edge) if isinstance(edge, int) else f'{edge:g}'}"
+        for name, edge in sorted(bounds.items())
+    )
+    return ("" if "from" in bounds else "up ") + " ".join(edges)
+
+
+def _page_of(claim: Claim) -> str:
+    """The file of the page that deals with a claim, beside the others; empty if there is none."""
+    names = (f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
+    return next((name for name in names if _FILE.with_name(name).is_file()), "")

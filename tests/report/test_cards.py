@@ -1,0 +1,106 @@
+"""Cards: every row in one of them, and the word that follows from their rows."""
+
+import re
+from collections import Counter
+
+import pytest
+import yaml
+
+from workshop.chapters import ledger
+from workshop.report.evidence import cards, claims
+from workshop.report.evidence.claims import Claim
+
+ALL = claims.load()
+
+
+def row(verdict, **changes) -> Claim:
+    fields = {
+        "id": verdict, "where": "section 4", "chapter": "verdict", "claim": "c", "printed": "p",
+        "verdict": verdict, "why": "w", "refuted": "r", "measure": "m.f", "band": {"from": 1},
+    }  # fmt: skip
+    return Claim(**{**fields, **changes})
+
+
+def card(*verdicts, kind="system", real=(), beside=()) -> cards.Card:
+    rows = {"": tuple(map(row, verdicts)), "real": tuple(row(v, arm="real") for v in real)}
+    return cards.Card("a", kind, "section 4", "says", rows, tuple(map(row, beside)))
+
+
+def test_every_row_is_in_one_card():
+    named = Counter(claim.id for card in cards.cards() for claim in card.claims)
+    listed = {claim.id for claim in ALL if claim.verdict in cards.LISTS}
+    assert named == Counter(claim.id for claim in ALL if claim.id not in listed)
+
+
+def test_cards_are_few_and_short():
+    found = cards.cards()
+    assert 80 <= len(found) <= 100
+    assert {card.kind for card in found} == set(cards.KINDS)
+    assert len({card.id for card in found}) == len(found)
+    for card in found:
+        assert card.deciding and len(card.says.split()) <= 16, card.id
+        quoted = " ".join(re.findall("“(.*?)”", card.says)).split()
+        assert len(quoted) <= 13, card.id
+        paper = [c for c in card.deciding if c.printed != claims._OWN]
+        assert card.kind == "own" or len(paper) == len(card.deciding), card.id
+
+
+def test_the_word_follows_from_the_rows_that_decide():
+    good, kind, bad, unsure = cards.WORDS[0], "qualitative", "not reproduced", "undecided"
+    for verdicts, word, own in (
+        ((good, good), "reproduced", "held"),
+        ((good, kind), "qualitative", "held"),
+        ((bad, bad), "not reproduced", "failed"),
+        ((good, bad, bad), "in part (1 of 3)", "open (1 of 3 held)"),
+        ((kind, bad), "in part (1 of 2)", "open (1 of 2 held)"),
+        ((good, unsure), "undecided", "open"),  # all, or in part
+        ((kind, unsure), "undecided", "open"),
+        ((bad, unsure), "undecided", "open"),  # none, or in part
+        ((good, bad, unsure), "in part (1 of 3)", "open (1 of 3 held)"),  # either way
+        ((unsure, unsure), "undecided", "open"),
+    ):
+        assert (card(*verdicts).word(), card(*verdicts, kind="own").word()) == (word, own)
+    assert card(good, real=[bad], beside=[bad]).word() == "reproduced"
+    assert card(real=[bad]).word() == "not reproduced"
+    planted = card(bad, bad).word(lambda claim: good)
+    assert planted == "reproduced" and card(good, bad, kind="own").sign() == unsure
+
+
+def test_own_findings_are_never_called_reproduced():
+    told = ledger.cards("own")._repr_markdown_()
+    words = re.findall(r"<b>(.*?)</b>", told)
+    assert len(words) > 100
+    assert all(re.match(r"(held|failed|open)\b", word) for word in words)
+    assert not re.search(r"Judged:[^.]*reproduced", told)
+    own = next(claim for claim in ALL if claim.printed == claims._OWN)
+    assert cards.worded(own, "not reproduced, reproduced") == "failed, held"
+    assert cards.worded(row("reproduced"), "reproduced") == "reproduced"
+
+
+def test_a_card_shows_each_row_once_and_its_grid_leads_to_them():
+    text = "".join(ledger.cards(kind)._repr_markdown_() for kind in cards.KINDS)
+    text += ledger.lists()._repr_markdown_()
+    assert sorted(re.findall(r'id="claim-(.*?)"', text)) == sorted(claim.id for claim in ALL)
+    assert text.count("<details") == text.count("</details>")
+    (saturated,) = re.findall(r'id="card-saturated".*?</table>', text, re.S)
+    heads = re.findall(r"<th>(.*?)</th>", saturated)
+    assert heads == ["any window", "window 11", "window 21", "window 41"]
+    cells = re.findall(r'<tr><th scope="row">state feedback</th>(.*?)</tr>', saturated)
+    links = re.findall(r'href="#claim-(.*?)"', cells[0])
+    assert links == ["saturated", "saturated-21", "saturated-41"]
+    assert set(re.findall(r'href="#claim-(.*?)"', text)) <= {claim.id for claim in ALL}
+
+
+def test_a_card_of_unknown_rows_is_refused(tmp_path):
+    path = tmp_path / "cards.yml"
+    entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["period", "nowhere"]}
+    path.write_text(yaml.safe_dump({"system": [entry]}))
+    with pytest.raises(ValueError, match=r"rows of card 'a' must be ids of claims.*'nowhere'"):
+        cards.cards(path)
+
+
+def test_bands_that_were_set_after_a_trial_are_marked():
+    """Where the reason tells of a first trial, the row has the mark."""
+    told = re.compile(r"(?i)first trials? had been seen|set after a (first )?trial")
+    bare = [claim.id for claim in ALL if told.search(claim.why) and "trial" not in claim.after]
+    assert not bare and sum("change" in claim.after for claim in ALL) >= 27
