@@ -18,10 +18,12 @@ from workshop.chapters import (
     dynamics,
     feedback,
     feedforward,
+    global_view,
     trajectories_and_recording as trajectories,
     what_lagrange_euler_leaves_out as left_out,
 )
 from workshop.chapters.feedforward import _EXTENTS, _TIMES, _track
+from workshop.report import committed
 
 EFFECTS = left_out._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))
@@ -217,3 +219,20 @@ def test_the_chance_of_extents_on_a_limit():
     assert found.value == pytest.approx(chance, rel=1e-6)
     # a coarser print makes it likelier
     assert trajectories.random_draws(resolution=9.0).value > 1e4 * found.value
+
+
+# --- hidden units ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("bias", "wanted"), [(0.0, 1.0), (2.1, 1.0), (2.3, 0.0), (-9.0, 0.0)])
+def test_time_in_the_transition_region(monkeypatch, bias, wanted):
+    """A sigmoid leaves 0.1 to 0.9 at a net input of ln 9 = 2.197."""
+    start = committed._untrained(21)
+    weights = replace(
+        start.weights,
+        hidden_weights=1e-6 * start.weights.hidden_weights,
+        hidden_bias=np.full_like(start.weights.hidden_bias, bias),
+    )
+    planted = replace(start, weights=weights)
+    monkeypatch.setattr(committed, "networks", lambda *_: planted)
+    assert global_view.in_transition(21).value == wanted

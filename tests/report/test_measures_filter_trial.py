@@ -42,3 +42,16 @@ def test_networks_of_the_table_are_judged_by_gains_that_finite_differences_confi
         moved[..., joint] = ((there - back) / 2e-1).mean(-2)
     worst = np.abs(np.median(moved, 0) / true - 1).max()
     assert found.value == pytest.approx(worst, rel=1e-2)
+
+
+def test_the_worst_trajectory_of_the_median_network_decides(monkeypatch):
+    """Planted: half of the arm's on the last trajectory in the median, exact on the others."""
+    own, spread = np.array([6.0, 7.0, 8.0]), np.array([-4.0, -2.0, 0.0, 2.0, 4.0])
+    network = own * [1, 1, 0.5] + 0.1 * spread[:, None]
+    windows = {"21": {"network": network.tolist(), "filter": (network + 1).tolist()}}
+    found = {"trajectories": [1, 2, 6], "slow": {"arm": own.tolist(), "windows": windows}}
+    monkeypatch.setattr(trial.results, "read", {"filter-responses": found}.get)
+    told = trial.response(21)
+    assert told.value == pytest.approx(0.5) and (told.replicates > 0.4).all()
+    assert "4.0 on trajectory 6 (arm 8.0)" in told.text
+    assert told.text.endswith("as linear filters 7.0, 8.0, 5.0")

@@ -1,11 +1,15 @@
 """Measures of networks and windows, on planted ones with answers known by hand."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ddlib.analysis import savitzky_golay
+from ddlib.effects import Quantisation
+from ddlib.learning import cases
+from ddlib.setups import STATE_FEEDBACK, split
 from ddlib.simulation import LOG_STEP
 from workshop.report import committed
 from workshop.report.measures import windows
@@ -48,3 +52,44 @@ def test_derivatives_from_windows(monkeypatch, order):
     # the true derivative of higher order is itself taken by differences
     assert found.value == pytest.approx(wanted, rel=0.02, abs=0.003)
     assert windows.estimates([order], [5, 21]).value <= found.value * 1.0001
+
+
+@pytest.mark.parametrize(("known", "wanted"), [(1.0, 1.0), (0.5, 2.0)])
+def test_what_is_memorised_does_not_help_on_another_day(monkeypatch, known, wanted):
+    """Planted: networks that miss by as much everywhere, and less on windows they have seen."""
+    seen = {w: cases(committed.training(), w)[0] for w in (21, 41)}
+
+    def networks(width):
+        def torque(x):
+            size = known if np.array_equal(x, seen[width]) else 1.0
+            return np.stack([answers[x.tobytes()] + size * k for k in range(1, 6)])
+
+        return SimpleNamespace(torque=torque)
+
+    answers = {}
+
+    def remembered(run, width):
+        x, y = cases(run, width)
+        answers[x.tobytes()] = y
+        return x, y
+
+    monkeypatch.setattr(windows, "cases", remembered)
+    monkeypatch.setattr(committed, "networks", networks)
+    found = windows.memorised(41, days=1)
+    assert found.value == pytest.approx(wanted, rel=0.02)  # days differ in their deviation
+
+
+def test_the_short_window_turns_where_parabolas_say():
+    """With the encoder found, parabolas through 11 samples miss by a tenth more than through 21."""
+    bits = windows.short_window((13, 12, 11)).value
+    effects = replace(STATE_FEEDBACK.effects, encoder=(Quantisation(2 * np.pi / 2**bits),))
+    run = split(replace(STATE_FEEDBACK, effects=effects).record())[0]
+    true = np.gradient(run.qd_true, LOG_STEP, axis=-2)[..., run.motion, :].reshape(-1, 2)
+    wrong = []
+    for width in (11, 21):
+        taps = np.arange(width) - width // 2
+        x = cases(run, width)[0].reshape(-1, width).T
+        curvature = 2 * np.polynomial.polynomial.polyfit(taps, x, 2)[2] / LOG_STEP**2
+        wrong.append(((curvature.reshape(-1, 2) - true) ** 2).mean())
+    assert np.sqrt(wrong[0] / wrong[1]) == pytest.approx(1.1, rel=0.08)  # rounding jumps
+    assert 11 < bits < 13

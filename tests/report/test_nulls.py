@@ -60,3 +60,13 @@ def test_the_solver_takes_the_place_of_descent():
     assert len(weights) == 2 and not np.allclose(weights.hidden_weights, start.hidden_weights)
     own = rmss(trial.model(weights)[1].torque(trial.windows), targets[1].reshape(-1, 2))
     assert own < rmss(trial.model(weights)[0].torque(trial.windows), targets[1].reshape(-1, 2))
+
+
+def test_torque_per_acceleration_of_a_slow_sine_by_hand():
+    """A stiffness k takes k / omega^2 from the inertia; friction and a constant take nothing."""
+    omega, t = np.pi / 3, np.arange(300) / 100
+    states = np.stack(
+        [np.sin(omega * t), omega * np.cos(omega * t), -(omega**2) * np.sin(omega * t)], -1
+    )
+    torque = states @ np.array([[0.0, 0.0, 6.4], [6.5, 5.0, 6.4]]).T + [3.0, -1.0]
+    assert np.allclose(study._response(torque.T, states), [6.4, 6.4 - 6.5 / omega**2])
