@@ -57,7 +57,7 @@ def _side_by_side(codes: dict[str, str], jobs: int) -> None:
     The longest come first. What is finished is kept when another one fails.
     """
     os.environ["OMP_NUM_THREADS"] = "1"
-    last = {name: _seconds(name) for name in codes}
+    last = {name: _made_by(name)["seconds"] for name in codes}
     failed = {}
     bar = tqdm(total=round(sum(last.values())), desc="all results", unit="s of work")
     context = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
@@ -73,21 +73,16 @@ def _side_by_side(codes: dict[str, str], jobs: int) -> None:
                 failed[name] = "".join(traceback.format_exception(error))[-2000:]
                 tqdm.write(f"==> {name}: FAILED")
             else:
-                tqdm.write(f"==> {name}: {_seconds(name):.0f} s")
+                tqdm.write(f"==> {name}: {_made_by(name)['seconds']:.0f} s")
     if failed:
         said = "\n".join(f"{name}: {text}" for name, text in failed.items())
         raise RuntimeError(f"failed: {', '.join(failed)}; the others are written\n{said}")
 
 
-def _is_fresh(name: str, code: str) -> bool:
-    path = results.FOLDER / f"{name}.json"
-    return path.is_file() and results.read(name)["made by"]["code"] == code
-
-
-def _seconds(name: str) -> float:
-    """Processor time that a result took the last time, s; a minute if it is not there."""
-    path = results.FOLDER / f"{name}.json"
-    return results.read(name)["made by"]["seconds"] if path.is_file() else 60.0
+def _made_by(name: str) -> dict:
+    """The code that made a result, and the processor time it took, s; a minute if it is missing."""
+    is_there = (results.FOLDER / f"{name}.json").is_file()
+    return results.read(name)["made by"] if is_there else {"code": "", "seconds": 60.0}
 
 
 def main(arguments=None) -> None:
@@ -105,7 +100,7 @@ def main(arguments=None) -> None:
     results.FOLDER.mkdir(parents=True, exist_ok=True)
     names = options.parts or known
     codes = {name: code_hash(name) for name in names}  # now: files may change meanwhile
-    stale = [name for name in names if options.force or not _is_fresh(name, codes[name])]
+    stale = [name for name in names if options.force or _made_by(name)["code"] != codes[name]]
     for name in names:
         if name not in stale:
             print(f"==> {name}: up to date", flush=True)
@@ -116,7 +111,7 @@ def main(arguments=None) -> None:
         for name in stale:
             print(f"==> {name}", flush=True)
             _make(name, codes[name])
-            print(f"==> {name}: {_seconds(name):.0f} s", flush=True)
+            print(f"==> {name}: {_made_by(name)['seconds']:.0f} s", flush=True)
     if len(stale) == len(known):
         made_by = {**results.stamp(time.monotonic() - started), "jobs": options.jobs}
         made_by["parts"] = len(known)
