@@ -1,4 +1,4 @@
-"""Responses, gains and probes against signals and networks whose answer is known."""
+"""Responses and gains against signals and networks whose answer is known."""
 
 import numpy as np
 import pytest
