@@ -1,9 +1,7 @@
 from .coverage import (
     cells_reached as cells_reached,
     log10_reachable_share as log10_reachable_share,
-    nearest_distances as nearest_distances,
     principal_deviations as principal_deviations,
-    shared_cells as shared_cells,
     used_dimensions as used_dimensions,
 )
 from .excitation import half_penalty as half_penalty, ridge_filters as ridge_filters

@@ -34,7 +34,6 @@ from .joints import (
 from .kinematics import (
     ELBOWS as ELBOWS,
     Unreachable as Unreachable,
-    around as around,
     end_point_error as end_point_error,
     follow_hand as follow_hand,
     inverse_kinematics as inverse_kinematics,

@@ -84,20 +84,3 @@ def follow_hand(arm: Arm, hand, velocity, acceleration, elbow: str = "positive")
 def end_point_error(arm: Arm, wanted, q) -> np.ndarray:
     """Where the hand is, at angles `q`, minus where it should be, at `wanted`; (..., 2), m."""
     return arm.forward_kinematics(q)[..., 1, :] - arm.forward_kinematics(wanted)[..., 1, :]
-
-
-def around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
-    """Joint motion that moves the hand on circles about `centre` (runs, 2), m, at any pace.
-
-    `phase`: the hand's place on them, (runs, time), rad, with its first and second derivative.
-    """
-    radius = finite_array("radius", radius)
-    if not (radius > 0).all():
-        raise ValueError(f"radius must be above 0, got {radius.min():g}")
-    angle, rate, change = (finite_array("phase", x)[..., None] for x in phase)
-    along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
-    across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
-    size = radius[..., None, None]
-    hand = finite_array("centre", centre, 2)[..., None, :] + size * along
-    pull = size * (change * across - rate**2 * along)
-    return follow_hand(arm, hand, size * rate * across, pull, elbow)

@@ -2,14 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies as st
 
 from ddlib.analysis import (
     cells_reached,
     log10_reachable_share,
-    nearest_distances,
     principal_deviations,
-    shared_cells,
     used_dimensions,
 )
 
@@ -36,25 +33,3 @@ def test_deviations_are_those_of_a_known_distribution():
     samples = rng.normal(size=(200_000, 5)) * [3, 2, 1, 0.1, 0] @ turn.T + 7
     np.testing.assert_allclose(principal_deviations(samples), [3, 2, 1, 0.1, 0], atol=0.02)
     assert [used_dimensions(samples, x) for x in (0.05, 0.5, 2.5, 10)] == [4, 3, 1, 0]
-
-
-GRID = np.stack(np.meshgrid([-0.75, -0.25, 0.25, 0.75], [-0.5, 0.5]), -1).reshape(-1, 2)
-
-
-@given(st.integers(1, 4), st.integers(0, 99))
-def test_distances_are_those_of_all_pairs(dimensions, seed):
-    rng = np.random.default_rng(seed)
-    a, b = rng.normal(size=(7, dimensions)), rng.normal(size=(5, dimensions))
-    wanted = np.sqrt(((a[:, None] - b) ** 2).sum(-1)).min(1)
-    np.testing.assert_allclose(nearest_distances(a, b), wanted)
-
-
-def test_shares_are_counted_in_cells_of_the_first():
-    assert shared_cells(GRID, GRID[::-1], 4) == 1.0
-    right = GRID[GRID[:, 0] > 0]
-    assert shared_cells(GRID, right, 4) == 0.5  # half of all cells
-    assert shared_cells(right, GRID, 4) == 1.0  # the other way round
-    assert shared_cells(GRID, -right, 4) == 0.5
-    assert shared_cells(right, -right, 4) == 0.0
-    assert shared_cells(right, -right, 1) == 1.0  # one cell holds all
-    assert shared_cells(np.repeat(right, 9, 0), right[:1], 4) == 0.25  # points do not count

@@ -8,7 +8,7 @@ from ddlib.dynamics import (
     CMU_DD_ARM_II as ARM,
     ELBOWS,
     Unreachable,
-    around,
+    follow_hand,
     inverse_kinematics,
     jacobian,
     reach,
@@ -54,7 +54,13 @@ def test_circles_of_many_kinds_at_any_pace():
     pace = np.array([2 * np.pi, -3.0])[:, None]
     phase = pace * (t + 0.3 * t**2), pace * (1 + 0.6 * t), pace * 0.6 * np.ones_like(t)
     centre, radius = np.array([[0.6, 0.1], [0.3, -0.5]]), np.array([0.1, 0.05])
-    q, qd, qdd = around(ARM, centre, radius, phase, "negative")
+    angle, rate, change = (x[..., None] for x in phase)
+    along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
+    across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
+    size = radius[:, None, None]
+    hand = centre[:, None] + size * along, size * rate * across
+    acceleration = size * (change * across - rate**2 * along)
+    q, qd, qdd = follow_hand(ARM, *hand, acceleration, "negative")
     offset = hand_of(q) - centre[:, None]
     np.testing.assert_allclose(np.hypot(*np.moveaxis(offset, -1, 0)), radius[:, None] + 0 * t)
     turned = np.unwrap(np.arctan2(offset[..., 1], offset[..., 0]))

@@ -7,10 +7,11 @@ from itertools import product
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
+from scipy.spatial import cKDTree
 
-from ddlib._check import integer, number, one_of, positive, shaped
-from ddlib.analysis import nearest_distances, shared_cells
-from ddlib.dynamics import ELBOWS, Arm, around
+from ddlib._check import finite_array, integer, one_of, positive, shaped
+from ddlib.analysis import cells_reached
+from ddlib.dynamics import ELBOWS, Arm, follow_hand
 from ddlib.setups import Setup, true_states
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import (
@@ -97,7 +98,6 @@ def random_circles(runs: int, seed: int) -> Circles:
 def _pace(t, start: str = "jump") -> np.ndarray:
     """Time as a motion sees it, with two derivatives; speed jumps, or rises within `_RAMP`."""
     t = shaped("t", t, "(time,)")
-    one_of("start", start, ("jump", "smooth"))
     inside = np.clip(t, 0.0, MOTION_SECONDS)
     if start == "jump":
         moving = (t >= 0) & (t < MOTION_SECONDS * (1 - 1e-12))
@@ -122,13 +122,27 @@ def stirred(
     turning = np.where(circles.clockwise, -1, 1) * 2 * np.pi / circles.period
     angle, rate, change = turning[:, None] * _pace(t, start)[:, None]
     first = np.deg2rad(circles.bearing_deg)[:, None]
-    return around(arm, circles.centre, circles.radius, (first + angle, rate, change), elbow)
+    return _around(arm, circles.centre, circles.radius, (first + angle, rate, change), elbow)
+
+
+def _around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
+    """Joint motion that moves the hand on circles about `centre` (runs, 2), m, at any pace.
+
+    `phase`: the hand's place on them, (runs, time), rad, with its first and second derivative.
+    """
+    radius = finite_array("radius", radius)
+    angle, rate, change = (finite_array("phase", x)[..., None] for x in phase)
+    along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
+    across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
+    size = radius[..., None, None]
+    hand = finite_array("centre", centre, 2)[..., None, :] + size * along
+    pull = size * (change * across - rate**2 * along)
+    return follow_hand(arm, hand, size * rate * across, pull, elbow)
 
 
 def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
     """From rest at zero through points, rad, and back, by quintic splines; equal times."""
     points, t = shaped("points", points, "(runs, points, 2)"), shaped("t", t, "(time,)")
-    number("seconds", seconds, 0.0, open_low=True)
     y = np.pad(points, ((0, 0), (1, 1), (0, 0))).swapaxes(0, 1)
     rest = [(k, np.zeros(y.shape[1:])) for k in (1, 2)]
     spline = make_interp_spline(np.linspace(0, seconds, len(y)), y, 5, bc_type=(rest, rest))
@@ -208,6 +222,28 @@ def states(recording: Recording, setup: Setup) -> np.ndarray:
     return true_states(recording, setup)[:, ::5].reshape(-1, 6)
 
 
+def _nearest_distances(points, among) -> np.ndarray:
+    """Distance of each point to the nearest one of another set, both ``(n, dimensions)``."""
+    points = shaped("points", points, "(n, dimensions)")
+    among = shaped("among", among, f"(n, {points.shape[1]})")
+    for name, x in (("points", points), ("among", among)):
+        integer(f"number of {name}", len(x), 1)
+    return cKDTree(among).query(points)[0]
+
+
+def _shared_cells(points, among, cells: int) -> float:
+    """Of the cells of the cube from -1 to 1 that `points` reach, the share that `among` reach."""
+    points = shaped("points", points, "(n, dimensions)")
+    among = shaped("among", among, f"(n, {points.shape[1]})")
+    for name, x in (("points", points), ("among", among)):
+        if not len(x) or np.abs(x).max() > 1:
+            raise ValueError(f"{name} must hold points within -1 to 1, got {len(x)} of them")
+    mine, others, either = (
+        cells_reached(x, 1.0, cells) for x in (points, among, np.concatenate([points, among]))
+    )
+    return (mine + others - either) / mine
+
+
 def _coverage(setup: Setup, tests: dict, members: int) -> dict:
     """Shared cells and distances of two families, both ways, beside a second draw of the same."""
     today, pair = setup.repeated(TEST_DAY), ("pick and place", "circles")
@@ -228,8 +264,8 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
         mine = (first[name] / deviation)[:, axes]
         found.setdefault(part, {})[name] = {
             kind: {
-                "shared": shared_cells(cube[name][:, axes], cube[label][:, axes], CELLS),
-                "distance": np.median(nearest_distances(mine, (x / deviation)[:, axes])),
+                "shared": _shared_cells(cube[name][:, axes], cube[label][:, axes], CELLS),
+                "distance": np.median(_nearest_distances(mine, (x / deviation)[:, axes])),
             }
             for kind, label, x in (
                 ("other family", other, first[other]),
