@@ -51,16 +51,6 @@ def typeset(text: str) -> str:
     return _MINUS.sub("−", _POWER.sub(power, text))
 
 
-def number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
-    """A number with the digits (`most` of them) that show on which side of others it lies."""
-    edges = np.array(list(edges), dtype=float)
-    for count in range(digits, most + 1):
-        shown = float(f"{value:.{count - 1}e}")
-        if (np.sign(shown - edges) == np.sign(value - edges)).all():
-            return significant(value, count)
-    return significant(value, most)
-
-
 def spread(values, digits: int = 2) -> str:
     """Median and range of a sample's finite values: ``0.10 (0.08 to 0.14)``."""
     values = np.asarray(values, dtype=float)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from ddlib.tables import Table, number_beside, quote, scientific, significant, spread, typeset
+from ddlib.tables import Table, quote, scientific, significant, spread, typeset
 
 # --- numbers ----------------------------------------------------------------------------
 
@@ -62,20 +62,6 @@ def test_powers_are_set_as_mathematics():
 )
 def test_numbers_in_text_are_set_as_mathematics(text, wanted):
     assert typeset(text) == wanted == typeset(wanted)
-
-
-@pytest.mark.parametrize(
-    "value, edges, text",
-    [
-        (0.98, [0.9, 0.98], "0.98"),  # on the edge: it may look so
-        (0.9, [0.98], "0.90"),
-        (1.54, [1.52], "1.54"),  # 1.5 would be on the other side
-        (-0.29999, [-0.3], "-0.29999"),
-        (34.4, [], "34"),
-    ],
-)
-def test_a_value_is_told_from_an_edge(value, edges, text):
-    assert number_beside(value, edges) == text
 
 
 @pytest.mark.parametrize(
