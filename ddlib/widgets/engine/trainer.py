@@ -28,7 +28,7 @@ _HINT = (
     "A network with ten hidden units learns the torques of both joints from windows of 21 "
     "positions, by the descent of this chapter, in your browser. For speed it sees every fifth "
     "window of the five training runs; its error on trajectory 6 is over all. Shifted torques "
-    "have nothing to do with the motion: what shapes they give, any smooth target gives. A "
+    "have nothing to do with the motion: the shapes that they give need no arm. A "
     "filter's name follows the rule of the chapter on convolution filters."
 )
 
