@@ -74,7 +74,7 @@ def test_a_heavy_rotor_makes_a_joint_that_knows_nothing_of_the_other():
 @pytest.mark.parametrize("effects", [IDEAL, CMU_DD_ARM_II_EFFECTS], ids=["ideal", "all effects"])
 def test_runs_of_a_batch_are_runs_by_themselves(effects):
     t = np.arange(750) * 0.002
-    found = feedforward._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0, extents=_EXTENTS)
+    found = feedforward._errors([0.5, 0.0], [1.0, 2.0], effects, speed=2.0)
     assert found.shape == (2, 150, 2)  # logged a hundred times a second
     motion = smooth_pick_and_place(_EXTENTS, t, 2.0)
     laws = (

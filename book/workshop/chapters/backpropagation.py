@@ -217,12 +217,9 @@ def reach(history: History, level: float = _LEVEL) -> np.ndarray:
 
 
 def acceleration() -> Measured:
-    """How much more acceleration speeds up learning here than in another domain, parity.
+    """How much more acceleration speeds up learning on the windows than on parity.
 
-    The speed-up is the median number of epochs without over that with acceleration, at the same
-    step size and from the same initial weights: to a training RMSS of `_LEVEL` on the windows of
-    21, and to the first time that all inputs are right on parity. A run that does not get there
-    counts with its length.
+    Epochs without over with it: to a training RMSS of `_LEVEL`, and until all inputs are right.
     """
     kept = results.read("acceleration")
     runs = [kept["race"][name] for name in ("without", "with")]
@@ -239,11 +236,7 @@ def acceleration() -> Measured:
 
 
 def fine_distinctions(bits: int = 3, noise: float = 0.25) -> Measured:
-    """Right answers on fresh noisy patterns, as a part of the best that is possible.
-
-    The task is parity of a few bits, so that neighbours in every direction differ, with
-    Gaussian noise on the inputs of training and test. Best possible: the nearest corner.
-    """
+    """Right answers to parity of noisy bits, as a part of the best possible: the nearest corner."""
     x, y = parity_cases(bits)
     rng = np.random.default_rng(0)
 
@@ -287,10 +280,9 @@ def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> 
 
 
 def stable(widths=WINDOWS) -> Measured:
-    """Change of all weights over the second half of training, relative to their size.
+    """Change of all weights over the second half of training, the largest median of a window.
 
-    The largest over windows, each the median of its networks. Two networks of each are kept:
-    too few to draw from, so there are no replicates.
+    Two networks of each are kept: too few to draw from, so there are no replicates.
     """
     found = {width: _late_change(width) for width in widths}
     half, last, _ = found[widths[0]]
@@ -313,10 +305,7 @@ def _late_change(width: int) -> tuple[int, int, float]:
 
 
 def settling(steepest: float = 0.1) -> Measured:
-    """Epochs from which on the median slope of the error stays flat, the largest over windows.
-
-    The end of the longest runs if it is still steep there: then it is a lower bound.
-    """
+    """Epochs until the median slope of the error stays flat, at least; the largest over windows."""
     cells, epochs = [], []
     for record in results.read("longer")["windows"].values():
         at = np.array(record["history"]["epochs"])

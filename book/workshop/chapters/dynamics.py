@@ -242,11 +242,7 @@ def terms() -> Measured:
 
 
 def multiplications() -> Measured:
-    """Multiplications of one cycle by the recursive Lagrangian form (judged), and by others.
-
-    Six general joints of which nothing is known; beside it the same form with the zeros of the
-    method known, and customised to the arm.
-    """
+    """Multiplications by the recursive Lagrangian form of six joints, nothing known; by others."""
     recursive, zeros, custom = (
         costs.count(recursive_lagrange, PUMA_560, known).multiplications
         for known in costs.KNOWLEDGE
@@ -270,9 +266,7 @@ def recursion() -> Measured:
 def extra_links(samples: int = 4000) -> Measured:
     """Share of coupling in the torque with four joints of a Puma moving over that with two.
 
-    Coupling is what a joint needs because others move: its torque less that of the same state
-    with the other joints at rest. RMS over the RMS torque without gravity, random states, all
-    joints equally fast; the mean over the joints that move.
+    Coupling is a joint's torque less that of the same state with the other joints at rest.
     """
     arm = PUMA_560.first(4)
     rng = np.random.default_rng(0)

@@ -120,7 +120,7 @@ def disturbances(load: float = 5.0) -> Measured:
 
 def backdriven(gear: float = 100.0) -> Measured:
     """How far the moving shoulder throws the elbow off, without gears over behind gears."""
-    direct, geared = np.abs(_geared(gear, False, tuple(APPENDIX_I[3]))[..., 1]).max(1)
+    direct, geared = np.abs(_geared(gear, False, APPENDIX_I[3])[..., 1]).max(1)
     text = f"the shoulder throws a resting elbow off by {direct:.1f}°, "
     text += f"behind gears of {gear:g} to 1 by {geared:.2f}°"
     return Measured(float(direct / geared), text)

@@ -138,7 +138,7 @@ def _rms(x) -> np.ndarray:
     return np.sqrt(np.mean(np.square(x), axis=(-2, -1)))
 
 
-def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0, extents=_EXTENTS):
+def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0):
     """Tracking errors on the smooth motion, degrees, ``(runs, time, 2)``.
 
     Each run has a factor, the share of the needed torque that its model gives, and another on
@@ -146,7 +146,7 @@ def _errors(factors, gains, effects: Effects = IDEAL, speed: float = 1.0, extent
     """
     factors, gains = (np.array(x, dtype=float)[:, None] for x in (factors, gains))
     t = np.arange(round(3 / speed / CONTROL_STEP)) * CONTROL_STEP
-    reference = smooth_pick_and_place(np.broadcast_to(extents, (len(factors), 2)), t, speed)
+    reference = smooth_pick_and_place(np.broadcast_to(_EXTENTS, (len(factors), 2)), t, speed)
 
     def model(*motion):
         return factors[:, None] * ARM.inverse_dynamics(*motion)
@@ -228,11 +228,7 @@ def figure_2_1() -> Measured:
 
 
 def _track(rotors, frozen, model, gains, speed: float = 1.0, extents=_EXTENTS) -> np.ndarray:
-    """Tracking errors of changed arms under continuous PD control and feedforward, shape (runs,
-    time, 2).
-
-    Several arms at once on the smooth motion, by Runge-Kutta steps of a log sample.
-    """
+    """Tracking errors of changed arms under continuous control, ``(runs, time, 2)``, degrees."""
     frozen = np.asarray(frozen)[:, None]
     rotors = np.asarray(rotors, dtype=float)[:, None] * np.eye(2)
     kp, kd = np.asarray(gains) * KP, np.asarray(gains) * KD
@@ -263,8 +259,7 @@ def _track(rotors, frozen, model, gains, speed: float = 1.0, extents=_EXTENTS) -
 def linearised(speed: float = 2.0) -> Measured:
     """By how much feedforward shrinks what a linear arm does not explain of the error.
 
-    The arm and one frozen in its stretched posture follow the same motion, with PD alone and
-    with feedforward from a model that is 20 % too small.
+    That is an arm frozen in its stretched posture; the model of feedforward is 20 % too small.
     """
     frozen = np.array([False, True, False, True])
 
@@ -290,8 +285,7 @@ def faster(speed: float = 2.0) -> Measured:
     return Measured(float(fast[0] / fast[1]), text)
 
 
-@cache
-def _geared(gear: float, own_model: bool, extents: tuple) -> np.ndarray:
+def _geared(gear: float, own_model: bool, extents) -> np.ndarray:
     """Errors of the arm without and with gears, the joints' own loops equally fast."""
     rotors = np.array([[0.0, 0.0], [gear**2 * PUMA_560_ROTORS[0]] * 2])
     inertia = _OWN + rotors
@@ -299,12 +293,12 @@ def _geared(gear: float, own_model: bool, extents: tuple) -> np.ndarray:
     def model(q, qd, qdd):
         return own_model * inertia[:, None] * qdd
 
-    return _track(rotors, [False, False], model, inertia / _OWN, extents=np.array(extents))
+    return _track(rotors, [False, False], model, inertia / _OWN, extents=extents)
 
 
 def target_for_models(gear: float = 100.0) -> Measured:
     """What a model of each joint by itself leaves of PD's error: without over behind gears."""
-    left = [_rms(_geared(gear, own, tuple(_EXTENTS))) for own in (True, False)]
+    left = [_rms(_geared(gear, own, _EXTENTS)) for own in (True, False)]
     direct, geared = left[0] / left[1]
     text = f"a model without coupling leaves {100 * direct:.0f} % of PD's error, "
     text += f"{100 * geared:.0f} % behind gears of {gear:g} to 1"

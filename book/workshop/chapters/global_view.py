@@ -33,10 +33,7 @@ def in_transition(width: int) -> Measured:
 
 
 def spare_units(width: int, worse: float = 1.1) -> Measured:
-    """Median number of hidden units of ten that can be held still at almost no loss.
-
-    The training error then grows by less than the factor `worse`.
-    """
+    """Median number of units of ten without which the training error grows by less than `worse`."""
     windows, torque = cases(committed.training(), width)
 
     def spare_of(models):
@@ -109,11 +106,9 @@ def hidden_units_add(
 
 
 def compensate_friction(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
-    """Share of the hidden units' non-linear part that friction and rigid body explain.
+    """Share R² of the hidden units' non-linear part that friction and rigid body explain.
 
-    Least squares takes what is linear in the window out of the hidden units' sum, of the true
-    friction torque and of the rigid body's. What is left of the sum is fitted by what is left of
-    both together; R², the better of two joints, medians over networks.
+    Least squares takes what is linear in the window out of all three; the better of two joints.
     """
     run, chosen = committed.training(setup), SETUPS[setup]
     x, hidden, _ = _features(width, setup)[0]

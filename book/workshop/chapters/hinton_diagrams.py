@@ -14,11 +14,7 @@ from workshop.report.evidence.verdicts import Measured
 
 
 def adjacency(width: int = 11, epochs: int = 100) -> Measured:
-    """Change of the trained weights when the samples of all windows are shuffled alike.
-
-    Initial weights are shuffled in the same way and the trained ones put back in order;
-    the largest difference relative to the largest weight.
-    """
+    """Change of trained weights, over the largest, when all windows' samples are shuffled alike."""
     data = TrainingSet.from_recording(committed.training(), width)
     order = np.random.default_rng(0).permutation(width)
     start = Weights.random(1, width, initial=STATE_FEEDBACK.initial)

@@ -144,10 +144,7 @@ def _shares(left) -> tuple[np.ndarray, str]:
 
 
 def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
-    """How many times the assumed friction is significant: share of the rigid body's torque.
-
-    The joint with the smaller share counts, both as RMS.
-    """
+    """How many times the assumed friction is significant, at the joint with the smaller share."""
     factor = np.outer(factors, (1.0, 1.0))
     viscous, coulomb = _SETUP.effects.friction
     scaled = (
@@ -163,11 +160,7 @@ def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
 
 
 def differencing(width: int = 19) -> Measured:
-    """Noise of velocities by differences over that of a parabola, both up to the newest reading.
-
-    Rounding of the encoder on trajectory 6, 500 readings a second; the text gives the torque
-    that it makes through the derivative gain of the shoulder. `width`: readings of the parabola.
-    """
+    """Noise of velocities by differences over that of a parabola, both up to the newest reading."""
     q = _ideal().q_true[:, 0]
     rounding = _SETUP.effects.encoder[0].apply(q) - q
     noise = [
@@ -188,14 +181,9 @@ def looking_ahead(width: int = 21) -> Measured:
 
 
 def snap() -> Measured:
-    """Frequency of a springy shaft, Hz, below which its torque exceeds the torque sensor's noise.
-
-    Measured at the assumed shaft; the torque is in proportion to the inverse of the stiffness.
-
-    The reference has been running for a period when the measured motion begins. On the motion
-    from rest the swing of the start is never over: this torque weighs frequencies by their
-    fourth power, so at the end of the three seconds the swing's still outweighs the reference's.
-    """
+    """Frequency of a springy shaft, Hz, below which its torque exceeds the sensor's noise."""
+    # The reference runs for a period before. From rest, the start's swing would never be over: this
+    # torque weighs frequencies by their fourth power.
     t = np.arange(round(-2 * MOTION_SECONDS / CONTROL_STEP), round(MOTION_SECONDS / CONTROL_STEP))
     t = t * CONTROL_STEP
     omega, extents = np.pi / MOTION_SECONDS, np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1])
@@ -206,7 +194,7 @@ def snap() -> Measured:
     left = rms(residual_torque(_SETUP.arm, run)[t[:-1] >= 0])[0]
     noise = _SETUP.effects.torque_sensor[0].std[0]
     modes = _SHAFT.mode_frequencies(_SETUP.arm, [0.0, 0.0]) / (2 * np.pi)
-    turn = float(modes[0] * np.sqrt(left / noise))
+    turn = float(modes[0] * np.sqrt(left / noise))  # torque goes with 1 / stiffness
     text = (
         f"{1e3 * left:.2f} mN m with modes at {modes[0]:.0f} and {modes[1]:.0f} Hz, "
         f"{significant(noise / left, 2)} times below the torque noise; as large with a mode at "
@@ -266,10 +254,7 @@ def saturation() -> Measured:
 
 
 def sampling(late: float = 1.2e-3) -> Measured:
-    """Multiple of the assumed viscous friction from which on late position feedback is stable.
-
-    The torque is held over a control period, and late.
-    """
+    """Multiple of the viscous friction from which on late, held position feedback is stable."""
     viscous = np.array(_SETUP.effects.friction[0].coefficient)
     gain = np.hstack([np.diag(_SETUP.controller.kp), np.zeros((2, 2))])
 

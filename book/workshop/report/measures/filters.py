@@ -41,10 +41,7 @@ def of_class(
 
 
 def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
-    """Share of hidden filters that are not analysable after training; a narrower window's beside.
-
-    Before training all are, at every window: that some are left says little.
-    """
+    """Share of hidden filters that are not analysable after training; before it all are."""
     widths = wide, narrow
     cells, before = _made(lambda f: classify(f) == "not analysable", "hidden", widths)
     text = ", ".join(f"{c.sum()} of {c.size} at {w}" for c, w in zip(cells, widths))
@@ -98,11 +95,7 @@ def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
 
 
 def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -> Measured:
-    """Share of a layer's filters whose output correlates best with a quantity.
-
-    Along the training motions, with the true position, velocity and acceleration of the joint
-    whose window the filter sees.
-    """
+    """Share of a layer's filters that follow a joint's true position, velocity or acceleration."""
     training = committed.training()
     states = true_states(training, STATE_FEEDBACK).reshape(-1, 2, 3)
     f = getattr(committed.networks(width).weights, LAYERS[layer])

@@ -20,7 +20,7 @@ from ddlib.learning import (
     with_ones,
 )
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, split
+from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, results
@@ -36,11 +36,7 @@ from workshop.report.studies.windows import _acceleration_error
 
 
 def estimates(orders: list, widths: list) -> Measured:
-    """Error of derivatives that a least-squares filter takes from a window, the worst order.
-
-    Relative to the true derivative's standard deviation, on the training recordings; of
-    several window sizes the best counts.
-    """
+    """Relative error of derivatives by a least-squares filter, the worst order, the best window."""
     run, names = committed.training(), {1: "velocity", 2: "acceleration", 3: "jerk"}
     true, errors = run.qd_true, {}
     for order in range(1, max(orders) + 1):
@@ -89,10 +85,7 @@ def paths(width: int = 11) -> Measured:
 
 
 def growth(width: int = 21) -> Measured:
-    """Weights over those in proportion to window, joints or hidden units, each doubled.
-
-    The one furthest from 1 is judged.
-    """
+    """Weights over proportion as window, joints or hidden units double; the one furthest from 1."""
     base = {"width": width, "hidden": 10, "joints": 2, "outputs": 2}
     before = Weights.random(1, **base)[0].count()
     larger = {
@@ -145,10 +138,7 @@ def training_error_falls() -> Measured:
 
 
 def training_is_monotone(other: int = 2) -> Measured:
-    """Share of the steps between records, over 60,000 epochs, at which the error falls.
-
-    Every record counts; how often it falls depends on how far apart they are.
-    """
+    """Share of the steps between records, over 60,000 epochs, at which the error falls."""
     windows = results.read("longer")["windows"].values()
     histories = [np.array(w["history"]["training"]) for w in windows]
     falls, apart = ([np.diff(h[:, ::k], axis=-1) < 0 for h in histories] for k in (1, other))
@@ -190,10 +180,7 @@ def accurate(level: float = 0.1) -> Measured:
 
 
 def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -> Measured:
-    """Largest weight of a wide window over that of a narrow one, medians over networks.
-
-    Beside it the same for the taps of least-squares acceleration filters.
-    """
+    """Largest weight of a wide window over a narrow one's; beside it least-squares taps."""
     table = results.read("table-4-1")["setups"][STATE_FEEDBACK.name]
     cells = [np.array(table[str(w)]["largest weight"]) for w in (wide, narrow)]
     taps = [np.abs(savitzky_golay(w, 2, LOG_STEP, degree=2)).max() for w in (wide, narrow)]
@@ -220,10 +207,7 @@ def _learning(width: int, case: int) -> dict:
 
 
 def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
-    """Epoch at which some directions' parts of the error are half, over that of others.
-
-    Of several directions the geometric mean counts.
-    """
+    """Epoch at which some directions' parts of the error are half over others', geometric means."""
     cell, epochs = _learning(width, case), {}
     for who in ("measured", "predicted"):
         halves = np.log(np.array(cell[who]["halves"], float))
@@ -253,10 +237,7 @@ def centred(name: str = "rmss") -> Measured:
 
 
 def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
-    """Share of a change of the input weights that no combination of the windows gives.
-
-    Batch descent with momentum in double precision on a few cases, fewer than there are inputs.
-    """
+    """Share of a change of the input weights that no combination of the (few) windows gives."""
     data = TrainingSet.from_recording(committed.training(), 11)
     picked = np.linspace(0, len(data.x) - 1, taken).astype(int)
     x, y, start = data.x[picked], data.y[picked], Weights.random(1, 11)[0]
@@ -291,20 +272,6 @@ def noise_left(width: int = 41) -> Measured:
     found = np.array([np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in zip(*ends)])
     text = f"{spread(found)} in {along.values.size - learnt} of {along.values.size} directions"
     return judged(median, found, text=text)
-
-
-def learnt_by_solver(width: int = 41) -> Measured:
-    """Share of directions in which Levenberg-Marquardt moves weights beyond their start.
-
-    Of joint damping; beside it the share by descent on the same recording.
-    """
-    name = JOINT_DAMPING.name
-    along = Directions.of(TrainingSet.from_recording(committed.training(name), width))
-    trained, start = (m(width, name).weights for m in (committed.networks, committed._untrained))
-    share = (along.energy(trained, start) > along.energy(start)).mean(-1)
-    descent = np.array(_learning(width, 2)["measured"]["learnt"]) / along.values.size
-    text = f"{significant(np.median(share), 2)} of the directions; by descent "
-    return judged(median, share, text=f"{text}{significant(np.median(descent), 2)}")
 
 
 def memorised(width: int = 41, days: int = 5) -> Measured:
