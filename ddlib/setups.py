@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -23,7 +23,7 @@ from ddlib.effects import (
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.simulation import Recording, record
-from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
+from ddlib.trajectories import APPENDIX_I
 
 if TYPE_CHECKING:  # these need torch, which a page without training does without
     from ddlib.learning import History
@@ -277,26 +277,6 @@ def inside_hull(extents_deg) -> np.ndarray:
     extents_deg = finite_array("extents_deg", extents_deg, 2)
     distances = extents_deg @ _HULL.equations[:, :2].T + _HULL.equations[:, 2]
     return (distances <= 1e-9).all(-1)
-
-
-class _Square(NamedTuple):
-    """Recordings of a grid of trajectories; in `extents_deg` the elbow's changes fastest."""
-
-    extents_deg: np.ndarray  # shape (runs, 2), shoulder and elbow
-    inside: np.ndarray  # whether they lie in the hull of the training trajectories
-    recording: Recording
-
-
-def square(setup: Setup, points: int = 9) -> _Square:
-    """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
-
-    `points` are extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that
-    each joint moves in all.
-    """
-    integer("points", points, 2)
-    edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
-    extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
-    return _Square(extents, inside_hull(extents), setup.record(extents))
 
 
 def true_states(recording: Recording, setup: Setup, skip: float = 0.0) -> np.ndarray:

@@ -13,7 +13,6 @@ from ddlib.setups import (
     errors,
     inside_hull,
     split,
-    square,
     train_windows,
     true_states,
 )
@@ -147,17 +146,6 @@ def test_the_hull_of_the_training_trajectories():
     assert not inside_hull(APPENDIX_I[5])
     assert inside_hull(APPENDIX_I[:5].mean(0))
     assert not inside_hull([0.0, 0.0])
-
-
-def test_the_square_is_recorded_on_a_grid_up_to_45_degrees():
-    found = square(STATE_FEEDBACK, 3)
-    np.testing.assert_allclose(found.extents_deg[:4], [[15, 15], [15, 30], [15, 45], [30, 15]])
-    assert found.extents_deg[-1].tolist() == [45.0, 45.0] and found.inside[-1]
-    assert found.inside.tolist() == [bool(inside_hull(each)) for each in found.extents_deg]
-    alone = STATE_FEEDBACK.record(found.extents_deg[1])
-    assert found.recording.q.shape == (9, *alone.q.shape)
-    reach = np.abs(found.recording.reference.q).max(-2)
-    np.testing.assert_allclose(reach, np.deg2rad(found.extents_deg), rtol=1e-3)
 
 
 def test_true_states_are_position_and_its_derivatives(recording):

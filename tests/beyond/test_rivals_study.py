@@ -3,6 +3,7 @@
 import numpy as np
 
 from ddlib.learning import Weights
+from ddlib.setups import STATE_FEEDBACK, inside_hull
 from workshop.beyond.rivals.identified import Linear
 from workshop.beyond.rivals.tables import _Nearest
 from workshop.beyond.studies import lineup, rivals
@@ -34,3 +35,14 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
         _, asked = rivals.recorded(1)
         wanted = asked.torque.reshape(rivals.GRID**2, 30, 2)
         np.testing.assert_allclose(kept["torque"][0], wanted, rtol=1e-3, atol=1e-3)
+
+
+def test_the_square_is_recorded_on_a_grid_up_to_45_degrees():
+    found = rivals._square(STATE_FEEDBACK, 3)
+    np.testing.assert_allclose(found.extents_deg[:4], [[15, 15], [15, 30], [15, 45], [30, 15]])
+    assert found.extents_deg[-1].tolist() == [45.0, 45.0] and found.inside[-1]
+    assert found.inside.tolist() == [bool(inside_hull(each)) for each in found.extents_deg]
+    alone = STATE_FEEDBACK.record(found.extents_deg[1])
+    assert found.recording.q.shape == (9, *alone.q.shape)
+    reach = np.abs(found.recording.reference.q).max(-2)
+    np.testing.assert_allclose(reach, np.deg2rad(found.extents_deg), rtol=1e-3)

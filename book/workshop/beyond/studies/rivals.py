@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import warnings
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
+from ddlib._check import integer
 from ddlib.analysis import noise_floor
-from ddlib.setups import JOINT_DAMPING, split, square, true_states
-from ddlib.simulation import LOG_STEP
-from ddlib.trajectories import OutsideFamilyWarning
+from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, split, true_states
+from ddlib.simulation import LOG_STEP, Recording
+from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
 from workshop.beyond.rivals.protocol import Cases, Estimating, trial
 from workshop.beyond.studies.lineup import _DAYS, _LINES, REFERENCE
 from workshop.report import results
@@ -27,11 +29,31 @@ TORQUES = results.FOLDER / "rivals-torques.npz"
 _INPUTS = ("positions", "exact states")  # windows of measured positions, or states without noise
 
 
+class _Square(NamedTuple):
+    """Recordings of a grid of trajectories; in `extents_deg` the elbow's changes fastest."""
+
+    extents_deg: np.ndarray  # shape (runs, 2), shoulder and elbow
+    inside: np.ndarray  # whether they lie in the hull of the training trajectories
+    recording: Recording
+
+
+def _square(setup: Setup, points: int = 9) -> _Square:
+    """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
+
+    `points` are extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that
+    each joint moves in all.
+    """
+    integer("points", points, 2)
+    edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
+    extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
+    return _Square(extents, inside_hull(extents), setup.record(extents))
+
+
 def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     """Cases of one day by `_INPUTS` and name (inside and outside the hull), and the square's."""
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
-    whole = square(setup, GRID)
+    whole = _square(setup, GRID)
     parts = {
         "training": (training, 1),
         "trajectory 6": (six, 1),

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, square, true_states
+from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning, random_extents
 from workshop.beyond.rivals.bases import Polynomial, _Fourier
@@ -18,6 +18,7 @@ from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Rival
 from workshop.beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
 from workshop.beyond.studies.loop.run_time_parts import _square_extents, exact as equations
+from workshop.beyond.studies.rivals import _square
 from workshop.report.code_hash import study
 
 _DAYS = (1, 2, 3, 4, 5)
@@ -38,7 +39,7 @@ def _recorded(day: int, what: str) -> Recording:
     """The six runs, the square, or the practised trajectory again and again, on some day."""
     setup = JOINT_DAMPING.repeated(day)
     if what == "square":
-        return square(setup, POINTS).recording
+        return _square(setup, POINTS).recording
     return setup.record(*([[PRACTISED] * REPEATED[-1]] if what == "practised" else []))
 
 
@@ -186,7 +187,7 @@ def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
 def _full() -> dict:
     """Tables with the right torque in every cell, and how many cells the training runs reach."""
     setup = JOINT_DAMPING
-    training, everywhere = setup.record()[:5], square(setup, POINTS).recording
+    training, everywhere = setup.record()[:5], _square(setup, POINTS).recording
     states = _cases(setup, everywhere, "exact", 10).x
     seen = _cases(setup, training, "exact").x
     both = np.concatenate([states, seen])
@@ -346,5 +347,5 @@ def _left_out(make, highest: int, training: Cases) -> dict:
 
 
 def _practised_distance() -> np.ndarray:
-    """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `square`."""
+    """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `_square`."""
     return np.abs(_square_extents(POINTS) - PRACTISED).max(1)
