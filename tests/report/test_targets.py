@@ -12,7 +12,7 @@ from workshop.report.studies.nulls import TRIAL, _Trial
 
 @pytest.fixture(scope="module")
 def made():
-    setup = replace(TRIAL, hidden=3)
+    setup = replace(TRIAL, hidden=3, epochs=20)
     return study._Targets(_Trial(setup, setup.record(), 11), 2)
 
 
