@@ -128,26 +128,32 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
 
 
 @study
-def whitening(days=5, networks=5, members=8, width=41) -> dict:
+def whitening(days=5, networks=3, members=8, width=41) -> dict:
     """Joint damping without whitening, on the days of `recordings`; and what whitening learns.
 
     Along each direction of the windows of one recording, the steepest first: the change of the
-    weights over their start, with whitening, without, and by descent on the same inputs.
+    weights over their start, by the solver with whitening and without, and by descent.
     """
     recording = JOINT_DAMPING.record()
     along = Directions.of(TrainingSet.from_recording(split(recording)[0], width))
     start = Weights.random(members, width, initial=JOINT_DAMPING.initial)
-    descent = replace(JOINT_DAMPING, steps=0, decay=0.0)
-    ways = {"whitened": (JOINT_DAMPING, True), "plain": (JOINT_DAMPING, False)}
+    ways = {
+        "whitened": (JOINT_DAMPING, True),
+        "whitened, no decay": (replace(JOINT_DAMPING, decay=0.0), True),
+        "plain": (JOINT_DAMPING, False),
+        "descent": (replace(JOINT_DAMPING, steps=0, decay=0.0), True),
+    }
     found = {}
-    for name, (setup, whiten) in {**ways, "descent": (descent, True)}.items():
+    for name, (setup, whiten) in ways.items():
         model, history, _ = train_windows(setup, recording, width, members, whiten=whiten)
         change = along.energy(model.weights, start) / along.energy(start)
+        hidden = model.weights.hidden_weights
+        rough = {"trained": hidden, "change": hidden - start.hidden_weights}
         found[name] = {
             **_row(model, history, recording),
             "learnt": (change > 1).sum(-1),
             "change over start": np.sqrt(np.median(change, 0)),
-            "roughness": np.median(roughness(model.weights.hidden_weights), (-2, -1)),
+            **{f"roughness, {k}": np.median(roughness(w), (-2, -1)) for k, w in rough.items()},
         }
     return {
         **{"days": days, "networks": networks, "members": members, "width": width},
