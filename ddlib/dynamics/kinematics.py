@@ -1,4 +1,4 @@
-"""Where the hand is and how to get it there: Jacobian, inverse kinematics, circles."""
+"""Where the hand is and how to get it there: Jacobian, inverse kinematics."""
 
 from __future__ import annotations
 
