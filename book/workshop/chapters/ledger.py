@@ -72,13 +72,17 @@ def lists() -> Markdown:
 
 def folded(name: str, head: str, table: Table) -> Markdown:
     """A table to open."""
-    return Markdown(_fold(name, "", f"<b>Table</b> <span>{head}</span>", [table._repr_markdown_()]))
+    head = f'<span class="sign"></span> <b>table</b> <span>{head}</span>'
+    return Markdown(_fold(name, "", head, [table._repr_markdown_()]))
 
 
 def legend() -> Markdown:
     """What each sign means; with a script they are buttons that filter."""
     told = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
-    signs = (f"<span>{mark(word)} {told.get(word, word)}</span>" for word in (*WORDS, *LISTS))
+    signs = (
+        f'<span data-verdict="{word}">{mark(word)} {told.get(word, word)}</span>'
+        for word in (*WORDS, *LISTS)
+    )
     return Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
 
 
@@ -98,9 +102,9 @@ def _fold(name: str, verdict: str, head: str, inside: Iterable[str]) -> str:
 def _card(card: Card) -> str:
     word, says = card.word(Claim.judge), html.escape(card.says, quote=False)
     sign = card.sign(Claim.judge)
-    strip = "".join(mark(claim.judge()) for claim in card.deciding)
-    place = f"<small>{card.where} <span>{strip}</span></small>"
-    head = f"{mark(sign)} <b>{word}</b> <span>{says}</span> {place}"
+    signs = "".join(mark(claim.judge()) for claim in card.deciding)
+    strip = f" <i>{signs}</i>" if len(card.deciding) > 1 else ""
+    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{card.where}</small>"
     rows = [claim for row in card.rows.values() for claim in row]
     inside = [_grid(card), _tiles(rows)]
     if card.beside:
