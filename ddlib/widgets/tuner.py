@@ -233,7 +233,7 @@ class PIDTuner(LiveWidget):
 
 @lru_cache(maxsize=32)
 def _kept(arm: Arm, **setting) -> dict:
-    return _tuned(arm, **setting)
+    return tuned(arm, **setting)
 
 
 def _gains(kp, ki, kd) -> dict[str, np.ndarray]:
@@ -242,7 +242,7 @@ def _gains(kp, ki, kd) -> dict[str, np.ndarray]:
     return {k: np.multiply.outer(np.asarray(x, float), (1.0, _ELBOW[k])) for k, x in given.items()}
 
 
-def _tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
+def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
     """Curves and numbers of one setting, by ddlib's simulator and python-control.
 
     Errors in degrees, torques in N m, NaN after the end of a run; growth of the linear loop in 1/s.

@@ -64,8 +64,8 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     monkeypatch.setattr("ddlib.learning.descent._ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
-    data, test = study._page_set(trainer._SCALINGS[inputs], shift)
-    start = trainer._first_weights(seed)
+    data, test = study.page_set(trainer._SCALINGS[inputs], shift)
+    start = trainer.first_weights(seed)
     descent = Descent(start, data.x, data.y, default_rate(21) / len(data.x), momentum)
     for matrix in ("back", "delta"):
         setattr(descent, matrix, getattr(descent, matrix).double())
@@ -142,5 +142,5 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     rate = f"{trainer.default_rate(21):.12g}"
     assert copied(again) == f"(0, 1) None 2 {rate} 0.9 41"
     again.get_by_role("button", name="Reset").click()
-    first = trainer._first_weights(1).hidden_weights[0, 0, 0, 0]
+    first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
     assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}

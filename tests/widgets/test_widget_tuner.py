@@ -22,7 +22,7 @@ from ddlib.widgets.tuner import (
     TIMES,
     PIDTuner,
     _gains,
-    _tuned,
+    tuned,
 )
 
 ARM = CMU_DD_ARM_II
@@ -44,7 +44,7 @@ def engine(browser):
 @cache
 def known_run(**setting):
     """The same by ddlib; settings that are not given are those of the start."""
-    return _tuned(ARM, **{**_START, **setting})
+    return tuned(ARM, **{**_START, **setting})
 
 
 def rms(x):
@@ -64,7 +64,7 @@ def test_curves_are_the_recorded_ones(feedforward):
         APPENDIX_I[5],
         effects=Effects(friction=(ViscousFriction(_VISCOUS),)),
     )
-    shown = _tuned(ARM, 200, 100, 30, 0, feedforward)
+    shown = tuned(ARM, 200, 100, 30, 0, feedforward)
     at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
     error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(JOINTS):

@@ -33,7 +33,7 @@ _HINT = (
 )
 
 
-def _first_weights(seed: int) -> Weights:
+def first_weights(seed: int) -> Weights:
     """The page's random initial weights, as an ensemble of one network.
 
     Parameters
@@ -188,7 +188,7 @@ def _still(panels, training, test) -> tuple[str, str]:
     """The torques to be learnt and what an untrained network makes of them."""
     data = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["centred"])
     windows, torque = cases(test, _WIDTH)
-    model = TorqueModel(_first_weights(1)[0], data.inputs, data.outputs)
+    model = TorqueModel(first_weights(1)[0], data.inputs, data.outputs)
     told = model.torque(windows)
     curves = {}
     for j, joint in enumerate(JOINTS):
