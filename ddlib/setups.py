@@ -118,7 +118,8 @@ JOINT_DAMPING_BITS = 12.5
 window 11. Tuned to Table 4-1."""
 
 JOINT_DAMPING_STEPS = 60
-"""Levenberg-Marquardt steps of `JOINT_DAMPING`: it is stopped there, not converged. Tuned."""
+"""Levenberg-Marquardt steps of `JOINT_DAMPING`, with white inputs (`ddlib.learning.solve`): it is
+stopped there, not converged. Method and number are tuned."""
 
 JOINT_DAMPING_DECAY = 1e-6
 """Weight decay of `JOINT_DAMPING`. Tuned; it decides the size of the largest weights."""
