@@ -29,7 +29,6 @@ from .following import (
 )
 from .hidden_units import (
     ablation as ablation,
-    cancellation as cancellation,
     match as match,
     net_inputs as net_inputs,
     refitted as refitted,
@@ -46,7 +45,6 @@ from .response import (
     unit_inputs as unit_inputs,
 )
 from .sensitivity import (
-    INPUTS as INPUTS,
     input_shares as input_shares,
     responses as responses,
     shuffled as shuffled,

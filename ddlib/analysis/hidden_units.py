@@ -1,4 +1,4 @@
-"""Hidden units at work (section 5.2): saturation, ablation, cancellation, matching.
+"""Hidden units at work (section 5.2): saturation, ablation, matching.
 
 Activities are ``(..., cases, hidden)``, leading axes networks; windows hold positions, rad,
 ``(cases, joint, width)``.
@@ -70,16 +70,6 @@ def refitted(features, torque, held_out, answer) -> np.ndarray:
     x, new = (np.column_stack([a, np.ones(len(a))]) for a in (features, held_out))
     factors = np.linalg.lstsq(x, torque, rcond=None)[0]
     return np.array([rmss(x @ factors, torque), rmss(new @ factors, answer)])
-
-
-def cancellation(model: TorqueModel, windows) -> np.ndarray:
-    """How much of the hidden units' influence on each output cancels, ``(..., output)``.
-
-    One minus the deviation of their sum over the sum of their deviations: 0 if all push alike.
-    """
-    hidden, _ = model.weights.activity(model.scaled(windows))
-    parts = hidden[..., None, :] * model.weights.output_weights[..., None, :, :]
-    return 1 - parts.sum(-1).std(-2) / parts.std(-3).sum(-1)
 
 
 def match(first, second) -> tuple[np.ndarray, np.ndarray]:

@@ -13,9 +13,6 @@ from ddlib._check import finite_array, integer, number, shaped
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 
-INPUTS = ("q1", "v1", "a1", "q2", "v2", "a2")
-"""Names of the six inputs in their order: shoulder, then elbow."""
-
 
 def input_shares(weights: Weights) -> np.ndarray:
     """Share of each input in the variance of each hidden unit's net input, shaped like the weights.

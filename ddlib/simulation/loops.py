@@ -219,7 +219,7 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
 
 
-class Score(NamedTuple):
+class _Score(NamedTuple):
     """What a controller made of a motion; every field has the shape of the recording's runs."""
 
     largest: np.ndarray  #: Largest error of a joint, degrees.
@@ -230,8 +230,13 @@ class Score(NamedTuple):
     effort: np.ndarray  #: Root mean square of the torque vector over the motion, N m.
 
 
-def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score:
-    """Errors and effort of every run over a motion of `seconds`, or as the recording says."""
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Score:
+    """Errors and effort of every run over a motion of `seconds`, or as the recording says.
+
+    Errors of the joints, degrees: the `largest`, the `whole` (root mean square) and `settled`, that
+    without the first third. Of the hand, mm: `hand`, RMS without that third, and at the `turn`
+    half-way. `effort`: RMS of the torque vector, N m.
+    """
     if seconds is not None:
         recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
     t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion
@@ -243,7 +248,7 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> Score
     )
     gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
     half = int(np.argmin(np.abs(t - (begin + end) / 2)))
-    return Score(
+    return _Score(
         largest=np.abs(error[..., moving, :]).max((-2, -1)),
         whole=np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
         settled=np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),

@@ -1,11 +1,10 @@
-"""Hidden units at work: saturation, transition regions, ablation, cancellation, matching."""
+"""Hidden units at work: saturation, transition regions, ablation, matching."""
 
 import numpy as np
 import pytest
 
 from ddlib.analysis import (
     ablation,
-    cancellation,
     match,
     refitted,
     saturated,
@@ -47,20 +46,6 @@ def test_a_unit_held_at_its_mean_is_a_bias(model, cases):
         rebuilt = Weights(w.hidden_weights, w.hidden_bias, out, w.direct_weights, bias)
         own = TorqueModel(rebuilt, one.inputs, one.outputs)
         assert error == pytest.approx(rmss(own.torque(windows), torque))
-
-
-def test_cancellation_of_twins_and_rivals(cases):
-    data = TrainingSet.from_arrays(*cases)
-    half = RNG.normal(size=(1, 2, 5))
-    zero = dict(
-        hidden_bias=np.zeros(2), direct_weights=np.zeros((2, 2, 5)), output_bias=np.zeros(2)
-    )
-    hidden = np.concatenate([half, half])
-    weights = Weights(
-        hidden_weights=hidden, output_weights=np.array([[1.0, 1.0], [2.0, -2.0]]), **zero
-    )
-    model = TorqueModel(weights, data.inputs, data.outputs)
-    np.testing.assert_allclose(cancellation(model, cases[0]), [0, 1], atol=1e-9)
 
 
 def test_matching_finds_a_permutation_with_mirrors():

@@ -5,8 +5,9 @@ import pytest
 from numpy.polynomial import Polynomial
 from scipy.stats import ortho_group
 
+from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.simulation import LOG_STEP
-from workshop.report._probes import decoded, decoded_sign, pure_part, with_jerk
+from workshop.report._probes import cancellation, decoded, decoded_sign, pure_part, with_jerk
 
 RNG = np.random.default_rng(0)
 
@@ -46,3 +47,18 @@ def test_signs_are_judged_by_both_classes_alike():
     assert 0.35 < coin < 0.65
     rare = np.where(np.arange(200) < 10, 1.0, -1.0)[:, None]  # always "no" would be right in 95 %
     assert decoded_sign(0 * x + 1.0, x[:, :1], 0 * new + 1.0, rare)[0] == pytest.approx(0.5)
+
+
+def test_cancellation_of_twins_and_rivals():
+    windows = RNG.normal(size=(120, 2, 5))
+    data = TrainingSet.from_arrays(windows, RNG.normal(size=(120, 2)))
+    half = RNG.normal(size=(1, 2, 5))
+    zero = dict(
+        hidden_bias=np.zeros(2), direct_weights=np.zeros((2, 2, 5)), output_bias=np.zeros(2)
+    )
+    hidden = np.concatenate([half, half])
+    weights = Weights(
+        hidden_weights=hidden, output_weights=np.array([[1.0, 1.0], [2.0, -2.0]]), **zero
+    )
+    model = TorqueModel(weights, data.inputs, data.outputs)
+    np.testing.assert_allclose(cancellation(model, windows), [0, 1], atol=1e-9)

@@ -1,4 +1,4 @@
-"""What the trial of the filters asks of units: linear probes, and networks with other filters."""
+"""What the trial of the filters asks of units: linear probes, cancellation, other filters."""
 
 from __future__ import annotations
 
@@ -29,6 +29,16 @@ def pure_part(f) -> np.ndarray:
 def with_filters(model: TorqueModel, hidden_weights) -> TorqueModel:
     """Networks whose hidden units have other weights from the window, all else as it was."""
     return replace(model, weights=replace(model.weights, hidden_weights=hidden_weights))
+
+
+def cancellation(model: TorqueModel, windows) -> np.ndarray:
+    """How much of the hidden units' influence on each output cancels, ``(..., output)``.
+
+    One minus the deviation of their sum over the sum of their deviations: 0 if all push alike.
+    """
+    hidden, _ = model.weights.activity(model.scaled(windows))
+    parts = hidden[..., None, :] * model.weights.output_weights[..., None, :, :]
+    return 1 - parts.sum(-1).std(-2) / parts.std(-3).sum(-1)
 
 
 def decoded(features, target, held_out, answer, ridge: float = 1e-6) -> np.ndarray:

@@ -11,7 +11,6 @@ from ddlib.analysis import (
     CLASSES,
     LAYERS,
     calibrated,
-    cancellation,
     classify,
     heard,
     mean_gradient,
@@ -35,6 +34,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report._probes import (
+    cancellation,
     decoded,
     decoded_sign,
     pure_part,
