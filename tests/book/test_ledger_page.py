@@ -1,12 +1,13 @@
-"""The ledger in a browser: a wall of signs, filters, and an address for every claim."""
+"""The ledger in a browser: cards that open, filters, and an address for every row."""
 
 import pytest
 
-from workshop.report.evidence import claims, wall
+from workshop.report.evidence import cards, claims, wall
 
 pytestmark = pytest.mark.browser
 
-PAPER = claims.of_the_paper()
+ROWS = claims.load()
+CARDS = len(cards.cards()) + len(cards.LISTS)
 
 
 @pytest.fixture
@@ -23,53 +24,65 @@ def ledger(site, visit):
 
 
 def shown(page) -> int:
-    return page.locator("details.claim:not([hidden])").count()
+    return page.locator("details.card-of-rows[data-verdict]:not([data-verdict='']):visible").count()
 
 
-def test_signs_open_their_claims(ledger):
+def test_the_page_is_at_most_ten_screens_tall(ledger):
     page = ledger()
-    assert shown(page) == len(PAPER) == page.locator(".wall-row a").count()
-    sign = page.locator(".wall-row a").nth(len(PAPER) // 2)
+    page.set_viewport_size({"width": 1280, "height": 800})
+    assert shown(page) == CARDS
+    assert page.evaluate("document.documentElement.scrollHeight") <= 8000
+
+
+def test_signs_of_a_grid_open_their_rows(ledger):
+    page = ledger("#card-saturated")
+    card = page.locator("#card-saturated")
+    assert card.evaluate("(el) => el.open")
+    sign = card.locator(".claim-grid a").nth(3)
     name = sign.get_attribute("href")
-    tile = page.locator(name)
-    assert not tile.evaluate("(el) => el.open")
+    row = page.locator(name)
+    assert not row.evaluate("(el) => el.open")
     sign.focus()
     page.keyboard.press("Enter")
     page.wait_for_function("(name) => document.querySelector(name).open", arg=name)
-    assert tile.locator("p").first.is_visible() and page.url.endswith(name)
+    assert row.locator("p").first.is_visible() and page.url.endswith(name)
 
 
-def test_a_claim_has_an_address_that_opens_it(ledger):
+def test_every_row_has_an_address_that_opens_it_and_its_card(ledger):
     page = ledger()
-    tile = page.locator("details.claim").nth(3)
-    tile.locator("summary").click()
-    assert page.url.endswith("#" + tile.get_attribute("id"))
-    page = ledger(f"#claim-{PAPER[-1].id}")
-    tile = page.locator(f"#claim-{PAPER[-1].id}")
-    assert tile.evaluate("(el) => el.open")
-    assert 0 <= tile.bounding_box()["y"] < page.viewport_size["height"]
+    card = page.locator("details.card-of-rows").nth(3)
+    card.locator("summary").first.click()
+    assert page.url.endswith("#" + card.get_attribute("id"))
+    addresses = page.evaluate("[...document.querySelectorAll('details.claim')].map((el) => el.id)")
+    assert {f"claim-{row.id}" for row in ROWS} <= set(addresses)
+    for row in (ROWS[0], ROWS[-1]):
+        page = ledger(f"#claim-{row.id}")
+        tile = page.locator(f"#claim-{row.id}")
+        assert tile.evaluate("(el) => el.open && el.parentElement.closest('details').open")
+        assert 0 <= tile.bounding_box()["y"] < page.viewport_size["height"]
 
 
 def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     page = ledger()
     bar = page.locator(".claim-filter")
-    for verdict in ("undecided", "by construction", "qualitative", "qualitative"):
+    for verdict in ("undecided", "in part", "qualitative", "qualitative"):
         bar.locator(f'[data-verdict="{verdict}"]').click()  # the first alone, others are added
-    bar.locator('[name="s"]').select_option("5")
-    kinds = ("undecided", "by construction")
-    wanted = [c for c in PAPER if c.place()[0] == "5" and c.judge() in kinds]
-    assert wanted and shown(page) == len(wanted)
-    assert bar.locator("output").inner_text() == f"{len(wanted)} of {len(PAPER)} claims"
-    assert page.locator(".wall-row a.off").count() == len(PAPER) - len(wanted)
+    wanted = sum(
+        card.sign(claims.Claim.judge) in ("undecided", "in part") for card in cards.cards()
+    )
+    assert wanted and shown(page) == wanted
+    assert bar.locator("output").inner_text() == f"{wanted} of {CARDS} cards"
     again = ledger("#" + page.url.partition("#")[2])
-    assert shown(again) == len(wanted)
+    assert shown(again) == wanted
+    again.locator(".claim-filter input").fill("simple velocity filter")
+    assert 1 <= shown(again) < 5
     again.locator(".claim-filter button", has_text="Show all").click()
-    assert shown(again) == len(PAPER) and "#" not in again.url
+    assert shown(again) == CARDS and "#" not in again.url
 
 
 def test_code_leads_to_the_lines_that_measure(ledger, visit):
     page = ledger()
-    for claim in (next(c for c in PAPER if c.measure), next(c for c in PAPER if c.find)):
+    for claim in (next(c for c in ROWS if c.measure), next(c for c in ROWS if c.find)):
         link = page.locator(f"#claim-{claim.id} a", has_text="code").first
         where = link.evaluate("(a) => a.href")
         assert where.endswith(wall._source(claim).removeprefix(".."))
@@ -77,20 +90,24 @@ def test_code_leads_to_the_lines_that_measure(ledger, visit):
         assert f"def {name}" in visit(where).page.locator(f'[id="{name}"]').inner_text()
 
 
-def test_a_hidden_claim_is_shown_when_its_sign_is_followed(ledger):
+def test_a_hidden_card_is_shown_when_its_row_is_asked_for(ledger):
     page = ledger("#v=undecided")
-    name = next(f"#claim-{c.id}" for c in PAPER if c.judge() == "reproduced")
+    name = next(f"#card-{c.id}" for c in cards.cards() if c.sign() == "reproduced")
     assert not page.locator(name).is_visible()
-    page.locator(f'.wall-row a[href="{name}"]').click()
+    page.evaluate("(name) => { location.hash = name; }", name)
     page.locator(name).wait_for(state="visible")
     assert page.locator(name).evaluate("(el) => el.open")
 
 
-def test_claims_can_be_read_without_a_script(site, browser):
+def test_rows_can_be_read_without_a_script(site, browser):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(f"{site}/book/ledger.html")
-    tile = page.locator("details.claim").first
-    tile.locator("summary").click()
-    assert tile.locator("p").first.is_visible()
+    card = page.locator("details.card-of-rows").first
+    card.locator("summary").first.click()
+    row = card.locator("details.claim").first
+    row.locator("summary").click()
+    assert row.locator("p").first.is_visible()
+    page.goto(f"{site}/book/ledger.html#claim-{ROWS[-1].id}")
+    assert page.locator(f"#claim-{ROWS[-1].id} summary").is_visible()  # the browser opens its card
     context.close()

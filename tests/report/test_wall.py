@@ -1,4 +1,4 @@
-"""Claims as tiles and as a wall: what they show against the claims, and where they lead."""
+"""Claims as tiles: what they show against the claims, and where they lead."""
 
 import html
 import re

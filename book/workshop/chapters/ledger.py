@@ -118,7 +118,7 @@ def _tiles(claims: Iterable[Claim]) -> str:
 
 def _grid(card: Card) -> str:
     """Readings down, windows across, in each cell the signs of its rows; empty for a single row."""
-    widths = sorted({window(c) or 0 for row in card.rows.values() for c in row})
+    widths = sorted({str(window(c) or "any") for row in card.rows.values() for c in row})
     if len(widths) < 2 and len(card.rows) < 2:
         return ""
 
@@ -127,14 +127,14 @@ def _grid(card: Card) -> str:
         rest = "".join(f"<{tag}>{cell}</{tag}>" for cell in others)
         return f'<tr><th scope="row">{first}</th>{rest}</tr>'
 
-    def signs(row: Iterable[Claim], width: int) -> str:
-        found = (claim for claim in row if (window(claim) or 0) == width)
+    def signs(row: Iterable[Claim], width: str) -> str:
         return " ".join(
             f'<a href="#claim-{c.id}" title="{html.escape(c.claim)}">{mark(c.judge())}</a>'
-            for c in found
+            for c in row
+            if str(window(c) or "any") == width
         )
 
-    heads = ("reading", *(f"window {width}" if width else "any window" for width in widths))
+    heads = ("window", *widths)
     lines = [line("th", heads)]
     for name, row in card.rows.items():
         lines.append(line("td", (name or "rows", *(signs(row, width) for width in widths))))
