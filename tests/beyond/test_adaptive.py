@@ -116,24 +116,15 @@ def test_errors_of_craigs_loop_obey_their_linear_equation_and_parameters_are_fou
     np.testing.assert_allclose(estimates[-1], TRUTH, rtol=0.02)
 
 
-SLOTINE = dict(gain=(1.0, 1.0), slope=(1.0, 1.0), rate=(1.0,) * 3, estimate=TRUTH)
-CRAIG = dict(
-    kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), rate=(1.0,) * 3, estimate=TRUTH, **BOX
-)
-
-
 @pytest.mark.parametrize(
-    "law, fine, change, message",
+    "change, message",
     [
-        (SlotineLi, SLOTINE, dict(gain=(0.0, 1.0)), "gain must be above 0"),
-        (SlotineLi, SLOTINE, dict(rate=(-1.0, 1.0, 1.0)), "rate"),
-        (SlotineLi, SLOTINE, dict(names=("a", "b", "mass")), "names"),
-        (_CraigHsuSastry, CRAIG, dict(weight=(16.0, 1.0)), "weight must be below kd"),
-        (_CraigHsuSastry, CRAIG, dict(low=0.0 * TRUTH), "positive definite"),
-        (_CraigHsuSastry, CRAIG, dict(estimate=2.0 * TRUTH), "between low and high"),
-        (_CraigHsuSastry, CRAIG, dict(names=("b", "a", "d")), "begin with a, b, d"),
+        (dict(gain=(0.0, 1.0)), "gain must be above 0"),
+        (dict(rate=(-1.0, 1.0, 1.0)), "rate"),
+        (dict(names=("a", "b", "mass")), "names"),
     ],
 )
-def test_what_makes_no_sense_is_refused(law, fine, change, message):
+def test_what_makes_no_sense_is_refused(change, message):
+    fine = dict(gain=(1.0, 1.0), slope=(1.0, 1.0), rate=(1.0,) * 3, estimate=TRUTH)
     with pytest.raises(ValueError, match=message):
-        law(**{**fine, **change})
+        SlotineLi(**{**fine, **change})

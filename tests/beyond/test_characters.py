@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.studies import characters, intervals
+from workshop.beyond.studies import characters, rivals
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def test_the_share_that_intervals_hold():
         def deviation(self, x):
             return np.full((len(x), 2), 2.0)
 
-    found = intervals._asked(Fixed(), Cases(x, torque, "states", 0.01))
+    found = rivals._interval_row(Fixed(), Cases(x, torque, "states", 0.01))
     assert found["covered"] == 0.75  # 5 lies outside 1.96 times 2
     np.testing.assert_allclose(found["half width"], 2 * 1.96, rtol=1e-4)
     assert found["rmss"] == pytest.approx(2.5 / torque.std())

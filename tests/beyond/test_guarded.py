@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.control import pd, proportional
+from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from workshop.beyond.control.adaptive import Watched
@@ -24,7 +24,6 @@ def test_a_run_within_its_limits_is_what_it_is_without_a_guard():
     np.testing.assert_array_equal(log.q_true, plain.q_true)
     np.testing.assert_array_equal(log.tau_true, plain.tau_true)
     assert not stops.stopped.any() and stops.running(log.t).all()
-    assert str(stops) == "no run was stopped"
 
 
 def test_a_wild_run_is_stopped_and_its_neighbour_goes_on():
@@ -39,7 +38,6 @@ def test_a_wild_run_is_stopped_and_its_neighbour_goes_on():
     off = ~stops.running(log.t)[1]
     assert off.any() and not off[0]
     assert (log.tau_true[1][off] == 0).all()
-    assert "1 of 2 runs were stopped" in str(stops)
 
 
 def test_the_first_limit_that_is_passed_is_the_reason_with_its_time():
@@ -49,9 +47,3 @@ def test_the_first_limit_that_is_passed_is_the_reason_with_its_time():
     assert stops.time == pytest.approx(log.t[late][0] - log.t[0], abs=0.011)
     assert not stops.running(log.t)[late].any()
     assert stops.running(log.t)[: late.argmax() - 1].all()
-
-
-@pytest.mark.parametrize("name", ["angles", "speeds"])
-def test_limits_must_be_positive(name):
-    with pytest.raises(ValueError, match=name):
-        _Guarded(proportional(STABLE), **{name: (0.0, 1.0)})

@@ -11,7 +11,7 @@ from workshop.report import results
 
 
 def test_the_budget_is_the_papers_network():
-    weights = Weights.random(1, rivals._WIDTH)[0]
+    weights = Weights.random(1, rivals._SAMPLES)[0]
     assert weights.count(biases=True) + 4 == rivals._BUDGET
     rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup.REFERENCE]
     assert max(r["count"] for r in rows) == rivals._BUDGET
@@ -21,7 +21,7 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     nearest = lineup._Line(lambda *_: _Nearest(beyond="edge"), (1,), "cases", "tables", 1)
     filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
     monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
-    monkeypatch.setattr(rivals, "_DAYS", 2)
+    monkeypatch.setattr(rivals, "_RECORDINGS", 2)
     monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
     names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]

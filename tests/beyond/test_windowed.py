@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.control import PID, late_poles, pd, plant
+from ddlib.control import late_poles, pd, plant
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
@@ -108,9 +108,6 @@ def test_poles_with_a_model_inside_are_those_of_other_gains_or_of_a_late_loop(
         (lambda: WindowFeedforward(middle, 4), "width"),
         (lambda: WindowFeedforward(middle, 5, between="x"), "between"),
         (lambda: WindowFeedforward(lambda w: w[:, 0], 5)(Q, Q, Q), "model"),
-        (lambda: _poles_inside(JOINTS, PID((1, 1), (1, 1)), PAST, 0.002), "integral"),
-        (lambda: _poles_inside(JOINTS, FEEDBACK, PAST[0], 0.002), "past"),
-        (lambda: _MeasuredWindows(WindowFeedforward(middle, 5), FEEDBACK, -0.1), "share"),
     ],
 )
 def test_what_makes_no_sense_is_refused(make, name):

@@ -1,7 +1,4 @@
-"""Data that others made: characters drawn by a simulated arm, and a recording of a real one.
-
-The files lie in ``book/data``; the ``README.md`` there has their sources and licences.
-"""
+"""Data that others made, in ``book/data``: a simulated arm's characters, a real arm's recording."""
 
 from __future__ import annotations
 

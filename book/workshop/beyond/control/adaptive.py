@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.signal import cont2discrete
 
-from ddlib._check import finite_array, non_negative, number, one_of, positive, shaped
+from ddlib._check import finite_array, non_negative, number, one_of, shaped
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
@@ -68,15 +68,6 @@ def _unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
     return Y
 
 
-def _check_parameters(controller) -> None:
-    """Refuse names, rates and estimates of a controller that do not fit together."""
-    for name in controller.names:
-        one_of("names", name, _PARAMETERS)
-    count = f"(..., {len(controller.names)})"
-    non_negative("rate", shaped("rate", controller.rate, count))
-    shaped("estimate", controller.estimate, count)
-
-
 class _RunningLaw:
     """A running adaptive law; `memory` is its controller's to use."""
 
@@ -88,6 +79,9 @@ class _RunningLaw:
     def __call__(self, k, q, qd):
         wanted = Trajectory(*(x[..., k, :] for x in self.reference))
         torque, after = self.controller.advance(self, self._kept[-1], wanted, q, qd)
+        if self.controller.limit is not None:  # it learns nothing while it asks for more torque
+            able = (np.abs(torque) <= self.controller.limit).all(-1, keepdims=True)
+            after = np.where(able, after, self._kept[-1])
         self._kept.append(after)
         return torque
 
@@ -140,6 +134,7 @@ class SlotineLi:
     at: str = "measured"  # or "desired": the state at which Y is taken
     dead_zone: tuple[float, float] = (0.0, 0.0)  # of s, rad/s: taken off, nothing is learnt within
     leakage: float = 0.0  # rate at which the estimate goes back to what the run began with, 1/s
+    limit: Sequence[float] | None = None  # N m: nothing is learnt while the torque is larger
 
     def __post_init__(self):
         one_of("at", self.at, ("measured", "desired"))
@@ -149,7 +144,11 @@ class SlotineLi:
                 raise ValueError(f"{name} must be above 0 for each joint, got {value}")
         non_negative("dead_zone", self.dead_zone, 2)
         number("leakage", self.leakage, 0.0)
-        _check_parameters(self)
+        for name in self.names:
+            one_of("names", name, _PARAMETERS)
+        count = f"(..., {len(self.names)})"
+        non_negative("rate", shaped("rate", self.rate, count))
+        shaped("estimate", self.estimate, count)
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
         """Torque ``(..., 2)`` and the estimate's rate of change per second, in continuous time.
@@ -216,24 +215,7 @@ class _CraigHsuSastry:
     high: Sequence[float]
     names: Sequence[str] = _PARAMETERS[:3]  # they begin with a, b, d
     acceleration: Callable | None = None  # of q, qd and the torque held; default: by difference
-
-    def __post_init__(self):
-        for name in ("kp", "kd", "weight"):
-            non_negative(name, getattr(self, name), 2)
-        if not (np.asarray(self.weight) < self.kd).all():
-            raise ValueError(f"weight must be below kd={self.kd}, got {self.weight}")
-        _check_parameters(self)
-        if tuple(self.names[:3]) != _PARAMETERS[:3]:
-            raise ValueError(f"names must begin with a, b, d, got {self.names}")
-        low, high = (shaped(n, getattr(self, n), (len(self.names),)) for n in ("low", "high"))
-        inside = (low <= self.estimate) & (np.asarray(self.estimate) <= high)
-        if not inside.all():
-            raise ValueError(f"estimate must lie between low and high, got {self.estimate}")
-        if not 0 < low[2] <= high[2] < low[0]:
-            raise ValueError(
-                "low and high must leave room for a positive definite mass matrix (0 < d < a), got "
-                f"d from {low[2]:g} to {high[2]:g}, a from {low[0]:g}"
-            )
+    limit: Sequence[float] | None = None  # N m: nothing is learnt while the torque is larger
 
     def output(self, estimate, wanted: Trajectory, q, qd, qdd) -> tuple[np.ndarray, np.ndarray]:
         """Torque and the estimate's rate of change in continuous time, outside the box too."""
@@ -292,15 +274,7 @@ class _ModelReference:
     rate: Sequence[float]  # (..., 8): of four gains of the shoulder, then of the elbow
     estimate: Sequence[float]  # theirs at first: kg m^2, N m/rad, N m s/rad, N m
     leakage: float = 0.0  # as of `SlotineLi`
-
-    def __post_init__(self):
-        for name in ("stiffness", "damping", "weight"):
-            positive(name, getattr(self, name), (2,))
-        if not (np.asarray(self.weight) < self.damping).all():
-            raise ValueError(f"weight must be below damping={self.damping}, got {self.weight}")
-        non_negative("rate", self.rate, 8)
-        finite_array("estimate", self.estimate, 8)
-        number("leakage", self.leakage, 0.0)
+    limit: Sequence[float] | None = None  # N m: nothing is learnt while the torque is larger
 
     def model(self, reference: Trajectory, step: float) -> Trajectory:
         a0, a1 = np.asarray(self.stiffness), np.asarray(self.damping)

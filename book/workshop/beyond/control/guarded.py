@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import positive
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
@@ -22,10 +21,6 @@ class _Guarded:
     controller: Controller
     angles: tuple[float, float] = _ANGLES
     speeds: tuple[float, float] = _SPEEDS
-
-    def __post_init__(self):
-        for name in ("angles", "speeds"):
-            positive(name, getattr(self, name), (2,))
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         return _Law(self, reference, step)
@@ -47,15 +42,6 @@ class _Stops:
         """Whether each run was under control at times of a log (s), shape (..., time)."""
         t = np.asarray(t, float)  # from that of the first control sample on
         return t - t[0] < np.asarray(self.time)[..., None] - 1e-9
-
-    def __str__(self):
-        if not self.stopped.any():
-            return "no run was stopped"
-        first = np.unravel_index(np.argmin(self.time), self.time.shape)
-        return (
-            f"{self.stopped.sum()} of {self.time.size} runs were stopped, the first after "
-            f"{self.time[first]:.2f} s: {REASONS[int(self.reason[first])]}"
-        )
 
 
 class _Law:

@@ -1,14 +1,9 @@
 """The window network inside the controller: its weights change while the arm moves.
 
 The controller runs every 2 ms, the network's samples are 10 ms apart. At each sample it learns
-once and gives the torques of the next control periods, from windows of *desired* positions.
-There are two ways to learn. From what happened: the window of measured positions around an
-earlier sample, and the torque that was applied there; the pair is true whatever the controller
-did. Or from what was wanted: the window of desired positions, and the torque that the feedback
-had to add (`workshop.beyond.control.feedback_error`).
-
-A learner outlives the run: a second run goes on with what it knows. Leading axes of its weights
-are runs, each with a network of its own.
+once, from measured windows and the torque applied there, or from desired windows and what the
+feedback had to add; then it gives the torques of the next control periods. A learner outlives the
+run; leading axes of its weights are runs.
 """
 
 from __future__ import annotations
@@ -234,17 +229,7 @@ class _Abreast:
     controllers: Sequence[Controller]
     rows: Sequence[int]
 
-    def __post_init__(self):
-        if len(self.controllers) != len(self.rows) or not self.rows:
-            raise ValueError(f"rows must be one number for each controller, got {self.rows}")
-        for count in self.rows:
-            integer("rows", count, 1)
-
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        if reference.q.ndim < 3 or len(reference.q) != sum(self.rows):
-            raise ValueError(
-                f"reference must have {sum(self.rows)} rows of runs, got {reference.q.shape}"
-            )
         return _AbreastLaw(self, reference, step)
 
 

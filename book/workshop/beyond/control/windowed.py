@@ -1,8 +1,6 @@
 """A model of windows as the box "inverse arm" of Figure 2-1: it sees the desired motion.
 
-The log has a sample every 10 ms and the controller runs every 2 ms, so a model that was trained on
-the log must be told what to do between its samples. A loop with a model whose windows it cannot
-make, because its period does not fit, is refused when it starts.
+It must be told what to do between the samples of the log it was trained on, every 10 ms.
 """
 
 from __future__ import annotations
@@ -14,7 +12,7 @@ import control
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from ddlib._check import integer, non_negative, number, one_of, shaped
+from ddlib._check import integer, number, one_of, shaped
 from ddlib.control.controllers import PID, ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
 
@@ -96,14 +94,6 @@ class _MeasuredWindows:
     feedback: Controller
     share: float | np.ndarray = 1.0
 
-    def __post_init__(self):
-        non_negative("share", self.share)
-        if self.feedforward.between != "window":
-            raise ValueError(
-                "feedforward must have between='window' inside a loop, "
-                f"got {self.feedforward.between!r}"
-            )
-
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         made = self.feedforward
         made.check(step)
@@ -130,12 +120,11 @@ class _MeasuredWindows:
 
 def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     """Mean slopes of a model's torque by past samples, N m/rad: (torque, joint, width // 2 + 1)."""
-    windows = shaped("windows", windows, "(cases, joint, width)")
     joints, width = windows.shape[1:]
     found = np.empty((joints, joints, width // 2 + 1))
     for joint, tap in np.ndindex(*found.shape[1:]):
         shift = np.zeros((joints, width))
-        shift[joint, tap] = number("step", step, 0.0, open_low=True)
+        shift[joint, tap] = step
         change = np.asarray(model(windows + shift)) - model(windows - shift)
         found[:, joint, tap] = change.mean(0) / (2 * step)
     return found
@@ -146,10 +135,6 @@ def _poles_inside(
 ) -> np.ndarray:
     """Poles of a sampled loop with a linear model of these slopes (`_past_slopes`) inside."""
     n = joints.ninputs
-    past = shaped("past", past, f"({n}, {n}, samples)")
-    integer("every", every, 1), integer("late", late, 0)
-    if np.any(feedback.ki):
-        raise ValueError(f"feedback must have no integral, got ki={feedback.ki}")
     sampled = control.sample_system(joints, period, "zoh")
     ages = late + every * np.arange(past.shape[-1])[::-1]  # of the samples, oldest first
     # states: angles and velocities now, then those of 1, 2, ... periods ago

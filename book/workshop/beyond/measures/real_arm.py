@@ -1,8 +1,6 @@
 """The window network of 1988 on a real arm, beside what beats it: the result "real-arm".
 
-Errors are mean squares over five blocks of the recording, each predicted by what was learnt on the
-others, and all six joints, in units of the deviation of the whole recording. Replicates draw blocks
-and, in each, networks; five blocks are few, and "undecided" often means just that.
+Errors are mean squares over five blocks and six joints, in deviations of the whole recording.
 """
 
 from __future__ import annotations

@@ -1,8 +1,4 @@
-"""The filters of networks on a real arm, their gains and shares, beside fair nulls: "real-arm".
-
-These networks learnt the whole recording; the nulls learnt currents of the same spectra that have
-nothing to do with the motion. Replicates draw networks.
-"""
+"""Filters on a real arm, their gains and shares, beside networks of unrelated currents."""
 
 from __future__ import annotations
 

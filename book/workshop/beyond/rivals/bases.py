@@ -23,8 +23,7 @@ _POLYNOMIALS = {"monomials": polyvander, "chebyshev": chebvander}  # of one vari
 
 def _exponents(variables: int, degree: int) -> np.ndarray:
     """All exponents of a total degree at most, shape (terms, variables), lowest degrees first."""
-    integer("variables", variables, 1)
-    terms = comb(variables + integer("degree", degree, 0), degree)
+    terms = comb(variables + degree, degree)
     _few(terms)
     rows = np.zeros((1, 0), dtype=int)
     for _ in range(variables):
@@ -38,7 +37,6 @@ def _exponents(variables: int, degree: int) -> np.ndarray:
 
 def _wave_numbers(variables: int, order: int) -> np.ndarray:
     """Whole-number wave vectors of a sum of sizes at most `order`, one of each opposite pair."""
-    integer("order", order, 1)
     waves = []
     for size in _exponents(variables, order)[1:]:
         moving = np.flatnonzero(size)
@@ -75,7 +73,6 @@ class _Solution(NamedTuple):
 
     def coefficients(self, ridge: float = 0.0) -> np.ndarray:
         """Least mean squared error plus `ridge` times squared coefficients; for 0 the shortest."""
-        number("ridge", ridge, 0.0)
         kept = self.sizes > self.floor
         factor = self.sizes[kept] / (self.sizes[kept] ** 2 + ridge)
         return self.directions[kept].T @ (factor[:, None] * self.seen[kept])
@@ -136,9 +133,6 @@ class Polynomial(_Basis):
         self.degree = integer("degree", degree, 0)
         self.kind_of = one_of("kind", kind, tuple(_POLYNOMIALS))
 
-    def __repr__(self):
-        return f"Polynomial({self.degree}, {self.kind_of!r}, ridge={self.ridge:g})"
-
     def _prepare(self, variables):
         self.exponents = _exponents(variables, self.degree)
 
@@ -168,9 +162,6 @@ class _Fourier(_Basis):
         super().__init__(ridge)
         self.order = integer("order", order, 1)
         self.period = number("period", period, 1.0)
-
-    def __repr__(self):
-        return f"Fourier({self.order}, ridge={self.ridge:g})"
 
     def _prepare(self, variables):
         self.waves = _wave_numbers(variables, self.order)

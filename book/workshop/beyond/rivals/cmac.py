@@ -31,28 +31,18 @@ class CMAC(_Bounded):
     cubes, cubes get their weight by a hash of their number, and some share one: they collide.
     An update is a step of Kaczmarz's method: it lands nearer to every solution as long as
     ``rate * overlap < 2``, and else `fit` may raise `_Diverged`.
-
-    Parameters
-    ----------
-    layers : int
-        C of the papers: cubes that a state lies in.
-    width : float
-        Edge of a cube as a share of the box's: how far it generalises.
-    slots : int, optional
-        Weights for each joint; default: one for each cube that a training case lies in, and no
-        collision. A cube that none lies in then has the weight 0.
-    rate : float
-        beta of the papers.
-    epochs : int
-        Passes through the cases.
-    limits, beyond
-        As in `workshop.beyond.rivals.tables.Bounded`.
     """
 
     def __init__(
-        self, layers: int = 32, width: float = 0.5, slots: int | None = None, rate: float = 1.0,
-        epochs: int = 100, limits=None, beyond: str = "refuse",
-    ):  # fmt: skip
+        self,
+        layers: int = 32,  # C of the papers: cubes that a state lies in
+        width: float = 0.5,  # edge of a cube as a share of the box's: how far it generalises
+        slots: int | None = None,  # weights for each joint; default: one for each visited cube
+        rate: float = 1.0,  # beta of the papers
+        epochs: int = 100,  # passes through the cases
+        limits=None,  # of the box, as in `_Bounded`
+        beyond: str = "refuse",  # or "edge"
+    ):
         super().__init__(limits, beyond)
         self.layers, self.epochs = integer("layers", layers, 1), integer("epochs", epochs, 1)
         self.width = number("width", width, 0.0, 1.0, open_low=True)

@@ -1,8 +1,6 @@
 """Known structure: least squares on the equations of motion, and on the inputs as they are.
 
-The rigid-body torque is linear in a few base parameters (Khosla 1986; An, Atkeson & Hollerbach
-1988), friction in a few more; a filter of the window is linear in its weights. Both are found
-without descent, seeds or local minima.
+Rigid-body torque is linear in base parameters (Khosla 1986; An, Atkeson & Hollerbach 1988).
 """
 
 from __future__ import annotations

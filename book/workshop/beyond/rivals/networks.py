@@ -131,12 +131,10 @@ def _adam(
     module: torch.nn.Module, x, y, epochs: int, rate: float, decay: float, batch=None, seed=0
 ) -> float:
     """Train a module in place by Adam with decoupled weight decay (Loshchilov & Hutter 2019)."""
-    number("rate", rate, 0.0, open_low=True)
-    number("decay", decay, 0.0)
     x, y = (torch.as_tensor(np.array(each), dtype=torch.float32) for each in (x, y))
-    batch = len(x) if batch is None else integer("batch", batch, 1)
-    parts, draws = -(-len(x) // batch), torch.Generator().manual_seed(integer("seed", seed, 0))
-    steps = integer("epochs", epochs, 1) * parts
+    batch = len(x) if batch is None else batch
+    parts, draws = -(-len(x) // batch), torch.Generator().manual_seed(seed)
+    steps = epochs * parts
     optimiser = torch.optim.AdamW(module.parameters(), lr=rate, weight_decay=decay, fused=True)
     falling = torch.optim.lr_scheduler.LambdaLR(
         optimiser, lambda step: 0.5 * (1 + math.cos(math.pi * step / steps))

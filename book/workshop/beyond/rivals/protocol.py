@@ -1,21 +1,6 @@
 """What every rival learns from, what it must answer, and how it is tried.
 
-A new rival is a class with four short methods::
-
-    class Mean(Rival):
-        def _fit(self, x, torque):
-            self.mean = torque.mean(0)
-
-        def _torque(self, x):
-            return np.tile(self.mean, (len(x), 1))
-
-        def count(self):
-            return self.mean.size
-
-        def operations(self):
-            return Operations(0, 0)
-
-It sees states, unless it sets ``kind = "windows"``; `Estimating` lets a rival of states see
+A rival sees states, unless it sets ``kind = "windows"``; `Estimating` lets one of states see
 windows. `Rival` checks what goes in and what comes out, and `trial` measures the rest.
 """
 
@@ -177,9 +162,6 @@ class Estimating(Rival):
         if rival.kind != "states":
             raise ValueError(f"rival must be one of states, got {rival!r}, one of {rival.kind}")
         self.rival, self.degree = rival, degree
-
-    def __repr__(self):
-        return f"{self.rival!r} on estimated states"
 
     def _fit(self, x, torque):
         self.filters = _derivative_filters(x.shape[-1], self.step, self.degree)

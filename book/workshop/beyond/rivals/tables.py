@@ -152,31 +152,20 @@ class CellTable(_Bounded):
     numbers for each cell. The numbers are fitted to the cases of the cell by least squares. A
     cell in which nothing was recorded answers with the numbers of the nearest one, counted in
     cells, that has some.
-
-    Parameters
-    ----------
-    cells : int
-        Of each axis.
-    over : {"states", "motions", "configurations"}
-        What the axes are.
-    friction : bool
-        Over configurations: velocities and their signs are among what torque is linear in.
-    ridge : float
-        Penalty on squared coefficients: it acts as so many cases that say zero.
-    limits, beyond
-        As in `_Bounded`.
     """
 
     def __init__(
-        self, cells: int = 10, over: str = "states", friction: bool = True, ridge: float = 0.1,
-        limits=None, beyond: str = "refuse",
-    ):  # fmt: skip
+        self,
+        cells: int = 10,  # of each axis
+        over: str = "states",  # or "motions" or "configurations": what the axes are
+        friction: bool = True,  # over configurations: torque is linear in velocities and signs, too
+        ridge: float = 0.1,  # penalty on squared coefficients: so many cases that say zero
+        limits=None,  # as in `_Bounded`
+        beyond: str = "refuse",  # or "edge"
+    ):
         super().__init__(limits, beyond)
         self.cells, self.over = integer("cells", cells, 1), one_of("over", over, tuple(_OVER))
         self.friction, self.ridge = friction, number("ridge", ridge, 0.0, open_low=True)
-
-    def __repr__(self):
-        return f"CellTable({self.cells}, over={self.over!r})"
 
     def _fit(self, x, torque):
         place = self._places(self._bound(x))
@@ -247,9 +236,6 @@ class GridTable(_Bounded):
         super().__init__(limits, beyond)
         self.cells = integer("cells", cells, 1)
         self.ridge = number("ridge", ridge, 0.0, open_low=True)
-
-    def __repr__(self):
-        return f"GridTable({self.cells})"
 
     def _fit(self, x, torque):
         if x[0].size > _AXES:

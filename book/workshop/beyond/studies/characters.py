@@ -1,8 +1,6 @@
 """Rivals on somebody else's data: characters drawn by an arm with gravity, with a published table.
 
-Errors are those of the public code: squared errors of both joints summed, mean over the samples,
-(N m)^2. A predictor's parts are asked for as there, too: gravity is its torque at rest, inertia
-what an acceleration adds to that, Coriolis and centrifugal torque what a velocity adds.
+Errors and a predictor's parts are those of the public code: squared errors of both joints summed.
 """
 
 from __future__ import annotations

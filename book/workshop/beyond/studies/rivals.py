@@ -1,4 +1,4 @@
-"""All rivals on the same recordings: error, stored numbers, arithmetic, training time."""
+"""All rivals on the same recordings, and whether Gaussian processes know how wrong they are."""
 
 from __future__ import annotations
 
@@ -10,15 +10,19 @@ import numpy as np
 
 from ddlib._check import integer
 from ddlib.analysis import noise_floor
+from ddlib.identification import FRICTION, RIGID
+from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
+from workshop.beyond.rivals.gaussian import GaussianProcess, _SemiParametric
+from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Estimating, trial
-from workshop.beyond.studies.lineup import _DAYS, _LINES, REFERENCE
+from workshop.beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
-_WIDTH = 21  # samples of the windows: the paper's best
+_SAMPLES = 21  # samples of the windows: the paper's best
 GRID = 9  # trajectories in a row of the square of extents
 
 _EVERY, _SHOWN = 4, 10  # samples of the square from test to test, and of those shown
@@ -62,9 +66,9 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     }
     seen: dict = {inputs: {} for inputs in _INPUTS}
     for name, (part, every) in parts.items():
-        seen["positions"][name] = Cases.windows(part, _WIDTH)[::every]
+        seen["positions"][name] = Cases.windows(part, _SAMPLES)[::every]
         seen["exact states"][name] = Cases.states(part, true_states(part, setup))[::every]
-    return seen, Cases.windows(whole.recording, _WIDTH)[::_SHOWN]
+    return seen, Cases.windows(whole.recording, _SAMPLES)[::_SHOWN]
 
 
 def _seen(line, inputs: str, size, seed: int):
@@ -83,7 +87,7 @@ def _floors(sets: dict) -> dict:
     for name, cases in sets.items():
         deviation = cases.torque.std(0)
         share = float(np.sqrt(np.mean((np.array(noise.std) / deviation) ** 2)))
-        known = JOINT_DAMPING.arm, deviation, _WIDTH, bits, share, LOG_STEP
+        known = JOINT_DAMPING.arm, deviation, _SAMPLES, bits, share, LOG_STEP
         found["positions"][name], found["exact states"][name] = noise_floor(*known), share
     return found
 
@@ -92,7 +96,7 @@ def _floors(sets: dict) -> dict:
 def rivals() -> dict:
     """Every line of `_LINES` at all its sizes, on several days; torques go into `TORQUES`."""
     rows, torques, floor = {}, {}, None
-    for day in range(1, _DAYS + 1):
+    for day in range(1, _RECORDINGS + 1):
         sets, asked = recorded(day)
         floor = floor or _floors(sets["positions"])
         for name, line in _LINES.items():
@@ -111,8 +115,8 @@ def rivals() -> dict:
         if day == 1:
             _keep(torques, asked)
     return {
-        "days": _DAYS,
-        "width": _WIDTH,
+        "days": _RECORDINGS,
+        "width": _SAMPLES,
         "reference": REFERENCE,
         "budget": _BUDGET,
         "floor": floor,
@@ -148,3 +152,44 @@ def _keep(torques: dict, asked: Cases) -> None:
     with open(part, "wb") as file:
         np.savez_compressed(file, names=["measured", *torques], torque=values.astype(np.float16))
     part.replace(TORQUES)
+
+
+_DAYS, _WIDTH, _DIRECTIONS = 6, 21, 10  # of the intervals; principal directions
+_LEVEL, _SIGMAS = 0.95, 1.959964  # of the intervals, and their half width in deviations
+_KEPT = 0.2  # share of the training cases that is kept out
+
+_PROCESSES = {
+    "directions of the window": lambda: GaussianProcess(directions=_DIRECTIONS, restarts=0),
+    "estimated states": lambda: Estimating(GaussianProcess("states", restarts=0)),
+    "known structure": lambda: Estimating(Identified(RIGID + FRICTION)),
+    "beside known structure": lambda: Estimating(_SemiParametric(RIGID + FRICTION, restarts=0)),
+}
+
+
+def _interval_row(rival, cases: Cases) -> dict:
+    within = isinstance(rival, Estimating)
+    deviation = getattr(rival.rival if within else rival, "deviation", None)
+    with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
+        found = rival.torque(cases.x)
+        row = {"rmss": float(rmss(found, cases.torque))}
+        if deviation is not None:
+            width = _SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
+            row["covered"] = float((np.abs(found - cases.torque) <= width).mean())
+            row["half width"] = width.mean(0)
+    return row
+
+
+@study
+def gaussian_intervals() -> dict:
+    """Share of measured torques in the intervals of several processes, on several days."""
+    rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in _PROCESSES}
+    for day in range(1, _DAYS + 1):
+        training, six = split(JOINT_DAMPING.repeated(day).record())
+        windows = Cases.windows(training, _WIDTH)
+        out = np.random.default_rng(day).random(len(windows)) < _KEPT
+        sets = {"kept out": windows[out], "trajectory 6": Cases.windows(six, _WIDTH)}
+        for name, make in _PROCESSES.items():
+            rival = make().fit(windows[~out])
+            for part, cases in sets.items():
+                rows[name][part].append(_interval_row(rival, cases))
+    return {"days": _DAYS, "level": _LEVEL, "processes": rows}

@@ -1,8 +1,4 @@
-"""The real arm's recording as cases, its blocks, and the models that are no networks.
-
-Cases are the same hundred moments a second at every sampling rate; what differs is the window
-around them, and over how long a current is averaged.
-"""
+"""The real arm's recording as cases, its blocks, models that are no networks, and networks."""
 
 from __future__ import annotations
 
@@ -12,7 +8,6 @@ from functools import cache
 import numpy as np
 from scipy.optimize import minimize
 
-from ddlib._check import integer
 from ddlib.analysis import savitzky_golay
 from ddlib.identification import joint_columns
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
@@ -45,7 +40,6 @@ class Windowed:
     def of(cls, rate: int, width: int) -> Windowed:
         """The cases of 100, 200 or 500 samples a second and of a window size."""
         found, many = _recorded(rate), rate // 100
-        integer("width", width, 3, 81 * many)
         centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
         around = np.arange(width) - width // 2
         x = found.q[centres[:, None] + around]
@@ -85,7 +79,7 @@ class Windowed:
 def _fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
     """Masks of training and test cases: a block is tested, none within `gap` of it is learnt."""
     size, place = cases / blocks, np.arange(cases)
-    first, last = (round((integer("block", block, 0, blocks - 1) + k) * size) for k in (0, 1))
+    first, last = (round((block + k) * size) for k in (0, 1))
     test = (place >= first) & (place < last)
     return (place <= first - gap) | (place >= last - 1 + gap), test
 

@@ -1,9 +1,4 @@
-"""Torques at run time: what predicts end-point errors, and when loops turn: "run-time".
-
-An error is the distance of the hand from where it should be, in mm: the root mean square over a
-motion, then the median over the square of extents. Members are networks, each on a day of its
-own, or days.
-"""
+"""Torques at run time, errors of the hand in mm: what predicts them, when loops turn."""
 
 from __future__ import annotations
 

@@ -1,10 +1,8 @@
 """Arms of one to seven joints on the report's family of motions: recordings without a simulator.
 
-The simulator of this book is for two joints. So here a motion is given and followed exactly:
-each joint answers its reference as its own loop would if the other joints did not move it, a linear
-oscillator; the torque is what the whole arm needs along that motion, friction included, with the
-noise of the torque sensor; positions are read through the encoder. What is left out is how the
-joints push each other off their ways, and how friction changes them.
+Each joint answers its reference as its own loop would if the others did not move it, a linear
+oscillator; the torque is what the whole arm needs along that motion, friction and noise included.
+How joints push each other off their ways is left out.
 """
 
 from __future__ import annotations
@@ -15,7 +13,7 @@ from functools import cache
 import numpy as np
 from scipy.linalg import expm
 
-from ddlib._check import integer, one_of, shaped
+from ddlib._check import shaped
 from ddlib.dynamics import DD_ARM_II_IN_SPACE, SerialArm, locked, mass_matrix
 from ddlib.effects import EncoderZero, Quantisation
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
@@ -58,7 +56,6 @@ class _Chain:
 
     def answer(self, t_steps: int, before: int, motion: str = "answered") -> np.ndarray:
         """States ``(t_steps, joint, 3)`` that answer 1 rad, asked for after `before` samples."""
-        one_of("motion", motion, _MOTIONS)
         omega = np.pi / MOTION_SECONDS
         if motion == "sine":
             t = omega * LOG_STEP * (np.arange(t_steps) - before)
@@ -85,8 +82,6 @@ def chain(joints: int, reading: str = JOINT_DAMPING.name) -> _Chain:
     Shoulder and elbow have its gains, friction and encoder. Further joints have the elbow's damping
     ratio, frequencies by `RATIOS`, and friction in proportion to their inertia.
     """
-    integer("joints", joints, 1, _MOST)
-    one_of("reading", reading, (JOINT_DAMPING.name, STATE_FEEDBACK.name))
     inertia = np.diag(mass_matrix(DD_ARM_II_IN_SPACE, np.zeros(_MOST)))
     setup = {setup.name: setup for setup in (JOINT_DAMPING, STATE_FEEDBACK)}[reading]
     kp, kd = np.array(setup.controller.kp), np.zeros(2) + setup.controller.kd

@@ -1,7 +1,6 @@
 """Section 7.1, joints three and four: the window network on arms of one to seven joints.
 
-Recordings are those of `workshop.beyond.studies.loop.chain`. Every training set has
-`CASES` windows, however many motions they come from: what varies is their variety.
+Every training set has `CASES` windows, however many motions they come from.
 """
 
 from __future__ import annotations

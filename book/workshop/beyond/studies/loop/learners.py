@@ -1,7 +1,4 @@
-"""What practises in the loop: draws of motions and networks, learners that outlive a run.
-
-Rates, penalties and the memory's settings were chosen on draws from 1000 on.
-"""
+"""What practises in the loop; rates, penalties, the memory's settings are of draws from 1000 on."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import integer, number
+from ddlib._check import number
 from ddlib.control import PID, ComputedTorque, Feedforward, closed_loop, plant
 from ddlib.dynamics import Arm, end_point_error, jacobian
 from ddlib.effects import Effects, EncoderZero
@@ -71,10 +71,7 @@ def _networks(setup: Setup, count: int, width: int = _WIDTH, **options) -> list[
     """The first networks of a cell of Table 4-1 as feedforwards."""
     model = results.networks(width, setup.name)
     options = {"step": model.step, **options}
-    return [
-        WindowFeedforward(model[k].torque, width, **options)
-        for k in range(integer("count", count, 1, len(model.weights)))
-    ]
+    return [WindowFeedforward(model[k].torque, width, **options) for k in range(count)]
 
 
 def _computed_torque(setup: Setup, arm: Arm | None = None) -> Callable:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib.control import ComputedTorque, ControlLaw, Controller, as_controller, pd
+from ddlib.control import ComputedTorque, ControlLaw, Controller, pd
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
 from ddlib.setups import KD, Setup
@@ -23,6 +23,7 @@ from workshop.beyond.control.adaptive import (
     mixed_regressor,
 )
 from workshop.beyond.control.guarded import _Guarded
+from workshop.beyond.control.online import _Abreast
 
 _RIGID = _PARAMETERS[:3]
 _FRICTION = _PARAMETERS[5:]
@@ -48,29 +49,6 @@ _RATES = {
 
 
 @dataclass(frozen=True)
-class _Beside:
-    """Controllers side by side: the first axis of the runs says whose they are."""
-
-    controllers: tuple[Controller, ...]
-
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        return _Together(
-            [
-                as_controller(c).start(Trajectory(*(x[i] for x in reference)), step)
-                for i, c in enumerate(self.controllers)
-            ]
-        )
-
-
-class _Together:
-    def __init__(self, laws):
-        self.laws = laws
-
-    def __call__(self, k, q, qd):
-        return np.stack([law(k, q[i], qd[i]) for i, law in enumerate(self.laws)])
-
-
-@dataclass(frozen=True)
 class _Behind:
     """A controller that follows the motion of a linear model: its velocity never jumps."""
 
@@ -91,36 +69,13 @@ SMOOTH = _ModelReference((_POLE**2,) * 2, (2 * _POLE,) * 2, (_POLE,) * 2, np.zer
 
 
 def _taught(controller: Controller, estimate) -> Controller:
-    """The controller with other estimates to begin with; others than adaptive ones as they are."""
-    if not hasattr(controller, "estimate"):
-        return controller
+    """The controller with other estimates to begin with."""
     if isinstance(controller, _Behind):
-        return replace(controller, controller=_taught(controller.controller, estimate))
+        return replace(controller, controller=replace(controller.controller, estimate=estimate))
     return replace(controller, estimate=estimate)
 
 
 LIMITS = np.array(CMU_DD_ARM_II_EFFECTS.actuator[0].limit)  # N m, of the motors
-
-
-class _Able:
-    """Mixed into a law: it learns nothing while it asks for more torque than the motors have."""
-
-    def advance(self, law, estimate, wanted, q, qd):
-        torque, after = super().advance(law, estimate, wanted, q, qd)
-        able = (np.abs(torque) <= LIMITS).all(-1, keepdims=True)
-        return torque, np.where(able, after, estimate)
-
-
-class _AbleSlotineLi(_Able, SlotineLi):
-    """`SlotineLi` that learns while the motors are able."""
-
-
-class _AbleCraig(_Able, _CraigHsuSastry):
-    """`_CraigHsuSastry` that learns while the motors are able."""
-
-
-class _AbleModelReference(_Able, _ModelReference):
-    """`_ModelReference` that learns while the motors are able."""
 
 
 def gains(setup: Setup) -> tuple[np.ndarray, np.ndarray]:
@@ -150,18 +105,16 @@ def make(law: str, setup: Setup, start=None, factor=1.0, *, jumps=False, **optio
     if law == "joint models":
         own = np.stack([start[..., 0] + 2 * start[..., 1], start[..., 2]], -1)
         each = np.stack([own, a0 * own, a1 * own, 0 * own], -1)
-        return _AbleModelReference(
-            a0, a1, a1 / 2, rate, each.reshape(*own.shape[:-1], 8), **options
-        )
+        each = each.reshape(*own.shape[:-1], 8)
+        return _ModelReference(a0, a1, a1 / 2, rate, each, limit=LIMITS, **options)
     names = _RIGID if law == "rigid body" else _FULL
     missing = np.zeros((*start.shape[:-1], len(names) - start.shape[-1]))
     first = np.concatenate([start, missing], -1)
     if law == "measured acceleration":
-        made = _AbleCraig(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
+        made = _CraigHsuSastry(a0, a1, a1 / 2, rate, first, *_BOX, names, **options)
     else:
-        kind = SlotineLi if jumps else _AbleSlotineLi
-        made = kind(KD, slope, rate, first, names, **options)
-    return made if jumps else _Behind(made, SMOOTH)
+        made = SlotineLi(KD, slope, rate, first, names, **options)
+    return made if jumps else _Behind(replace(made, limit=LIMITS), SMOOTH)
 
 
 def _fixed(setup: Setup) -> dict[str, Controller]:
@@ -190,7 +143,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
     t = steps * CONTROL_STEP
     reference = pick_and_place(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
-    guard = Watched(_Guarded(_Beside(tuple(laws.values()))))
+    guard = Watched(_Guarded(_Abreast(list(laws.values()), [1] * len(laws))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
     hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
     off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
@@ -203,7 +156,7 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, *
         return np.where(stops.stopped, np.inf, np.sqrt((x**2).mean(-1)))
 
     after = {
-        name: _taught(law, getattr(own, "estimate", None))
+        name: _taught(law, own.estimate[0]) if hasattr(own, "estimate") else law
         for (name, law), own in zip(laws.items(), guard.law.inner.laws)
     }
     return _Trial(rms(off), rms(off[..., third:]), stops, after)

@@ -1,8 +1,4 @@
-"""Section 7.1: on what four findings about closed loops hang, tried after they were found.
-
-Whether the plan itself has to be smoothed, whether training was tuned too far, whether there were
-enough windows, and which motion is practised.
-"""
+"""Section 7.1: on what four findings about closed loops hang, tried after they were found."""
 
 from __future__ import annotations
 
