@@ -301,12 +301,9 @@ _SLOW = (1, 2, 6)  # Trajectories that move the shoulder by more than 30 degrees
 
 
 def _response(torque, states) -> np.ndarray:
-    """Torques ``(..., time)`` per acceleration of a joint, kg m^2 as an arm's inertia.
-
-    The slope by least squares on acceleration, velocity and a constant, of `states` ``(time, 3)``
-    of position, velocity and acceleration. Position is left out: along a sine it is the
-    acceleration's mirror image, so that a stiffness takes away from what an inertia gives.
-    """
+    """Torques ``(..., time)`` per acceleration, of `states` ``(time, 3)`` of a joint, kg m^2."""
+    # Without the position: along a sine it is the acceleration's mirror image, so that a stiffness
+    # takes away from what an inertia gives
     known = np.column_stack([states[:, 2], states[:, 1], np.ones(len(states))])
     return np.linalg.lstsq(known, np.moveaxis(torque, -1, 0), rcond=None)[0][0]
 
