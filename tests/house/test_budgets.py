@@ -11,7 +11,7 @@ LINES = {
     "ddlib/figures": 1100,
     "ddlib/widgets": 3600,
     "ddlib/widgets, JavaScript": 4600,
-    "book/workshop/report": 6000,
+    "book/workshop/report": 4950,
     "book/workshop/beyond": 8800,
     "book/workshop/chapters": 4600,
     "tests": 17600,

@@ -13,15 +13,15 @@ from workshop.report.two_harmonics import (
     ORDER,
     _record_circle,
     _record_quintic,
+    _two_harmonics,
     record_two_harmonics,
-    two_harmonics,
 )
 
 T = time_grid(0.01, 0.2)
 
 
 def test_without_a_second_sine_it_is_the_papers_family():
-    own = two_harmonics(APPENDIX_I, 0 * APPENDIX_I, T)
+    own = _two_harmonics(APPENDIX_I, 0 * APPENDIX_I, T)
     for found, wanted in zip(own, pick_and_place(APPENDIX_I, T)):
         np.testing.assert_allclose(found, wanted, atol=1e-15)
 
@@ -29,17 +29,17 @@ def test_without_a_second_sine_it_is_the_papers_family():
 @pytest.mark.parametrize("order", [2, 3, 5])
 def test_velocity_and_acceleration_are_the_derivatives(order):
     t = np.linspace(0.5, 2.5, 20_001)
-    reference = two_harmonics([40.0, 10.0], [-3.0, 2.0], t, order)
+    reference = _two_harmonics([40.0, 10.0], [-3.0, 2.0], t, order)
     for lower, upper in pairwise(reference):
         slope = np.gradient(lower, t, axis=0)[1:-1]
         np.testing.assert_allclose(slope, upper[1:-1], atol=2e-6)
-    middle = two_harmonics([40.0, 10.0], [-3.0, 2.0], [1.5], order).q[0]
+    middle = _two_harmonics([40.0, 10.0], [-3.0, 2.0], [1.5], order).q[0]
     sign = np.sin(order * np.pi / 2)  # the second sine half-way: its top, bottom or a zero
     np.testing.assert_allclose(np.rad2deg(middle), [-40 + 3 * sign, -10 - 2 * sign], atol=1e-12)
 
 
 def test_it_rests_before_and_after():
-    reference = two_harmonics([45.0, 45.0], [3.0, -3.0], T)
+    reference = _two_harmonics([45.0, 45.0], [3.0, -3.0], T)
     still = (T < 0) | (T >= 3)
     assert still.sum() == 40
     for x in reference:
@@ -59,7 +59,7 @@ def test_it_rests_before_and_after():
 def test_bad_arguments_are_refused_by_name(bad, name):
     good = {"extents_deg": [10.0, 20.0], "second_deg": [1.0, 1.0], "t": T}
     with pytest.raises(ValueError, match=rf"^{name} must"):
-        two_harmonics(**{**good, **bad})
+        _two_harmonics(**{**good, **bad})
 
 
 @pytest.fixture(scope="module")

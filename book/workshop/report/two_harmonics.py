@@ -34,7 +34,7 @@ NEUTRAL = (-0.35, -0.55)
 """Joint angles about which the hand's circle lies, rad: inside the family's range."""
 
 
-def two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
+def _two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory:
     """References ``phi = -(theta sin(pi t / 3) + rho sin(order pi t / 3))``, shape (..., time, 2).
 
     They rest at zero before 0 s and from 3 s on; for ``rho = 0`` they are the paper's family.
@@ -61,7 +61,9 @@ def record_two_harmonics(
 ) -> Recording:
     """The six runs of Appendix I with a second sine on top, recorded as the paper's are."""
     t = time_grid(CONTROL_STEP, REST)
-    return _followed(setup, t, two_harmonics(APPENDIX_I, _second_amplitudes(order, seed), t, order))
+    return _followed(
+        setup, t, _two_harmonics(APPENDIX_I, _second_amplitudes(order, seed), t, order)
+    )
 
 
 def _record_quintic(setup: Setup = STATE_FEEDBACK, degrees: float = -40.0) -> Recording:

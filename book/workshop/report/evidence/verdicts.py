@@ -122,7 +122,7 @@ def judged(
     return Measured(value, text(value) if callable(text) else text, replicates)
 
 
-def largest_median(*cells) -> np.ndarray:
+def _largest_median(*cells) -> np.ndarray:
     """The largest of the medians of some cells, one for each draw."""
     return np.max([median(cell) for cell in cells], axis=0)
 

@@ -21,7 +21,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, predict, true_states
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed
-from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
+from workshop.report.evidence.verdicts import Measured, _largest_median, judged, mean, median
 
 
 def _made(
@@ -118,7 +118,7 @@ def direct_smoothness() -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
     cells, before = _made(roughness, "direct")
     now, then = (", ".join(significant(np.median(x), 2) for x in xs) for xs in (cells, before))
-    return judged(largest_median, *cells, text=f"roughness {now}; before training {then}")
+    return judged(_largest_median, *cells, text=f"roughness {now}; before training {then}")
 
 
 def changed_roughness(width: int = 41) -> Measured:

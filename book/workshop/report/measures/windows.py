@@ -26,8 +26,8 @@ from ddlib.tables import scientific, significant, spread
 from workshop.report import committed, results
 from workshop.report.evidence.verdicts import (
     Measured,
+    _largest_median,
     judged,
-    largest_median,
     mean,
     median,
     turns_at,
@@ -176,7 +176,7 @@ def accurate(level: float = 0.1) -> Measured:
     fail = [f"{name} {w}: {significant(m, 2)}" for (name, w), m in medians.items() if m > level]
     least, most = (significant(f(medians.values()), 2) for f in (min, max))
     text = f"RMSS {least} to {most}; above {level:g} are {len(fail)} of {len(cells)} cells: "
-    return judged(largest_median, *cells.values(), text=text + ", ".join(fail))
+    return judged(_largest_median, *cells.values(), text=text + ", ".join(fail))
 
 
 def magnitudes(narrow: int = 21, wide: int = 41, beside_filters: bool = False) -> Measured:
