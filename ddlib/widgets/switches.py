@@ -33,11 +33,11 @@ from ddlib.widgets.parts.parameters import Choice
 _SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
 
 # Strengths at the shoulder.
-_FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
-_DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
-_SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
-_QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
-_DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
+FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
+DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
+SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
+QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
+DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
 
 _STEPS = np.arange(round(3.5 / CONTROL_STEP) + 1)
 _T = _STEPS * CONTROL_STEP
@@ -108,17 +108,17 @@ class RealArmSwitches(LiveWidget):
             ),
             **options,
         )
-        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in _QUANTISATION.items()}
+        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in QUANTISATION.items()}
         loop = {
             "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
             "gains": gains(pd(KP, KD)),
             "share": _SHARE.tolist(),
             "levels": {
-                "friction": _FRICTION,
-                "dead_zone": _DEAD_ZONE,
-                "saturation": _SATURATION,
+                "friction": FRICTION,
+                "dead_zone": DEAD_ZONE,
+                "saturation": SATURATION,
                 "quantisation": steps,
-                "delay": _DELAY,
+                "delay": DELAY,
             },
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
@@ -131,12 +131,12 @@ class RealArmSwitches(LiveWidget):
 
 
 def _choices() -> list[Choice]:
-    milliseconds = {key: 1e3 * CONTROL_STEP * periods for key, periods in _DELAY.items()}
+    milliseconds = {key: 1e3 * CONTROL_STEP * periods for key, periods in DELAY.items()}
     switches = {
-        "friction": ("Friction", "{:g} N m", _FRICTION),
-        "dead_zone": ("Dead zone", "{:g} N m", _DEAD_ZONE),
-        "saturation": ("Torque limit", "±{:g} N m", _SATURATION),
-        "quantisation": ("Encoder", "{} bits", _QUANTISATION),
+        "friction": ("Friction", "{:g} N m", FRICTION),
+        "dead_zone": ("Dead zone", "{:g} N m", DEAD_ZONE),
+        "saturation": ("Torque limit", "±{:g} N m", SATURATION),
+        "quantisation": ("Encoder", "{} bits", QUANTISATION),
         "delay": ("Delay", "{:g} ms", milliseconds),
     }
     choices = []
@@ -155,11 +155,11 @@ def _panel(title, what, times, ideal) -> Panel:
 
 def _effects(friction, dead_zone, saturation, quantisation, delay) -> Effects:
     """Effects of the named strengths."""
-    lost, limit = _DEAD_ZONE[dead_zone] * _SHARE, _SATURATION[saturation] * _SHARE
-    slowing, bits = _FRICTION[friction] * _SHARE, _QUANTISATION[quantisation]
+    lost, limit = DEAD_ZONE[dead_zone] * _SHARE, SATURATION[saturation] * _SHARE
+    slowing, bits = FRICTION[friction] * _SHARE, QUANTISATION[quantisation]
     return Effects(
         friction=(ViscousFriction(slowing), CoulombFriction(slowing)),
-        actuator=(Delay(_DELAY[delay]), DeadZone(lost), Saturation(limit)),
+        actuator=(Delay(DELAY[delay]), DeadZone(lost), Saturation(limit)),
         encoder=(Quantisation.encoder(bits),) if bits else (),
     )
 

@@ -14,8 +14,8 @@ from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.switches import (
     _CLOSE_UP,
-    _DELAY,
     _TIMES,
+    DELAY,
     RealArmSwitches,
 )
 
@@ -46,7 +46,7 @@ def recorded(effects, times):
             {"friction": "assumed", "quantisation": "assumed"},
             CMU_DD_ARM_II_EFFECTS.without("actuator", "torque_sensor"),
         ),
-        ({"delay": "strong"}, Effects(actuator=(Delay(_DELAY["strong"]),))),
+        ({"delay": "strong"}, Effects(actuator=(Delay(DELAY["strong"]),))),
     ],
     ids=["off", "as assumed", "delay"],
 )
