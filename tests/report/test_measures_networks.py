@@ -61,10 +61,10 @@ def test_what_is_memorised_does_not_help_on_another_day(monkeypatch, known, want
 
     def torque(run):
         size = known if run is seen else 1.0
-        return np.stack([cases(run, 1)[1] + size * k for k in range(1, 6)])
+        return np.stack([cases(run, 3)[1] + size * k for k in range(1, 6)])
 
     monkeypatch.setattr(committed, "networks", lambda width: SimpleNamespace(torque=torque))
-    monkeypatch.setattr(windows, "cases", lambda run, width: (run, cases(run, 1)[1]))
+    monkeypatch.setattr(windows, "cases", lambda run, width: (run, cases(run, 3)[1]))
     found = windows.memorised(41, days=1)
     assert found.value == pytest.approx(wanted, rel=0.02)  # days differ in their deviation
 
