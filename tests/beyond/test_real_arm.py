@@ -104,7 +104,7 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
 
 
 def test_the_study_in_small(monkeypatch):
-    monkeypatch.setattr(real_arm, "RATES", {100: (5,)})
+    monkeypatch.setattr(real_arm, "_RATES", {100: (5,)})
     monkeypatch.setattr(real_arm, "trained", partial(tx40.trained, epochs=20))
     monkeypatch.setattr(real_arm, "_DECAYS", (0.0, 1e-2))
     row = real_arm._grid(1)[0]

@@ -24,8 +24,8 @@ from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies.tx40 import (
     _EPOCHS,
     _HIDDEN,
+    _RATES,
     BLOCKS,
-    RATES,
     Ridge,
     Windowed,
     _best_penalty,
@@ -41,16 +41,16 @@ from workshop.report.code_hash import study
 
 _COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988
 _MAIN = (100, 21)  # samples a second and window where variants are tried
-FILTERS = (11, 21)  # windows, at 100 samples a second, whose filters are taken apart
+_FILTERS = (11, 21)  # windows, at 100 samples a second, whose filters are taken apart
 _KINDS = ("shifted", "phases")  # unrelated currents, as smooth as the recorded ones
 _DECAYS = (0.0, 1e-5, 1e-4, 1e-3, 1e-2)  # per case
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
 def _grid(members: int) -> list[dict]:
-    """Every window of `RATES`: errors of networks and of the models that are no networks."""
+    """Every window of `_RATES`: errors of networks and of the models that are no networks."""
     rows = []
-    for rate, widths in RATES.items():
+    for rate, widths in _RATES.items():
         for width in widths:
             data = Windowed.of(rate, width)
             found = [_cell(data, fold, members) for fold in data.folds()]
@@ -246,7 +246,7 @@ def _hidden_units(members: int) -> dict:
 def _differences() -> dict:
     """Errors with states from three samples, one for each block, by samples a second."""
     rows: dict = {}
-    for rate in RATES:
+    for rate in _RATES:
         data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
         states = data.states
         plain = states.reshape(len(states), -1)
@@ -312,5 +312,5 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "hidden units": _hidden_units(members),
         "processes": _processes(),
         "memory": _memory(filters // 2),
-        "windows": {str(w): _filters(w, filters, draws) for w in FILTERS},
+        "windows": {str(w): _filters(w, filters, draws) for w in _FILTERS},
     }

@@ -14,7 +14,11 @@ from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
 from workshop.beyond.others import _RealArm, staubli
 
 BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
-RATES = {100: (5, 11, 21, 41, 81), 200: (11, 21, 41), 500: (21, 81)}  # windows, by samples a second
+_RATES = {
+    100: (5, 11, 21, 41, 81),
+    200: (11, 21, 41),
+    500: (21, 81),
+}  # windows, by samples a second
 SLOTS = slice(40, 860)  # hundredths of a second that all windows fit around
 _RIDGES = tuple(10.0 ** np.arange(-10, 1))  # shares of the inputs' variance
 _PIECES = 15  # of the recording, to choose a penalty by

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from workshop.beyond.studies.loop.adaptive import BED
 from workshop.beyond.studies.loop.runs.adaptive import _FULL
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged
@@ -33,7 +32,7 @@ def load_row(setup: str, mass: float, late: int = 0) -> dict[str, np.ndarray]:
 
 def _added(effect: str) -> np.ndarray:
     """What an effect adds to the estimates of each day, as shares of the true ones."""
-    own, none = (np.array(kept("bed", e, "estimate")) for e in (effect, next(iter(BED))))
+    own, none = (np.array(kept("bed", e, "estimate")) for e in (effect, next(iter(kept("bed")))))
     return own - none
 
 

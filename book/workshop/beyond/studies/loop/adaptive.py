@@ -21,20 +21,20 @@ from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from workshop.beyond.control.adaptive import SlotineLi
 from workshop.beyond.studies.loop.runs import adaptive as batch
-from workshop.beyond.studies.loop.runs.adaptive import LAWS
+from workshop.beyond.studies.loop.runs.adaptive import _LAWS
 from workshop.report.code_hash import study
 
 _SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it
 _LOADS = (2.0, 5.0, 10.0)  # kg: Han, Hemami & Yurkovich 1987
 _PICKED = 5.0  # kg, taken up half-way
 _DELAYS = (1, 2, 4)  # control periods, with `_PICKED`
-BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
+_BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
 _PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
 
 # What is added to the set-up's effects.
-BED = {
+_BED = {
     "nothing else": lambda e: e,
     "Stribeck": lambda e: replace(
         e, friction=(e.friction[0], StribeckFriction(_MOST, tuple(2 * x for x in _MOST), 0.1))
@@ -55,14 +55,14 @@ def _course(setup: Setup, seed: int = 1) -> dict:
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {
         **batch._fixed(setup),
-        **{law: batch.make(law, setup, start) for law in LAWS},
+        **{law: batch.make(law, setup, start) for law in _LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
     extents, effects = batch._drawn(_SEEDS, 2 * TRIALS, seed), batch._rounding(setup, _SEEDS, seed)
     found, laws = batch._trials(laws, extents[:TRIALS], setup.arm, effects)
     loaded, laws = batch._trials(laws, extents[TRIALS:], with_load(setup.arm, _PICKED), effects)
     found += loaded
-    known = [n for n in laws if n.startswith(LAWS)]
+    known = [n for n in laws if n.startswith(_LAWS)]
     return {
         "settled": batch._by_law(found, laws),
         "hand": batch._by_law(found, laws, "hand"),
@@ -76,7 +76,7 @@ def _course(setup: Setup, seed: int = 1) -> dict:
 
 def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     """Errors with loads that nobody knows of, in the first and second motion."""
-    laws = {**batch._fixed(setup), **{law: batch.make(law, setup) for law in LAWS}}
+    laws = {**batch._fixed(setup), **{law: batch.make(law, setup) for law in _LAWS}}
     extents, effects = batch._drawn(_SEEDS, 2, seed), batch._rounding(setup, _SEEDS, seed)
     rows: list = []
     settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
@@ -89,10 +89,10 @@ def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
 
 def _sensors(seed: int = 3) -> dict:
     """The third and fourth motion over the encoder, with a tachometer and without."""
-    runs, setup = len(BITS) * _SEEDS, JOINT_DAMPING
-    step = np.repeat(2 * np.pi / 2 ** np.array(BITS), _SEEDS)
+    runs, setup = len(_BITS) * _SEEDS, JOINT_DAMPING
+    step = np.repeat(2 * np.pi / 2 ** np.array(_BITS), _SEEDS)
     effects, rows = batch._rounding(setup, runs, seed, step), {}
-    extents = np.tile(batch._drawn(_SEEDS, TRIALS, seed), (1, len(BITS), 1))
+    extents = np.tile(batch._drawn(_SEEDS, TRIALS, seed), (1, len(_BITS), 1))
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (runs, 3))
 
     def exact(q, qd, torque):
@@ -108,8 +108,8 @@ def _sensors(seed: int = 3) -> dict:
         found, after = batch._trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
-                "settled": errors[-1].reshape(len(BITS), _SEEDS),
-                "estimate": after[name].estimate.reshape(len(BITS), _SEEDS, -1),
+                "settled": errors[-1].reshape(len(_BITS), _SEEDS),
+                "estimate": after[name].estimate.reshape(len(_BITS), _SEEDS, -1),
             }
             for name, errors in batch._by_law(found, laws).items()
         }
@@ -243,7 +243,7 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
         "rigid, adapted": batch.make("rigid body", setup, right[:, :3]),
         "rigid, held": batch.make("rigid body", setup, batch.TRUTH, factor=0.0),
     }
-    for k, (name, added) in enumerate(BED.items()):
+    for k, (name, added) in enumerate(_BED.items()):
         given = laws if k else {**laws, **bare}
         effects = added(batch._rounding(setup, _SEEDS, seed))
         found, after = batch._trials(given, batch._drawn(_SEEDS, count, seed), setup.arm, effects)
@@ -259,7 +259,7 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
 def _map(setup: Setup = JOINT_DAMPING) -> dict:
     """Where runs are stopped: rate of adaptation against delay, and why."""
     extents = np.tile(APPENDIX_I[[0, 5]], (len(_FACTORS), 1))
-    factor, names = np.repeat(_FACTORS, 2), LAWS[1:]
+    factor, names = np.repeat(_FACTORS, 2), _LAWS[1:]
     start, rows = np.broadcast_to(_BEGIN * batch.TRUTH, (len(extents), 3)), []
     for late in _LATE:
         laws = {n: batch.make(n, setup, start, factor) for n in names}
@@ -291,7 +291,7 @@ def adaptive() -> dict:
             JOINT_DAMPING.name: _loads(JOINT_DAMPING, _DELAYS),
             STATE_FEEDBACK.name: _loads(STATE_FEEDBACK),
         },
-        "bits": BITS,
+        "bits": _BITS,
         "sensors": _sensors(),
         "lyapunov": _lyapunov(),
         "excitation": _excited(),

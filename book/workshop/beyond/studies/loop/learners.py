@@ -29,7 +29,7 @@ from workshop.beyond.control.online import (
 )
 from workshop.report import results
 
-SEEDS = 10
+_SEEDS = 10
 _TRIALS = 10  # of one motion, or with one load
 _WIDTH = 21
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
@@ -49,7 +49,7 @@ MEMORY = {JOINT_DAMPING.name: (0.1, 75, 10.0), STATE_FEEDBACK.name: (0.3, 25, 5.
 class Draw:
     """Draws of a set-up: motions, encoder zeros and networks; their axis is that of the seeds."""
 
-    def __init__(self, setup: Setup, first: int = 0, seeds: int = SEEDS):
+    def __init__(self, setup: Setup, first: int = 0, seeds: int = _SEEDS):
         self.setup, self.seeds = setup, seeds
         rngs = [np.random.default_rng((77, first + k)) for k in range(seeds)]
 

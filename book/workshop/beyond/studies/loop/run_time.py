@@ -298,7 +298,7 @@ def run_time() -> dict:
     """Feedforwards of the square of extents, two readings: end-point errors, RMS, mm."""
     reference = parts.rounded(parts._EXTENTS, 0.0)
     found: dict = {
-        "points": parts.POINTS,
+        "points": parts._POINTS,
         "extents": parts._EXTENTS,
         "shares": _SHARES,
         "limit": _LIMIT,

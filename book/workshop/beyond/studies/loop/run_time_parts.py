@@ -21,7 +21,7 @@ from workshop.beyond.rivals.protocol import _derivative_filters
 from workshop.report import results
 
 _WIDTH = 21  # samples of a window: the paper's best
-POINTS = 7  # trajectories in a row of the square of extents
+_POINTS = 7  # trajectories in a row of the square of extents
 
 
 def _square_extents(points: int) -> np.ndarray:
@@ -30,10 +30,10 @@ def _square_extents(points: int) -> np.ndarray:
     return np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
 
 
-_EXTENTS = _square_extents(POINTS)
-EDGE = _EXTENTS[:POINTS, 1]
+_EXTENTS = _square_extents(_POINTS)
+EDGE = _EXTENTS[:_POINTS, 1]
 _INSIDE = inside_hull(_EXTENTS)  # the hull of the training trajectories
-_FEWER = _EXTENTS.reshape(POINTS, POINTS, 2)[::2, ::2].reshape(-1, 2)
+_FEWER = _EXTENTS.reshape(_POINTS, _POINTS, 2)[::2, ::2].reshape(-1, 2)
 _T = time_grid(CONTROL_STEP, REST)  # control samples, s
 _START = 0.5  # s: what counts as the start of a motion
 _Model = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]

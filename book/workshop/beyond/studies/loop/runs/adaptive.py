@@ -39,12 +39,12 @@ _BOX = np.array([[2.6, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0], [14.0, 4.0, 2.5, 20.0, 5.0
 _AFTER = 0.1  # s, rest before and after each motion
 
 # Slotine & Li without and with friction; Craig, Hsu & Sastry; a reference model of each joint.
-LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
+_LAWS = ("rigid body", "with friction", "measured acceleration", "joint models")
 
 # Of a grid of nine, on four motions of another seed, the quickest that settles.
 _RATES = {
-    "joint damping": dict(zip(LAWS, (3.0, 3.0, 10.0, 0.01))),
-    "state feedback": dict(zip(LAWS, (3.0, 10.0, 10.0, 0.3))),
+    "joint damping": dict(zip(_LAWS, (3.0, 3.0, 10.0, 0.01))),
+    "state feedback": dict(zip(_LAWS, (3.0, 10.0, 10.0, 0.3))),
 }
 
 
