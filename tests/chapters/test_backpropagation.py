@@ -135,14 +135,6 @@ def test_best_possible_answers_to_noisy_parity():
     assert 0.5 < found.value <= 1.001  # chance, and as good as can be
 
 
-def test_parity_takes_every_product_of_bits_and_one_of_signs():
-    """As +1 or -1 it is the product of all 1 - 2 x: of bits all 2^n products, of signs one."""
-    found = backpropagation.polynomial("bits", 8)
-    assert found.value == pytest.approx(1.0)
-    assert found.text == "4 at 2 bits, 256 at 8"
-    assert backpropagation.polynomial("signs", 8).value == pytest.approx(0, abs=1e-12)
-
-
 def test_when_errors_reach_a_level():
     errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
     history = History(np.array([10, 20, 40]), errors, None)
