@@ -132,6 +132,8 @@ def test_refusals(recording):
     ):
         with pytest.raises(ValueError, match=words):
             train_windows(QUICK, recording, width, members, progress=False)
+    with pytest.raises(TypeError, match="whiten must be True or False"):
+        train_windows(replace(QUICK, steps=1), recording, 11, 1, whiten=1, progress=False)
     with pytest.raises(ValueError, match="decay must be 0 for descent"):
         replace(STATE_FEEDBACK, decay=0.1)
     with pytest.raises(ValueError, match="recording must hold the six runs of Appendix I"):
