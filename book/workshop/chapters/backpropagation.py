@@ -171,8 +171,8 @@ _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are t
 
 
 @cache
-def _data(width: int = 21) -> TrainingSet:
-    return TrainingSet.from_recording(committed.training(), width)
+def _data() -> TrainingSet:
+    return TrainingSet.from_recording(committed.training(), 21)
 
 
 def unit() -> Measured:
@@ -267,13 +267,11 @@ def polynomial(coding: str = "bits", most: int = 10) -> Measured:
 def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> Measured:
     """Growth of a network's coefficients beyond ``n log2 n``, from few bits to many."""
     make = NETWORKS[name]
-    for n in range(2, most + 1):
-        x = patterns(n)
-        if (make(n).output(x) != parity(x)).any():
-            raise AssertionError(f"{name} is wrong at {n} bits")
-    x = np.tri(large + 1, large, -1)
-    if (make(large).output(x) != parity(x)).any():
-        raise AssertionError(f"{name} is wrong at {large} bits")
+    inputs = {n: patterns(n) for n in range(2, most + 1)}
+    inputs[large] = np.tri(large + 1, large, -1)  # one for each number of bits that are on
+    wrong = [n for n, x in inputs.items() if (make(n).output(x) != parity(x)).any()]
+    if wrong:
+        raise AssertionError(f"{name} is wrong at {wrong} bits")
     few, many = (make(n).coefficients for n in (most, large))
     ratio = many / (large * np.log2(large)) / (few / (most * np.log2(most)))
     return Measured(float(ratio), f"{few} coefficients at {most} bits, {many:,} at {large:,}")

@@ -130,17 +130,23 @@ def _ideal() -> Recording:
     return _drive()
 
 
+def _left(runs: int, **effects) -> np.ndarray:
+    """Torque that the rigid body leaves unexplained in some runs, the whole motion."""
+    run = _drive(runs, **effects)
+    return residual_torque(_SETUP.arm, run)[:, run.motion]
+
+
 def _shares(left) -> tuple[np.ndarray, str]:
-    """RMS over the rigid body's as driven, and a text that has the reference's too."""
+    """RMS over the rigid body's as driven; of the first run a text that has the reference's too."""
     run = _ideal()
     reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], run.t[run.motion])
     driven, asked = (
         rms(left) / rms(torque)
         for torque in (run.tau_true[run.motion], _SETUP.arm.inverse_dynamics(*reference))
     )
-    text = f"{100 * driven[0]:.0f} % of the torque at the shoulder, {100 * driven[1]:.0f} % at the "
-    text += f"elbow; of what the reference asks for {100 * asked[0]:.0f} and {100 * asked[1]:.0f} %"
-    return driven, text
+    (shoulder, elbow), (less, least) = (100 * x.reshape(-1, 2)[0] for x in (driven, asked))
+    text = f"{shoulder:.0f} % of the torque at the shoulder, {elbow:.0f} % at the elbow; "
+    return driven, f"{text}of what the reference asks for {less:.0f} and {least:.0f} %"
 
 
 def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
@@ -151,12 +157,10 @@ def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
         replace(viscous, coefficient=factor * viscous.coefficient),
         replace(coulomb, level=factor * coulomb.level),
     )
-    run = _drive(len(factors), friction=scaled)
-    left = residual_torque(_SETUP.arm, run)[:, run.motion]
-    share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
+    share, text = _shares(_left(len(factors), friction=scaled))
     turn = turns_at(factors, share.min(-1), _SIGNIFICANT)
-    text = f"{_shares(left[0])[1]}; {100 * _SIGNIFICANT:g} % from {significant(turn, 2)} times the "
-    return Measured(turn, f"{text}assumed friction on")
+    text += f"; {100 * _SIGNIFICANT:g} % from {significant(turn, 2)} times the assumed friction on"
+    return Measured(turn, text)
 
 
 def differencing(width: int = 19) -> Measured:
@@ -203,32 +207,23 @@ def snap() -> Measured:
     return Measured(turn, text)
 
 
-@cache
-def _rattle(gaps: tuple) -> np.ndarray:
-    """Torque that play of the springy shaft adds at both joints, the whole motion."""
-    run = _drive(len(gaps) + 1, transmission=(replace(_SHAFT, gap=np.outer((0, *gaps), (1, 1))),))
-    left = residual_torque(_SETUP.arm, run)[:, run.motion]
-    return left[1:] - left[0]
-
-
 def backlash(gaps=(1e-3, 2e-3, 4e-3)) -> Measured:
     """Play behind a springy shaft that is significant, rad: share of the rigid body's torque."""
-    left = _rattle(tuple(gaps))
-    share = rms(left) / rms(_ideal().tau_true[_ideal().motion])
+    loose = replace(_SHAFT, gap=np.outer((0, *gaps), (1, 1)))
+    left = _left(len(gaps) + 1, transmission=(loose,))
+    share, text = _shares(left[1:] - left[0])
     turn = turns_at(gaps, share.max(-1), _SIGNIFICANT)
-    text = f"if it had gears, play of {np.rad2deg(gaps[0]):.2f}°: {_shares(left[0])[1]}; "
+    text = f"if it had gears, play of {np.rad2deg(gaps[0]):.2f}°: {text}; "
     return Measured(turn, f"{text}{100 * _SIGNIFICANT:g} % from {np.rad2deg(turn):.2f}° on")
 
 
 def high_frequency(softer=(0.3, 0.1)) -> Measured:
     """Torque that a springy shaft leaves over the rigid body's, ringing at the start included."""
-    factors = (1, *softer)
-    stiffness = np.outer(factors, _SHAFT.stiffness)
-    run = _drive(len(factors), transmission=(replace(_SHAFT, stiffness=stiffness),))
-    left = residual_torque(_SETUP.arm, run)[:, run.motion]
-    share = (rms(left) / rms(_ideal().tau_true[_ideal().motion])).max(-1)
+    shafts = replace(_SHAFT, stiffness=np.outer((1, *softer), _SHAFT.stiffness))
+    shares, text = _shares(_left(1 + len(softer), transmission=(shafts,)))
+    share = shares.max(-1)
     others = ", ".join(f"{100 * x:.0f} % at {f:g}" for x, f in zip(share[1:], softer))
-    text = f"springy shaft: {_shares(left[0])[1]}; the larger share is {others} of the stiffness"
+    text = f"springy shaft: {text}; the larger share is {others} of the stiffness"
     return Measured(float(share[0]), text)
 
 

@@ -77,9 +77,8 @@ def paths(width: int = 11) -> Measured:
     text = f"{hidden} weights into hidden units, {output} from them, {direct} direct ones"
     joined = hidden + output + direct == network.count() and min(hidden, output, direct) > 0
     x = np.random.default_rng(0).uniform(0, 1, (2, 2, width))
-    blind = Weights(*(0 * w for w in (network.hidden_weights, network.hidden_bias)),
-                    network.output_weights, network.direct_weights,
-                    network.output_bias)  # fmt: skip
+    silent = {name: 0 * getattr(network, name) for name in ("hidden_weights", "hidden_bias")}
+    blind = replace(network, **silent)
     differs = np.ptp(blind.activity(x)[1], axis=0).min() > 0
     return Measured(bool(joined and differs), text + f" at window {width}")
 
@@ -93,9 +92,10 @@ def growth(width: int = 21) -> Measured:
         "hidden units": (2, {"hidden": 20}),
         "joints": (2, {"joints": 4, "outputs": 4}),
     }
-    ratios = {}
-    for name, (factor, change) in larger.items():
-        ratios[name] = Weights.random(1, **(base | change))[0].count() / (factor * before)
+    ratios = {
+        name: Weights.random(1, **(base | change))[0].count() / (factor * before)
+        for name, (factor, change) in larger.items()
+    }
     text = ", ".join(f"{r:.2f} for {name}" for name, r in ratios.items())
     worst = max(ratios.values(), key=lambda r: abs(np.log(r)))  # furthest from 1
     return Measured(worst, f"weights over what proportion gives: {text}")
