@@ -95,6 +95,19 @@ class _RunningLaw:
         return self._kept[-1]
 
 
+class _Adaptive:
+    """What has ``output(estimate, wanted, q, qd)``: torque, and the estimate's rate of change."""
+
+    def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law that follows `reference`, called every `step` s; it holds its estimate."""
+        return _RunningLaw(self, reference, step)
+
+    def advance(self, law, estimate, wanted, q, qd):
+        """Torque of a running law, and its estimate one period later."""
+        torque, change = self.output(estimate, wanted, q, qd)
+        return torque, estimate + law.step * change
+
+
 @dataclass(frozen=True)
 class Watched:
     """A controller whose last law can be asked after the run: ``watched.law``."""
@@ -117,7 +130,7 @@ class Watched:
 
 
 @dataclass(frozen=True)
-class SlotineLi:
+class SlotineLi(_Adaptive):
     """Adaptive control without acceleration (Slotine & Li 1987).
 
     With ``e = q_ref - q``, the velocity ``v = qd_ref + slope e`` and ``s = v - qd`` the torque is
@@ -179,27 +192,18 @@ class SlotineLi:
         )
         return kinetic + 0.5 * each.sum(-1)
 
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`, called every `step` s; it holds its estimate."""
-        return _RunningLaw(self, reference, step)
-
     def _sliding(self, wanted, q, qd):
         slope = np.asarray(self.slope)
         error, error_rate = wanted.q - q, wanted.qd - qd
         v, a = wanted.qd + slope * error, wanted.qdd + slope * error_rate
         return v - qd, v, a
 
-    def advance(self, law, estimate, wanted, q, qd):
-        """Torque of a running law, and its estimate one period later."""
-        torque, change = self.output(estimate, wanted, q, qd)
-        return torque, estimate + law.step * change
-
 
 _MARGIN = 0.9  # largest b as a share of that which makes the mass matrix singular
 
 
 @dataclass(frozen=True)
-class _CraigHsuSastry:
+class _CraigHsuSastry(_Adaptive):
     """Adaptive computed torque (Craig, Hsu & Sastry 1987): it needs the acceleration.
 
     The torque is ``M (qdd_ref + kd de/dt + kp e) + C qd + g + friction`` with the estimates, which
@@ -229,9 +233,6 @@ class _CraigHsuSastry:
         turned = np.linalg.solve(_mass(estimate, np.asarray(q)), filtered[..., None])[..., 0]
         return torque, np.asarray(self.rate) * np.einsum("...jp,...j->...p", measured, turned)
 
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        return _RunningLaw(self, reference, step)
-
     def advance(self, law, estimate, wanted, q, qd):
         before, held = (qd, np.zeros(2)) if law.memory is None else law.memory
         if self.acceleration is None:
@@ -259,7 +260,7 @@ def _mass(estimate, q) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class _ModelReference:
+class _ModelReference(_Adaptive):
     """Gains of each joint by itself that adapt until it follows a linear model (Parks 1966).
 
     The model answers ``command = qdd_ref + a1 qd_ref + a0 q_ref`` with
@@ -312,7 +313,3 @@ class _ModelReference:
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         return _RunningLaw(self, self.model(reference, step), step)
-
-    def advance(self, law, estimate, wanted, q, qd):
-        torque, change = self.output(estimate, wanted, q, qd)
-        return torque, estimate + law.step * change

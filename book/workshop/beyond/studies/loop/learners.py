@@ -190,11 +190,6 @@ def _by_feedback(model: TorqueModel, draw: Draw, times=1.0) -> _Windows:
     return _Windows(_OnlineDescent(model, rate), "feedback", draw)
 
 
-def _tiled(weights: Weights, count: int) -> Weights:
-    """Networks repeated along their first axis, `count` times."""
-    return Weights(*(np.repeat(x, count, axis=0) for x in vars(weights).values()))
-
-
 def _lineup(draw: Draw) -> dict[str, object]:
     """The learners that practise one motion, all from nothing."""
     return {

@@ -9,6 +9,7 @@ import numpy as np
 
 from ddlib.control import Feedforward
 from ddlib.dynamics import Arm, end_point_error, with_load
+from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place
@@ -120,7 +121,8 @@ def _rates(draw: learners.Draw) -> dict:
     """Six trials of one motion at several rates: the last error, and who was stopped."""
     t, reference = learners.motions(draw)["the same"]
     many, rates = len(_RATES), np.array(_RATES)[:, None]
-    model = replace(draw.untrained, weights=learners._tiled(draw.untrained.weights, many))
+    tiled = {n: np.repeat(x, many, axis=0) for n, x in vars(draw.untrained.weights).items()}
+    model = replace(draw.untrained, weights=Weights(**tiled))
     pupils = {
         "exact terms": learners.Terms(RigidBodyTerms(learners.NAMES), draw, learners._RATE * rates),
         "generic terms": learners.Terms(GenericTerms(), draw, learners._RATE * rates),

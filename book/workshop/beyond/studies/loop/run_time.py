@@ -120,18 +120,14 @@ def _rivals(setup: Setup, reference: Trajectory) -> dict:
             )
             torques, scores = made[name]
             scores.append(rmss(rival.torque(six.x), six.torque))
-            torques.append(_by_run(feedforward, reference))
+            # run by run: a process keeps a product of all windows with all it has learnt
+            runs = (Trajectory(*(x[k] for x in reference)) for k in range(len(reference.q)))
+            torques.append(np.stack([feedforward(*run) for run in runs]))
     rows = {}
     for name, (torques, scores) in made.items():
         log = parts.drive(setup, parts.given(np.stack(torques), setup.controller), reference, days)
         rows[name] = {**parts._told(parts.score(setup.arm, log)), "RMSS": scores}
     return rows
-
-
-def _by_run(model: WindowFeedforward, reference: Trajectory) -> np.ndarray:
-    """Torques run by run: a process keeps a product of all windows with all it has learnt."""
-    runs = (Trajectory(*(x[k] for x in reference)) for k in range(len(reference.q)))
-    return np.stack([model(*run) for run in runs])
 
 
 def _course(setup: Setup) -> dict:
