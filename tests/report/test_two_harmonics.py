@@ -49,19 +49,6 @@ def test_it_rests_before_and_after():
     np.testing.assert_allclose(reference.qd[T == 0], [speed], atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "bad, name",
-    [
-        ({"second_deg": [[1.0, 2.0]]}, "second_deg"),
-        ({"order": 1}, "order"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(bad, name):
-    good = {"extents_deg": [10.0, 20.0], "second_deg": [1.0, 1.0], "t": T}
-    with pytest.raises(ValueError, match=rf"^{name} must"):
-        _two_harmonics(**{**good, **bad})
-
-
 @pytest.fixture(scope="module")
 def recordings():
     return {

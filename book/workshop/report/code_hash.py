@@ -120,8 +120,6 @@ def _text(module: str) -> str:
 
 def _home(module: str, name: str | None) -> tuple[str, str | None]:
     """The place where a name is defined, through all packages that hand it on."""
-    if name is None or _file(module) is None:
-        return module, name
     origin = _names(module, _text(module)).get(name)
     if isinstance(origin, tuple) and origin != (module, name):
         return _home(*origin)
@@ -247,7 +245,6 @@ class _Writer:
             for name in shadowed:
                 if self._place(ast.Name(name, ast.Load())) is not None:
                     self.write(ast.Name(name, ast.Load()))
-            self.local = None
         elif isinstance(node, list):
             self.form.append("[")
             for item in node:
