@@ -96,8 +96,16 @@ pages: $(READY)
 	  echo "==> What failed, once more and alone: a busy machine can delay a browser" && \
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
-lab: $(READY)  ## JupyterLab on the book
-	$(BIN)/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root) --LabApp.default_url=/lab/tree/book
+SOURCES ?=
+LAB = PYTHONPATH=$(CURDIR)/book $(abspath $(BIN))/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root)
+lab: $(READY)  ## JupyterLab on the readers' notebooks; SOURCES=1: on the book's own
+ifeq ($(SOURCES),)
+	@$(BIN)/python book/_ext/build.py
+	@$(BIN)/python book/_ext/lab.py
+	cd _build/lab && $(LAB) --LabApp.default_url=/lab/tree/index.ipynb
+else
+	$(LAB) --LabApp.default_url=/lab/tree/book
+endif
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce

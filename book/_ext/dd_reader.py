@@ -1,0 +1,207 @@
+"""The reader's notebooks: each executed notebook as a plain one that JupyterLab shows as it is.
+
+Numbers stand in the text, marked as the book's; links lead to other notebooks; figures have their
+captions below. Bookkeeping is folded, solutions are folded and not run. They take the place of the
+sources behind the download button, and `make lab` opens them.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import textwrap
+from pathlib import Path
+
+import nbformat
+from dd_failures import HYPHEN
+from dd_lessons import chapters
+from pybtex.database import parse_file
+
+NOTE = (
+    "> **Your copy of a notebook of the book.** Numbers with a dotted line below them are the "
+    "book's, from the run that made its pages: they stay when you change code. Run all cells to "
+    "see figures and widgets; code that only keeps the book's numbers is folded."
+)
+FOLDED = ("remove-cell", "remove-input", "hide-input")
+ROLE = re.compile(r"\{([\w:-]+)\}`([^`]+)`")
+TARGET = re.compile(r"(?s)(.*?)\s*<([^<>]+)>")
+EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*\(([\w-]+)\)[ \t]*$")
+DIRECTIVE = re.compile(r"(?ms)^(`{3,}|:{3,})\{(\w[\w-]*)\}([^\n]*)\n(.*?)^\1[ \t]*$")
+ANCHOR = re.compile(r"(?m)^\([\w-]+\)=\n")
+
+
+class Known:
+    """What the book knows when it is built: titles, numbers of figures and equations, authors."""
+
+    def __init__(self, env):
+        self.env, self.root = env, Path(env.srcdir)
+        self.labels = env.get_domain("std").labels | {
+            name: (*place, name) for name, place in env.get_domain("std").anonlabels.items()
+            if name not in env.get_domain("std").labels
+        }  # fmt: skip
+        self.equations = env.get_domain("math").equations
+        self.books = parse_file(str(self.root / "book" / "references.bib")).entries
+
+    def number(self, kind: str, page: str, name: str) -> str:
+        """Number of a figure or an equation, like "10.2"."""
+        found = self.env.toc_fignumbers.get(page, {}).get(kind, {}).get(name, ())
+        return ".".join(map(str, found)) or "?"
+
+    def figure(self, label: str) -> str:
+        """ "Fig. 10.2" for a figure's label."""
+        page, name, *_ = self.labels.get(label, ("", label))
+        return f"Fig. {self.number('figure', page, name)}"
+
+    def equation(self, label: str) -> str:
+        """ "10.3" for an equation's label."""
+        page = self.equations[label][0] if label in self.equations else ""
+        return self.number("displaymath", page, f"equation-{label}")
+
+    def authors(self, key: str) -> tuple[str, str]:
+        """Authors and year of an entry of the bibliography."""
+        entry = self.books[key]
+        people = entry.persons.get("author") or entry.persons.get("editor") or []
+        names = [" ".join((*p.prelast_names, *p.last_names)).strip("{}") for p in people]
+        told = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
+        return told or entry.fields.get("title", key), entry.fields.get("year", "")
+
+
+def values(folder: Path, page: str) -> dict[str, object]:
+    """What a notebook glued, by its key, from where myst-nb keeps it."""
+    path = folder / f"{page}.glue.json"
+    if not path.is_file():
+        return {}
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    texts = {key: "".join(output["data"].get("text/plain", "?")) for key, output in kept.items()}
+    return {key: _value(text) for key, text in texts.items()}
+
+
+def _value(text: str):
+    try:
+        return ast.literal_eval(text)
+    except (ValueError, SyntaxError):
+        return text
+
+
+class Plain:
+    """Markdown of a page without roles and directives."""
+
+    def __init__(self, page: str, known: Known, glued: dict):
+        self.page, self.known, self.glued = page, known, glued
+
+    def text(self, source: str) -> str:
+        """A cell's markdown."""
+        source = ANCHOR.sub("", source)
+        source = EQUATION.sub(self._equation, source)
+        source = DIRECTIVE.sub(self._directive, source)
+        return ROLE.sub(self._role, source)
+
+    def _equation(self, found: re.Match) -> str:
+        return f"$$\n{found[1]} \\tag{{{self.known.equation(found[2])}}}\n$$"
+
+    def _directive(self, found: re.Match) -> str:
+        _, kind, title, body = found.groups()
+        if kind == "math":
+            return f"$$\n{body.strip()}\n$$"
+        if kind == "admonition":
+            return textwrap.indent(f"**{title.strip()}**\n\n{body.strip()}", "> ", lambda _: True)
+        return f"*(The page has a table here: {kind.replace('-', ' ')}.)*"
+
+    def _role(self, found: re.Match) -> str:
+        role, inside = found.groups()
+        named = TARGET.fullmatch(inside)
+        shown, target = (named[1], named[2]) if named else ("", inside)
+        known = self.known
+        match role:
+            case "glue:text":
+                return self._number(inside)
+            case "doc":
+                title = known.env.titles.get(f"book/{target}")
+                told = shown or (title.astext() if title else target)
+                notebook = (known.root / "book" / f"{target}.ipynb").is_file()
+                return f"[{told}]({target}.ipynb)" if notebook else f"*{told}*"
+            case "section":
+                page, _, heading = target.partition(": ")
+                return f"[{heading}]({page}.ipynb)"
+            case "numref":
+                return known.figure(target)
+            case "eq":
+                return f"Eq. {known.equation(target)}"
+            case "cite:t":
+                return ", ".join("{} ({})".format(*known.authors(key)) for key in _keys(target))
+            case "cite" | "cite:p":
+                return f"({'; '.join(', '.join(known.authors(key)) for key in _keys(target))})"
+            case "ref":
+                return shown or known.labels.get(target, ("", "", target))[2]
+            case "math":
+                return f"${inside}$"
+            case "term" | "runtime":
+                return shown or target
+            case _ if role.startswith("py:") or role in ("name", "snippet"):
+                return f"`{target.strip('~').rpartition('.')[2]}`"
+        return shown or target
+
+    def _number(self, inside: str) -> str:
+        key, _, form = inside.rpartition(":")
+        key, form = (key, form) if key else (inside, "")
+        value = self.glued.get(key, "?")
+        try:
+            told = HYPHEN.sub("−", format(value, form))
+        except (TypeError, ValueError):
+            told = str(value)
+        return f'<abbr title="the book\'s number">{told}</abbr>'
+
+
+def _keys(target: str) -> list[str]:
+    return [key.strip() for key in target.split(",")]
+
+
+def reader_notebook(notebook, page: str, known: Known, glued: dict):
+    """A notebook of the book as a reader's: see the module."""
+    plain, cells = Plain(page, known, glued), []
+    for cell in notebook.cells:
+        if cell.cell_type != "code":
+            cells.append(nbformat.v4.new_markdown_cell(plain.text(cell.source)))
+            continue
+        tags = cell.metadata.get("tags", [])
+        if "hide-cell" in tags:
+            cells.append(nbformat.v4.new_markdown_cell(_solution(cell.source)))
+            continue
+        made = nbformat.v4.new_code_cell(cell.source)
+        if set(FOLDED) & set(tags):
+            made.metadata["jupyter"] = {"source_hidden": True}
+        cells.append(made)
+        figure = cell.metadata.get("mystnb", {}).get("figure")
+        if figure:
+            told = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
+            cells.append(nbformat.v4.new_markdown_cell(told))
+    cells.insert(1, nbformat.v4.new_markdown_cell(NOTE))
+    made = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
+    for number, cell in enumerate(made.cells):  # the same text at every build
+        cell["id"] = f"cell-{number}"
+    return made
+
+
+def _solution(source: str) -> str:
+    return f"<details>\n<summary>Solution</summary>\n\n```python\n{source}\n```\n\n</details>"
+
+
+def write(app, exception):
+    """Put the readers' notebooks where the pages' download buttons lead."""
+    if exception is not None or app.builder.format != "html":
+        return
+    known = Known(app.env)
+    glued_in = Path(app.outdir).parent / "jupyter_execute"
+    for path in (known.root / "book" / "index.ipynb", *chapters(known.root)):
+        page = path.relative_to(known.root).with_suffix("").as_posix()
+        notebook = nbformat.read(path, as_version=4)
+        made = reader_notebook(notebook, page, known, values(glued_in, page))
+        target = Path(app.outdir, "_sources", path.relative_to(known.root))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        nbformat.write(made, target)
+
+
+def setup(app):
+    app.connect("build-finished", write)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,102 @@
+"""The readers' notebooks: plain markdown with the book's numbers, and code that runs."""
+
+import json
+import re
+import sys
+from types import MappingProxyType, SimpleNamespace
+
+import nbformat
+import pytest
+from book_pages import ROOT
+from chromium import HTML
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+
+from dd_reader import Plain, reader_notebook
+from lab import lay_out
+
+ROLE = re.compile(r"\{[\w:-]+\}`[^`]*`|^(?:`{3,}|:{3,})\{", re.MULTILINE)
+NUMBER = re.compile(r'<abbr title="the book\'s number">(.*?)</abbr>')
+
+
+class Known:
+    root = ROOT
+    env = SimpleNamespace(titles={})
+    labels = MappingProxyType({"section": ("page", "s", "A section")})
+
+    def figure(self, label):
+        return f"Fig. 3.{len(label)}"
+
+    def equation(self, label):
+        return "3.1"
+
+    def authors(self, key):
+        return "A and B", "1988"
+
+
+def plain(text, **glued):
+    return Plain("page", Known(), glued).text(text)
+
+
+@pytest.mark.parametrize("source, wanted", [
+    ("{glue:text}`a:.2f` m", '<abbr title="the book\'s number">−0.50</abbr> m'),
+    ("{glue:text}`name`", '<abbr title="the book\'s number">10⁻³</abbr>'),
+    ("{glue:text}`missing:.1f`", '<abbr title="the book\'s number">?</abbr>'),
+    ("{doc}`feedback`, {doc}`notation`", "[feedback](feedback.ipynb), *notation*"),
+    ("{doc}`the loop <feedback>`", "[the loop](feedback.ipynb)"),
+    ("{term}`nulls <null control>`", "nulls"),
+    ("{numref}`fig` and {eq}`e`", "Fig. 3.3 and Eq. 3.1"),
+    ("{cite:t}`Key` or {cite}`Key, Other`", "A and B (1988) or (A and B, 1988; A and B, 1988)"),
+    ("{ref}`section` {py:func}`~ddlib.a.b`", "A section `b`"),
+    ("$$\nx\n$$ (e)", "$$\nx \\tag{3.1}\n$$"),
+    ("```{math}\nx\n```", "$$\nx\n$$"),
+    ("```{admonition} Note\nWords.\n```", "> **Note**\n> \n> Words."),
+    ("(anchor)=\n## Title", "## Title"),
+])  # fmt: skip
+def test_markdown_without_roles(source, wanted):
+    assert plain(source, a=-0.5, name="10⁻³") == wanted
+
+
+def test_cells_are_open_folded_or_a_folded_solution():
+    new = nbformat.v4
+    code = {"open": [], "folded": ["remove-cell"], "solved": ["hide-cell"], "drawn": ["hide-input"]}
+    cells = [new.new_code_cell(name, metadata={"tags": tags}) for name, tags in code.items()]
+    cells[-1].metadata["mystnb"] = {"figure": {"name": "fig", "caption": "{term}`Curves`.\n"}}
+    source = new.new_notebook(cells=[new.new_markdown_cell("# Title"), *cells])
+    made = reader_notebook(source, "page", Known(), {})
+    title, note, opened, folded, solved, drawn, caption = made.cells
+    assert title.source == "# Title" and "Your copy" in note.source
+    assert opened.source == "open" and not opened.metadata
+    assert folded.metadata["jupyter"] == drawn.metadata["jupyter"] == {"source_hidden": True}
+    assert solved.cell_type == "markdown" and "<details>" in solved.source
+    assert caption.source == "**Fig. 3.3.** Curves."
+    nbformat.validate(made)
+
+
+def test_a_readers_own_changes_stay(tmp_path):
+    made, lab = tmp_path / "made", tmp_path / "lab"
+    made.mkdir()
+    for name in ("mine.ipynb", "theirs.ipynb"):
+        (made / name).write_text("first")
+    assert lay_out(made, lab) == []
+    (lab / "mine.ipynb").write_text("changed")
+    for name in ("mine.ipynb", "theirs.ipynb"):
+        (made / name).write_text("second")
+    assert lay_out(made, lab) == ["mine.ipynb"]
+    assert (lab / "mine.ipynb").read_text() == "changed"
+    assert (lab / "theirs.ipynb").read_text() == "second"
+
+
+@pytest.mark.built
+def test_no_notebook_has_a_raw_role_or_a_number_missing():
+    made = sorted((HTML / "_sources" / "book").glob("*.ipynb"))
+    assert len(made) >= 20
+    numbers = 0
+    for path in made:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        text = "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
+        assert not ROLE.findall(text), path.name
+        assert "?" not in NUMBER.findall(text) and "Fig. ?" not in text and "Eq. ?" not in text
+        numbers += len(NUMBER.findall(text))
+        assert not any(c.get("outputs") for c in cells)
+    assert numbers > 500
