@@ -1,4 +1,4 @@
-"""Measures of networks and windows, on planted ones with answers known by hand."""
+"""Measures of windows and networks, on planted ones with answers known by hand."""
 
 from dataclasses import replace
 from types import SimpleNamespace
