@@ -83,7 +83,7 @@ def test_places_in_the_paper():
 @pytest.mark.parametrize(
     "changes, words",
     [
-        ({"measure": "networks.nowhere"}, "AttributeError"),
+        ({"measure": "filters.nowhere"}, "AttributeError"),
         ({"measure": "nowhere.slope"}, "ModuleNotFoundError"),
         ({"arguments": {"colour": "red"}}, r"untrained\(colour='red'\): TypeError"),
         ({"measure": "", "find": {"median": "table-6-1/nothing", "text": "x"}}, "'slope'"),
@@ -252,7 +252,7 @@ def test_the_window_of_a_claim():
     for changes, width in (
         ({"measure": "filters.of_class", "arguments": {"width": 41, "name": "velocity"}}, 41),
         ({"measure": "filters.constant_share"}, 21),  # what it takes if it is not told
-        ({"measure": "networks.shoulder_position"}, None),
+        ({"measure": "chapters.whole_state_space.shoulder_position"}, None),
         ({"measure": "", "find": expression, "arguments": {"width": 11}}, 11),
         ({"measure": "", "verdict": "not testable", "band": {}}, None),
     ):

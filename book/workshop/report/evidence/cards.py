@@ -140,7 +140,8 @@ def worded(claim: Claim, text: str) -> str:
     """A text about a claim's verdict, in the words for own findings if it is one."""
     if claim.printed != _OWN and claim.id not in _of_findings():
         return text
-    return re.sub("|".join(OWN), lambda match: OWN[match[0]], text)
+    words = {**OWN, "qualitative": "held in kind"}
+    return re.sub("|".join(words), lambda match: words[match[0]], text)
 
 
 @cache
