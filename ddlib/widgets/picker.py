@@ -28,7 +28,7 @@ _RIGID = "Lagrange-Euler"
 _RECORDED = "recorded"
 
 _TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
-AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
+_AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
 _STEP = 0.1  # between two shades of the map, RMSS
 _SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
 
@@ -37,7 +37,7 @@ _TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
 _NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
     "mean square error over the standard deviation of the training torques. The shades were "
-    f"computed beforehand, at {AXIS.size} × {AXIS.size} places."
+    f"computed beforehand, at {_AXIS.size} × {_AXIS.size} places."
 )
 
 _MOTION = """\
@@ -95,7 +95,7 @@ class TrajectoryPicker(LiveWidget):
         What `on_record` returned last, or None.
     numbers : dict
         The numbers beside the pad over the whole square: name -> ndarray, shape
-        ``(shoulder, elbow)``, at the extents `AXIS` of both joints.
+        ``(shoulder, elbow)``, at 31 extents of each joint from 0 to 45 degrees.
     """
 
     _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "clock.js", "picker.js"))
@@ -126,8 +126,8 @@ class TrajectoryPicker(LiveWidget):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
         self._on_record = on_record or setup.record
         curves = _Curves(setup, models)
-        square = curves(*(x.ravel() for x in np.meshgrid(AXIS, AXIS, indexing="ij")))
-        self.numbers = {n: x.reshape(2 * AXIS.shape) for n, x in square.items() if x.ndim == 1}
+        square = curves(*(x.ravel() for x in np.meshgrid(_AXIS, _AXIS, indexing="ij")))
+        self.numbers = {n: x.reshape(2 * _AXIS.shape) for n, x in square.items() if x.ndim == 1}
         peaks = (Scalar(f"peak {j}", f"Largest {_RIGID} torque, {j}", "N m") for j in JOINTS)
         super().__init__(
             curves.one,
@@ -154,7 +154,7 @@ class TrajectoryPicker(LiveWidget):
         layouts, weights = networks(models.values())
         told = [{"name": name, **layout} for name, layout in zip(models, layouts)]
         self._keep(
-            map={"side": AXIS.size, "step": _STEP, "errors": errors},
+            map={"side": _AXIS.size, "step": _STEP, "errors": errors},
             arm={"lengths": lengths, "angles": angles, "times": _TIMES.tolist()},
             loop={**curves.plain(), "models": told},
             weights=weights,

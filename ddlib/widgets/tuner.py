@@ -29,7 +29,7 @@ _LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
 
 _T = np.arange(round(3.5 / CONTROL_STEP) + 1) * CONTROL_STEP
 
-TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
+_TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
 
 _ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
 
@@ -180,7 +180,7 @@ class PIDTuner(LiveWidget):
                     f"{joint.title()} {what}, {unit}",
                     {f"{joint} {what} before": "before", f"{joint} {what}": "now"},
                     "time, s",
-                    TIMES,
+                    _TIMES,
                     y_fit=True,
                 )
                 for what, unit in (("error", "°"), ("torque", "N m"))
@@ -257,7 +257,7 @@ def tuned(arm: Arm, kp, ki, kd, late, feedforward) -> dict:
     for j, joint in enumerate(JOINTS):
         rows[f"{joint} error"] = error[:, j]
         rows[f"{joint} torque"] = done.torque[:, j]
-        rows[f"{joint} RMS"] = np.sqrt((error[TIMES < MOTION_SECONDS - 1e-9, j] ** 2).mean())
+        rows[f"{joint} RMS"] = np.sqrt((error[_TIMES < MOTION_SECONDS - 1e-9, j] ** 2).mean())
         rows[f"{joint} phase margin"] = near.phase_deg[j]
-    stopped = np.nan if done.stopped is None else TIMES[done.stopped]
+    stopped = np.nan if done.stopped is None else _TIMES[done.stopped]
     return {**rows, "crossover": near.crossover[0], "growth": near.growth, "stopped": stopped}

@@ -20,7 +20,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, predict
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import TrajectoryPicker
-from ddlib.widgets.picker import AXIS
+from ddlib.widgets.picker import _AXIS
 from workshop.report import results
 
 
@@ -81,13 +81,13 @@ def test_networks_see_what_the_simulator_records(full, networks):
 
 
 def test_the_map_is_of_the_exact_errors(full, picker):
-    assert full.map["side"] == AXIS.size and AXIS[[0, -1]].tolist() == [0, 45]
+    assert full.map["side"] == _AXIS.size and _AXIS[[0, -1]].tolist() == [0, 45]
     low, high = ({c["name"]: c[end] for c in full.spec["curves"]} for end in ("low", "high"))
     for i, j in ((0, 0), (12, 4), (30, 30), (3, 29)):
-        exact = full.interpolate(shoulder_deg=AXIS[i], elbow_deg=AXIS[j])
+        exact = full.interpolate(shoulder_deg=_AXIS[i], elbow_deg=_AXIS[j])
         for name, digits in full.map["errors"].items():
-            assert len(digits) == 2 * AXIS.size**2
-            at = 2 * (j * AXIS.size + i)
+            assert len(digits) == 2 * _AXIS.size**2
+            at = 2 * (j * _AXIS.size + i)
             error = exact[f"RMSS, {name}"][0]
             assert int(digits[at : at + 2], 36) / 100 == pytest.approx(error, abs=0.0051)
             assert full.numbers[f"RMSS, {name}"][i, j] == pytest.approx(error, rel=1e-9)

@@ -18,15 +18,15 @@ from ddlib.widgets.engine import _loops as loops
 from ddlib.widgets.tuner import (
     _QUESTIONS,
     _START,
+    _TIMES,
     _VISCOUS,
-    TIMES,
     PIDTuner,
     _gains,
     tuned,
 )
 
 ARM = CMU_DD_ARM_II
-LATE = (TIMES >= 1) & (TIMES < 3)
+LATE = (_TIMES >= 1) & (_TIMES < 3)
 JOINTS = ("shoulder", "elbow")
 
 
@@ -65,7 +65,7 @@ def test_curves_are_the_recorded_ones(feedforward):
         effects=Effects(friction=(ViscousFriction(_VISCOUS),)),
     )
     shown = tuned(ARM, 200, 100, 30, 0, feedforward)
-    at = np.searchsorted(recording.t, TIMES[TIMES < 2.9995] - 1e-9)
+    at = np.searchsorted(recording.t, _TIMES[_TIMES < 2.9995] - 1e-9)
     error = np.rad2deg(recording.tracking_error)
     for j, joint in enumerate(JOINTS):
         np.testing.assert_allclose(shown[f"{joint} error"][: len(at)], error[at, j], atol=1e-9)
@@ -105,7 +105,7 @@ def test_growth_and_margins_are_python_controls(engine, arm):
 
 
 def swing(run, begin, end):
-    at = (TIMES >= begin) & (TIMES < end)
+    at = (_TIMES >= begin) & (_TIMES < end)
     return max(np.ptp(run[f"{joint} error"][at]) / 2 for joint in JOINTS)
 
 
@@ -156,7 +156,7 @@ def assert_computed(page, **setting):
         for got, name in ((seen["rms"][j], "RMS"), (seen["margins"][j]["phase"], "phase margin")):
             assert got == pytest.approx(known[f"{joint} {name}"], rel=1e-5, nan_ok=True)
     assert seen["growth"] == pytest.approx(known["growth"], rel=1e-6)
-    ended = np.nan if seen["stopped"] is None else TIMES[seen["stopped"]]
+    ended = np.nan if seen["stopped"] is None else _TIMES[seen["stopped"]]
     assert ended == pytest.approx(known["stopped"], nan_ok=True)
 
 
