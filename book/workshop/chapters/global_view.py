@@ -38,14 +38,10 @@ def spare_units(width: int, worse: float = 1.1) -> Measured:
 
     def spare_of(models):
         every = models(width)
-        return np.array(
-            [
-                (
-                    ablation(one, windows, torque)[1] < worse * rmss(one.torque(windows), torque)
-                ).sum()
-                for one in (every[k] for k in range(len(every.weights)))
-            ]
-        )
+        members = [every[k] for k in range(len(every.weights))]
+        without = [ablation(one, windows, torque)[1] for one in members]
+        whole = [rmss(one.torque(windows), torque) for one in members]
+        return (np.array(without) < worse * np.array(whole)[:, None]).sum(1)
 
     spare, before = committed.both(spare_of)
     text = f"{np.median(spare):.0f} of 10 units can be spared ({spare.min()} to {spare.max()}), "

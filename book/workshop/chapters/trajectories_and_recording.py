@@ -214,18 +214,11 @@ def samples() -> Measured:
 
 def cases() -> Measured:
     """Windows of the five training recordings: with the rests, and inside the motions."""
-    recording = committed.recording()
-    found = [
-        sliding_windows(recording.q[:_TRAINING], w, recording.motion)[..., 0, 0].size
-        for w in WINDOWS
-    ]
-    inside = [
-        sliding_windows(recording.q[:_TRAINING, recording.motion], w)[..., 0, 0].size
-        for w in WINDOWS
-    ]
-    text = f"{found[0]:,} with the rests; windows within the motions give "
-    text += ", ".join(f"{n:,}" for n in inside)
-    return Measured(found[0], text)
+    q, motion = committed.training().q, committed.training().motion
+    count = sliding_windows(q, WINDOWS[0], motion)[..., 0, 0].size  # as many for all windows
+    inside = [sliding_windows(q[:, motion], w)[..., 0, 0].size for w in WINDOWS]
+    text = f"{count:,} with the rests; windows within the motions give "
+    return Measured(count, text + ", ".join(f"{n:,}" for n in inside))
 
 
 def period() -> Measured:
@@ -269,8 +262,8 @@ def driven(close: float = 0.1, factors=(1, 2, 3)) -> Measured:
 def unreachable(width: int = 21) -> Measured:
     """Upper bound on the reachable share of the windows' cube, as a power of ten."""
     power = 2 * log10_reachable_share(width, RADIUS * LOG_STEP / np.pi)
-    recording = committed.recording()
-    windows = sliding_windows(recording.q[:_TRAINING], width, recording.motion)
+    training = committed.training()
+    windows = sliding_windows(training.q, width, training.motion)
     step = STATE_FEEDBACK.effects.encoder[0].step
     used = used_dimensions(windows.reshape(-1, 2 * width), step)
     share = scientific(10.0 ** np.ceil(power))
@@ -279,17 +272,12 @@ def unreachable(width: int = 21) -> Measured:
     return Measured(float(power), text)
 
 
-def _states(setup: str) -> np.ndarray:
-    """True states of the training runs, ``(runs, samples, 2, 3)``."""
-    return true_states(committed.recording(setup)[:_TRAINING], SETUPS[setup])
-
-
 def coverage(cells: int = 10) -> Measured:
     """Share of the cells of section 6's cube that the training recordings reach."""
     shares = {}
     for name in SETUPS:
-        states = _states(name).reshape(-1, 6)
-        shares[name] = cells_reached(states, RADIUS, cells) / cells**6
+        states = true_states(committed.training(name), SETUPS[name])
+        shares[name] = cells_reached(states.reshape(-1, 6), RADIUS, cells) / cells**6
     text = f"of {cells**6:,} cells " + ", ".join(
         f"{100 * x:.2g} % ({n})" for n, x in shares.items()
     )
