@@ -36,16 +36,13 @@ def test_the_page_is_at_most_ten_screens_tall(ledger):
 
 def test_signs_of_a_grid_open_their_rows(ledger):
     page = ledger("#card-saturated")
-    card = page.locator("#card-saturated")
-    assert card.evaluate("(el) => el.open")
-    sign = card.locator(".claim-grid a").nth(3)
+    sign = page.locator("#card-saturated[open] .claim-grid a").nth(3)
     name = sign.get_attribute("href")
-    row = page.locator(name)
-    assert not row.evaluate("(el) => el.open")
+    assert not page.locator(name).evaluate("(el) => el.open")
     sign.focus()
     page.keyboard.press("Enter")
-    page.wait_for_function("(name) => document.querySelector(name).open", arg=name)
-    assert row.locator("p").first.is_visible() and page.url.endswith(name)
+    page.locator(f"{name}[open] p").first.wait_for(state="visible")
+    assert page.url.endswith(name)
 
 
 def test_every_row_has_an_address_that_opens_it_and_its_card(ledger):
@@ -74,6 +71,9 @@ def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     assert bar.locator("output").inner_text() == f"{wanted} of {CARDS} cards"
     again = ledger("#" + page.url.partition("#")[2])
     assert shown(again) == wanted
+    hidden = next(f"#card-{card.id}" for card in cards.cards() if card.sign() == "reproduced")
+    again.evaluate("(name) => { location.hash = name; }", hidden)
+    again.locator(f"{hidden}[open]").wait_for(state="visible")
     again.locator(".claim-filter input").fill("simple velocity filter")
     assert 1 <= shown(again) < 5
     again.locator(".claim-filter button", has_text="Show all").click()
@@ -90,24 +90,11 @@ def test_code_leads_to_the_lines_that_measure(ledger, visit):
         assert f"def {name}" in visit(where).page.locator(f'[id="{name}"]').inner_text()
 
 
-def test_a_hidden_card_is_shown_when_its_row_is_asked_for(ledger):
-    page = ledger("#v=undecided")
-    name = next(f"#card-{c.id}" for c in cards.cards() if c.sign() == "reproduced")
-    assert not page.locator(name).is_visible()
-    page.evaluate("(name) => { location.hash = name; }", name)
-    page.locator(name).wait_for(state="visible")
-    assert page.locator(name).evaluate("(el) => el.open")
-
-
 def test_rows_can_be_read_without_a_script(site, browser):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
-    page.goto(f"{site}/book/ledger.html")
-    card = page.locator("details.card-of-rows").first
-    card.locator("summary").first.click()
-    row = card.locator("details.claim").first
-    row.locator("summary").click()
-    assert row.locator("p").first.is_visible()
     page.goto(f"{site}/book/ledger.html#claim-{ROWS[-1].id}")
-    assert page.locator(f"#claim-{ROWS[-1].id} summary").is_visible()  # the browser opens its card
+    row = page.locator(f"#claim-{ROWS[-1].id}")
+    row.locator("summary").click()  # the browser has opened its card
+    assert row.locator("p").first.is_visible()
     context.close()
