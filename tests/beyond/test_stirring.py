@@ -9,6 +9,7 @@ from ddlib.dynamics import CMU_DD_ARM_II as ARM, Unreachable
 from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import MOTION_SECONDS
 from workshop.beyond.studies.loop import motions, stirring
+from workshop.chapters.stirring import needed
 
 T = motions.times()
 INSIDE = (T >= 0) & (T < MOTION_SECONDS)
@@ -77,7 +78,7 @@ class TestViaPoints:
 
 def test_errors_of_the_hand_are_distances_in_millimetres():
     reference = motions.stirred(ARM, motions.random_circles(2, 0), T)
-    torques = np.stack([0 * reference.q, stirring.needed(JOINT_DAMPING, *reference)])
+    torques = np.stack([0 * reference.q, needed(JOINT_DAMPING, *reference)])
     log = stirring.through(JOINT_DAMPING, torques, reference)
     assert log.q.shape[:2] == (2, 2)
     gap = hand_of(log.q_true) - hand_of(log.reference.q)

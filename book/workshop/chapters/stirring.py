@@ -17,8 +17,9 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
-from ddlib.setups import JOINT_DAMPING
+from ddlib.setups import JOINT_DAMPING, Setup
 from workshop.beyond.measures.loop.stirring import row
+from workshop.beyond.studies.loop.run_time_parts import exact
 
 _MARKERS = "os^Dv"
 _PLANES = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
@@ -104,3 +105,8 @@ def error(
 def pooled_rmss(rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name) -> np.ndarray:
     """RMSS by the test's own deviation, one for each day."""
     return np.array(row(setup)["errors"][rival][learnt][asked])[:, 0]
+
+
+def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
+    """Torque of the arm's equations with its friction, N m."""
+    return exact(setup)(q, qd, qdd)

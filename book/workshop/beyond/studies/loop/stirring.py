@@ -113,11 +113,6 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
     return found
 
 
-def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
-    """Torque of the arm's equations with its friction, N m."""
-    return exact(setup)(q, qd, qdd)
-
-
 def through(setup: Setup, torques, reference: Trajectory) -> Recording:
     """Drive an arm with feedforward torques ``(models, runs, time, 2)`` over its own feedback."""
     tiled = Trajectory(*(np.broadcast_to(x, torques.shape) for x in reference))
