@@ -206,34 +206,31 @@ def _learning(width: int, case: int) -> dict:
     return results.read("span")["cells"][len(WINDOWS) * case + WINDOWS.index(width)]
 
 
-def halved(first: list, then: list, width: int = 21, case: int = 0) -> Measured:
+def halved(first: list, then: list) -> Measured:
     """Epoch at which some directions' parts of the error are half over others', geometric means."""
-    cell, epochs = _learning(width, case), {}
+    cell, ratios = _learning(21, 0), {}
     for who in ("measured", "predicted"):
         halves = np.log(np.array(cell[who]["halves"], float))
-        epochs[who] = [halves[:, np.array(group) - 1].mean(1) for group in (first, then)]
-    ratios = {who: np.exp(late - early) for who, (early, late) in epochs.items()}
+        early, late = (halves[:, np.array(group) - 1].mean(1) for group in (first, then))
+        ratios[who] = np.exp(late - early)
     text = f"{spread(ratios['measured'])}; predicted {spread(ratios['predicted'])}"
     return judged(median, ratios["measured"], text=text)
 
 
-def centred(name: str = "rmss") -> Measured:
+def centred() -> Measured:
     """Median error with inputs from 0 to 1 over that with -1 to 1, the least of three windows."""
-    cells = [[_learning(w, case) for case in (0, 1)] for w in WINDOWS]
-    pairs = {
-        who: [tuple(np.array(c[who][name]) for c in both) for both in cells]
-        for who in ("measured", "predicted")
-    }
-    shown = {
-        who: ", ".join(significant(np.median(a) / np.median(b), 2) for a, b in each)
-        for who, each in pairs.items()
-    }
+
+    def pairs(who):
+        return [tuple(np.array(_learning(w, k)[who]["rmss"]) for k in (0, 1)) for w in WINDOWS]
 
     def least(*drawn):
         return np.min([median(a) / median(b) for a, b in drawn], axis=0)
 
-    text = f"{shown['measured']}; predicted {shown['predicted']}"
-    return judged(least, *[(a, b) for a, b in pairs["measured"]], text=text)
+    measured, predicted = (
+        ", ".join(significant(np.median(a) / np.median(b), 2) for a, b in pairs(who))
+        for who in ("measured", "predicted")
+    )
+    return judged(least, *pairs("measured"), text=f"{measured}; predicted {predicted}")
 
 
 def outside_the_span(taken: int = 12, epochs: int = 100) -> Measured:
