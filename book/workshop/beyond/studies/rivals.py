@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import integer
 from ddlib.analysis import noise_floor
 from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
@@ -42,12 +41,7 @@ class _Square(NamedTuple):
 
 
 def _square(setup: Setup, points: int = 9) -> _Square:
-    """Record trajectories on a grid of extents, equally spaced, the largest 45 degrees.
-
-    `points` are extents of each joint, 2 or more; the smallest is ``45 / points`` degrees, so that
-    each joint moves in all.
-    """
-    integer("points", points, 2)
+    """Record trajectories on a grid of extents, equally spaced from ``45 / points`` degrees on."""
     edge = MAX_EXTENT_DEG * np.arange(1, points + 1) / points
     extents = np.stack(np.meshgrid(edge, edge, indexing="ij"), -1).reshape(-1, 2)
     return _Square(extents, inside_hull(extents), setup.record(extents))

@@ -126,10 +126,7 @@ def stirred(
 
 
 def _around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Trajectory:
-    """Joint motion that moves the hand on circles about `centre` (runs, 2), m, at any pace.
-
-    `phase`: the hand's place on them, (runs, time), rad, with its first and second derivative.
-    """
+    """Joint motion of the hand on circles, its `phase` (rad) with two derivatives (runs, time)."""
     radius = finite_array("radius", radius)
     angle, rate, change = (finite_array("phase", x)[..., None] for x in phase)
     along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
