@@ -88,8 +88,8 @@ def solve(
         What the damping holds back. If true, each direction of the windows is measured by how much
         they vary along it: one along which they hardly vary is learnt as fast as any other, and a
         step without decay does not see a linear change of the inputs. If false, it is the weights
-        as they are, and such a direction takes small steps. The objective is the same in both,
-        the way to its minimum is not.
+        as they are, and such a direction takes small steps until the damping has fallen. The
+        objective is the same in both, the way to its minimum is not.
 
     Raises
     ------

@@ -128,7 +128,7 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
 
 
 @study
-def whitening(days=5, networks=3, members=8, width=41) -> dict:
+def whitening(days=5, networks=2, members=8, width=41) -> dict:
     """Joint damping without whitening, on the days of `recordings`; and what whitening learns.
 
     Along each direction of the windows of one recording, the steepest first: the change of the
@@ -141,6 +141,7 @@ def whitening(days=5, networks=3, members=8, width=41) -> dict:
         "whitened": (JOINT_DAMPING, True),
         "whitened, no decay": (replace(JOINT_DAMPING, decay=0.0), True),
         "plain": (JOINT_DAMPING, False),
+        "plain, twice the steps": (replace(JOINT_DAMPING, steps=2 * JOINT_DAMPING.steps), False),
         "descent": (replace(JOINT_DAMPING, steps=0, decay=0.0), True),
     }
     found = {}
