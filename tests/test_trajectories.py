@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib.trajectories import (
-    OutsideFamilyWarning,
-    pick_and_place,
-    random_extents,
-    time_grid,
-)
+from ddlib.trajectories import OutsideFamilyWarning, pick_and_place, random_extents, time_grid
 
 family = st.tuples(st.floats(0, 45), st.floats(0, 45))
 

@@ -3,13 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import (
-    explained,
-    followed,
-    gains,
-    mean_gradient,
-    savitzky_golay,
-)
+from ddlib.analysis import explained, followed, gains, mean_gradient, savitzky_golay
 from ddlib.learning import Scaler, TorqueModel, Weights
 
 RNG = np.random.default_rng(0)

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import (
-    ablation,
-    match,
-    refitted,
-    saturated,
-)
+from ddlib.analysis import ablation, match, refitted, saturated
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.metrics import rmss
 

@@ -9,13 +9,7 @@ import warnings
 import numpy as np
 import pytest
 
-from ddlib.analysis import (
-    coverage,
-    filters,
-    hidden_units,
-    noise,
-    sensitivity,
-)
+from ddlib.analysis import coverage, filters, hidden_units, noise, sensitivity
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.learning import levenberg_marquardt, network, training, windows
 

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.analysis import (
-    calibrated,
-    heard,
-    savitzky_golay,
-    unit_inputs,
-)
+from ddlib.analysis import calibrated, heard, savitzky_golay, unit_inputs
 from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import LOG_STEP
 

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ddlib.analysis import (
-    input_shares,
-    responses,
-    shuffled,
-    transition_centre,
-    transition_range,
-)
+from ddlib.analysis import input_shares, responses, shuffled, transition_centre, transition_range
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from workshop.report.exact_states import random_states, torque
 

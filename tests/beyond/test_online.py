@@ -10,12 +10,7 @@ from ddlib.learning import Scaler, TorqueModel, Weights
 from ddlib.simulation import follow, record
 from ddlib.trajectories import Trajectory, pick_and_place, time_grid
 from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.online import (
-    LastLayer,
-    OnlineFeedforward,
-    _Abreast,
-    _OnlineDescent,
-)
+from workshop.beyond.control.online import LastLayer, OnlineFeedforward, _Abreast, _OnlineDescent
 
 WIDTH = 5
 INPUTS = Scaler(np.array([-0.8, -0.9]), np.array([0.1, 0.2]))

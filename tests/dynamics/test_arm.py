@@ -5,15 +5,7 @@ import pytest
 import sympy as sp
 from hypothesis import given, settings, strategies as st
 
-from ddlib.dynamics import (
-    CMU_DD_ARM_II,
-    IMI_ARM,
-    REYES_KELLY_ARM,
-    Arm,
-    Link,
-    jacobian,
-    with_load,
-)
+from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM, Arm, Link, jacobian, with_load
 
 # mass, length, centre of mass, inertia: typed from the tables, not read from the module
 CMU_LINKS = ((14.0, 0.50, 0.22, 0.40), (14.0, 0.40, 0.09, 0.60))

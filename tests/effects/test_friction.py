@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 
-from ddlib.effects import (
-    CoulombFriction,
-    StickSlipFriction,
-    StribeckFriction,
-    ViscousFriction,
-)
+from ddlib.effects import CoulombFriction, StickSlipFriction, StribeckFriction, ViscousFriction
 
 FRICTIONS = (
     ViscousFriction((0.5, 0.15)),

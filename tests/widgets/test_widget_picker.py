@@ -6,15 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from widget_pages import (
-    LIVE,
-    NEXT_FRAME,
-    PATHS,
-    assert_curves,
-    drag,
-    page_of,
-    shown_values,
-)
+from widget_pages import LIVE, NEXT_FRAME, PATHS, assert_curves, drag, page_of, shown_values
 
 from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, predict
