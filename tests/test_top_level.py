@@ -1,7 +1,5 @@
-"""What ``import ddlib`` gives: names that the Tab key finds, without PyTorch until it is needed."""
+"""What ``import ddlib`` gives: the example of its help runs."""
 
-import subprocess
-import sys
 import textwrap
 
 import ddlib
@@ -12,9 +10,3 @@ def test_the_example_of_the_help_runs(capsys):
     exec(textwrap.dedent(example), names := {})
     printed = capsys.readouterr().out.split()
     assert len(printed) == 4 and names["parts"].even.shape == (4, 10, 2, 11)
-
-
-def test_torch_waits_until_it_is_needed():
-    code = "import sys, ddlib; ddlib.STATE_FEEDBACK.record(); print('torch' in sys.modules)"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert told.stdout.strip() == "False"

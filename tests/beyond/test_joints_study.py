@@ -1,4 +1,4 @@
-"""Arms of more joints on given motions, and the study of them, cut short."""
+"""Arms of more joints on given motions."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
-from workshop.beyond.studies.loop import joints as study
 from workshop.beyond.studies.loop.chain import chain, extents, moved
 
 
@@ -42,13 +41,3 @@ def test_torque_is_the_books_with_friction():
     q, qd, qdd = np.moveaxis(states, -1, 0)
     wanted = CMU_DD_ARM_II.inverse_dynamics(q, qd, qdd) + JOINT_DAMPING.effects.friction_torque(qd)
     np.testing.assert_allclose(made.torque(states), wanted, atol=1e-10)
-
-
-def test_the_study_cut_short(monkeypatch):
-    for name, value in {"_STEPS": 2, "_SEEDS": 2, "CASES": 60}.items():
-        monkeypatch.setattr(study, name, value)
-    rows = study._by_motions("joint damping", {2: (5, 10)}, 2)
-    assert [r["motions"] for r in rows] == [5, 10] and len(rows[0]["test"]) == 2
-    found = study._pairs(seeds=1)
-    assert np.shape(found["gains"]["real"]) == (1, 4, 4) == np.shape(found["used"]["unrelated"])
-    assert {r["taps"] for r in study._closed_loops(2)} == {5, 21}

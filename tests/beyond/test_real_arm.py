@@ -1,14 +1,12 @@
 """The real arm's cases, its blocks, and the models that are tried on them."""
 
-from functools import partial
-
 import numpy as np
 from scipy.optimize import approx_fprime
 
 from ddlib.identification import joint_terms
 from ddlib.learning import Weights
 from workshop.beyond.others import staubli
-from workshop.beyond.studies import real_arm, tx40
+from workshop.beyond.studies import tx40
 from workshop.beyond.studies.tx40 import (
     BLOCKS,
     Ridge,
@@ -101,20 +99,3 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     slope = approx_fprime(at, objective, 1e-6)
     assert objective(at) < objective(begin)
     assert np.abs(slope).max() < 0.02 * np.abs(approx_fprime(begin, objective, 1e-6)).max()
-
-
-def test_the_study_in_small(monkeypatch):
-    monkeypatch.setattr(real_arm, "_RATES", {100: (5,)})
-    monkeypatch.setattr(real_arm, "trained", partial(tx40.trained, epochs=20))
-    monkeypatch.setattr(real_arm, "_DECAYS", (0.0, 1e-2))
-    row = real_arm._grid(1)[0]
-    assert row["network"].shape == (5, 1) and row["ridge"].shape == (5,)
-    assert row["identified"].mean() < row["ridge"].mean() < row["no friction"].mean()
-    found = real_arm._filters(5, 2, 2)
-    assert found["real"]["velocity"].shape == (2, 6) and set(found["nulls"]) == set(real_arm._KINDS)
-    for each in (found, *found["nulls"].values()):
-        assert each["curved"].shape == (2, 6) and (each["curved"] <= 1).all()
-    memory = real_arm._memory(1)
-    assert all(0 < x < 1.5 for rows in memory.values() for row in rows.values() for x in row)
-    units = real_arm._hidden_units(1)
-    assert (units["training"]["with hidden units"][:, 0] < units["training"]["alone"]).all()

@@ -1,6 +1,5 @@
-"""What the build takes out of the pages and their styles, and what it puts right."""
+"""What the build takes out of the pages and their styles."""
 
-import json
 import sys
 
 import pytest
@@ -55,23 +54,3 @@ def test_a_page_loads_the_scripts_it_uses():
     for script, body, stays in SCRIPTS:
         made = page(f'<script defer src="_static/{script}"></script>{body}')
         assert ("<script" in made) is stays, (script, body)
-
-
-def test_stills_become_files_for_pages_without_script():
-    view = '<script type="application/vnd.jupyter.widget-view+json">{"model_id": "%s"}</script>'
-    body = f"<p>{view % 'a'}</p><p>{view % 'b'}</p><p>{view % 'gone'}</p>"
-    state = {
-        "a": {"state": {"still": "data:,x", "still_alt": 'An "arm"', "words": "</script>"}},
-        "b": {"state": {"x": 1}},
-    }
-    kind = '<script type="application/vnd.jupyter.widget-state+json">'
-    saved = json.dumps({"state": state}).replace("</", "<\\/")
-    made = slim.separate_stills(f"{kind}{saved}</script>{body}", lambda data: f"file-of-{data}")
-    image = (
-        '<noscript><img class="still" src="file-of-data:,x" alt="An &quot;arm&quot;"></noscript>'
-    )
-    assert made.endswith(body.replace(view % "a", view % "a" + image))
-    left = json.loads(slim.STATE.search(made)[0])["state"]
-    assert "still" not in left["a"]["state"]
-    assert left["a"]["state"]["words"] == "</script>" and left["b"] == state["b"]
-    assert slim.separate_stills("<p>text</p>", str) == "<p>text</p>"

@@ -10,7 +10,7 @@ from hypothesis import given, settings, strategies as st
 from ddlib.learning import History, Weights
 from workshop.chapters import backpropagation
 from workshop.chapters.backpropagation import NETWORKS, monomials
-from workshop.report.parity import CODINGS, learn, parity, parity_cases, patterns, right
+from workshop.report.parity import learn, parity, parity_cases, patterns, right
 
 
 def in_words(row) -> int:
@@ -94,14 +94,6 @@ def test_learning_finds_exclusive_or_and_says_when():
     assert (right(weights, x, y) == 1).all()
     early, none = learn(2, 2, members=4, epochs=10, every=10)
     assert np.isinf(none).all() and (right(early, x, y) < 1).all()
-
-
-def test_cases_in_both_codings():
-    (bits, y), (signs, same) = (parity_cases(3, coding) for coding in CODINGS)
-    assert bits.shape == signs.shape == (8, 1, 3) and set(np.unique(signs)) == {-1, 1}
-    np.testing.assert_array_equal(signs, 1 - 2 * bits)
-    np.testing.assert_array_equal(y, same)
-    assert sorted(set(y.ravel())) == pytest.approx([0.2, 0.8])
 
 
 @pytest.mark.parametrize(

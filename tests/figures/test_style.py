@@ -70,11 +70,6 @@ def test_the_size_follows_the_page_but_not_beyond_its_own():
     assert size(made.svg) == [360, 180]
 
 
-@pytest.mark.parametrize("make, alt", [(draw, "B."), (formulas, "A.")])
-def test_ids_differ_with_the_words_and_with_the_picture(make, alt):
-    assert not set(ids(illustrate(draw, "A.").svg)) & set(ids(illustrate(make, alt).svg))
-
-
 def test_texts_are_texts_in_their_order():
     texts = words(illustrate(formulas, "Formulas."))
     assert "error of τ1 & q̇fb, N m" in texts and "a=2+b, s" in texts and "10⁻³" in texts

@@ -16,20 +16,6 @@ import measure
 import recordings
 import run
 
-ROWS = [
-    (measure.ratio("g", "w", ("x", 1.0), ("y", 8.0), 8.0), True, "met"),
-    (measure.ratio("g", "w", ("x", 1.0), ("y", 7.9), 8.0), False, "MISSED"),
-    (measure.ratio("g", "w", ("x", 1.0), ("y", 7.9)), None, "times"),
-    (measure.limit("g", "w", 2.0, "GiB", 2.0), True, "met"),
-    (measure.limit("g", "w", 2.1, "GiB", 2.0), False, "MISSED"),
-    (measure.not_measured("g", "w", "no reason"), None, "reason"),
-]
-
-
-def test_a_target_is_met_or_not():
-    told = [(measure.met(row), run.text(row).split()[-1]) for row, *_ in ROWS]
-    assert told == [(fine, word) for _, fine, word in ROWS]
-
 
 @pytest.mark.parametrize("written", [recordings.Written, recordings.Textbook])
 @pytest.mark.parametrize("quantised", [True, False])

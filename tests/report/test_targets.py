@@ -52,10 +52,3 @@ def test_planted_filters_are_counted_as_such_and_as_added(made):
         found = made.described(planted, start, wanted)
         assert (found["added, velocity"] == 1).all() and (found["velocity"] <= most).all()
         assert (found["velocity"].min() == 1) == (found["moved"].min() > 1) == (most == 1)
-
-
-def test_the_study_runs_small():
-    found = study.targets(members=2, width=5, epochs=20)
-    assert all((row["learnt"] <= 1).all() for row in found["targets"].values())
-    for rows in (*found["mixed"].values(), *found["by initial"].values()):
-        assert all(len(values) == 2 for row in rows for values in row.values())

@@ -72,11 +72,6 @@ def test_bad_arguments(arguments, words):
         bootstrap(mean, np.ones(3), draws=1999)
 
 
-def test_a_verdict_needs_nearly_all_draws():
-    for share, wanted in ((1.0, "reproduced"), (DECIDED, "reproduced"), (0.949, "undecided")):
-        assert _fresh({"reproduced": share, "qualitative": 1 - share}) == wanted
-
-
 def test_what_a_written_verdict_bears():
     for written, share, holds in (
         ("reproduced", 1.0, True),

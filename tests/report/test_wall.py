@@ -90,17 +90,3 @@ def test_what_would_have_changed_the_verdict(make, monkeypatch):
         monkeypatch.setattr(Claim, "judge", lambda self: self.verdict)
         text = wall.Tiles([claim])._repr_markdown_()
         assert f"*{head}:* r" in text and "c &lt; d" in text
-
-
-@pytest.mark.parametrize(
-    "value, edges, text",
-    [
-        (0.98, [0.9, 0.98], "0.98"),  # on the edge: it may look so
-        (0.9, [0.98], "0.90"),
-        (1.54, [1.52], "1.54"),  # 1.5 would be on the other side
-        (-0.29999, [-0.3], "-0.29999"),
-        (34.4, [], "34"),
-    ],
-)
-def test_a_value_is_told_from_an_edge(value, edges, text):
-    assert wall._number_beside(value, edges) == text

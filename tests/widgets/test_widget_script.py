@@ -10,17 +10,12 @@ import subprocess
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings, shown_values
+from widget_pages import NEXT_FRAME, PATHS, READ, page_of, settings
 from widget_samples import T, make, make_kinds, parameters, wave
 
 from ddlib.widgets import CurveWidget, Pad, Panel, Parameter
 
 CI = os.environ.get("CI", "").lower() in {"1", "true"}
-
-
-@pytest.fixture(scope="module")
-def widget():
-    return make()
 
 
 @pytest.fixture(scope="module")
@@ -138,16 +133,3 @@ def test_every_control_of_a_choice(tmp_path, visit, waves):
     stems = page.evaluate(READ, 1)
     np.testing.assert_allclose(stems[1], exact["taps"], atol=0.2)
     assert not opened.problems
-
-
-def test_pad_by_keyboard(tmp_path, visit, widget):
-    page = visit(page_of(tmp_path / "page.html", widget)).page
-    pad = page.locator(".pad")
-    seen = {}
-    for key in ("Home", "PageUp", "End", "PageDown", "ArrowLeft", "Shift+ArrowUp"):
-        pad.press(key)
-        page.evaluate(NEXT_FRAME)
-        seen[key] = shown_values(page)[1:3]
-    assert seen["Home"][0] == 0 and seen["PageUp"] == [0, 1] and seen["End"] == [2, 1]
-    assert seen["PageDown"] == [2, -1]
-    assert seen["ArrowLeft"] == [1.98, -1] and seen["Shift+ArrowUp"] == [1.98, -0.8]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, copied, functions, page_of
+from widget_pages import CALM, NEXT_FRAME, functions, page_of
 
 from ddlib.analysis import savitzky_golay, shares
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -152,18 +152,3 @@ def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     page.keyboard.down("ArrowLeft")
     page.keyboard.press("Tab")  # leaves the hand
     assert page.evaluate(STATE)["mode"] == "free" and not opened.problems
-
-
-@pytest.mark.browser
-def test_link_and_code_take_the_motion_along(tmp_path, visit, widget):
-    url = page_of(tmp_path / "page.html", widget)
-    page = visit(f"{url}?thrown-arm=motion:2&other=1", **CALM).page
-    shown = "document.querySelector('.ddlib-throw').world.shown"
-    assert page.evaluate(shown) == 2 and "trajectory 2" in said(page)
-    assert copied(page) == "motion, line = 1, '{shoulder}'"
-    press(page, "Look inside")
-    page.evaluate("window.copied = undefined")
-    link = copied(page, "Link")
-    assert link == f"{url}?other=1&thrown-arm=motion:2,inside:1" and said(page) == "Link copied."
-    again = visit(link, **CALM).page
-    assert again.evaluate(shown) == 2 and again.locator(".inside").is_visible()
