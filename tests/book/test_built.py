@@ -11,7 +11,7 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
 import pytest
-from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, source
+from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, code_cells, source
 from bookkeeping import lines_of_bookkeeping
 from bs4 import BeautifulSoup, Comment
 
@@ -94,11 +94,6 @@ def test_numbers_are_well_set(parsed):
 # --- code and answers ---------------------------------------------------------------------
 
 
-def sources(page: str) -> list[str]:
-    cells = json.loads(source(page).read_text(encoding="utf-8"))["cells"]
-    return ["".join(c["source"]).strip() for c in cells if c["cell_type"] == "code"]
-
-
 def open_code(page: BeautifulSoup) -> list[str]:
     """What stands in the open without a script or a click."""
     cells = page.select("article .cell:not(.tag_bookkeeping)")
@@ -125,7 +120,7 @@ def open_answers(page: BeautifulSoup) -> list[str]:
 def test_code_in_the_open_teaches_and_none_is_lost(parsed):
     wrong = {}
     for name in NOTEBOOKS:
-        shown, own = open_code(parsed(name)), sources(name)
+        shown, own = open_code(parsed(name)), [code.strip() for code in code_cells(source(name))]
         all_code = {pre.get_text().strip() for pre in parsed(name).select("pre")}
         wrong[name] = [line for code in shown for line in lines_of_bookkeeping(code)]
         wrong[name] += [code for code in shown if code.strip() not in own]

@@ -16,7 +16,7 @@ import urllib.request
 from pathlib import Path
 
 import pytest
-from book_pages import ROOT, WITH_WIDGETS, source
+from book_pages import ROOT, WITH_WIDGETS, code_cells, source
 from needed import needed
 from reactions import Handle, handles
 
@@ -226,9 +226,7 @@ def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     page = opened
     page.evaluate("(path) => lab.show(path)", f"book/{source(name).name}")
     wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
-    cells = json.loads(source(name).read_text(encoding="utf-8"))["cells"]
-    codes = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
-    run(page, None if name == WHOLE else needed(codes))
+    run(page, None if name == WHOLE else needed(code_cells(source(name))))
     models = page.evaluate("lab.shown()")
     roots = page.locator(".jp-OutputArea-output .ddlib-widget")
     wait(page, "the widgets", lambda: roots.count() == len(models) > 0, ANSWER)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
-
 import chromium
 import pytest
-from book_pages import CHAPTERS, source
+from book_pages import CHAPTERS, code_cells, source
 
 browser_test = pytest.mark.browser
 
@@ -16,11 +14,6 @@ SEEN = """
 () => [...document.querySelectorAll("article .cell_input pre")].filter((el) => el.checkVisibility())
   .map((el) => [el.textContent, Boolean(el.closest(".tag_to-read"))])
 """
-
-
-def sources(page: str) -> list[str]:
-    cells = json.loads(source(page).read_text(encoding="utf-8"))["cells"]
-    return ["".join(c["source"]).strip() for c in cells if c["cell_type"] == "code"]
 
 
 @browser_test
@@ -40,7 +33,8 @@ def test_one_switch_shows_all_code(kind, built, site, visit):
     assert button.get_attribute("aria-pressed") == "true"
     seen = {code.strip() for code, _ in page.evaluate(SEEN)}
     folded = page.locator("article details:not([open]) .cell_input pre").all_text_contents()
-    assert seen >= set(sources(name)) - {code.strip() for code in folded}
+    every = {code.strip() for code in code_cells(source(name))}
+    assert seen >= every - {code.strip() for code in folded}
     assert len(seen) > 2 * len(taught)
     page.reload()
     assert button.get_attribute("aria-pressed") == "true"

@@ -26,16 +26,8 @@ def test_parity_is_the_papers_function():
 
 def evaluate(coefficients, x):
     """A polynomial with one product of variables for each set, term by term."""
-    bits = x.shape[1]
-    return np.array(
-        [
-            sum(
-                c * np.prod([row[k] for k in range(bits) if i >> k & 1])
-                for i, c in enumerate(coefficients)
-            )
-            for row in x
-        ]
-    )
+    sets = [[k for k in range(x.shape[1]) if i >> k & 1] for i in range(len(coefficients))]
+    return sum(c * x[:, chosen].prod(axis=1) for c, chosen in zip(coefficients, sets))
 
 
 @given(st.lists(st.integers(-9, 9), min_size=16, max_size=16))

@@ -1,13 +1,12 @@
 """Other systems than this one: declared dependencies, files without rights, pinned actions."""
 
-import json
 import re
 import sys
 import tomllib
 from functools import cache
 from importlib.metadata import packages_distributions
 
-from book_pages import ROOT
+from book_pages import ROOT, code_cells
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from test_imports import imported
@@ -42,9 +41,8 @@ PINS = named(
 
 def notebooks() -> list[str]:
     """The code of all notebooks."""
-    pages = [json.loads(path.read_text("utf-8")) for path in sorted(ROOT.glob("book/*.ipynb"))]
-    cells = [c["source"] for page in pages for c in page["cells"] if c["cell_type"] == "code"]
-    return [code for lines in cells if not (code := "".join(lines)).startswith("%")]
+    cells = [code for path in sorted(ROOT.glob("book/*.ipynb")) for code in code_cells(path)]
+    return [code for code in cells if not code.startswith("%")]
 
 
 installed = cache(packages_distributions)

@@ -1,19 +1,10 @@
 """Code that widgets show: every name of ours that it imports or reads is there."""
 
 import ast
-import json
 import re
 from types import ModuleType
 
-from book_pages import ROOT
-
-
-def cells(path) -> list[str]:
-    """What a module or the code cells of a notebook say."""
-    text = path.read_text("utf-8")
-    if path.suffix == ".py":
-        return [text]
-    return ["".join(c["source"]) for c in json.loads(text)["cells"] if c["cell_type"] == "code"]
+from book_pages import ROOT, code_cells
 
 
 def shown(source: str) -> list[str]:
@@ -37,8 +28,9 @@ def missing(code: str) -> list[str]:
 
 
 def test_names_in_shown_code_exist():
-    paths = [*(ROOT / "ddlib" / "widgets").rglob("*.py"), *(ROOT / "book").glob("*.ipynb")]
-    codes = {code for path in paths for source in cells(path) for code in shown(source)}
+    sources = [path.read_text("utf-8") for path in (ROOT / "ddlib" / "widgets").rglob("*.py")]
+    sources += [code for path in (ROOT / "book").glob("*.ipynb") for code in code_cells(path)]
+    codes = {code for source in sources for code in shown(source)}
     assert len(codes) > 10
     assert not [name for code in codes for name in missing(code)]
     code = "from workshop.report.studies.page import training as page\npage.nothing({x})"

@@ -70,9 +70,6 @@ def test_runs_may_differ_in_any_strength(kind):
     assert not np.allclose(together.q_true[1], together.q_true[2], atol=1e-6)
 
 
-# --- seeds ------------------------------------------------------------------------------
-
-
 # --- delays in the loop -----------------------------------------------------------------
 
 

@@ -27,13 +27,16 @@ def source(page: str) -> Path | None:
     return next((path for path in candidates if path.is_file()), None)
 
 
+def code_cells(path: Path) -> list[str]:
+    """The code of a notebook, cell by cell."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return ["".join(c["source"]) for c in cells if c["cell_type"] == "code"]
+
+
 def has_widgets(page: str) -> bool:
     """Whether a page's notebook makes widgets."""
     path = source(page)
-    if path is None or path.suffix != ".ipynb":
-        return False
-    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    return bool(needed(["".join(c["source"]) for c in cells if c["cell_type"] == "code"]))
+    return path is not None and path.suffix == ".ipynb" and bool(needed(code_cells(path)))
 
 
 WITH_WIDGETS = [page for page in PAGES if has_widgets(page)]

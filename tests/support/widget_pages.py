@@ -10,12 +10,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from book_pages import ROOT, code_cells
 from ipywidgets.embed import embed_data
 
 from ddlib.widgets import module
 from ddlib.widgets.engine import _plain as plain
 
-ROOT = Path(__file__).resolve().parents[2]
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
 VIEW = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
@@ -121,8 +121,7 @@ def copied(page, name="Code") -> str:
 
 def code_of(chapter: str, name: str) -> str:
     """The text that a cell of a chapter keeps under a name."""
-    cells = json.loads((ROOT / "book" / f"{chapter}.ipynb").read_text(encoding="utf-8"))["cells"]
-    for source in ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"):
+    for source in code_cells(ROOT / "book" / f"{chapter}.ipynb"):
         for line in ast.parse(source).body if f"{name} = " in source else ():
             if isinstance(line, ast.Assign) and line.targets[0].id == name:
                 return ast.literal_eval(line.value)
