@@ -52,9 +52,6 @@ def mix(width, **weights):
     )
 
 
-# --- even and odd parts -------------------------------------------------------------------
-
-
 @settings(max_examples=50)
 @given(f=functions)
 def test_the_parts_are_what_they_are_called_and_sum_to_the_function(f):
@@ -70,9 +67,6 @@ def test_the_parts_are_what_they_are_called_and_sum_to_the_function(f):
     np.testing.assert_allclose(printed.odd, (f - f[::-1]) / 2 - f.mean(), atol=1e-12)
 
 
-# --- derivatives -----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("width", WIDTHS)
 def test_shares_of_a_sum_are_its_energies(width):
     x = grid(width).astype(float)
@@ -86,8 +80,6 @@ def test_shares_of_a_sum_are_its_energies(width):
     with pytest.raises(ValueError, match="must not be zero everywhere"):
         shares(np.stack([np.ones(7), np.zeros(7)]))
 
-
-# --- names -------------------------------------------------------------------------------
 
 NAMED = [
     (dict(velocity=1), "velocity"),
@@ -136,9 +128,6 @@ def test_a_filter_is_turned_so_that_its_strongest_derivative_counts_positive(sig
     np.testing.assert_array_equal(turned[2:], [20 * x - x**2, x**3])
 
 
-# --- roughness ---------------------------------------------------------------------------
-
-
 def test_roughness_of_lines_noise_and_zigzag():
     x = grid(21)
     np.testing.assert_allclose(roughness([3 + 2 * x, -0.1 * x]), 0, atol=1e-20)
@@ -151,9 +140,6 @@ def test_roughness_of_lines_noise_and_zigzag():
     assert roughness(x**2) < 0.01 < roughness(np.sin(x)) < 1
 
 
-# --- reference filters ---------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("width, degree", [(11, 2), (21, 4), (41, 3), (7, 6)])
 def test_savitzky_golay_is_a_least_squares_fit(width, degree):
     noisy, x = random(width), grid(width) * 0.01
@@ -164,9 +150,6 @@ def test_savitzky_golay_is_a_least_squares_fit(width, degree):
         assert ours == pytest.approx(exact, rel=1e-6)
     # oldest sample first: a rising position gives a positive velocity
     assert savitzky_golay(width, 1, 0.01, degree) @ grid(width) > 0
-
-
-# --- frequency response --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("width", WIDTHS)

@@ -27,9 +27,6 @@ def allowed(name: str) -> list[str]:
     return [entry["text"] for entry in ALLOWED.get(name, [])]
 
 
-# --- numbers ------------------------------------------------------------------------------
-
-
 def test_results_are_quoted():
     """Quote what is found with {glue:text}, or give a reason in allowed_numbers.yml."""
     typed = {
@@ -71,9 +68,6 @@ RESULTS = [
 def test_typed_results_are_told_from_names_and_settings():
     for planted, numbers in RESULTS:
         assert prose.typed_numbers(prose.sentence(planted)) == numbers, planted
-
-
-# --- words of direction -------------------------------------------------------------------
 
 
 def checks(page: str) -> list[str]:

@@ -33,9 +33,6 @@ def radius(inertia, viscous, kp, period):
     return abs(closed_loop(plant(inertia, viscous), kp, period=period).poles()).max()
 
 
-# --- the plant ------------------------------------------------------------------------
-
-
 def test_plant_obeys_its_equation():
     M, rng = inertia_of(CMU_DD_ARM_II), np.random.default_rng(0)
     joints = plant(M, VISCOUS)
@@ -46,9 +43,6 @@ def test_plant_obeys_its_equation():
     np.testing.assert_array_equal(joints.C, np.eye(4))
 
 
-# --- continuous loops -----------------------------------------------------------------
-
-
 def test_steady_errors_under_a_constant_load():
     """A spring gives way by load over stiffness, an integral not at all; both follow a step."""
     joints = plant(inertia_of(CMU_DD_ARM_II), VISCOUS)
@@ -56,9 +50,6 @@ def test_steady_errors_under_a_constant_load():
         for period in (None, STEP):
             gain = closed_loop(joints, KP, ki, KD, period).dcgain()
             np.testing.assert_allclose(gain, np.hstack([np.eye(2), give]), atol=1e-9)
-
-
-# --- sampled loops --------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("delay", [0, 1, 4])
@@ -81,8 +72,6 @@ def test_sampled_loop_is_the_simulated_one(ki, delay):
     assert np.abs(answer).max() > np.deg2rad(3)
     np.testing.assert_allclose(recording.q_true, answer, atol=1e-11)
 
-
-# --- opened loops and margins ---------------------------------------------------------
 
 GAINS = [(200.0, 0.0, 0.0), (200.0, 0.0, 20.0), (200.0, 90.0, 20.0)]
 
@@ -124,9 +113,6 @@ def test_margins_are_where_the_loop_loses_its_stability(gains, delay):
     assert largest(0.999 * found.upper_gain) < 1 < largest(1.001 * found.upper_gain)
     if found.lower_gain:
         assert largest(1.001 * found.lower_gain) < 1 < largest(0.999 * found.lower_gain)
-
-
-# --- the limit of proportional control --------------------------------------------------
 
 
 @settings(deadline=None, max_examples=60)

@@ -50,9 +50,6 @@ def test_delay_shifts_exactly(periods, samples):
     np.testing.assert_array_equal(y, np.array([initial] * periods + list(x))[:samples])
 
 
-# --- backlash: the play operator --------------------------------------------------------
-
-
 def play(x, gap, initial=None):
     """The operator along a scalar history."""
     x = np.asarray(x, dtype=float)
@@ -92,8 +89,6 @@ def test_play_by_hand_per_joint_and_without_gap():
     np.testing.assert_allclose(play(x, 1.0), [0, 0, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0])
     np.testing.assert_array_equal(play(x, 0.0), x)
 
-
-# --- the collection -----------------------------------------------------------------------
 
 SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15))
 

@@ -22,9 +22,6 @@ UNSEEN = {"pinocchio": ["pin"]}
 """Modules that a ``.pth`` file puts on the path, with the distributions that they come from."""
 
 
-# --- dependencies -----------------------------------------------------------------------
-
-
 def named(lines) -> dict[str, Requirement]:
     """Requirements by the normal form of their names."""
     return {canonicalize_name(r.name): r for r in map(Requirement, lines)}
@@ -79,9 +76,6 @@ def test_the_pins_lie_in_the_packages_ranges():
         else:
             (version,) = given.specifier
             assert version.operator == "==" and version.version in wanted.specifier, name
-
-
-# --- what CI runs -----------------------------------------------------------------------
 
 
 def test_actions_are_pinned_to_a_commit_and_say_which_version():

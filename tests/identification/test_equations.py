@@ -90,9 +90,6 @@ def test_perfect_sensors_leave_the_error_of_the_method():
     np.testing.assert_allclose(rigid.values, truth[:3], rtol=1e-5)
 
 
-# --- shapes ------------------------------------------------------------------------------
-
-
 def test_no_equation_is_taken_where_a_joint_rests():
     """Trajectories 4 and 5 move one joint: the other's friction has no sure sign."""
     run = record(CMU_DD_ARM_II, SMOOTH, APPENDIX_I[3])

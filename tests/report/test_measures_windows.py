@@ -14,8 +14,6 @@ from ddlib.simulation import LOG_STEP
 from workshop.report import committed
 from workshop.report.measures import windows
 
-# --- windows -------------------------------------------------------------------------------------
-
 
 def test_multiplications_and_weights_by_hand():
     """21 samples of two joints to 10 hidden and 2 output units, 20 between; no biases."""

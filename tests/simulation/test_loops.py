@@ -31,9 +31,6 @@ def still(t, posture=(0.0, 0.0)):
     return Trajectory(q, 0 * q, 0 * q)
 
 
-# --- linear analysis against the simulation -------------------------------------------
-
-
 @pytest.mark.parametrize("joint, posture", [(0, (0.3, -1.0)), (1, (0.0, 0.0))])
 @pytest.mark.parametrize("law", [PD, PID(KP, KI, KD)], ids=["PD", "PID"])
 def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
@@ -66,9 +63,6 @@ def test_prediction_and_simulation_agree_for_an_arm_with_gravity(posture, joint)
     assert abs(predicted.compliance * law.kp[joint] - 1) > 0.02  # gravity does matter
 
 
-# --- the second-order model -----------------------------------------------------------
-
-
 def test_second_order_model_is_the_arm_at_its_posture_and_decouples_the_elbow():
     qdd, posture = np.random.default_rng(0).normal(size=(5, 2)), (0.4, -1.1)
     model, q = SecondOrderModel(ARM, posture, VISCOUS), np.zeros((5, 2)) + posture
@@ -80,9 +74,6 @@ def test_second_order_model_is_the_arm_at_its_posture_and_decouples_the_elbow():
         for law in (PD, Feedforward(SecondOrderModel(ARM), PD))
     ]
     assert error[1] < 0.5 * error[0]
-
-
-# --- Figure 2-1 as a program ----------------------------------------------------------
 
 
 @pytest.mark.parametrize("model", [ARM, SecondOrderModel(ARM)], ids=["full", "second order"])
@@ -104,9 +95,6 @@ def test_interconnected_system_is_the_simulators_loop(model):
         gaps.append(np.abs(np.rad2deg(drawn.q - built.q_true)).max())
         assert np.abs(drawn.tau - built.tau_true).max() < 0.05 * np.abs(built.tau_true).max()
     assert gaps[0] < 0.05 and gaps[1] < 0.7 * gaps[0]
-
-
-# --- references and scores ------------------------------------------------------------
 
 
 def test_scores_of_a_made_up_recording():

@@ -70,9 +70,6 @@ def test_runs_may_differ_in_any_strength(kind):
     assert not np.allclose(together.q_true[1], together.q_true[2], atol=1e-6)
 
 
-# --- delays in the loop -----------------------------------------------------------------
-
-
 def test_computing_time_lies_between_no_delay_and_a_whole_period():
     t, reference = short()
 
@@ -85,8 +82,6 @@ def test_computing_time_lies_between_no_delay_and_a_whole_period():
     half = (end(ComputingTime(0.001)) - none) / (whole - none)
     assert ((half > 0.4) & (half < 0.6)).all()
 
-
-# --- python-control -----------------------------------------------------------------------
 
 RUNS = [
     (CMU_DD_ARM_II, (45.0, 20.0), (200.0, 80.0), (30.0, 12.0), (0.5, 0.15)),
@@ -132,9 +127,6 @@ def test_continuous_loop_against_python_control(arm, extents, kp, kd, viscous):
     assert np.abs(truth).max() > 0.15
     assert np.abs(ends[1] - truth).max() < 0.6 * np.abs(ends[0] - truth).max() < 1e-3
     np.testing.assert_allclose(2 * ends[1] - ends[0], truth, rtol=0, atol=5e-7)
-
-
-# --- torque beyond the rigid body's ------------------------------------------------------
 
 
 def drive(arm=ARM, log_step=CONTROL_STEP, **parts):

@@ -18,9 +18,6 @@ def waves():
     return make_kinds()
 
 
-# Interpolation
-
-
 def test_interpolation_is_within_what_the_widget_states(waves):
     widget = make()
     for each in (widget, waves):
@@ -47,9 +44,6 @@ def test_spline_is_scipys_not_a_knot():
     assert cubic.error(100) < 3e-5
 
 
-# Choices
-
-
 def test_choice_is_exact_at_each_option_and_never_between(waves):
     for shape in ("sine", "cosine"):
         for bits in (3, 5, 8):
@@ -58,9 +52,6 @@ def test_choice_is_exact_at_each_option_and_never_between(waves):
             for curve in waves.spec["curves"]:
                 allowed = 0.004 * (curve["high"] - curve["low"] or 1)
                 np.testing.assert_allclose(got[curve["name"]], exact[curve["name"]], atol=allowed)
-
-
-# Curves that depend on some parameters only
 
 
 def test_curves_of_fewer_parameters_have_their_own_tables():
@@ -77,9 +68,6 @@ def test_curves_of_fewer_parameters_have_their_own_tables():
     for bad in ({"z": ["a"]}, {"a": ["z"]}):
         with pytest.raises(ValueError, match=r"(in|of) depends"):
             Baked(parts, axes(), depends=bad)
-
-
-# Unfit functions
 
 
 def test_unfit_functions_are_refused():

@@ -65,9 +65,6 @@ def test_the_stronger_the_further_from_the_ideal_arm(switches):
             assert off[deviation] == 0 < weak[deviation] < strong[deviation]
 
 
-# In a page without a kernel
-
-
 def assert_shown(page, switches, **levels):
     exact = switches._function(**{**switches.values, **levels})
     assert_curves(page, exact, 1e-4)

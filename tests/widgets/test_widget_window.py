@@ -55,9 +55,6 @@ def test_truths_at_every_sample(widget, models, test_run):
         assert shown["last"][0] - shown["first"][0] == pytest.approx(10 * width, abs=0.02)
 
 
-# In a page without a kernel
-
-
 @pytest.mark.browser
 def test_the_page_computes_what_ddlib_does(tmp_path, visit, widget):
     opened = visit(page_of(tmp_path / "page.html", widget) + "?sliding-window=sample:75")

@@ -9,8 +9,6 @@ from widget_samples import T, make, oscillation
 
 from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter, Scalar
 
-# Traits and errors
-
 
 def test_parameters_are_traits_and_the_page_is_answered():
     widget, seen = make(), []
