@@ -16,11 +16,10 @@ from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
 from ddlib.setups import _HULL, STATE_FEEDBACK, Setup, inside_hull
-from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine._live import LiveWidget
-from ddlib.widgets.engine._plain import ENGINE, SLIDING, gains, lean, networks, plant
+from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, loop, networks, plant
 from ddlib.widgets.parts.panels import Mark, Pad, Panel, Scalar
 from ddlib.widgets.parts.parameters import Parameter
 
@@ -237,12 +236,12 @@ class _Curves:
         self.setup, self.models = replace(setup, effects=silent), models
         self.one = lru_cache(maxsize=16)(self._one)
         if models:
-            self.gains = gains(setup.controller)
             training = self.setup.record(_TRAINING)
+            self.loop = loop(self.setup, training)
             # near zero extents a motion's own deviation vanishes: that of the training set
             self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)
-            self.t, self.during = training.t, training.motion
-            every = round(_TIMES[1] / np.diff(training.t).mean())
+            self.during = training.motion
+            every = round(_TIMES[1] / training.step)
             start, stop = training.motion.start, training.motion.stop
             self.shown = np.append(np.arange(start, stop, every), stop - 1)
 
@@ -281,16 +280,9 @@ class _Curves:
         }
         if not self.models:
             return motion
-        every = round(np.diff(self.t).mean() / CONTROL_STEP)
         return {
             **motion,
-            "plant": plant(self.setup.arm, self.setup.effects),
-            "gains": self.gains,
-            "step": CONTROL_STEP,
-            "every": every,
-            "periods": every * self.t.size,
-            "rest": every * self.during.start,
-            "during": [self.during.start, self.during.stop],
+            **self.loop,
             "shown": self.shown.tolist(),
             "scale": self.scale.tolist(),
         }

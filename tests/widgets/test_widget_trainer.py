@@ -7,29 +7,38 @@ import pytest
 import torch
 from widget_pages import copied, flat, functions, opened
 
-from ddlib.analysis import CLASSES, classify
-from ddlib.learning import Descent, default_rate
+from ddlib.analysis import CLASSES, classify, gains, mean_gradient
+from ddlib.learning import Descent, TorqueModel, default_rate
 from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING
+from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import NetworkTrainer
 from ddlib.widgets.engine import trainer
 from workshop.report import results
 from workshop.report.studies.page import training as study
 
-SCHOOL = """([spec, positions, torques, choice, epochs]) => {
-  const school = schoolOf(spec, positions, torques, choice);
+SCHOOL = """([spec, book, choice, epochs]) => {
+  book = { positions: Float64Array.from(book[0]), torques: Float64Array.from(book[1]) };
+  const school = schoolOf(spec, choice, casesOf(spec, book, choice));
   for (let k = 0; k < epochs; k++) school.advance();
   const { outputs, error } = school.judge();
   return {
     all: [...school.net.all], error, events: school.events, names: school.names,
+    inertia: school.inertia(), arm: school.model.arm,
     training: [...school.training].filter((x) => x === x),
   };
+}"""
+RECORD = """([spec, book, noise, extents]) => {
+  book = { positions: Float64Array.from(book[0]), torques: Float64Array.from(book[1]) };
+  const { positions, torques } = recordingAt(spec, book, noise, extents);
+  return [[...positions], [...torques]];
 }"""
 STATE = """() => {
   const { school } = document.querySelector(".ddlib-trainer");
   return { epoch: school.epoch, weight: school.net.all[0], events: school.events };
 }"""
 REACHED = "document.querySelector('.ddlib-trainer').school.epoch >= %d"
-CODE = "{scaling} {shifted} {seed} {rate} {momentum} {epochs}"
+CODE = "{extents} {scaling} {shifted} {seed} {rate} {momentum} {epochs}"
 
 
 @pytest.fixture(scope="module")
@@ -39,15 +48,19 @@ def widget():
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, "elements.js", "trainer.js") as call:
+    with functions(browser, "elements.js", "experiment.js", "trainer.js") as call:
         yield call
 
 
+def book(widget):
+    """Encoder steps and torques of the book's recording."""
+    kept = (widget.positions, "<i2"), (widget.torques, "<f4")
+    return [np.frombuffer(*one).astype(float).tolist() for one in kept]
+
+
 def taught(evaluate, widget, epochs, seed=1, inputs="centred", shift=None, step=1.0, momentum=0.98):
-    positions = np.frombuffer(widget.positions, "<i2").tolist()
-    torques = np.frombuffer(widget.torques, "<f4").astype(float).tolist()
     choice = {"seed": seed, "inputs": inputs, "shift": shift, "step": step, "momentum": momentum}
-    return evaluate(SCHOOL, [widget.spec, positions, torques, choice, epochs])
+    return evaluate(SCHOOL, [widget.spec, book(widget), choice, epochs])
 
 
 # The training
@@ -84,6 +97,29 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     for layer in ("direct", "hidden"):
         f = getattr(weights, f"{layer}_weights")
         assert page["names"][layer] == [CLASSES.index(name) for name in classify(f).ravel()]
+    # the inertia, by the mean gradient over the windows that the network has seen
+    windows = data.inputs.unscale(data.x, -2)
+    model = TorqueModel(weights, data.inputs, data.outputs)
+    inertia = gains(mean_gradient(model, windows))[0, 0, 2]
+    assert page["inertia"] == pytest.approx(inertia, rel=1e-4)
+    own = JOINT_DAMPING.arm.mass_matrix(windows[..., 10])[:, 0, 0].mean()
+    assert page["arm"] == pytest.approx(own, rel=1e-9)
+
+
+@pytest.mark.browser
+def test_the_page_records_as_the_set_up_does(evaluate, widget):
+    """Encoder steps and torques of other trajectories, with the same noise."""
+    extents = APPENDIX_I.copy()
+    extents[[0, 3, 5]] = [(12.5, 40), (44.9, 8), (30, 25.5)]
+    noise = np.frombuffer(widget.noise, "<f4").tolist()
+    given = [widget.spec, book(widget), noise, extents.tolist()]
+    positions, torques = map(np.array, evaluate(RECORD, given))
+    recording = JOINT_DAMPING.record(extents)
+    motion, (encoder,) = recording.motion, JOINT_DAMPING.effects.encoder
+    seen = recording.q[:, motion.start - 10 : motion.stop + 10] / encoder.step
+    assert (np.round(seen).ravel() == positions).mean() > 0.999  # one may lie between two steps
+    np.testing.assert_allclose(torques, recording.tau[:, motion].ravel(), atol=1e-3)
+    assert np.abs(recording.tau - recording.tau_true).max() > 0.3
 
 
 @pytest.mark.browser
@@ -140,7 +176,8 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     assert again.evaluate(STATE) == wanted
     assert again.get_by_label("Inputs").input_value() == "printed"
     rate = f"{trainer.default_rate(21):.12g}"
-    assert copied(again) == f"(0, 1) None 2 {rate} 0.9 41"
+    known = ", ".join(f"({a:g}, {b:g})" for a, b in APPENDIX_I)
+    assert copied(again) == f"[{known}] (0, 1) None 2 {rate} 0.9 41"
     again.get_by_role("button", name="Reset").click()
     first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
     assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}

@@ -10,6 +10,9 @@ from ddlib.control import PID
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, Quantisation, Saturation, ViscousFriction
 from ddlib.learning import Scaler, TorqueModel
+from ddlib.setups import Setup
+from ddlib.simulation import CONTROL_STEP, Recording
+from ddlib.trajectories import MOTION_SECONDS
 
 # Scripts: of every widget of this room; and, after them, of one that trains, of one whose networks
 # see a recording.
@@ -67,6 +70,21 @@ def gains(controller: PID) -> dict:
         raise TypeError(f"controller must be a PID, got {controller!r}")
     pairs = {name: _pair(getattr(controller, name)) for name in ("kp", "ki", "kd")}
     return {**pairs, "integral_limit": controller.integral_limit}
+
+
+def loop(setup: Setup, recording: Recording) -> dict:
+    """What the engine's ``recordingOf`` takes to record as a set-up did; times in periods."""
+    motion, every = recording.motion, round(recording.step / CONTROL_STEP)
+    return {
+        "plant": plant(setup.arm, setup.effects),
+        "gains": gains(setup.controller),
+        "motion": MOTION_SECONDS,
+        "step": CONTROL_STEP,
+        "every": every,
+        "periods": every * recording.t.size,
+        "rest": every * motion.start,
+        "during": [motion.start, motion.stop],
+    }
 
 
 def network(model: TorqueModel) -> dict:

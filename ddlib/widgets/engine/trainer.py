@@ -1,4 +1,4 @@
-"""A window network that the reader trains in the page, from random weights."""
+"""The whole experiment in the page: trajectories, recording, a window network and its inertia."""
 
 from __future__ import annotations
 
@@ -8,13 +8,22 @@ import traitlets as t
 from ddlib._check import integer, one_of
 from ddlib.analysis import CLASSES, basis
 from ddlib.figures import JOINTS
-from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, default_rate, surrogate
+from ddlib.learning import (
+    TARGET_RANGE,
+    TorqueModel,
+    TrainingSet,
+    Weights,
+    cases,
+    default_rate,
+    surrogate,
+)
 from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
+from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
-from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean
+from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop
 from ddlib.widgets.parts.panels import Panel
 
 _WIDTH = 21  # samples of the window
@@ -27,9 +36,12 @@ _ERRORS = (0.03, 2.0)  # range of the errors shown
 _HINT = (
     "A network with ten hidden units learns the torques of both joints from windows of 21 "
     "positions, by the descent of this chapter, in your browser. For speed it sees every fifth "
-    "window of the five training runs; its error on trajectory 6 is over all. Shifted torques "
-    "have nothing to do with the motion: the shapes that they give need no arm. A "
-    "filter's name follows the rule of the chapter on convolution filters."
+    "window of the five training runs; its error on trajectory 6 is over all. Other trajectories "
+    "are recorded here, too, with the same controller, friction and encoder; the torque sensor "
+    "repeats its noise. The inertia is the gain on acceleration of the mean gradient of the "
+    "shoulder's torque, over the training windows; the arm's is their mean M₁₁. Shifted torques "
+    "have nothing to do with the motion. A filter's name follows the rule of the chapter on "
+    "convolution filters."
 )
 
 
@@ -67,9 +79,10 @@ def _mixed(state: int) -> int:
 
 
 class NetworkTrainer(_PageWidget):
-    """Train a window network in the page: errors, torques and the filters of all units.
+    """Record trajectories in the page, train a window network on them, read the inertia in it.
 
-    Everything is computed in the page, with a kernel and without.
+    Errors, torques and the filters of all units are seen on the way. Everything is computed in the
+    page, with a kernel and without.
 
     Parameters
     ----------
@@ -82,13 +95,13 @@ class NetworkTrainer(_PageWidget):
     shifts : int
         Draws of torques that are shifted in time.
     code : str
-        What *Code* copies; ``{scaling}``, ``{shifted}``, ``{seed}``, ``{rate}``, ``{momentum}`` and
-        ``{epochs}`` stand for the reader's choices.
+        What *Code* copies; ``{extents}``, ``{scaling}``, ``{shifted}``, ``{seed}``, ``{rate}``,
+        ``{momentum}`` and ``{epochs}`` stand for the reader's choices.
     """
 
     _esm = lean(
         module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module(*ENGINE, _TRAINING, "canvas.js", "trainer.js")
+        + module(*ENGINE, _TRAINING, "canvas.js", "experiment.js", "trainer.js")
     )
     _css = module(*STYLE, "trainer.css")
 
@@ -96,6 +109,8 @@ class NetworkTrainer(_PageWidget):
     positions.tag(sync=True)
     torques = t.Bytes(help="the runs' measured torques, N m as float32", read_only=True)
     torques.tag(sync=True)
+    noise = t.Bytes(help="the torque sensor's noise in them, N m as float32", read_only=True)
+    noise.tag(sync=True)
 
     def __init__(
         self,
@@ -117,7 +132,6 @@ class NetworkTrainer(_PageWidget):
         samples = torque.shape[1]
         place = np.arange(samples)[None, :, None] * np.ones((len(training.q), 1, 2))
         shifted = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(shifts)]
-        plain = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["printed"])
         looks = np.maximum(1, np.arange(0, epochs + 1, check))
         panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
         spec = {
@@ -134,16 +148,11 @@ class NetworkTrainer(_PageWidget):
             "samples": samples,
             "every": _EVERY,
             "encoder": encoder.step,
-            "inputs": {
-                "low": plain.inputs.low.tolist(),
-                "gain": plain.inputs.gain.tolist(),
-                "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
-            },
-            "outputs": {
-                "low": plain.outputs.low.tolist(),
-                "gain": plain.outputs.gain.tolist(),
-                "first": float(plain.outputs.target[0]),
-            },
+            "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
+            "target": list(TARGET_RANGE),
+            "loop": loop(JOINT_DAMPING, recording),
+            "extents": APPENDIX_I.tolist(),
+            "most": MAX_EXTENT_DEG,
             "shifts": [shift.tolist() for shift in shifted],
             "initial": INITIAL,
             "rate": default_rate(_WIDTH),
@@ -165,6 +174,7 @@ class NetworkTrainer(_PageWidget):
             spec=spec,
             positions=np.round(seen / encoder.step).astype("<i2").tobytes(),
             torques=torque.astype("<f4").tobytes(),
+            noise=(torque - recording.tau_true[:, motion]).astype("<f4").tobytes(),
             still=still,
             still_alt=alt,
         )
@@ -179,7 +189,8 @@ def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
     for joint, most in zip(JOINTS, (1.15 * np.abs(torque).max(0)).tolist()):
         lines = {f"{joint} network": "network", f"{joint} true": "measured"}
         title = f"{joint.title()} torque on trajectory {TEST_TRAJECTORY}, N m"
-        panels.append(Panel(title, lines, "time, s", time, y_range=(-most, most)))
+        ends = f"{joint} low", f"{joint} high"  # of the run as it stands
+        panels.append(Panel(title, lines, "time, s", time, y_range=ends))
         ranges |= dict.fromkeys(lines, (-most, most))
     return panels, ranges
 
@@ -193,6 +204,8 @@ def _still(panels, training, test) -> tuple[str, str]:
     curves = {}
     for j, joint in enumerate(JOINTS):
         curves |= {f"{joint} network": told[:, j], f"{joint} true": torque[:, j]}
+        most = 1.15 * np.abs(torque[:, j]).max(keepdims=True)
+        curves |= {f"{joint} low": -most, f"{joint} high": most}
     alt = (
         f"Measured torques of both joints on trajectory {TEST_TRAJECTORY}, and what a network with "
         "random weights makes of the positions, before the reader has trained it."

@@ -129,6 +129,13 @@ function follow(plant, law, reference, step, every, velocity) {
   return log;
 }
 
+// The recording of a trajectory to extents in rad, from the rest before it to the rest after it.
+function recordingOf(loop, extents) {
+  const { plant, gains, step, every, rest } = loop;
+  const reference = referenceOf({ ...loop, extents }, rest);
+  return follow(plant, pid(gains, step), reference, step, every, "tachometer");
+}
+
 // Where elbow and hand are, m; and the torques that a force at the hand (N) makes.
 
 function placesOf([l1, l2], [q1, q2]) {

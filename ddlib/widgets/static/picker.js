@@ -2,13 +2,6 @@
 // under the pad, the arm, its player, the verdict about the hull of the training trajectories, and
 // the button that records. The numbers stand beside the pad. Follows sliding.js.
 
-// The recording of a trajectory to extents in rad, from the rest before it to the rest after it.
-function recordingOf(loop, extents) {
-  const { plant, gains, step, every, rest } = loop;
-  const reference = referenceOf({ ...loop, extents }, rest);
-  return follow(plant, pid(gains, step), reference, step, every, "tachometer");
-}
-
 // All curves and numbers of a trajectory.
 function picked(loop, models, extents) {
   const { arm, times, motion, lines, during, shown, scale } = loop;

@@ -1,5 +1,5 @@
 // Shows NetworkTrainer (engine/trainer.py): a network that learns in the page. Follows charts.js,
-// frame.js, and the engine with descent.js.
+// frame.js, dragging.js, and the engine with descent.js and experiment.js.
 
 const BUDGET = 7; // ms of a frame that may be spent on epochs
 const REST = 2500; // ms between two runs of the loop
@@ -25,21 +25,22 @@ function randomNetwork({ layout, initial }, seed) {
   return networkOf(layout, Float64Array.from({ length: count }, () => initial * (2 * draw() - 1)));
 }
 
-// The scaled cases: every fifth window of the training runs, all of the last run.
-function casesOf(spec, positions, torques, { inputs, shift }) {
-  const { runs, samples, every, layout, outputs } = spec;
+// The scaled cases of a recording, with their scaling: every fifth window of the training runs, all
+// of the last run. `arm` is the arm's own inertia at the shoulder, their mean, kg m^2.
+function casesOf(spec, { positions, torques }, { inputs: range, shift }) {
+  const { runs, samples, every, layout, encoder } = spec;
   const { joints, width } = layout;
-  const { low, gain, ranges } = spec.inputs;
-  const [first, last] = ranges[inputs];
   const around = samples + width - 1;
   if (positions.length !== runs * around * joints || torques.length !== runs * samples * joints) {
     throw new Error(`${positions.length} positions and ${torques.length} torques`);
   }
+  const inputs = scalingOf(positions, runs, encoder, spec.ranges[range]);
+  const outputs = scalingOf(torques, runs, 1, spec.target);
+  const angle = (run, t, j) => positions[(run * around + t) * joints + j] * encoder;
   const windowAt = (run, t) =>
     Float64Array.from({ length: joints * width }, (_, i) => {
       const j = Math.floor(i / width);
-      const q = positions[(run * around + t + (i % width)) * joints + j] * spec.encoder;
-      return first + (q - low[j]) * gain[j] * (last - first);
+      return inputs.first + (angle(run, t + (i % width), j) - inputs.low[j]) * inputs.gain[j];
     });
   const targetAt = (run, t) =>
     JOINTS.map((j) => {
@@ -47,13 +48,15 @@ function casesOf(spec, positions, torques, { inputs, shift }) {
       return outputs.first + (torques[(run * samples + moved) * joints + j] - outputs.low[j]) * outputs.gain[j];
     });
   const gather = (list, apart) => {
-    const made = { windows: [], targets: [] };
+    const made = { windows: [], targets: [], inertia: 0 };
     for (const run of list) {
       for (let t = 0; t < samples; t += apart) {
         made.windows.push(windowAt(run, t));
         made.targets.push(targetAt(run, t));
+        made.inertia += armMass(spec.loop.plant.arm, angle(run, t + (width >> 1), 1))[0];
       }
     }
+    made.inertia /= made.windows.length;
     made.variances = JOINTS.map((j) => {
       const mean = made.targets.reduce((sum, y) => sum + y[j], 0) / made.targets.length;
       return made.targets.reduce((sum, y) => sum + (y[j] - mean) ** 2, 0) / made.targets.length;
@@ -61,7 +64,7 @@ function casesOf(spec, positions, torques, { inputs, shift }) {
     return made;
   };
   const training = gather(Array.from({ length: runs - 1 }, (_, run) => run), every);
-  return { training, test: gather([runs - 1], 1) };
+  return { training, test: gather([runs - 1], 1), inputs, outputs, arm: training.inertia };
 }
 
 // Outputs of a network and their RMSS, both joints pooled.
@@ -95,15 +98,18 @@ function filtersOf({ directWeights, hiddenWeights, width }) {
 }
 
 // A run of the training, with what has been seen of it every few epochs.
-function schoolOf(spec, positions, torques, choice, { training, test } = casesOf(spec, positions, torques, choice)) {
+function schoolOf(spec, choice, cases) {
+  const { training, test } = cases;
   const net = randomNetwork(spec, choice.seed);
+  const model = { ...cases, net };
   const eps = (spec.rate * choice.step) / training.windows.length;
   const epoch = descent(net, training.windows, training.targets, eps, choice.momentum);
   const looks = spec.epochs / spec.check + 1;
-  const school = { net, epoch: 0, events: [null, null, null], names: null };
+  const school = { net, epoch: 0, events: [null, null, null], names: null, model };
   school.training = new Float64Array(looks).fill(NaN);
   school.test = new Float64Array(looks).fill(NaN);
   school.judge = () => judged(net, test);
+  school.inertia = () => accelerationGain(meanGradient(model, training.windows, 0, 0), spec.loop.step * spec.loop.every);
   school.look = () => {
     const at = school.epoch / spec.check;
     const { direct, hidden } = filtersOf(net);
@@ -191,33 +197,45 @@ function unitSheet(spec) {
 
 function build({ model, el }) {
   const spec = model.get("spec");
-  const positions = numbersOf(model.get("positions"), "Int16");
-  const torques = numbersOf(model.get("torques"), "Float32");
+  const book = { positions: numbersOf(model.get("positions"), "Int16"), torques: numbersOf(model.get("torques"), "Float32") };
+  const noise = numbersOf(model.get("noise"), "Float32");
   dress(el, spec.title, "ddlib-trainer");
 
   const start = { seed: 1, torques: "real", inputs: "centred", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
   const state = { ...start };
   const shift = () => (state.torques === "real" ? null : state.seed % spec.shifts.length);
   let school;
+  let recording = { ...book, key: String(spec.extents) };
   const cases = new Map();
+  const view = { id: freshId(), spec: { curves: spec.curves } };
+  const picks = picksOf(spec, () => {
+    show();
+    frame.changed();
+  });
+  const stale = () => picks.fit() && recording.key !== String(picks.extents);
+  const own = () => recording.key !== String(spec.extents);
   const enrol = () => {
+    if (stale()) {
+      cases.clear();
+      recording = { ...recordingAt(spec, book, noise, picks.extents), key: String(picks.extents) };
+    }
     const choice = { inputs: state.inputs, shift: shift() };
     const key = JSON.stringify(choice);
-    if (!cases.has(key)) cases.set(key, casesOf(spec, positions, torques, choice));
+    if (!cases.has(key)) cases.set(key, casesOf(spec, recording, choice));
     Object.assign(choice, { seed: state.seed, step: Number(state.step), momentum: Number(state.momentum) });
-    school = schoolOf(spec, positions, torques, choice, cases.get(key));
+    school = schoolOf(spec, choice, cases.get(key));
     el.school = school; // for tests
   };
   enrol();
 
-  const view = { id: freshId(), spec: { curves: spec.curves } };
   const frame = frameOf({ el, key: "trainer", title: spec.title, linked: Boolean(model.kernelless), reset: restart, code });
   function code() {
     const rate = Number((spec.rate * state.step).toPrecision(12));
-    const scaling = `(${spec.inputs.ranges[state.inputs].join(", ")})`;
+    const scaling = `(${spec.ranges[state.inputs].join(", ")})`;
     const { seed, momentum } = state;
     const epochs = school.epoch || spec.epochs;
-    return filled(spec.code, { scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs });
+    const extents = `[${picks.extents.map((pair) => `(${pair.join(", ")})`).join(", ")}]`;
+    return filled(spec.code, { extents, scaling, shifted: String(shift() ?? "None"), seed, rate, momentum, epochs });
   }
 
   // Controls
@@ -231,6 +249,14 @@ function build({ model, el }) {
   );
   const guess = make("div", { class: "guess", role: "group", "aria-label": "Guess first" }, make("span", {}, "Guess to begin. What comes first?"), ...guessed);
   const play = buttonOf("Train", () => (running ? pause() : go()));
+  const record = buttonOf("Record and train", () => {
+    restart();
+    go();
+    frame.changed();
+  });
+  const recorded = make("p", { class: "recorded", id: `${view.id}-recorded`, role: "status" });
+  record.setAttribute("aria-describedby", recorded.id);
+  picks.buttons.prepend(record);
   const once = buttonOf("Step", () => {
     if (over()) return;
     pause();
@@ -284,6 +310,9 @@ function build({ model, el }) {
   const status = make("p", { class: "status", id: `${view.id}-status` });
   for (const one of [play, once]) one.setAttribute("aria-describedby", status.id);
   const said = make("p", { class: "verdict", role: "status" });
+  const [inside, error6] = [make("dd"), make("dd")];
+  const sums = { "Inertia in the network, M₁₁": inside, "RMSS on trajectory 6": error6 };
+  const weighed = make("dl", { class: "weighed" }, ...Object.entries(sums).map(([text, dd]) => make("div", {}, make("dt", {}, text), dd)));
   const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
   const list = make("dl", { class: "events" }, ...events.map(({ text, output }) => make("div", {}, make("dt", {}, text), output)));
@@ -294,6 +323,7 @@ function build({ model, el }) {
   el.replaceChildren(
     frame.el,
     guess,
+    make("div", { class: "picks" }, picks.svg, make("div", {}, picks.title, picks.table, picks.buttons, recorded)),
     make(
       "div",
       { class: "bench" },
@@ -302,6 +332,7 @@ function build({ model, el }) {
         { class: "hands" },
         make("div", { class: "buttons" }, play, once, anew),
         status,
+        weighed,
         make("div", { class: "title" }, "Weights: direct to each output, then ten hidden units; the shoulder's window above the elbow's"),
         units.el,
         list,
@@ -323,11 +354,12 @@ function build({ model, el }) {
   const plain = (x) => (Number.isFinite(x) ? x.toFixed(x < 0.0995 ? 3 : 2) : "none");
   function draw() {
     const { outputs, error } = school.judge();
-    const { low, gain, first } = spec.outputs;
-    const torque = (list, j) => list.map((y) => low[j] + (y[j] - first) / gain[j]);
+    const told = outputs.map((output) => torqueOfOutput(school.model, output));
     const curves = { training: school.training, test: school.test };
     NAMES.forEach((joint, j) => {
-      curves[`${joint} network`] = torque(outputs, j);
+      const most = truth[j].reduce((a, x) => Math.max(a, 1.15 * Math.abs(x)), 1);
+      Object.assign(curves, { [`${joint} low`]: [-most], [`${joint} high`]: [most] });
+      curves[`${joint} network`] = told.map((tau) => tau[j]);
       curves[`${joint} true`] = truth[j];
     });
     drawn.forEach((one) => one.redraw(curves));
@@ -335,9 +367,12 @@ function build({ model, el }) {
     const seen = school.training[Math.floor(school.epoch / spec.check)];
     const when = over() ? `Training is over, ${spec.epochs} epochs are done.` : `Epoch ${school.epoch}.`;
     write(status, `${when} Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
+    write(inside, inertia());
+    write(error6, plain(error));
     events.forEach(({ output }, k) => write(output, school.events[k] === null ? (over() ? "never" : "not yet") : `epoch ${school.events[k]}`));
     if (!running) drawn.forEach((one) => one.describe(curves));
   }
+  const inertia = () => `${school.inertia().toFixed(1)} kg m² (the arm: ${school.model.arm.toFixed(1)})`.replace("-", "−");
   function run(now) {
     due = 0;
     owed = Math.min(1e6, owed + (SPEEDS[state.speed][0] * Math.min(100, now - last)) / 1000);
@@ -355,7 +390,7 @@ function build({ model, el }) {
   }
   function go() {
     if (state.guess === "" || goal) return;
-    if (over()) restart();
+    if (over() || stale()) restart();
     running = true;
     owed = 1;
     last = performance.now();
@@ -376,10 +411,12 @@ function build({ model, el }) {
   function ended() {
     pause();
     told();
-    history.unshift({ ...state, events: [...school.events], error: school.test.at(-1) });
+    const path = own() ? "your own" : "Appendix I";
+    history.unshift({ ...state, path, events: [...school.events], error: school.test.at(-1), inertia: school.inertia().toFixed(1) });
     history.length = Math.min(5, history.length);
-    const heads = ["weights", "torques", "small error", "direct", "hidden", "error on 6"];
-    const rows = history.map((h) => [String(h.seed), h.torques, ...h.events.map((e) => (e === null ? "never" : String(e))), plain(h.error)]);
+    const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", "error on 6", "M₁₁, kg m²"];
+    const epochs = (h) => h.events.map((e) => (e === null ? "never" : String(e)));
+    const rows = history.map((h) => [String(h.seed), h.path, h.torques, ...epochs(h), plain(h.error), h.inertia]);
     runs.replaceChildren(tableOf("Your last runs: first epoch of each event", heads, rows));
     runs.hidden = false;
     if (state.loop) later();
@@ -399,7 +436,7 @@ function build({ model, el }) {
     const came = labels.filter((_, k) => at[k] === first).join(" and ");
     const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `First, at epoch ${first}: ${came}.`;
     const mine = state.guess === "" ? "" : `Your guess: ${labels[state.guess]}. `;
-    write(said, `${mine}${verdict} ${named("direct")} ${named("hidden")}`);
+    write(said, `${mine}${verdict} ${named("direct")} ${named("hidden")} Inertia in the network: ${inertia()}.`);
   }
   // How many filters of a layer have a name, and that the others have none.
   function named(layer) {
@@ -426,7 +463,9 @@ function build({ model, el }) {
       one.setAttribute("aria-pressed", String(k) === state.guess);
       one.disabled = ready && school.epoch > 0;
     });
-    for (const one of [play, once]) one.disabled = !ready;
+    for (const one of [play, once, record]) one.disabled = !ready || !picks.fit();
+    const kept = own() ? "Recorded in your browser." : "Appendix I of the paper, recorded beforehand.";
+    write(recorded, !picks.fit() ? "Each joint must move by a degree or more in training." : stale() ? "Changed, and not recorded yet." : kept);
     once.setAttribute("aria-disabled", String(over()));
     write(play, running ? "Pause" : over() ? "Begin anew" : "Train");
     for (const one of menus) one.show();
@@ -438,7 +477,7 @@ function build({ model, el }) {
   const measured = () => {
     const { samples } = spec;
     const from = (spec.runs - 1) * samples;
-    return JOINTS.map((j) => Array.from({ length: samples }, (_, t) => torques[2 * (from + t) + j]));
+    return JOINTS.map((j) => Array.from({ length: samples }, (_, t) => recording.torques[2 * (from + t) + j]));
   };
   let truth = measured();
   let colours = {};
@@ -456,7 +495,9 @@ function build({ model, el }) {
   for (const { name, fits } of menus) part(name, fits);
   part("loop", (text) => ["", "1"].includes(text));
   part("guess", (text) => ["", "0", "1", "2"].includes(text));
+  frame.keep("extents", () => picks.extents.flat().join("_"), (text) => picks.set(text.split("_").map(Number)));
   enrol();
+  truth = measured();
   // A link restores the epoch, too: it is reached again without a show.
   let goal = 0;
   frame.keep("epoch", () => String(school.epoch), (text) => {
