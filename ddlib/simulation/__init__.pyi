@@ -1,3 +1,4 @@
+from .csv_files import read_csv as read_csv
 from .loops import (
     Load as Load,
     SecondOrderModel as SecondOrderModel,

@@ -68,7 +68,7 @@ class Card:
 
     def verdict(self, of: Callable = attrgetter("verdict")) -> str:
         """The card's word, of `WORDS`, by the written verdicts or by another function of a row."""
-        return overall(map(of, self.deciding))
+        return _overall(map(of, self.deciding))
 
     def sign(self, of: Callable = attrgetter("verdict")) -> str:
         """The word whose sign stands for the card; an own finding whose rows disagree is open."""
@@ -86,7 +86,7 @@ class Card:
         return f"{told} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
 
 
-def overall(verdicts: Iterable[str]) -> str:
+def _overall(verdicts: Iterable[str]) -> str:
     """The word for rows that have these verdicts; see the module."""
     verdicts = list(verdicts)
     ways = {
