@@ -1,4 +1,4 @@
-"""The whole path on somebody else's arm: record, identify, train.
+"""Somebody else's arm: its dynamics, its recordings, its parameters.
 
 The arm and its motions are those of `book/data/characters.npz`; what is asserted of them was
 computed by others.
@@ -23,8 +23,6 @@ from ddlib.identification import (
     repeat,
     true_parameters,
 )
-from ddlib.learning import TrainingSet, Weights, cases, train_ensemble
-from ddlib.setups import predict
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I, Trajectory
 
@@ -115,21 +113,3 @@ def test_any_duration_and_rate_gives_the_parameters(duration, log_step, control_
     found = least_squares(by_modulation(many, NAMES))
     share = found.covers(TRUTH).mean(0)  # of intervals that hold the truth with 95 %
     assert share.mean() > 0.93 and share.min() > 0.8
-
-
-def test_the_way_to_the_filters_works_for_any_arm():
-    duration, log_step = 2.5, 0.005
-    options = dict(duration=duration, control_step=0.001, log_step=log_step, seed=3)
-    recording = record(ARM, LAW, TRAINING[:3], effects=REAL, **options)
-    samples = round(duration / log_step)
-    first = round(0.5 / log_step)
-    assert recording.motion == slice(first, first + samples)
-    windows, torque = cases(recording, 11)
-    assert windows.shape == (3 * samples, 2, 11) and torque.shape == (3 * samples, 2)
-    np.testing.assert_array_equal(windows[samples, :, 5], recording.q[1, first])
-    data = TrainingSet.from_recording(recording, 11)
-    start = Weights.random(2, 11, hidden=4, seed=0)
-    model, history, _ = train_ensemble(start, data, epochs=20, progress=False)
-    assert history.training.shape[1] == 2 and np.isfinite(history.training).all()
-    torque = model.torque(windows[samples : 2 * samples])
-    np.testing.assert_allclose(predict(model, recording[1]), torque, atol=1e-4)

@@ -7,10 +7,8 @@ from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import Scaler, TorqueModel, Weights
-from ddlib.simulation import follow, record
-from ddlib.trajectories import Trajectory, pick_and_place, time_grid
-from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.online import LastLayer, OnlineFeedforward, _Abreast, _OnlineDescent
+from ddlib.simulation import record
+from workshop.beyond.control.online import LastLayer, OnlineFeedforward, _OnlineDescent
 
 WIDTH = 5
 INPUTS = Scaler(np.array([-0.8, -0.9]), np.array([0.1, 0.2]))
@@ -105,18 +103,6 @@ def test_desired_windows_are_learnt_with_the_feedback():
     wanted = run.reference.q[centre - 2 : centre + 3].T
     np.testing.assert_allclose(window, wanted, atol=1e-12)
     np.testing.assert_allclose(feedback, run.tau_true[centre], rtol=1e-9)
-
-
-def test_several_controllers_run_abreast():
-    extents = np.array([[40.0, 30.0], [20.0, 10.0]])
-    laws = [FEEDBACK, proportional((300.0, 90.0))]
-    alone = [record(ARM, law, extents, **SHORT) for law in laws]
-    t = time_grid(0.002, 0.1, 1.0)
-    both = Trajectory(*(np.stack([x, x]) for x in pick_and_place(extents, t, 1.0)))
-    watched = Watched(_Abreast(laws, [1, 1]))
-    run = follow(ARM, watched, both, t, duration=1.0)
-    for k in range(2):
-        np.testing.assert_allclose(run.q_true[k], alone[k].q_true, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,10 @@
-"""The built pages in a real browser: each is clean in both colours, wide and narrow, and mounts."""
+"""The built pages in a real browser: each is clean in both colours, wide and narrow."""
 
 from __future__ import annotations
 
-import base64
 import gzip
-import json
 
 import chromium
-import numpy as np
 import pytest
 from axe import violations_in
 from book_pages import PAGES, ROOT, WITH_WIDGETS
@@ -16,7 +13,6 @@ pytestmark = pytest.mark.browser
 
 VIEW_TAG = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'
 VIEW = 'script[type="application/vnd.jupyter.widget-view+json"]'
-MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
 WIDE, NARROW = 1280, 390  # px
 GENERATED = ["search", "genindex", "py-modindex"]
@@ -149,59 +145,3 @@ def test_stills_stand_in_where_there_is_no_script(site, browser):
             assert still.get_attribute("alt")
     assert not problems
     context.close()
-
-
-# --- the script that mounts widgets ----------------------------------------------------------
-
-ESM = """
-export default {
-  initialize({ model }) { model.set("ready", true); },
-  render({ model, el }) {
-    const bytes = model.get("table");
-    const label = document.createElement("b");
-    const show = () => {
-      const value = new Float32Array(bytes.buffer)[model.get("index")];
-      label.textContent = `${model.kernelless} ${model.get("ready")} ${value}`;
-    };
-    model.on("change:index", show);
-    const button = document.createElement("button");
-    button.textContent = "second value";
-    button.onclick = () => { model.set("index", 1); model.save_changes(); };
-    show();
-    el.append(label, button);
-  },
-};
-"""
-
-
-def widget_page(tmp_path, state: str, ids: list[str]) -> str:
-    views = "".join(VIEW_TAG % json.dumps({"model_id": model_id}) for model_id in ids)
-    page = tmp_path / "page.html"
-    page.write_text(
-        '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">'
-        f"<body>{views}<p id='end'>the rest of the page</p>"
-        f'<script type="application/vnd.jupyter.widget-state+json">{state}</script>'
-        f'<script src="{MOUNT}" defer></script>'
-    )
-    return page.as_uri()
-
-
-def saved_state(**modules: str) -> str:
-    table = base64.b64encode(np.array([0.5, 2.5], dtype="<f4").tobytes()).decode()
-    entry = {"buffers": [{"path": ["table"], "encoding": "base64", "data": table}]}
-    return json.dumps(
-        {"state": {k: {**entry, "state": {"_esm": esm, "index": 0}} for k, esm in modules.items()}}
-    )
-
-
-def test_widgets_have_their_data_and_react_and_a_failing_one_says_so(tmp_path, visit):
-    state = saved_state(
-        good=ESM, syntax="export default {", run="export default {render() { nope() }}"
-    )
-    opened = visit(widget_page(tmp_path, state, ["syntax", "good", "run", "good", "absent"]))
-    labels = opened.page.locator(".ddlib-widget b")
-    assert labels.all_inner_texts() == ["true true 0.5"] * 2
-    opened.page.locator("button").first.click()
-    assert labels.all_inner_texts() == ["true true 2.5"] * 2  # both views share the model
-    _, run, absent = opened.page.locator("[role=alert]").all_inner_texts()
-    assert "nope is not defined" in run and "its state is not in the page" in absent

@@ -15,10 +15,8 @@ from workshop.report.sweeps import _sweep
 GAIN = 3.0
 
 
-def experiment(x, seed=0, log=None, stop=None):
+def experiment(x, seed=0, log=None):
     """Something that depends on its arguments; `log` gets a line for every call."""
-    if stop and x == 2 and Path(stop).exists():
-        raise KeyboardInterrupt
     if log:
         with Path(log).open("a") as file:
             file.write(f"{x}\n")
@@ -71,19 +69,6 @@ def test_other_code_does_not_read_old_results(quick, monkeypatch):
     monkeypatch.setattr(sys.modules[__name__], "GAIN", 5.0)
     assert (values(quick(experiment, rows([1]))) == before).all()
     assert (values(quick(experiment, rows([1]), code="2")) == before + 2).all()
-
-
-def test_an_interrupted_sweep_resumes(quick, log, tmp_path):
-    stop = tmp_path / "stop"
-    stop.touch()
-    settings = rows(range(5), log=log, stop=str(stop))
-    with pytest.raises(KeyboardInterrupt):
-        quick(experiment, settings)
-    assert calls(log) == [0, 1]
-    stop.unlink()
-    outcome = quick(experiment, settings)
-    assert calls(log) == [0, 1, 2, 3, 4]
-    np.testing.assert_array_equal(values(outcome), values(experiment(x) for x in range(5)))
 
 
 @pytest.mark.parametrize("backend", ["sequential", "loky"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 
 import pytest
-from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, page_of
+from widget_pages import LIVE, NEXT_FRAME, PATHS, READ, VIEW, page_of, shown_values
 from widget_samples import make
 
 pytestmark = pytest.mark.browser
@@ -81,6 +81,19 @@ def test_any_damage_is_reported_in_place(tmp_path, visit, widget):
     page.evaluate(NEXT_FRAME)
     assert page.evaluate(PATHS) != before and len(before) == 2
     assert not opened.problems
+
+
+def test_scripts_that_fail_are_told_and_two_views_share_a_model(tmp_path, visit, widget):
+    scripts = ("export default {", "export default {render() { nope() }}")
+    absent = VIEW % '{"model_id": "absent"}'
+    broken = [state(script, "_esm") for script in scripts]
+    url = page_of(tmp_path / "page.html", widget, widget, damages=broken, extra=absent)
+    page = visit(url).page
+    page.get_by_label("Gain").first.press("End")
+    page.evaluate(NEXT_FRAME)
+    assert shown_values(page) == [100, 0.5, 0] * 2
+    _, run, absent = page.locator(".ddlib-widget-error[role=alert]").all_inner_texts()
+    assert "nope is not defined" in run and "its state is not in the page" in absent
 
 
 # A kernel that answers, one that does not, and one that goes and comes back
