@@ -66,18 +66,16 @@ def test_integers_are_no_other_numbers():
             number("gain", value)
 
 
-@pytest.mark.parametrize(
-    "shape, fits, misses",
-    [
+def test_shapes():
+    for shape, fits, misses in (
         ((2, 3), [(2, 3)], [(3, 2), (2,), (2, 3, 1), (12, 3), ()]),
         ((), [()], [(1,)]),
         ("(time,)", [(1,), (40,), (0,)], [(), (1, 1)]),
         ("(..., time, 2)", [(5, 2), (3, 5, 2), (12, 3, 5, 2)], [(2,), (2, 5), (5, 12)]),
-    ],
-)
-def test_shapes(shape, fits, misses):
-    for size in fits:
-        assert shaped("x", np.zeros(size), shape).shape == size
-    for size in misses:
-        with pytest.raises(ValueError, match=re.escape(f"x must have shape {shape}, got {size}")):
-            shaped("x", np.zeros(size), shape)
+    ):
+        for size in fits:
+            assert shaped("x", np.zeros(size), shape).shape == size
+        for size in misses:
+            told = re.escape(f"x must have shape {shape}, got {size}")
+            with pytest.raises(ValueError, match=told):
+                shaped("x", np.zeros(size), shape)

@@ -11,9 +11,8 @@ from ddlib.tables import Table, quote, scientific, significant, spread, typeset
 # --- numbers ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "value, text",
-    [
+def test_three_significant_digits():
+    for value, text in (
         (0.0, "0"),
         (0.078, "0.0780"),
         (1234.5678, "1,235"),
@@ -23,10 +22,8 @@ from ddlib.tables import Table, quote, scientific, significant, spread, typeset
         (-np.inf, "–"),
         (20_000, "20,000"),  # counts keep all their digits
         (np.int64(1_234_567), "1,234,567"),
-    ],
-)
-def test_three_significant_digits(value, text):
-    assert significant(value) == text
+    ):
+        assert significant(value) == text
 
 
 @given(
@@ -50,30 +47,24 @@ def test_powers_are_set_as_mathematics():
     assert texts == ["0", "4 · 10⁻¹⁴", "10⁻⁶", "-10¹²", "-1.2 · 10⁻³"]
 
 
-@pytest.mark.parametrize(
-    "text, wanted",
-    [
+def test_numbers_in_text_are_set_as_mathematics():
+    for text, wanted in (
         ("holds up to 1e-06", "holds up to 10⁻⁶"),
         ("-2.5e+07 N m", "−2.5 · 10⁷ N m"),
         ("grow by -0.013, (-68; from -.3)", "grow by −0.013, (−68; from −.3)"),
         ("Table 4-1, 16-bit, set-2, 1.5-fold, 3--4", "Table 4-1, 16-bit, set-2, 1.5-fold, 3--4"),
         ("[section](page-2.ipynb)", "[section](page-2.ipynb)"),
-    ],
-)
-def test_numbers_in_text_are_set_as_mathematics(text, wanted):
-    assert typeset(text) == wanted == typeset(wanted)
+    ):
+        assert typeset(text) == wanted == typeset(wanted)
 
 
-@pytest.mark.parametrize(
-    "values, text",
-    [
+def test_spread_is_median_and_range():
+    for values, text in (
         ([0.1, 0.2, 0.6], "0.20 (0.10 to 0.60)"),
         ([0.1, np.nan, 0.2, 0.3, np.inf], "0.20 (0.10 to 0.30)"),
         ([np.nan], "–"),
-    ],
-)
-def test_spread_is_median_and_range(values, text):
-    assert spread(values) == text
+    ):
+        assert spread(values) == text
 
 
 @pytest.mark.parametrize("value, plain", [(np.array(1 / 3), 1 / 3), (np.int64(3), 3)])

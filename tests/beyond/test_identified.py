@@ -82,15 +82,12 @@ def test_the_penalty_is_chosen_by_leaving_out_blocks():
     assert Linear().fit(data).chosen == _RIDGES[best]
 
 
-@pytest.mark.parametrize(
-    "make, message",
-    [
+def test_what_makes_no_sense_is_refused():
+    for make, message in (
         (lambda: Identified(("a", "e")), "names must be one of"),
         (lambda: Linear(width=4), "width must be odd"),
         (lambda: Linear(width=11).fit(windows()), "width must be at most the window's 9, got 11"),
         (lambda: Linear().fit(windows(4)), "data must hold 10 cases or more, got 4"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
+    ):
+        with pytest.raises(ValueError, match=message):
+            make()

@@ -85,9 +85,8 @@ def test_adam_steps_as_published():
 STILL = Cases(states().x * [[1, 1, 1], [1, 0, 1]], states().torque, "states", 0.01)
 
 
-@pytest.mark.parametrize(
-    "make, message",
-    [
+def test_what_makes_no_sense_is_refused():
+    for make, message in (
         *(
             (lambda kind=kind: kind(0), "hidden must be")
             for kind in (_ByDescent, BySolver, _ByAdam)
@@ -95,8 +94,6 @@ STILL = Cases(states().x * [[1, 1, 1], [1, 0, 1]], states().torque, "states", 0.
         (lambda: _ByAdam(2, 0), "epochs"),
         (lambda: _ByDescent(2, 5, momentum=1.0).fit(windows()), "momentum"),
         (lambda: BySolver(2, kind="states").fit(STILL), "x must vary in every position, velocity"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
+    ):
+        with pytest.raises(ValueError, match=message):
+            make()

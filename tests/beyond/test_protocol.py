@@ -81,9 +81,8 @@ SEEN, EXACT = windows()
 BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
 
 
-@pytest.mark.parametrize(
-    "make, message",
-    [
+def test_what_makes_no_sense_is_refused():
+    for make, message in (
         (lambda: Linear().fit(SEEN), "data must be states for Linear, got windows"),
         (lambda: Linear("windows").fit(Cases(SEEN.x[:0], SEEN.torque[:0], "windows", STEP)), "one"),
         (lambda: Linear("windows").fit(SEEN).torque(SEEN.x[:, :1]), r"shape \(cases, 2, 11\)"),
@@ -92,10 +91,8 @@ BAD = np.where(np.arange(140)[:, None, None] == 0, np.nan, EXACT.x)
         (lambda: EXACT.estimated(), "kind must be 'windows'"),
         (lambda: Estimating(Linear("windows")), "rival must be one of states"),
         (lambda: Linear().fit(EXACT).torque(BAD), "finite"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
+    ):
+        with pytest.raises(ValueError, match=message):
+            make()
     with pytest.raises(_NotFitted):
         Linear().torque(EXACT.x)

@@ -88,9 +88,8 @@ def test_learning_finds_exclusive_or_and_says_when():
     assert np.isinf(none).all() and (right(early, x, y) < 1).all()
 
 
-@pytest.mark.parametrize(
-    "call, words",
-    [
+def test_refusals():
+    for call, words in (
         (lambda: patterns(0), "bits must be an integer from 1 to 16, got 0"),
         (lambda: parity([0, 2]), "x must hold zeros and ones"),
         (lambda: monomials([1, 0, 1]), "values must have shape"),
@@ -98,11 +97,9 @@ def test_learning_finds_exclusive_or_and_says_when():
         (lambda: monomials([1, 0], "words"), "coding must be one of 'bits', 'signs'"),
         (lambda: learn(2, 2, momentum=1.0), "momentum must lie in"),
         (lambda: learn(2, 2, epochs=5), "epochs must be an integer from 20"),
-    ],
-)
-def test_refusals(call, words):
-    with pytest.raises(ValueError, match=words):
-        call()
+    ):
+        with pytest.raises(ValueError, match=words):
+            call()
 
 
 # --- what the claims of the chapter measure -----------------------------------------------------

@@ -110,17 +110,14 @@ def test_inputs_stand_in_their_order(diagram, width):
     assert upper[0, 1] > units[3, 2:].mean()  # below biases and weights to the outputs
 
 
-@pytest.mark.parametrize(
-    "diagram, weights, message",
-    [
+def test_refusals():
+    for diagram, weights, message in (
         (hinton, Weights.random(3, 11), "weights must be of one network"),
         (hinton, planted(11), "weights must be finite and not all zero"),
         (hinton, planted(11, np.nan), "weights must be finite and not all zero"),
         (hinton_states, Weights.random(2, 3), "weights must be of one network"),
         (hinton_states, Weights.random(1, 5)[0], "weights must be of one network"),
         (hinton_states, planted(3, np.nan), "weights must be finite"),
-    ],
-)
-def test_refusals(diagram, weights, message):
-    with pytest.raises(ValueError, match=message):
-        diagram(weights)
+    ):
+        with pytest.raises(ValueError, match=message):
+            diagram(weights)

@@ -80,20 +80,17 @@ def test_places_in_the_paper():
             make(where=where)
 
 
-@pytest.mark.parametrize(
-    "changes, words",
-    [
+def test_a_failing_measure_names_its_claim():
+    for changes, words in (
         ({"measure": "filters.nowhere"}, "AttributeError"),
         ({"measure": "nowhere.slope"}, "ModuleNotFoundError"),
         ({"arguments": {"colour": "red"}}, r"untrained\(colour='red'\): TypeError"),
         ({"measure": "", "find": {"median": "table-6-1/nothing", "text": "x"}}, "'slope'"),
-    ],
-)
-def test_a_failing_measure_names_its_claim(changes, words):
-    claim = make(**changes)
-    for ask in (claim.measured, claim.judge):
-        with pytest.raises(_MeasureError, match=f"claim 'a' could not be measured by .*{words}"):
-            ask()
+    ):
+        claim, told = make(**changes), f"claim 'a' could not be measured by .*{words}"
+        for ask in (claim.measured, claim.judge):
+            with pytest.raises(_MeasureError, match=told):
+                ask()
 
 
 @pytest.mark.parametrize("result", [Measured(float("nan"), "text"), Measured(1.0, " "), 1.0])

@@ -56,18 +56,15 @@ def test_networks_on_recordings_are_drawn_on_both_levels():
     assert (bootstrap(lambda cell: np.ptp(cell, axis=-1).max(-1), flat, nested=True) == 0).all()
 
 
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
+def test_bad_arguments():
+    for arguments, words in (
         ((mean, (np.ones(3), np.ones(4))), r"same members in a tuple, got \[3, 4\]"),
         ((mean, np.ones(0)), r"same members in a tuple, got \[0\]"),
         ((mean, np.ones(FEWEST - 1)), "members must be an integer from 5 and up, got 4"),
         ((np.mean, np.ones(FEWEST)), r"one number for each of 2000 draws, got shape \(\)"),
-    ],
-)
-def test_bad_arguments(arguments, words):
-    with pytest.raises(ValueError, match=words):
-        bootstrap(*arguments)
+    ):
+        with pytest.raises(ValueError, match=words):
+            bootstrap(*arguments)
     with pytest.raises(ValueError, match="draws must be an integer from 2000"):
         bootstrap(mean, np.ones(3), draws=1999)
 
