@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 import torch
-from widget_pages import copied, flat, functions, opened
+from widget_pages import code_of, copied, drag, flat, functions, opened
 
 from ddlib.analysis import CLASSES, classify, gains, mean_gradient
 from ddlib.learning import Descent, TorqueModel, default_rate
@@ -181,3 +183,42 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     again.get_by_role("button", name="Reset").click()
     first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
     assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}
+
+
+@pytest.mark.browser
+def test_a_readers_own_experiment(tmp_path, visit, capsys):
+    """Other extents, recorded and learnt in the page: error and inertia of the code it copies."""
+    widget = NetworkTrainer(epochs=400, code=code_of("window-networks", "TRAINER_CODE"))
+    here = opened(tmp_path, visit, widget)
+    page = here.page
+    recorded = page.locator(".recorded")
+    assert "Appendix I" in recorded.inner_text()
+    page.get_by_label("shoulder in trajectory 1").fill("30.5")
+    drag(page, page.locator(".pad .frame").bounding_box(), (20.9 / 45, 1), (0.5, 0.5))
+    assert page.get_by_label("elbow in trajectory 4").input_value() == "22.5"
+    assert "not recorded" in recorded.inner_text()
+    page.get_by_role("button", name="Direct weights measure").click()
+    page.wait_for_function(REACHED % 400)
+    assert recorded.inner_text() == "Recorded in your browser."
+    exec(copied(page), {})
+    *errors, inertia = re.findall(r"\d+\.\d+", capsys.readouterr().out)
+    told = page.locator(".weighed dd").all_inner_texts()
+    assert told[0].startswith(f"{inertia} kg m² (the arm: 6.4)")
+    assert float(told[1]) == pytest.approx(float(errors[1]), rel=0.02)
+
+    page.wait_for_function("location.search.includes('extents:30.5_45_')")
+    again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
+    again.wait_for_function(REACHED % 400)
+    assert again.locator(".weighed dd").all_inner_texts() == told
+    page.get_by_label("elbow in trajectory 2").fill("50")
+    page.get_by_label("elbow in trajectory 2").press("Tab")
+    assert page.get_by_label("elbow in trajectory 2").input_value() == "32.2"
+    again.get_by_label("elbow in trajectory 1").fill("0")
+    again.get_by_role("button", name="1 to 5 alike").click()
+    assert "must move" in again.locator(".recorded").inner_text()
+    assert again.get_by_role("button", name="Record and train").is_disabled()
+    again.get_by_role("button", name="Appendix I").click()
+    again.get_by_role("button", name="Record and train").click()
+    again.wait_for_function(REACHED % 400)
+    assert "Appendix I" in again.locator(".recorded").inner_text()
+    assert not here.problems

@@ -62,7 +62,7 @@ const accelerationGain = (f, step) =>
 // and a table of numbers. changed() is called after every change.
 function picksOf({ extents: known, most, runs }, changed) {
   const extents = known.map((pair) => [...pair]);
-  const [size, left, top] = [160, 30, 10];
+  const [size, left, top] = [160, 36, 10];
   const place = ([a, b]) => [short(left + (size * a) / most), short(top + size * (1 - b / most))];
   const kind = (run) => (run < runs - 1 ? "training" : "test");
   const marks = extents.map((_, run) => make("g", { class: kind(run) }, make("circle", { r: 9 }), make("text", { dy: "0.36em", class: "x" }, String(run + 1))));
@@ -76,8 +76,8 @@ function picksOf({ extents: known, most, runs }, changed) {
     text(left, floor + 20, "0"),
     text(middle, floor + 20, "shoulder, °"),
     text(left + size, floor + 20, String(most)),
-    make("text", { transform: `translate(16 ${top + size / 2}) rotate(-90)`, class: "x" }, "elbow, °"),
-    text(16, top + 8, String(most)),
+    make("text", { transform: `translate(18 ${top + size / 2}) rotate(-90)`, class: "x" }, "elbow, °"),
+    text(14, top + 4, String(most)),
     ...marks,
   );
   const fields = extents.map((pair, run) =>

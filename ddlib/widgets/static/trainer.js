@@ -339,8 +339,9 @@ function build({ model, el }) {
         said,
       ),
       make("div", { class: "results" }, make("div", { class: "charts" }, ...drawn.map((one) => one.el))),
-      make("div", { class: "settings" }, first, ...settings, runs),
+      make("div", { class: "settings" }, first, ...settings),
     ),
+    runs,
     make("p", { class: "remark" }, spec.hint),
   );
 
@@ -366,7 +367,7 @@ function build({ model, el }) {
     units.draw(school, colours, over());
     const seen = school.training[Math.floor(school.epoch / spec.check)];
     const when = over() ? `Training is over, ${spec.epochs} epochs are done.` : `Epoch ${school.epoch}.`;
-    write(status, `${when} Error ${plain(seen)} in training, ${plain(error)} on trajectory 6.`);
+    write(status, `${when} Error ${plain(seen)} in training.`);
     write(inside, inertia());
     write(error6, plain(error));
     events.forEach(({ output }, k) => write(output, school.events[k] === null ? (over() ? "never" : "not yet") : `epoch ${school.events[k]}`));
