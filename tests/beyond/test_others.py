@@ -10,18 +10,15 @@ from workshop.beyond import others
 PAGE = (others._FOLDER / "README.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    "name, digest",
-    [
+def test_files_are_as_they_came():
+    for name, digest in (
         ("characters", "482a697e1bf620e12763255cd067cfdcb84257dfc58b8d048cfa46872f7628c9"),
         ("staubli-tx40", "665c1c7ba945f08339efa795e4fd5a47fd855b3e3d676aaeea21699f777558f7"),
-    ],
-)
-def test_files_are_as_they_came(name, digest):
-    content = (others._FOLDER / f"{name}.npz").read_bytes()
-    assert hashlib.sha256(content).hexdigest() == digest
-    assert digest in PAGE and f"LICENSE-{name}" in PAGE
-    assert (others._FOLDER / f"LICENSE-{name}").stat().st_size > 500
+    ):
+        content = (others._FOLDER / f"{name}.npz").read_bytes()
+        assert hashlib.sha256(content).hexdigest() == digest
+        assert digest in PAGE and f"LICENSE-{name}" in PAGE
+        assert (others._FOLDER / f"LICENSE-{name}").stat().st_size > 500
 
 
 def test_characters_add_up():

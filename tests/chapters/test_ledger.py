@@ -43,21 +43,18 @@ def test_errata_are_computed(errata):
     assert text.count("is no input at") == text.count("and an input at") == 3
 
 
-@pytest.mark.parametrize(
-    ("damage", "complaint"),
-    [
+def test_a_damaged_erratum_is_named(tmp_path):
+    path = tmp_path / "errata.yml"
+    for damage, complaint in (
         ("- {where: section 1, printed: a, wrong: b}", "erratum 2 must have the fields"),
         ("- {where: section 1, printed: a, wrong: ' ', here: c}", "must be of texts"),
         ("- {where: section 1, printed: a, wrong: $nothing, here: c}", r"section 1.*'nothing'"),
-    ],
-)
-def test_a_damaged_erratum_is_named(tmp_path, damage, complaint):
-    path = tmp_path / "errata.yml"
-    path.write_text("- {where: Table 4-1, printed: a, wrong: $rate Hz, here: b}\n" + damage)
-    with pytest.raises(ValueError, match=complaint):
-        ledger.errata(path)
-    path.write_text(path.read_text().removesuffix(damage))
-    assert ledger.errata(path).rows == [("Table 4-1", "a", "833 Hz", "b")]
+    ):
+        path.write_text("- {where: Table 4-1, printed: a, wrong: $rate Hz, here: b}\n" + damage)
+        with pytest.raises(ValueError, match=complaint):
+            ledger.errata(path)
+        path.write_text(path.read_text().removesuffix(damage))
+        assert ledger.errata(path).rows == [("Table 4-1", "a", "833 Hz", "b")]
 
 
 def test_open_questions_quote_the_results(questions):

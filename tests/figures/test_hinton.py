@@ -71,24 +71,22 @@ def test_squares_do_not_overlap(diagram, width, hidden):
 
 
 @diagrams
-@pytest.mark.parametrize(
-    "field, index, places",
-    [
+def test_each_weight_lies_in_its_unit(diagram, width):
+    """Units as one reads: two outputs, then the hidden ones; biases at the upper left."""
+    for field, index, places in (
         ("hidden_weights", (3, 0, 1), [5]),
         ("hidden_bias", 4, [6]),
         ("direct_weights", (1, 1, 0), [1]),
         ("output_bias", 0, [0]),
         ("output_weights", (1, 2), [1, 4]),
-    ],
-)
-def test_each_weight_lies_in_its_unit(diagram, width, field, index, places):
-    """Units as one reads: two outputs, then the hidden ones; biases at the upper left."""
-    for value in (2.0, -2.0):
-        marks, units = squares(diagram, planted(width, **{field: {index: value}}))
-        assert sorted(units_of(marks, units)) == places and set(marks[:, 3]) == {np.sign(value)}
-        if "bias" in field:
-            left, right, top, bottom = units[places[0]]
-            assert marks[0, 0] < left + 0.3 * (right - left) and marks[0, 1] < (top + bottom) / 2
+    ):
+        for value in (2.0, -2.0):
+            marks, units = squares(diagram, planted(width, **{field: {index: value}}))
+            assert sorted(units_of(marks, units)) == places and set(marks[:, 3]) == {np.sign(value)}
+            if "bias" in field:
+                left, right, top, bottom = units[places[0]]
+                assert marks[0, 0] < left + 0.3 * (right - left)
+                assert marks[0, 1] < (top + bottom) / 2
 
 
 @diagrams

@@ -47,7 +47,6 @@ def test_values_by_hand():
         ({"median": "r/a"}, med(A)),
         ({"mean": "r/a"}, A.mean()),
         ({"root mean": "r/days"}, np.sqrt(DAYS.mean())),
-        ({"max": "r/days"}, DAYS.max()),
         ({"min": {"rms": "r/days"}}, np.sqrt(np.mean(DAYS**2, axis=1)).min()),
         ({"median": {"size": "r/signed"}}, 2.0),
         ({"median": {"over": ["r/a", "r/b"]}}, med(A / B)),
@@ -207,9 +206,8 @@ def test_words():
         assert given.text == wanted, template
 
 
-@pytest.mark.parametrize(
-    "path, words",
-    [
+def test_paths_that_lead_nowhere():
+    for path, words in (
         ("r/d", r"'r/d': at 'd' there is 'a', 'b'"),
         ("r/windows/31", r"'r/windows/31': at '31' there is '11', '21', '41'"),
         ("r/rows/width=31/e", r"one row of 3 with .*'11', '21'.*, not 0"),
@@ -218,15 +216,14 @@ def test_words():
         ("r/few/1/e", "nothing: a number stands there"),
         ("r/classes/up|left", r"'left' there is 'up', 'down'"),
         ("r/d or r/f", "'r/d'"),
-    ],
-)
-def test_paths_that_lead_nowhere(path, words):
-    claim = Claim(
-        id="a", where="section 1", chapter="dynamics", claim="x", printed="p", why="w", refuted="r",
-        verdict="reproduced", find={"median": path, "text": "{0}"}, band={"from": 0},
-    )  # fmt: skip
-    with pytest.raises(_MeasureError, match=f"claim 'a' could not be measured by .*{words}"):
-        claim.measured()
+    ):
+        claim = Claim(
+            id="a", where="section 1", chapter="dynamics", claim="x", printed="p", why="w",
+            refuted="r", verdict="reproduced", find={"median": path, "text": "{0}"},
+            band={"from": 0},
+        )  # fmt: skip
+        with pytest.raises(_MeasureError, match=f"claim 'a' could not be measured by .*{words}"):
+            claim.measured()
 
 
 def test_other_mistakes():
