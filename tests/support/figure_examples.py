@@ -217,11 +217,11 @@ EXAMPLES = {
         LABELS, "Errors.", level=0.2,
     ),
     "growth": partial(
-        more_joints.growth, [2, 4, 7], [4, 9, 15], [[3, 8, 12], [5, 10, 20]], [4, 8, 14],
+        more_joints.growth_law, [2, 4, 7], [4, 9, 15], [[3, 8, 12], [5, 10, 20]], [4, 8, 14],
         LABELS, ("found", "a law"), "Growth.",
     ),
     "couplings": partial(
-        more_joints.couplings, INERTIA, REAL, UNRELATED[:, None, None] * np.ones((2, 2)),
+        more_joints.gains_by_torque, INERTIA, REAL, UNRELATED[:, None, None] * np.ones((2, 2)),
         "gain over the deviation", "Gains.",
     ),
     "by_trial": partial(

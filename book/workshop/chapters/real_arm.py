@@ -1,4 +1,7 @@
-"""*A real arm*: its configured friction; figures of friction and gains, joint by joint."""
+"""*A real arm*: its configured friction; figures; what the result "real-arm" holds, beside nulls.
+
+Errors are mean squares over five blocks and six joints, in deviations of the whole recording.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,27 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ddlib import paper
 from ddlib._check import integer
+from ddlib.analysis import CLASSES
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, dots_in_one, illustrate
+from ddlib.learning import p_value
+from ddlib.tables import significant
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
 # from the configuration of the TX40's source
 REDUCTION = (32.0, 32.0, 45.0, -48.0, 45.0, 32.0)  # turns of a motor; motor 6 turns joint 5, too
 COULOMB = (7.14, 8.26, 6.34, 2.48, 3.03, 0.28)  # friction of the joints, N m
+
+_RATE = 100  # samples a second of the paper, and of all rows that name no other
+
+_NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that the paper finds
+
+# Gains of a network, and what the identified model has in their place
+WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
+
+_UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
 
 
 def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: str) -> Illustration:
@@ -23,13 +41,13 @@ def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: st
 
     def draw(figure: Figure):
         axes = figure.subplots(-(-len(panels) // 2), 2, squeeze=False).ravel()
-        for axis, (title, (speed, current, middle, median, line)) in zip(axes, panels.items()):
+        for axis, (title, (speed, current, *middle, line)) in zip(axes, panels.items()):
             _dots(axis, speed, current, 42, ec=FAINT, lw=1.6, alpha=0.5)
             for side in (-1, 1):
                 end = side * np.abs(speed).max()
                 far = line[0] * end + side * line[1]
                 axis.plot([0, end], [side * line[1], far], color=COLOURS[1], ls="--", lw=1.8)
-            _dots(axis, middle, median, 1000, ec=COLOURS[0], lw=3.6, zorder=3)
+            _dots(axis, *middle, 1000, ec=COLOURS[0], lw=3.6, zorder=3)
             axis.set_title(title)
         for axis in axes[len(panels) :]:
             axis.remove()
@@ -83,3 +101,152 @@ def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
     """Medians of speed and current in groups of equally many cases of like speed."""
     groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
     return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))
+
+
+def cell(width: int, rate: int = _RATE) -> dict:
+    """What the grid has for a window and a rate."""
+    grid = results.read("real-arm")["grid"]
+    (row,) = [r for r in grid if (r["width"], r["rate"]) == (width, rate)]
+    return row
+
+
+def squares(width: int, model: str = "network", rate: int = _RATE) -> np.ndarray:
+    """Mean squared errors of a model of the grid, ``(blocks, networks)``; others stand alone."""
+    errors = np.array(cell(width, rate)[model])
+    return errors if model.startswith("network") else errors[:, None]
+
+
+def rms(cell) -> np.ndarray:
+    """Root of the mean square, over blocks and networks, one for each draw."""
+    return np.sqrt(cell.mean((-2, -1)))
+
+
+def variant(name: str, side: str = "test") -> np.ndarray:
+    """Mean squared errors of window 21 with one thing changed, ``(blocks, networks)``."""
+    return np.array(results.read("real-arm")["variants"][name][side])
+
+
+def row(width: int) -> dict:
+    """Networks of a window on the whole recording, and on unrelated currents."""
+    return results.read("real-arm")["windows"][str(width)]
+
+
+def _members(width: int, name: str) -> tuple[np.ndarray, list[np.ndarray]]:
+    """An entry of the networks, and of each kind of nulls."""
+    found = row(width)
+    return np.array(found["real"][name]), [np.array(x[name]) for x in found["nulls"].values()]
+
+
+def _gains(what: str, width: int) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """What a gain is in the identified model, in the networks, and in each kind of nulls."""
+    name, wanted = WORTH[what]
+    return np.array(row(width)["identified"][wanted]), *_members(width, name)
+
+
+def named(ensemble: dict) -> np.ndarray:
+    """Share of an ensemble's filters that have one of the names in `_NAMED`."""
+    which = [CLASSES.index(name) for name in _NAMED]
+    hidden, direct = (
+        np.array(ensemble["classes"][x])[:, which].sum(-1) for x in ("hidden", "direct")
+    )
+    return (paper.HIDDEN_UNITS * hidden + 6 * direct) / (paper.HIDDEN_UNITS + 6)
+
+
+def excess(width: int = 21) -> Measured:
+    """Share of velocity and acceleration filters, less the most that a kind of nulls gives."""
+    found = row(width)
+    real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
+    told = "; ".join(
+        f"{n} {100 * x.mean():.0f} % (p {p_value(real.mean(), x, 'more'):.2f})"
+        for n, x in nulls.items()
+    )
+    before = 100 * named(found["untrained"]).mean()
+    return judged(
+        lambda one, *others: mean(one) - np.max([mean(x) for x in others], axis=0),
+        real,
+        *nulls.values(),
+        text=f"{100 * real.mean():.0f} %; {told}; untrained {before:.0f} %",
+    )
+
+
+def _off(gains, true) -> np.ndarray:
+    """How far the median gains are from the arm's, in the worst joint."""
+    return np.abs(np.median(gains, axis=-2) / true - 1).max(-1)
+
+
+def calibrated(what: str = "inertia", width: int = 21) -> Measured:
+    """How far gains on a joint's own motion are from the arm's, in the worst joint."""
+    true, real, nulls = _gains(what, width)
+    typical = np.median(_off(real[:, None], true))  # of one network, as each of the nulls is
+    chance = max(p_value(typical, _off(x[:, None], true), "less") for x in nulls)
+    pairs = zip(np.median(real, 0), true)
+    told = ", ".join(f"{significant(a, 2)} for {significant(b, 2)}" for a, b in pairs)
+    text = f"{told} {_UNITS[what]} at joints 1 to 6; as near by chance: p {chance:.2f}"
+    return judged(lambda each: _off(each, true), real, text=text)
+
+
+def _pearson(a, b) -> np.ndarray:
+    a, b = (x - x.mean(-1, keepdims=True) for x in (np.asarray(a), np.asarray(b)))
+    size = np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1)
+    return (a * b).sum(-1) / np.where(size > 0, size, 1)
+
+
+def beyond_null(what: str = "friction", width: int = 11) -> Measured:
+    """At how many joints the typical gain is nearer the identified one than 19 of 20 nulls."""
+    true, real, nulls = _gains(what, width)
+    edge = np.min([np.percentile(np.abs(x / true - 1), 5, axis=0) for x in nulls], axis=0)
+
+    def joints(drawn):
+        return (np.median(np.abs(drawn / true - 1), axis=-2) < edge).sum(-1)
+
+    off = np.median(np.abs(real / true - 1), 0)
+    told = ", ".join(f"{100 * a:.0f} % ({100 * b:.0f} %)" for a, b in zip(off, edge))
+    return judged(joints, real, text=f"off by {told} at joints 1 to 6, in brackets by chance")
+
+
+def follow(what: str = "friction", width: int = 11) -> Measured:
+    """Correlation over joints of gains with identified values, less that by chance (95 %)."""
+    unit = np.array(row(width)["deviations"][WORTH[what][0]])
+    true, real, nulls = _gains(what, width)
+    true, real = true * unit, real * unit
+    chance = max(float(np.percentile(_pearson(x * unit, true), 95)) for x in nulls)
+    r = np.median(_pearson(real, true))
+    return judged(
+        lambda drawn: np.median(_pearson(drawn, true), axis=-1) - chance,
+        real,
+        text=f"r {r:.2f}; unrelated currents reach {chance:.2f} in one of twenty",
+    )
+
+
+def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
+    """At how many joints the own filter follows a quantity more than 19 of 20 nulls."""
+    real, nulls = _members(width, f"unique {what}")
+    edge = np.max([np.percentile(x, 95, axis=0) for x in nulls], axis=0)
+    pairs = zip(np.median(real, 0), edge)
+    told = ", ".join(f"{100 * a:.0f} ({100 * b:.0f})" for a, b in pairs)
+    return judged(
+        lambda drawn: (np.median(drawn, axis=-2) > edge).sum(-1),
+        real,
+        text=f"{told} % at joints 1 to 6, in brackets by chance",
+    )
+
+
+def shares_follow(width: int = 21) -> Measured:
+    """Correlation over joints of velocity's share in the own filter and friction's in current."""
+    true, (real, nulls) = np.array(row(width)["friction"]), _members(width, "share of velocity")
+    r = float(_pearson(np.median(real, 0), true))
+    typical = np.median(_pearson(real, true))  # of one network, as each of the nulls is
+    chance = max(p_value(typical, _pearson(x, true), "more") for x in nulls)
+    text = f"r {r:.2f}; as high by chance: p {chance:.2f}"
+    return judged(lambda drawn: _pearson(np.median(drawn, axis=-2), true), real, text=text)
+
+
+def compensate_friction(width: int = 21) -> Measured:
+    """Share of the hidden units' non-linear part that friction and rigid body explain."""
+    found = row(width)
+    curved = np.array(found["curved"])
+    told = ", ".join(significant(x, 2) for x in np.median(curved, 0))
+    nulls = [np.median(x["curved"], axis=-1) for x in found["nulls"].values()]
+    chance = max(float(np.percentile(x, 95)) for x in nulls)
+    text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
+    return judged(median, curved, text=text)

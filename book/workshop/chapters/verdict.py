@@ -1,17 +1,21 @@
-"""*The verdict*: verdicts by section of the paper and by reading, and how many would change."""
+"""*The verdict*: verdicts by section and by reading; how far they hang on it, an arm, a draw."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib._check import one_of
 from ddlib.figures import COLOURS, INK, Illustration, illustrate, legend_above
 from ddlib.tables import Table, typeset
+from workshop.report.evidence import cards, claims
 from workshop.report.evidence.cards import of_kind, tally, worded
 from workshop.report.evidence.claims import SECTIONS, Claim, here, load, printed, sure
+from workshop.report.evidence.verdicts import Measured
 from workshop.report.evidence.wall import window
 
 # How a bar's parts look, in the order of the words
@@ -24,6 +28,8 @@ _LOOKS = (
 )
 
 _DIGIT = 5.4  # Width of a digit in a bar, points
+
+_SHUFFLES = 10_000  # permutations that stand for chance
 
 
 def by_section() -> dict[str, dict[str, int]]:
@@ -104,3 +110,61 @@ def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
     decided = [claim for claim in sentences if claim.verdict != "undecided"]
     agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
     return len(agree), float(len(agree) - sum(agree))
+
+
+def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
+    """Sentences judged under two or more readings of section 4: claims by the reading's name."""
+    groups: dict[tuple, dict[str, Claim]] = {}
+    for claim in sentences:
+        if claim.is_measured:
+            key, setup = claim.but_for_reading()
+            groups.setdefault(key, {})[setup] = claim
+    return [group for group in groups.values() if len(group) > 1]
+
+
+class _Agreement(NamedTuple):
+    """How many pairs are alike, how many would be, shuffled, and how often as many are."""
+
+    pairs: int
+    same: int
+    expected: float
+    chance: float
+
+
+def agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
+    """Whether pairs of verdicts agree more often than shuffled ones."""
+    pairs = list(pairs)
+    if len(pairs) < 2:
+        raise ValueError(f"pairs must be two or more, got {len(pairs)}")
+    first, second = np.array(pairs).T
+    same, rng = int((first == second).sum()), np.random.default_rng(0)
+    drawn = np.array([(first == rng.permutation(second)).sum() for _ in range(_SHUFFLES)])
+    expected = sum((first == v).sum() * (second == v).sum() for v in set(first)) / len(pairs)
+    return _Agreement(len(pairs), same, float(expected), float((drawn >= same).mean()))
+
+
+def changed_by_reading() -> Measured:
+    """Share of the sentences judged under several readings whose verdict is not the same in all."""
+    groups = by_reading(claims.of_the_paper())
+    changed = sum(len({claim.verdict for claim in group.values()}) > 1 for group in groups)
+    return Measured(changed / len(groups), f"{changed} of {len(groups)} sentences")
+
+
+def carried_over(arm: str) -> Measured:
+    """Chance that shuffled verdicts agree as often as those on two arms do."""
+    found = agreement(pairs_on(arm))
+    text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
+    return Measured(found.chance, text)
+
+
+def pairs_on(arm: str) -> list[tuple[str, str]]:
+    """Verdicts of sentences on the simulated arm and on another one, where both were tested."""
+    pairs = [(first.verdict, again.verdict) for first, again in claims.judged_again(arm)]
+    return [pair for pair in pairs if "not testable" not in pair]
+
+
+def reproduced_share() -> Measured:
+    """Share of the paper's sentences that are reproduced, each counted once."""
+    found = cards.tally(cards.of_kind("system", "methods"))
+    count, total = found["reproduced"], sum(found.values())
+    return Measured(count / total, f"{count} of {total}")

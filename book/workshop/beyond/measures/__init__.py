@@ -1,1 +1,1 @@
-"""Measures of the claims of Part IV: "beyond.module.function" in a claim."""
+"""Measures of the claims on rivals: "beyond.module.function" in a claim."""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from workshop.beyond.measures.loop import run_time as measured
+from workshop.chapters import run_time
 from workshop.report import results
 from workshop.report.evidence.verdicts import rank_correlation
 
@@ -32,9 +32,9 @@ def test_rank_correlation_is_scipys():
 
 
 def test_where_a_loop_turns(plant):
-    assert measured.unstable_at().value == 4 and measured.unstable_at(late=5).value == 1
-    predicted, simulated = measured.onsets()
+    assert run_time.unstable_at().value == 4 and run_time.unstable_at(late=5).value == 1
+    predicted, simulated = run_time.onsets()
     assert predicted == pytest.approx(3.0) and simulated == pytest.approx(2 + 2 / 6)
-    assert measured.onset().value == pytest.approx(3 / (2 + 2 / 6))
+    assert run_time.onset().value == pytest.approx(3 / (2 + 2 / 6))
     plant["exact, window, 0"] = plant["network, 5"]  # does not come so far
-    assert np.isinf(measured.onsets("exact, window")).all()
+    assert np.isinf(run_time.onsets("exact, window")).all()

@@ -5,12 +5,11 @@ import itertools
 import numpy as np
 import pytest
 
-from workshop.beyond.measures.loop import verdict
-from workshop.chapters import verdict as chapter
+from workshop.chapters import verdict
 from workshop.report.evidence.claims import Claim
 
 
-def claim(name, setup=None, found="reproduced", measure="loop.verdict.reproduced_share"):
+def claim(name, setup=None, found="reproduced", measure="chapters.verdict.reproduced_share"):
     return Claim(
         id=name, claim=name, verdict=found, refuted="-", measure=measure, band={"from": 0.0},
         arguments={} if setup is None else {"setup": setup},
@@ -32,5 +31,5 @@ def test_agreement_against_all_permutations():
 def test_expected_changes_are_the_shares_that_disagree(monkeypatch):
     shares = {"a": {"reproduced": 0.9, "undecided": 0.1}, "b": {"reproduced": 0.2}, "c": {}}
     monkeypatch.setattr(Claim, "shares", lambda self: shares[self.id])
-    number, turning = chapter.expected_changes(map(claim, shares))
+    number, turning = verdict.expected_changes(map(claim, shares))
     assert number == 2 and turning == pytest.approx(0.1 + 0.8)

@@ -1,1 +1,0 @@
-"""Measures of *Closing the loop*, and of all verdicts together: "beyond.loop.module.function"."""
