@@ -90,18 +90,16 @@ def test_a_dead_zone_stops_learning_and_leakage_forgets():
     np.testing.assert_allclose(leaky[1], free[1] - 0.2 * 0.5 * TRUTH)
 
 
-def craig(**options):
-    box = dict(low=(2.6, 0.0, 0.3), high=(14.0, 4.0, 2.5))
-    fine = dict(kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), estimate=0.7 * TRUTH)
-    return _CraigHsuSastry(**{**fine, **box, **options})
-
-
 def test_an_estimated_mass_matrix_stays_invertible_outside_the_reach_of_the_box():
-    watched = Watched(craig(rate=(50.0, 900.0, 50.0)))
+    low, high = (2.6, 0.0, 0.3), (14.0, 4.0, 2.5)
+    watched = Watched(_CraigHsuSastry(
+        kp=(60.0, 60.0), kd=(16.0, 16.0), weight=(8.0, 8.0), rate=(50.0, 900.0, 50.0),
+        estimate=0.7 * TRUTH, low=low, high=high,
+    ))  # fmt: skip
     record(ARM, watched, (40.0, 30.0), velocity="difference", rest=0.1, duration=1.0,
            effects=CMU_DD_ARM_II_EFFECTS)  # fmt: skip
     course = watched.law.estimates
-    assert (course >= (2.6, 0.0, 0.3)).all() and (course <= (14.0, 4.0, 2.5)).all()
+    assert (course >= low).all() and (course <= high).all()
     a, b, d = np.moveaxis(course[1:], -1, 0)
     for cosine in (-1, 0, 1):
         m11, m12 = a + 2 * b * cosine, d + b * cosine

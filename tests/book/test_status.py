@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import sys
 from pathlib import Path
@@ -29,26 +28,16 @@ LIMIT = {"group": "Time", "what": "book", "value": 130.0, "unit": "s", "at most"
 MISSING = {"group": "Training", "what": "MuJoCo", "not measured": "pip install .[bench]"}
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """A folder of results; ``folder(name, content)`` writes one."""
-    monkeypatch.setattr(results, "FOLDER", tmp_path)
-
-    def write(name, content):
-        (tmp_path / f"{name}.json").write_text(json.dumps(content))
-
-    return write
-
-
 def plain(rows) -> list[list[str]]:
     return [[cell.replace("\N{NO-BREAK SPACE}", " ") for cell in row] for row in rows]
 
 
-def test_every_group_has_its_table(folder):
+def test_every_group_has_its_table(monkeypatch):
     """Pairs have both times; what is not measured stays."""
     made = {"date": "2026-01-31", "processor": "X", "cores": 2, "load before": None}
     made |= {"python": "3.11", "versions": {"numpy": "2.4"}, "seconds": 9.0}
-    folder("benchmarks", {"made by": made, "rows": [PAIR, LIMIT, MISSING]})
+    planted = {"benchmarks": {"made by": made, "rows": [PAIR, LIMIT, MISSING]}}
+    monkeypatch.setattr(results, "read", planted.__getitem__)
     assert "2026-01-31: X, 2 cores, Python 3.11, numpy 2.4; 9 s" in status.benchmark_machine()
     tables = status.benchmarks()
     assert plain(tables.pop("Time").rows) == [["book", "130 s", "≤ 120: missed"]]

@@ -6,19 +6,12 @@ import pytest
 from ddlib.dynamics import CMU_DD_ARM_II, Link, SerialArm, derive
 
 
-def links(n, seed=0):
-    return [Link(*row) for row in np.random.default_rng(seed).uniform(0.1, 2.0, (n, 4))]
-
-
-def states(n, count=50, seed=1):
-    return np.random.default_rng(seed).uniform(-3, 3, (3, count, n))
-
-
 @pytest.mark.parametrize("gravity", [0.0, 9.81])
 @pytest.mark.parametrize("n", range(1, 7))
 def test_code_agrees_with_the_recursion(n, gravity):
-    derivation, arm = derive(n, bool(gravity)), links(n)
-    q, qd, qdd = states(n)
+    rows = np.random.default_rng(0).uniform(0.1, 2.0, (n, 4))
+    derivation, arm = derive(n, bool(gravity)), [Link(*row) for row in rows]
+    q, qd, qdd = np.random.default_rng(1).uniform(-3, 3, (3, 50, n))
     numbers = (*q.T, *qd.T, *qdd.T, *derivation.base_values(arm, gravity))
     wanted = SerialArm.planar(arm, gravity).inverse_dynamics(q, qd, qdd)
     for function in (derivation.function, derivation.printed_function):

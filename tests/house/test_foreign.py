@@ -17,21 +17,15 @@ print(*np.concatenate(draws).tolist(), rng.integers(0, 100), rng.permutation(9).
 """
 
 
-def ask(code: str, env: dict) -> str:
-    answer = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
-    assert answer.returncode == 0, answer.stderr
-    return answer.stdout + answer.stderr
-
-
-def both(code: str, env: dict) -> tuple[list[str], list[str]]:
-    """The words that a program prints without and with jogged draws."""
-    plain = {key: value for key, value in env.items() if key != "DDLIB_JOG"}
-    return ask(code, plain).split(), ask(code, env).split()
-
-
 @pytest.mark.parametrize("name, factor", [("jog-1", 1 + 1e-9), ("jog-7", 1 + 7e-9)])
 def test_jogs_multiply_every_real_draw_and_leave_integers(name, factor, tmp_path):
-    plain, jogged = both(DRAWS, foreign.environment(name, tmp_path))
+    env, command = foreign.environment(name, tmp_path), [sys.executable, "-c", DRAWS]
+    plain, jogged = (
+        subprocess.run(command, env={**env, "DDLIB_JOG": jog}, capture_output=True, text=True)
+        for jog in ("", env["DDLIB_JOG"])
+    )
+    assert not plain.stderr + jogged.stderr
+    plain, jogged = plain.stdout.split(), jogged.stdout.split()
     assert [float(x) for x in jogged[:12]] == [float(x) * factor for x in plain[:12]]
     assert jogged[12:] == plain[12:]
 

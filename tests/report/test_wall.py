@@ -60,15 +60,11 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
             assert re.search(rf"\b{width}\b", text), claim.id
 
 
-def parts(text) -> dict[str, tuple]:
-    found = re.findall(r'<i class="(\w+)" style="left:([\d.]+)%(?:;width:([\d.]+)%)?">', text)
-    return {name: (float(left), float(wide or 0)) for name, left, wide in found}
-
-
 def test_the_picture_of_the_draws(make):
     draws = np.linspace(0.2, 0.4, 2001)
     text = wall._draws(make({"from": 0.1, "to": 0.5}, draws, _Printed("0.30")))
-    found = parts(text)
+    parts = re.findall(r'<i class="(\w+)" style="left:([\d.]+)%(?:;width:([\d.]+)%)?">', text)
+    found = {name: (float(left), float(wide or 0)) for name, left, wide in parts}
     assert found["median"][0] == pytest.approx(50, abs=0.1)
     assert found["printed"][0] == pytest.approx(50, abs=0.1)
     scale = (found["band"][1]) / (0.5 - 0.1)  # per cent for a unit of the value

@@ -26,11 +26,6 @@ ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)
 PD, KI = pd(KP, KD), (150.0, 45.0)
 
 
-def still(t, posture=(0.0, 0.0)):
-    q = np.zeros((t.size, 2)) + posture
-    return Trajectory(q, 0 * q, 0 * q)
-
-
 @pytest.mark.parametrize("joint, posture", [(0, (0.3, -1.0)), (1, (0.0, 0.0))])
 @pytest.mark.parametrize("law", [PD, PID(KP, KI, KD)], ids=["PD", "PID"])
 def test_prediction_and_simulation_agree_for_small_motions(law, posture, joint):
@@ -100,7 +95,7 @@ def test_interconnected_system_is_the_simulators_loop(model):
 def test_scores_of_a_made_up_recording():
     """A constant error of 1 degree at the elbow, 3 degrees in the first third."""
     t = time_grid(0.01, 0.5)
-    reference = still(t)
+    reference = Trajectory(*np.zeros((3, t.size, 2)))
     q = np.zeros((2, t.size, 2))
     q[:, :, 1] = np.deg2rad(np.where((t >= 0) & (t < 1), 3.0, 1.0))
     q[:, t < 0] = 7.0  # outside the motion nothing counts

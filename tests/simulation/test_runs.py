@@ -27,19 +27,12 @@ ARM = CMU_DD_ARM_II
 PD = pd((200.0, 80.0), (30.0, 12.0))
 FRICTION = (ViscousFriction((0.5, 0.15)), CoulombFriction((0.5, 0.15)))
 LEVEL = np.array([0.5, 0.15])
-ARRAYS = ("q", "tau", "q_true", "qd_true", "tau_true")
 
 
 def short(seconds=0.4, step=0.002, extents=(45.0, 20.0), rest=0.1):
     """A reference cut short, for quick runs: `t` and the reference."""
     t = time_grid(step, rest)[: round(seconds / step)]
     return t, pick_and_place(extents, t)
-
-
-def assert_same(together, k, alone, tolerance):
-    for name in ARRAYS:
-        got, expected = getattr(together, name)[k], getattr(alone, name)
-        np.testing.assert_allclose(got, expected, rtol=0, atol=tolerance, err_msg=name)
 
 
 def shaft(s):
@@ -66,7 +59,9 @@ def test_runs_may_differ_in_any_strength(kind):
     assert together.q.shape == (3, 40, 2)
     for i in range(3):
         alone = follow(ARM, PD, reference, t, effects=KINDS[kind](scale[i]))
-        assert_same(together, i, alone, 1e-12)
+        for name in ("q", "tau", "q_true", "qd_true", "tau_true"):
+            got, expected = getattr(together, name)[i], getattr(alone, name)
+            np.testing.assert_allclose(got, expected, rtol=0, atol=1e-12, err_msg=name)
     assert not np.allclose(together.q_true[1], together.q_true[2], atol=1e-6)
 
 

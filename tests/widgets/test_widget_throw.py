@@ -122,17 +122,13 @@ def press(page, name):
     page.evaluate(NEXT_FRAME)
 
 
-def handle_at(page):
-    box = page.locator(".hand-handle .dot").bounding_box()
-    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-
-
 @pytest.mark.browser
 def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     opened = visit(page_of(tmp_path / "page.html", widget), **CALM)
     page = opened.page
     press(page, "Reset")
-    x, y = handle_at(page)
+    box = page.locator(".hand-handle .dot").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x - 60, y + 120, steps=4)

@@ -184,26 +184,18 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     assert not opened.problems
 
 
-def told_remedy(page):
-    page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
-    return page.locator(".remedy").inner_text()
-
-
-def is_stable(law, late):
-    joints = plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
-    loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=late)
-    return np.abs(loop.poles()).max() < 1
-
-
 @pytest.mark.browser
 def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
     """In the page's own per cent: a little less is stable, a little more is not."""
     url = page_of(tmp_path / "page.html", tuner)
     page = visit(f"{url}?pidtuner=kd:80,late:20", **CALM).page
-    part = float(re.search(r"([\d.]+)\s%", told_remedy(page))[1]) / 100
-    whole = {**_START, "kd": 80.0}
-    signs = []
+    page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
+    told = page.locator(".remedy").inner_text()
+    part = float(re.search(r"([\d.]+)\s%", told)[1]) / 100
+    whole, joints = {**_START, "kd": 80.0}, plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
+    stable = []
     for share in (0.96, 1.04):
         law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))
-        signs.append(is_stable(law, late=20))
-    assert signs == [True, False]
+        loop = closed_loop(joints, **law, period=CONTROL_STEP, delay=20)
+        stable.append(np.abs(loop.poles()).max() < 1)
+    assert stable == [True, False]
