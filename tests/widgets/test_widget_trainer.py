@@ -79,7 +79,7 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     monkeypatch.setattr("ddlib.learning.descent._ONEDNN", False)  # single precision alone
     epochs, seed = 60, 7
     page = taught(evaluate, widget, epochs, seed, inputs, shift, momentum=momentum)
-    data, test = study.page_set(trainer._SCALINGS[inputs], shift)
+    data, test = study._page_set(trainer._SCALINGS[inputs], shift)
     start = trainer.first_weights(seed)
     descent = Descent(start, data.x, data.y, default_rate(21) / len(data.x), momentum)
     for matrix in ("back", "delta"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.colorbar import Colorbar
@@ -18,6 +19,7 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import PolynomialFeatures
 
 from ddlib._check import finite_array
+from ddlib.analysis import gains, mean_gradient
 from ddlib.figures.maps import COLOUR_MAP, SIGNS
 from ddlib.figures.style import (
     COLOURS,
@@ -28,6 +30,9 @@ from ddlib.figures.style import (
     legend_above,
     plain_ticks,
 )
+from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
+from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from workshop.report.studies.page import training as page
 
 
 def overlay(t, measured, predicted: Mapping[str, np.ndarray]) -> Illustration:
@@ -183,3 +188,21 @@ def width_left(places, logs, printed, settings: int = 2**14) -> dict[str, float]
         deviation = np.sqrt(np.cov(x.T, aweights=weights, ddof=0).diagonal())
         left[name] = float(100 * np.exp(np.mean(np.log(np.sqrt(3) * deviation))))
     return left
+
+
+def own_inertia(extents_deg, members: int = 4) -> tuple[float, float]:
+    """Inertia at the shoulder, kg m²: in networks that learn as in the page, median, and the arm's.
+
+    They learn from the first five trajectories, every fifth window of width 21.
+    """
+    training, _ = split(JOINT_DAMPING.record(extents_deg))
+    windows, torque = cases(training, 21)
+    data = TrainingSet.from_arrays(windows, torque, scaling=(-1, 1))
+    windows, data = windows[::5], replace(data, x=data.x[::5], y=data.y[::5])
+    start = Weights.random(members, 21, initial=INITIAL)
+    how = {"rate": default_rate(21), "momentum": page.MOMENTUM, "epochs": page.EPOCHS}
+    model, *_ = train_ensemble(start, data, **how, progress=False)
+    inertia = gains(mean_gradient(model, windows))[:, 0, 0, 2]
+    return float(np.median(inertia)), float(
+        JOINT_DAMPING.arm.mass_matrix(windows[..., 10])[:, 0, 0].mean()
+    )

@@ -31,7 +31,7 @@ _EVENTS = ("error", "direct", "hidden")
 SHIFTS = 5  # Draws of torques shifted in time
 
 
-def page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
+def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
     """Training set of the page, and scaled windows and torques of trajectory 6."""
     training, test = split(JOINT_DAMPING.record())
     torque = training.tau[:, training.motion]
@@ -84,10 +84,10 @@ def page_training(members: int = 25) -> dict:
     rows = {}
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
         start = Weights.random(members, _WIDTH, initial=INITIAL)
-        rows[f"{name}, real"] = _watched(start, *page_set(scaling))
+        rows[f"{name}, real"] = _watched(start, *_page_set(scaling))
         shares = np.array_split(np.arange(members), SHIFTS)
         runs = [
-            _watched(start[share], *page_set(scaling, shifted=k)) for k, share in enumerate(shares)
+            _watched(start[share], *_page_set(scaling, shifted=k)) for k, share in enumerate(shares)
         ]
         rows[f"{name}, shifted"] = {
             key: np.concatenate([run[key] for run in runs]) for key in runs[0]
