@@ -43,9 +43,6 @@ def by_loop(recording, numbers, width):
     return np.array(x), np.array(y)
 
 
-# --- setups and the split -------------------------------------------------------------------
-
-
 def test_another_day_rounds_otherwise():
     """Another zero of the encoders: the same motion on another grid of readings."""
     step = JOINT_DAMPING.effects.encoder[0].step
@@ -75,9 +72,6 @@ def test_split_is_by_trajectory(recording):
         assert part.motion == recording.motion
     extent = np.rad2deg(np.abs(test.reference.q).max(0))
     np.testing.assert_allclose(extent, paper.APPENDIX_I_EXTENTS_DEG[5], rtol=1e-3)
-
-
-# --- training and errors ----------------------------------------------------------------
 
 
 def test_cases_are_1500_of_training_and_300_of_test(recording, trained, monkeypatch):
@@ -138,9 +132,6 @@ def test_refusals(recording):
         replace(STATE_FEEDBACK, decay=0.1)
     with pytest.raises(ValueError, match="recording must hold the six runs of Appendix I"):
         split(recording[:5])
-
-
-# --- other extents, true states ----------------------------------------------------------
 
 
 def test_the_hull_of_the_training_trajectories():

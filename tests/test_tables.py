@@ -8,8 +8,6 @@ from hypothesis import given, strategies as st
 
 from ddlib.tables import Table, quote, scientific, significant, spread, typeset
 
-# --- numbers ----------------------------------------------------------------------------
-
 
 def test_three_significant_digits():
     for value, text in (
@@ -78,9 +76,6 @@ def test_quote_shows_what_glue_shows(monkeypatch, value, plain):
     quote("chapter-value", value)
     library.glue("chapter-value", plain, display=False)
     assert ours == theirs and len(ours) == 1
-
-
-# --- Markdown ---------------------------------------------------------------------------
 
 
 def cells(line):

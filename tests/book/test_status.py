@@ -49,9 +49,6 @@ def test_every_group_has_its_table(monkeypatch):
     ]
 
 
-# --- on the built pages -------------------------------------------------------------------
-
-
 @pytest.mark.built
 def test_every_notebook_has_its_time_and_share(parsed):
     """And every chapter tells the time that was measured."""

@@ -102,9 +102,6 @@ def test_refusals():
             call()
 
 
-# --- what the claims of the chapter measure -----------------------------------------------------
-
-
 def test_best_possible_answers_to_noisy_parity():
     """A bit is read rightly with the chance p of staying below half a step; parity then has
     (1 + (2p - 1)^3) / 2.

@@ -24,9 +24,6 @@ def gentle(t):
     return Trajectory(size * (1 - c), size * rate * s, size * rate**2 * c)
 
 
-# --- the PID law itself -------------------------------------------------------------
-
-
 def test_pid_closed_loop_agrees_with_python_control():
     """Two linear joints, zero-order hold: python-control closes the same sampled loop."""
     inertia, damping = (5.0, 0.7), (0.5, 0.15)
@@ -83,9 +80,6 @@ def test_integral_torque_is_limited_and_unwinds_at_once():
     assert np.abs(out).max() == limit
     np.testing.assert_allclose(out[99], [-limit, limit])
     np.testing.assert_allclose(out[100], [-limit + 1, limit - 0.1])  # no wound-up surplus
-
-
-# --- closed loops around the arm ------------------------------------------------------
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)

@@ -68,9 +68,6 @@ def test_ripple_has_no_mean_over_a_turn(cycles, phase, tau, cogging, share):
     np.testing.assert_allclose(turned, torque, atol=1e-8)
 
 
-# --- the flexible joint -----------------------------------------------------------------
-
-
 def test_spring_with_play_by_numbers():
     shaft = FlexibleJoint((100.0, 10.0), (0.1, 0.1), damping=(2.0, 3.0), gap=(0.2, 0.0))
     twist, rate = np.array([[0.05, 0.05], [0.3, -0.3], [-0.3, 0.3]]), np.array([1.0, 1.0])

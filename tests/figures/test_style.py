@@ -62,14 +62,6 @@ def test_an_illustration_is_sound_svg(make):
     assert made.svg.count("font-family") == 1
 
 
-def test_the_size_follows_the_page_but_not_beyond_its_own():
-    made = illustrate(draw, "A curve.", width=5.0, height=2.5)
-    root = ET.fromstring(made.svg)
-    assert "width:5.00in" in root.attrib["style"] and "max-width:100%" in root.attrib["style"]
-    assert "width" not in root.attrib and "height" not in root.attrib
-    assert size(made.svg) == [360, 180]
-
-
 def test_texts_are_texts_in_their_order():
     texts = words(illustrate(formulas, "Formulas."))
     assert "error of τ1 & q̇fb, N m" in texts and "a=2+b, s" in texts and "10⁻³" in texts

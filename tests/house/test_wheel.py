@@ -59,14 +59,6 @@ def site(tmp_path_factory):
     return site
 
 
-def loaded(site, *packages) -> list[str]:
-    """What imports from the wheel: the package's place, how many modules, what failed."""
-    command = [sys.executable, "-W", "error", "-I", "-c", IMPORT, str(site), *packages]
-    answer = subprocess.run(command, cwd=site.parent, capture_output=True, text=True)
-    assert answer.returncode == 0, answer.stderr
-    return answer.stdout.splitlines()
-
-
 def test_every_file_of_the_package_is_in_the_wheel(site):
     kept = {path.relative_to(site) for path in (site / "ddlib").rglob("*") if path.is_file()}
     own = {path.relative_to(ROOT) for path in (ROOT / "ddlib").rglob("*") if path.is_file()}
@@ -75,6 +67,9 @@ def test_every_file_of_the_package_is_in_the_wheel(site):
 
 @pytest.mark.parametrize("packages", [WITHOUT_TORCH, ()], ids=["no torch", "every module"])
 def test_modules_import_from_the_wheel(packages, site):
-    place, count, *failed = loaded(site, *packages)
+    command = [sys.executable, "-W", "error", "-I", "-c", IMPORT, str(site), *packages]
+    answer = subprocess.run(command, cwd=site.parent, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stderr
+    place, count, *failed = answer.stdout.splitlines()
     assert place == str(site / "ddlib" / "__init__.py")
     assert int(count) > 30 and not failed, "\n".join(failed)

@@ -43,9 +43,6 @@ def total_energy(arm, shaft, x, v):
     return kinetic + arm.potential_energy(x[..., :2]) + springs
 
 
-# --- the integrator ---------------------------------------------------------------------
-
-
 def test_runge_kutta_is_of_fourth_order():
     arm, tau = REYES_KELLY_ARM, np.array([20.0, -3.0])
     effects = Effects(friction=(ViscousFriction((2.3, 0.2)),))
@@ -74,8 +71,6 @@ def test_cogging_stores_energy_and_gives_it_back():
     np.testing.assert_allclose(moving + stored.sum(-1), moving[0] + stored[0].sum(), rtol=1e-6)
     assert np.ptp(moving) > 0.1
 
-
-# --- joints that stick ------------------------------------------------------------------
 
 SHORT_OF_ONE = st.floats(-1 + 1e-9, 1 - 1e-9)
 """Share of the breakaway torque; of all of it, rounding decides whether it holds."""
@@ -156,9 +151,6 @@ def test_stick_slip_against_its_closed_form():
     assert (errors[:3] <= 2.5 * 2e-3).all() and (errors[3:] < 2e-3 * jump).all()
 
 
-# --- springs between motor and link -----------------------------------------------------
-
-
 @pytest.mark.parametrize("gap", [(0.0, 0.0), (0.02, 0.05)], ids=["springs", "with play"])
 @pytest.mark.parametrize("arm", [ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
 def test_springs_and_rotors_keep_their_energy(arm, gap):
@@ -172,9 +164,6 @@ def test_springs_and_rotors_keep_their_energy(arm, gap):
     np.testing.assert_allclose(energy, np.tile(energy[0], (3001, 1)), rtol=2e-4)
     twist = np.abs(states[0][..., 2:] - states[0][..., :2])
     assert (twist.max((0, 1)) > np.array(gap) / 2).all()  # every spring has been pressed
-
-
-# --- how many steps a control period needs ----------------------------------------------
 
 
 def test_substeps_agree_with_an_implicit_solver():
