@@ -106,6 +106,8 @@ def test_what_we_find_for_a_claim_by_its_id():
     assert claims.measured("period").value == pytest.approx(6.0)
     with pytest.raises(ValueError, match=r"id must be of a claim in claims.yml, got 'nowhere'"):
         claims.measured("nowhere")
+    with pytest.raises(ValueError, match=r"chapter must have claims in claims.yml, got 'nowhere'"):
+        claims._of_chapter("nowhere")
 
 
 def test_bands(finds):
@@ -263,11 +265,6 @@ def test_refutations_have_one_form():
         assert not re.match(r"None|Nothing|It would", claim.refuted) and ":" not in claim.refuted
         if claim.verdict in ("reproduced", "qualitative", "not reproduced", "undecided"):
             assert re.match(r"An? ", claim.refuted), claim.id
-
-
-def test_a_chapter_without_claims_is_refused():
-    with pytest.raises(ValueError, match=r"chapter must have claims in claims.yml, got 'nowhere'"):
-        claims._of_chapter("nowhere")
 
 
 def test_a_sentence_is_judged_again_on_another_arm():

@@ -16,9 +16,6 @@ from workshop.report.code_hash import places
 STALE = "book/results is not what this code gives: run `make reproduce`"
 
 
-# --- files --------------------------------------------------------------------------------
-
-
 def test_json_keeps_five_digits_and_whole_numbers(tmp_path):
     path = tmp_path / "new" / "folder" / "a.json"
     content = {
@@ -117,9 +114,6 @@ def test_the_stamp_is_of_the_code_that_ran(parts, monkeypatch):
     monkeypatch.setitem(parts.studies, "longer", slow)
     reproduce.main(["longer"])
     assert results.read("longer")["made by"]["code"] == before
-
-
-# --- what is committed ------------------------------------------------------------------------
 
 
 def test_nothing_is_left_over():

@@ -44,9 +44,6 @@ def run(controller=PD, effects=IDEAL, seed=0, arm=ARM, reference=None, **options
     return follow(arm, controller, reference or made, t, effects=effects, seed=seed, **options)
 
 
-# --- the integrator ---------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM], ids=lambda a: a.name)
 def test_free_arm_keeps_its_energy_and_momentum(arm):
     q = np.array([[0.3, 0.5], [-1.0, 2.0], [0.5, -1.2]])
@@ -71,9 +68,6 @@ def test_friction_takes_exactly_the_energy_that_is_lost():
     assert lost > 0.1 * (e[0] - REYES_KELLY_ARM.potential_energy([0, 0]))
     assert e[0] - e[-1] == pytest.approx(lost, rel=1e-6)
     assert (np.diff(e) <= 1e-12).all()
-
-
-# --- rates and samples ------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -112,9 +106,6 @@ def test_an_arm_may_start_anywhere_and_moving():
         assert made.q_true.shape == (2, t.size, 2) and not made.tau.any()
 
 
-# --- actuator and sensors -----------------------------------------------------------------
-
-
 def test_the_applied_torque_is_the_law_on_the_measured_state():
     gains = np.array([200.0, 80.0])
     effects = Effects(friction=FRICTION, encoder=(Quantisation.encoder(12),))
@@ -133,9 +124,6 @@ def test_readings_are_whole_encoder_steps_and_noise_is_in_the_log_only(paper_run
     assert 0.4 * step < error.max() <= step / 2 * (1 + 1e-9)
     noise = (paper_run.tau - paper_run.tau_true).reshape(-1, 2)
     np.testing.assert_allclose(noise.std(0), [0.4, 0.1], rtol=4 / np.sqrt(2 * len(noise)))
-
-
-# --- refusals ------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("arm", [CMU_DD_ARM_II, REYES_KELLY_ARM], ids=lambda a: a.name)
