@@ -1,16 +1,13 @@
-"""Lessons: exercises of each kind, a place for every widget, and a recipe of forty lines."""
+"""Lessons: exercises of each kind, and a place for every widget."""
 
 import json
 import re
 import sys
 
-from book_pages import BACK_MATTER, ROOT, source
+from book_pages import ROOT
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_lessons
-
-RECIPE = "book/use-it-on-your-arm"
-LINES = 40  # of code that a reader sees, imports included
 
 
 def test_chapters_ask_for_a_derivation_a_design_and_a_prediction():
@@ -45,14 +42,3 @@ def test_every_widget_has_its_place_in_the_lessons():
                 found |= {name: f"{path.stem}: {place}" for name in made.findall(text)}
     assert len(found) >= 10
     assert not {name: place for name, place in found.items() if place not in asked}
-
-
-def test_the_recipe_is_short_and_needs_nothing_of_the_book():
-    cells = json.loads(source(RECIPE).read_text(encoding="utf-8"))["cells"]
-    code = [cell for cell in cells if cell["cell_type"] == "code"]
-    shown = [c for c in code if "remove-cell" not in c["metadata"].get("tags", ())]
-    lines = "\n".join("".join(cell["source"]) for cell in shown).splitlines()
-    assert RECIPE in BACK_MATTER and 20 < len([line for line in lines if line.strip()]) <= LINES
-    packages = set(re.findall(r"from (?:ddlib\.)?(\w+)", "\n".join(lines)))
-    assert {"dynamics", "simulation", "identification", "learning", "analysis"} <= packages
-    assert not packages & {"paper", "workshop", "widgets"}

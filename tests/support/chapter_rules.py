@@ -17,6 +17,7 @@ MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 18, 84  # "about 15", and what a page h
 MAX_THESIS = 200  # characters
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
+FROM_SCRATCH = {"book/use-it-on-your-arm"}  # open cells run alone, so they import and print
 CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
 MIN_EXERCISES = 3
 
