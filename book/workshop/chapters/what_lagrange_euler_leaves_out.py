@@ -20,7 +20,8 @@ from scipy.optimize import brentq
 from ddlib._check import finite_array
 from ddlib.analysis import savitzky_golay
 from ddlib.control import difference, end_slope, late_poles, linear, noise_gain
-from ddlib.effects import DeadZone, Effects, FlexibleJoint, Quantisation
+from ddlib.control.velocity import EstimatedVelocity
+from ddlib.effects import DeadZone, Effects, FlexibleJoint, Quantisation, Ripple, StribeckFriction
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -118,11 +119,11 @@ _SHAFT = FlexibleJoint((2e4, 6e3), (0.4, 0.15), damping=(5.0, 1.0))
 _SIGNIFICANT = 0.2  # Share of the rigid body's torque from which on an effect counts as significant
 
 
-def _drive(runs: int | None = None, **effects) -> Recording:
+def _drive(runs: int | None = None, law=_SETUP.controller, **effects) -> Recording:
     extents = APPENDIX_I[TEST_TRAJECTORY - 1]
     extents = extents if runs is None else np.repeat([extents], runs, axis=0)
     options = dict(effects=Effects(**effects), log_step=CONTROL_STEP, rest=0.1)
-    return record(_SETUP.arm, _SETUP.controller, extents, **options)
+    return record(_SETUP.arm, law, extents, **options)
 
 
 @cache
@@ -130,10 +131,10 @@ def _ideal() -> Recording:
     return _drive()
 
 
-def _left(runs: int, **effects) -> np.ndarray:
+def _left(runs: int | None, **effects) -> np.ndarray:
     """Torque that the rigid body leaves unexplained in some runs, the whole motion."""
     run = _drive(runs, **effects)
-    return residual_torque(_SETUP.arm, run)[:, run.motion]
+    return residual_torque(_SETUP.arm, run)[..., run.motion, :]
 
 
 def _shares(left) -> tuple[np.ndarray, str]:
@@ -147,6 +148,48 @@ def _shares(left) -> tuple[np.ndarray, str]:
     (shoulder, elbow), (less, least) = (100 * x.reshape(-1, 2)[0] for x in (driven, asked))
     text = f"{shoulder:.0f} % of the torque at the shoulder, {elbow:.0f} % at the elbow; "
     return driven, f"{text}of what the reference asks for {less:.0f} and {least:.0f} %"
+
+
+def torques_left() -> dict[str, np.ndarray]:
+    """Torque that each effect leaves on trajectory 6, at the values assumed, RMS of both joints."""
+    arm, ideal, own = _SETUP.arm, _ideal(), _SETUP.effects
+    tau, qd = ideal.tau_true[ideal.motion], ideal.qd_true[ideal.motion]
+    reference = pick_and_place(APPENDIX_I[TEST_TRAJECTORY - 1], ideal.t[ideal.motion])
+    viscous, coulomb = own.friction
+    level = np.array(coulomb.level)
+    excess = StribeckFriction(level, 1.3 * level, 0.02).torque(qd) - coulomb.torque(qd)
+    change = np.diff(tau, axis=0)  # from one period to the next, without the first jump
+    estimated = EstimatedVelocity(_SETUP.controller, difference(1, CONTROL_STEP))
+    rounding = (Quantisation.encoder(16),)
+    exact, rounded = (
+        _drive(law=estimated, friction=own.friction, encoder=e).tau_true for e in ((), rounding)
+    )
+    found = {"rigid body": tau, "rigid body, reference": arm.inverse_dynamics(*reference)}
+    for name, effects in {
+        "viscous friction": {"friction": (viscous,)},
+        "Coulomb friction": {"friction": (coulomb,)},
+        "play of 0.06°, gears": {"transmission": (replace(_SHAFT, gap=(1e-3, 1e-3)),)},
+        "flexible shaft": {"transmission": (_SHAFT,)},
+        "ripple of 2 %": {"motor": (Ripple(share=(0.02, 0.02)),)},
+    }.items():
+        found[name] = _left(None, **effects)
+    found |= {
+        "Stribeck excess": excess,
+        "dead zone": DeadZone((0.1, 0.1)).inverse(tau) - tau,
+        "hold of 2 ms": change / np.sqrt(12),
+        "computing, 1.2 ms": change * 0.0012 / CONTROL_STEP,
+        "torque sensor": np.array(own.torque_sensor[0].std)[None],
+        "encoder, velocity by difference": (rounded - exact)[ideal.motion],
+    }
+    log = ideal.q_true[:: round(LOG_STEP / CONTROL_STEP)]
+    for name, width in (("by differences", 3), ("over 21 samples", 21)):
+        smooth = [savitzky_golay(width, order, LOG_STEP, degree=2) for order in range(3)]
+        one, other = (
+            arm.inverse_dynamics(*(sliding_window_view(q, width, 0) @ w for w in smooth))
+            for q in (log, rounding[0].apply(log))
+        )
+        found[f"encoder, acceleration {name}"] = other - one
+    return {name: rms(torque) for name, torque in found.items()}
 
 
 def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
