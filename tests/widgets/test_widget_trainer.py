@@ -202,14 +202,14 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     assert recorded.inner_text() == "Recorded in your browser."
     exec(copied(page), {})
     *errors, inertia = re.findall(r"\d+\.\d+", capsys.readouterr().out)
-    told = page.locator(".weighed dd").all_inner_texts()
+    told = page.locator(".weighed b").all_inner_texts()
     assert told[0].startswith(f"{inertia} kg m² (the arm: 6.4)")
     assert float(told[1]) == pytest.approx(float(errors[1]), rel=0.02)
 
     page.wait_for_function("location.search.includes('extents:30.5_45_')")
     again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
     again.wait_for_function(REACHED % 400)
-    assert again.locator(".weighed dd").all_inner_texts() == told
+    assert again.locator(".weighed b").all_inner_texts() == told
     page.get_by_label("elbow in trajectory 2").fill("50")
     page.get_by_label("elbow in trajectory 2").press("Tab")
     assert page.get_by_label("elbow in trajectory 2").input_value() == "32.2"

@@ -310,9 +310,9 @@ function build({ model, el }) {
   const status = make("p", { class: "status", id: `${view.id}-status` });
   for (const one of [play, once]) one.setAttribute("aria-describedby", status.id);
   const said = make("p", { class: "verdict", role: "status" });
-  const [inside, error6] = [make("dd"), make("dd")];
+  const [inside, error6] = [make("b"), make("b")];
   const sums = { "Inertia in the network, M₁₁": inside, "RMSS on trajectory 6": error6 };
-  const weighed = make("dl", { class: "weighed" }, ...Object.entries(sums).map(([text, dd]) => make("div", {}, make("dt", {}, text), dd)));
+  const weighed = make("div", { class: "weighed" }, ...Object.entries(sums).map(([text, value]) => make("div", {}, make("span", {}, text), value)));
   const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
   const list = make("dl", { class: "events" }, ...events.map(({ text, output }) => make("div", {}, make("dt", {}, text), output)));
