@@ -56,7 +56,7 @@ def as_on_the_page(cell: NotebookNode) -> NotebookNode:
     if "hide-input" in metadata["tags"]:
         prompt = lines(cell.source)
         prompts = {"code_prompt_show": prompt, "code_prompt_hide": prompt}
-        metadata["mystnb"] = {**metadata.get("mystnb", {}), **prompts}
+        metadata["mystnb"] = {**prompts, **metadata.get("mystnb", {})}
     return NotebookNode({**cell, "metadata": NotebookNode(metadata)})
 
 
