@@ -25,6 +25,7 @@ from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
 from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop
 from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.picker import _pad, _parameters
 
 _WIDTH = 21  # samples of the window
 _EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
@@ -196,7 +197,7 @@ def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
 
 
 def _still(panels, training, test) -> tuple[str, str]:
-    """The torques to be learnt and what an untrained network makes of them."""
+    """The trajectories, the torques to be learnt, and what an untrained network makes of them."""
     data = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["centred"])
     windows, torque = cases(test, _WIDTH)
     model = TorqueModel(first_weights(1)[0], data.inputs, data.outputs)
@@ -207,7 +208,9 @@ def _still(panels, training, test) -> tuple[str, str]:
         most = 1.15 * np.abs(torque[:, j]).max(keepdims=True)
         curves |= {f"{joint} low": -most, f"{joint} high": most}
     alt = (
-        f"Measured torques of both joints on trajectory {TEST_TRAJECTORY}, and what a network with "
-        "random weights makes of the positions, before the reader has trained it."
+        "The square of shoulder and elbow extents with the six trajectories of Appendix I. Beside "
+        f"it the measured torques of both joints on trajectory {TEST_TRAJECTORY}, and what a "
+        "network with random weights makes of the positions, before the reader has trained it."
     )
-    return still_picture(curves, panels, {}, None, alt), alt
+    extents = {p.name: p for p in _parameters()}
+    return still_picture(curves, panels, extents, _pad(), alt), alt
