@@ -8,7 +8,7 @@ from ddlib.dynamics import end_point_error
 from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory
-from workshop.beyond.studies.loop import learners, learning
+from workshop.beyond.studies.loop import _learning as learning, learners
 
 
 @pytest.fixture(scope="module")

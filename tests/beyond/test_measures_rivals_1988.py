@@ -7,7 +7,7 @@ from workshop.beyond.measures import rivals_1988 as measures
 from workshop.beyond.studies.rivals_1988 import _practised_distance
 from workshop.report import results
 
-POSITIONS = measures.KINDS[1]
+POSITIONS = measures._KINDS[1]
 
 
 @pytest.fixture

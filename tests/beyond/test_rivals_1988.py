@@ -5,7 +5,7 @@ import pytest
 from workshop.beyond.studies import rivals_1988 as study
 from workshop.report import results
 
-POSITIONS = study.KINDS[1]
+POSITIONS = study._KINDS[1]
 
 
 def rows(name, **wanted):
@@ -21,7 +21,7 @@ def test_a_table_a_polynomial_and_a_cmac_measured_anew():
         assert error == pytest.approx(row[name][0], rel=1e-3, abs=1e-9)
     (row,) = rows("rivals-bases", kind=POSITIONS, basis="chebyshev", order=2, ridge=1e-4)
     again = study._by_ridge(study.Polynomial(2), today["training"], today)
-    assert again[study.RIDGES.index(1e-4)]["outside"] == pytest.approx(row["outside"][0], rel=1e-3)
+    assert again[study._RIDGES.index(1e-4)]["outside"] == pytest.approx(row["outside"][0], rel=1e-3)
     setting = {"layers": 32, "width": 0.5, "slots": 32}
     (row,) = rows("rivals-cmac", kind=POSITIONS, **setting)
     again = study._cmac(today, setting)

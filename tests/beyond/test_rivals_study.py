@@ -22,7 +22,7 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
     monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "_RECORDINGS", 2)
-    monkeypatch.setattr(rivals, "TORQUES", tmp_path / "torques.npz")
+    monkeypatch.setattr(rivals, "_TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
     names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]
     assert set(rows) == {*names, ("filter", "positions", 5), ("filter", "positions", 21)}

@@ -30,7 +30,7 @@ def test_the_page_shows_the_committed_result_in_every_setting(widget):
     assert widget.baked_bytes < _MAX_BYTES / 10
     assert widget.interpolation_error(60) < 1e-3
     kept, rate = results.read("loop-learner")["loads"], list(loop.SPEEDS).index("ten times")
-    for who in loop.LEARNERS:
+    for who in learner._LEARNERS:
         widget.load, widget.friction, widget.learner, widget.rate = 5, True, who, "ten times"
         errors = np.minimum(kept["5"][who]["errors"][1][rate], loop._MOST_ERROR)
         np.testing.assert_array_equal(widget.curves["error"], errors)
@@ -55,7 +55,7 @@ def test_errors_of_many_runs_are_those_of_one_run_alone():
         encoder=JOINT_DAMPING.effects.encoder,
     )
     laws = {"own": runs.make("with friction", JOINT_DAMPING, runs.TRUTH[None])}
-    found, after = runs._trials(laws, runs._drawn(1, learner.MOTIONS, 11)[:2], arm, effects)
+    found, after = runs._trials(laws, runs._drawn(1, learner._MOTIONS, 11)[:2], arm, effects)
     alone = runs._by_law(found, laws)["own"][:, 0]
     np.testing.assert_allclose(errors[friction, rate, :2], alone, rtol=1e-4)
     last = after["own"].estimate[0]

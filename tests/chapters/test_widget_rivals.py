@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from workshop.beyond.studies.lineup import REFERENCE
-from workshop.beyond.studies.rivals import GRID, TORQUES
+from workshop.beyond.studies.rivals import _TORQUES, GRID
 from workshop.chapters.widgets.rivals import _MEASURED, RivalPicker
 
 
@@ -14,7 +14,7 @@ def picker():
 
 
 def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
-    with np.load(TORQUES) as file:
+    with np.load(_TORQUES) as file:
         names, torque = file["names"].tolist(), file["torque"].astype(float)
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "linear filter"
     run = 1 * GRID + 8  # the elbow changes fastest

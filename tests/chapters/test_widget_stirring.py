@@ -8,7 +8,7 @@ from widget_pages import NEXT_FRAME, PATHS, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
 from ddlib.widgets._baking.baked import _MAX_BYTES
-from workshop.beyond.studies.loop.stirring import PICKER, PLACES
+from workshop.beyond.studies.loop.stirring import _PICKER, PLACES
 from workshop.chapters.widgets.stirring import _LINES, StirringPicker
 
 
@@ -18,7 +18,7 @@ def picker():
 
 
 def test_curves_are_those_of_the_place(picker):
-    with np.load(PICKER) as file:
+    with np.load(_PICKER) as file:
         hand, torque = file["hand"].astype(float), file["torque"].astype(float)
     place = {"distance": 0.55, "bearing": -75, "radius": 0.08, "period": 3.0, "elbow": "positive"}
     for name, value in place.items():

@@ -4,7 +4,7 @@ import numpy as np
 
 from ddlib.analysis import LAYERS, gains, mean_gradient, savitzky_golay
 from ddlib.learning import Scaler, TorqueModel, Weights
-from workshop.report.studies.harmonics import _summary
+from workshop.report.studies._harmonics import _summary
 
 STEP, WIDTH = 0.01, 11
 X = STEP * (np.arange(WIDTH) - WIDTH // 2)

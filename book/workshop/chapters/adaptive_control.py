@@ -21,8 +21,6 @@ from workshop.beyond.studies.loop.runs.adaptive import _FULL
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged
 
-SETUPS = ("joint damping", "state feedback")  # of the study
-
 
 def courses(
     panels: dict[str, dict[str, np.ndarray]], change: int, told: str, label: str, alt: str

@@ -23,11 +23,9 @@ from ddlib.tables import significant
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
 
-FED = "windows, state feedback"  # as `DAMPED`, under the other reading of the controller
-
 _MARKERS = "os^Dv*"
 
-DAMPED = "windows"  # part with the errors of window networks under joint damping
+_DAMPED = "windows"  # part with the errors of window networks under joint damping
 
 
 def ladders(
@@ -117,48 +115,43 @@ def gains_by_torque(inertia, real, unrelated, label: str, alt: str) -> Illustrat
     return illustrate(draw, alt, 6.4, 2.7)
 
 
-def cell(joints: int, motions: int, reading: str = DAMPED) -> dict:
-    """Errors of window networks for a number of joints and of training motions."""
-    return row(reading, joints=joints, motions=motions)
-
-
 def states(joints: int, samples: int, units: int = 10) -> np.ndarray:
     """Test errors on random states, one for each seed."""
-    return np.array(row("random states", joints=joints, units=units, samples=samples)["test"])
+    return np.array(_row("random states", joints=joints, units=units, samples=samples)["test"])
 
 
 def two_joints(reading: str, motions: int, kind: str = "closed loop", taps: int = 5) -> np.ndarray:
     """Test errors on two joints, one for each seed, by how motions are followed."""
     how = {"reading": reading, "motions": motions, "kind": kind, "taps": taps}
-    return np.array(row("closed loops", **how)["test"])
+    return np.array(_row("closed loops", **how)["test"])
 
 
-def read(part: str):
+def _read(part: str):
     """A part of the result, like "windows" or "costs"."""
     return results.read("joints")[part]
 
 
-def row(part: str, **wanted) -> dict:
+def _row(part: str, **wanted) -> dict:
     """The one row of a part whose entries have these values."""
-    rows = [r for r in read(part) if all(r[key] == value for key, value in wanted.items())]
+    rows = [r for r in _read(part) if all(r[key] == value for key, value in wanted.items())]
     (found,) = rows
     return found
 
 
-def errors(joints: int, motions: int, what: str = "test", reading: str = DAMPED) -> np.ndarray:
+def errors(joints: int, motions: int, what: str = "test", reading: str = _DAMPED) -> np.ndarray:
     """One error for each seed of a cell: "test", "training", or "linear" of a linear filter."""
-    return np.array(cell(joints, motions, reading)[what])
+    return np.array(_row(reading, joints=joints, motions=motions)[what])
 
 
 def ladder(joints: int, what: str = "test") -> tuple[np.ndarray, list[np.ndarray]]:
     """Numbers of motions that were tried with so many joints, and the `errors` of each."""
-    rows = [r for r in read(DAMPED) if r["joints"] == joints]
+    rows = [r for r in _read(_DAMPED) if r["joints"] == joints]
     return np.array([r["motions"] for r in rows]), [np.array(r[what]) for r in rows]
 
 
-def numbers() -> list[int]:
+def _numbers() -> list[int]:
     """Numbers of joints that were tried."""
-    return sorted({row["joints"] for row in read(DAMPED)})
+    return sorted({row["joints"] for row in _read(_DAMPED)})
 
 
 # --- growth -------------------------------------------------------------------------------
@@ -194,7 +187,7 @@ def _crossing(motions, level) -> Callable:
 
 def law(level: float = 0.2) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Joints, motions that they need, exponents of a power law: medians first, then replicates."""
-    joints = np.array([n for n in numbers() if n >= 2])
+    joints = np.array([n for n in _numbers() if n >= 2])
     each = [_needed(n, level) for n in joints]
     motions = np.column_stack([np.append(value, drawn) for value, drawn in each])
     x = np.log(joints) - np.log(joints).mean()
@@ -215,7 +208,7 @@ def growth(level: float = 0.2) -> Measured:
 
 def scaled(kind: str = "real") -> tuple[np.ndarray, np.ndarray]:
     """Gains on acceleration, ``(networks, torque, joint)``, and the arm's inertia, as shares."""
-    pairs = read("pairs")
+    pairs = _read("pairs")
     unit = np.array(pairs["acceleration"]) / np.array(pairs["deviation"])[:, None]
     return np.array(pairs["gains"][kind]) * unit, np.array(pairs["inertia"]) * unit
 

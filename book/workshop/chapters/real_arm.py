@@ -103,7 +103,7 @@ def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))
 
 
-def cell(width: int, rate: int = _RATE) -> dict:
+def _cell(width: int, rate: int = _RATE) -> dict:
     """What the grid has for a window and a rate."""
     grid = results.read("real-arm")["grid"]
     (row,) = [r for r in grid if (r["width"], r["rate"]) == (width, rate)]
@@ -112,7 +112,7 @@ def cell(width: int, rate: int = _RATE) -> dict:
 
 def squares(width: int, model: str = "network", rate: int = _RATE) -> np.ndarray:
     """Mean squared errors of a model of the grid, ``(blocks, networks)``; others stand alone."""
-    errors = np.array(cell(width, rate)[model])
+    errors = np.array(_cell(width, rate)[model])
     return errors if model.startswith("network") else errors[:, None]
 
 
@@ -126,21 +126,21 @@ def variant(name: str, side: str = "test") -> np.ndarray:
     return np.array(results.read("real-arm")["variants"][name][side])
 
 
-def row(width: int) -> dict:
+def _row(width: int) -> dict:
     """Networks of a window on the whole recording, and on unrelated currents."""
     return results.read("real-arm")["windows"][str(width)]
 
 
 def _members(width: int, name: str) -> tuple[np.ndarray, list[np.ndarray]]:
     """An entry of the networks, and of each kind of nulls."""
-    found = row(width)
+    found = _row(width)
     return np.array(found["real"][name]), [np.array(x[name]) for x in found["nulls"].values()]
 
 
 def _gains(what: str, width: int) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """What a gain is in the identified model, in the networks, and in each kind of nulls."""
     name, wanted = WORTH[what]
-    return np.array(row(width)["identified"][wanted]), *_members(width, name)
+    return np.array(_row(width)["identified"][wanted]), *_members(width, name)
 
 
 def named(ensemble: dict) -> np.ndarray:
@@ -154,7 +154,7 @@ def named(ensemble: dict) -> np.ndarray:
 
 def excess(width: int = 21) -> Measured:
     """Share of velocity and acceleration filters, less the most that a kind of nulls gives."""
-    found = row(width)
+    found = _row(width)
     real, nulls = named(found["real"]), {n: named(x) for n, x in found["nulls"].items()}
     told = "; ".join(
         f"{n} {100 * x.mean():.0f} % (p {p_value(real.mean(), x, 'more'):.2f})"
@@ -206,7 +206,7 @@ def beyond_null(what: str = "friction", width: int = 11) -> Measured:
 
 def follow(what: str = "friction", width: int = 11) -> Measured:
     """Correlation over joints of gains with identified values, less that by chance (95 %)."""
-    unit = np.array(row(width)["deviations"][WORTH[what][0]])
+    unit = np.array(_row(width)["deviations"][WORTH[what][0]])
     true, real, nulls = _gains(what, width)
     true, real = true * unit, real * unit
     chance = max(float(np.percentile(_pearson(x * unit, true), 95)) for x in nulls)
@@ -233,7 +233,7 @@ def unique_beyond(what: str = "velocity", width: int = 21) -> Measured:
 
 def shares_follow(width: int = 21) -> Measured:
     """Correlation over joints of velocity's share in the own filter and friction's in current."""
-    true, (real, nulls) = np.array(row(width)["friction"]), _members(width, "share of velocity")
+    true, (real, nulls) = np.array(_row(width)["friction"]), _members(width, "share of velocity")
     r = float(_pearson(np.median(real, 0), true))
     typical = np.median(_pearson(real, true))  # of one network, as each of the nulls is
     chance = max(p_value(typical, _pearson(x, true), "more") for x in nulls)
@@ -243,7 +243,7 @@ def shares_follow(width: int = 21) -> Measured:
 
 def compensate_friction(width: int = 21) -> Measured:
     """Share of the hidden units' non-linear part that friction and rigid body explain."""
-    found = row(width)
+    found = _row(width)
     curved = np.array(found["curved"])
     told = ", ".join(significant(x, 2) for x in np.median(curved, 0))
     nulls = [np.median(x["curved"], axis=-1) for x in found["nulls"].values()]

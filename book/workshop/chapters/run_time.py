@@ -87,14 +87,14 @@ class PlannedTorque:
         return Feedforward(self.feedforward, self.feedback).start(reference, step)
 
 
-def reading(setup: str = JOINT_DAMPING.name) -> dict:
+def _reading(setup: str = JOINT_DAMPING.name) -> dict:
     """What the study found under one reading of the controller."""
     return results.read("run-time")["readings"][setup]
 
 
 def errors(line: str = NETWORK, setup: str = JOINT_DAMPING.name, part: str = "whole") -> np.ndarray:
     """A score of a feedforward, like "whole" or "largest", a value for each member."""
-    return np.array(reading(setup)["square"][line][part])
+    return np.array(_reading(setup)["square"][line][part])
 
 
 # --- what predicts it ---------------------------------------------------------------------
@@ -104,7 +104,7 @@ def scatter(
     predictor: str = "RMSS", width: int | None = None, setup: str = JOINT_DAMPING.name
 ) -> tuple[np.ndarray, np.ndarray]:
     """A predictor and the end-point error of networks of one window, or of all together."""
-    found = reading(setup)["scatter"]
+    found = _reading(setup)["scatter"]
     cells = [found[str(width)]] if width else list(found.values())
     return tuple(np.concatenate([cell[n] for cell in cells]) for n in (predictor, "end point"))
 
@@ -155,7 +155,7 @@ def predicts_kind(setup: str = JOINT_DAMPING.name) -> Measured:
 
 def _inside(loop: str, setup: str) -> tuple[np.ndarray, dict]:
     """Shares of the measured deviation that a model sees, and what a loop does by share."""
-    return np.array(results.read("run-time")["shares"]), reading(setup)["inside"][loop]
+    return np.array(results.read("run-time")["shares"]), _reading(setup)["inside"][loop]
 
 
 def unstable_at(setup: str = JOINT_DAMPING.name, late: int = 0) -> Measured:

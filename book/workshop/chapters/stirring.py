@@ -99,14 +99,14 @@ def error(
     rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name, width: int = 21
 ) -> np.ndarray:
     """RMS torque errors of both joints together on a test, N m, one for each day."""
-    found = row(setup)
+    found = _row(setup)
     rows = found["errors"][rival] if width == 21 else found["wider"][str(width)]
     return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))
 
 
 def pooled_rmss(rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name) -> np.ndarray:
     """RMSS by the test's own deviation, one for each day."""
-    return np.array(row(setup)["errors"][rival][learnt][asked])[:, 0]
+    return np.array(_row(setup)["errors"][rival][learnt][asked])[:, 0]
 
 
 def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
@@ -114,14 +114,14 @@ def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
     return exact(setup)(q, qd, qdd)
 
 
-def row(setup: str = JOINT_DAMPING.name) -> dict:
+def _row(setup: str = JOINT_DAMPING.name) -> dict:
     """What the study found with one of its set-ups."""
     return results.read("stirring")["setups"][setup]
 
 
 def hand(name: str, motion: str = "circles", setup: str = JOINT_DAMPING.name) -> np.ndarray:
     """The hand's RMS error with a feedforward: median over a family, one for each day, mm."""
-    return np.median(row(setup)["hands"][name][motion], axis=1)
+    return np.median(_row(setup)["hands"][name][motion], axis=1)
 
 
 def turns() -> Measured:

@@ -28,7 +28,7 @@ _EVERY, _SHOWN = 4, 10  # samples of the square from test to test, and of those 
 _BUDGET = 540  # stored numbers of the paper's network with ten hidden units
 
 # Torques on the square: each rival at its largest size within the budget, or at its smallest.
-TORQUES = results.FOLDER / "rivals-torques.npz"
+_TORQUES = results.FOLDER / "rivals-torques.npz"
 _INPUTS = ("positions", "exact states")  # windows of measured positions, or states without noise
 
 
@@ -88,7 +88,7 @@ def _floors(sets: dict) -> dict:
 
 @study
 def rivals() -> dict:
-    """Every line of `_LINES` at all its sizes, on several days; torques go into `TORQUES`."""
+    """Every line of `_LINES` at all its sizes, on several days; torques go into `_TORQUES`."""
     rows, torques, floor = {}, {}, None
     for day in range(1, _RECORDINGS + 1):
         sets, asked = recorded(day)
@@ -142,10 +142,10 @@ def _keep(torques: dict, asked: Cases) -> None:
     """Measured and predicted torques of the square, shape (rivals + 1, runs, samples, joint)."""
     shape = (-1, GRID**2, len(asked) // GRID**2, 2)
     values = np.stack([asked.torque, *torques.values()]).reshape(shape)
-    part = TORQUES.with_name(TORQUES.name + ".part")
+    part = _TORQUES.with_name(_TORQUES.name + ".part")
     with open(part, "wb") as file:
         np.savez_compressed(file, names=["measured", *torques], torque=values.astype(np.float16))
-    part.replace(TORQUES)
+    part.replace(_TORQUES)
 
 
 _DAYS, _WIDTH, _DIRECTIONS = 6, 21, 10  # of the intervals; principal directions

@@ -24,7 +24,7 @@ from workshop.report.code_hash import study
 _DAYS = (1, 2, 3, 4, 5)
 _LATER = 100  # days until the same is recorded again; twice that: to choose settings
 _WIDTH = 21  # from which states are estimated: the best of Table 4-1
-KINDS = ("exact", "positions only")
+_KINDS = ("exact", "positions only")
 POINTS, _STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 
@@ -106,7 +106,7 @@ def _table(over: str, cells: int) -> Rival:
 def rivals_tables(days=_DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
-    for kind in KINDS:
+    for kind in _KINDS:
         sets = {day: _day(day, kind) for day in days}
         for over, cells in [("nearest", 0), *((o, n) for o, some in _CELLS.items() for n in some)]:
             found = []
@@ -118,7 +118,7 @@ def rivals_tables(days=_DAYS) -> dict:
         "days": list(days),
         "floor": [_floor(day) for day in days],
         "rows": rows,
-        "around": {kind: _around(kind, days) for kind in KINDS},
+        "around": {kind: _around(kind, days) for kind in _KINDS},
         "full": _full(),
     }
 
@@ -226,9 +226,9 @@ def rivals_cmac(days=_DAYS) -> dict:
         *({"layers": _LAYERS, "width": _HASHED_WIDTH, "slots": slots} for slots in _SLOTS),
     ]
     rows = []
-    for kind in KINDS:
+    for kind in _KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for setting in settings if kind == KINDS[1] else settings[: len(_WIDTHS)]:
+        for setting in settings if kind == _KINDS[1] else settings[: len(_WIDTHS)]:
             found = [_cmac(sets[day], setting) for day in days]
             rows.append({"kind": kind, **setting, **_over_days(found)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
@@ -291,7 +291,7 @@ def _folds(training: Cases) -> list[tuple[Cases, Cases]]:
 
 # Polynomials and Fourier series
 
-RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
+_RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 
 # Families of functions and their highest degree or order.
 _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
@@ -305,12 +305,12 @@ _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 def rivals_bases(days=_DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen."""
     rows, chosen = [], {}
-    for kind in KINDS:
+    for kind in _KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for name, (make, highest) in list(_BASES.items())[: None if kind == KINDS[1] else 1]:
+        for name, (make, highest) in list(_BASES.items())[: None if kind == _KINDS[1] else 1]:
             for order in range(1, highest + 1):
                 found = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
-                for k, ridge in enumerate(RIDGES):
+                for k, ridge in enumerate(_RIDGES):
                     rows.append(
                         {"kind": kind, "basis": name, "order": order, "ridge": ridge}
                         | _over_days([each[k] for each in found])
@@ -323,7 +323,7 @@ def rivals_bases(days=_DAYS) -> dict:
 def _by_ridge(rival: Rival, training: Cases, sets: dict[str, Cases]) -> list[dict]:
     """Errors for each penalty; the functions of a set are computed once."""
     rival.fit(training)
-    fitted = [rival.with_ridge(ridge) for ridge in RIDGES]
+    fitted = [rival.with_ridge(ridge) for ridge in _RIDGES]
     found = [{"count": each.count()} for each in fitted]
     for name, cases in sets.items():
         design = np.concatenate([rival.design(x) for x in np.array_split(cases.x, 5)])
@@ -339,7 +339,7 @@ def _left_out(make, highest: int, training: Cases) -> dict:
     for rest, out in _folds(training):
         for order in range(1, highest + 1):
             errors = _by_ridge(make(order), rest, {"out": out})
-            for ridge, row in zip(RIDGES, errors):
+            for ridge, row in zip(_RIDGES, errors):
                 key = order, ridge
                 total[key] = total.get(key, 0.0) + row["out"] ** 2
     order, ridge = min(total, key=total.get)

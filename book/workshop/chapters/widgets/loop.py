@@ -11,7 +11,7 @@ from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VIS
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.beyond.studies.page.learner import LEARNERS, LOADS, MOTIONS, SPEEDS
+from workshop.beyond.studies.page.learner import SPEEDS
 from workshop.report import results
 
 _SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # estimates, by place among the parameters
@@ -41,13 +41,16 @@ class LoopLearner(CurveWidget):
     """Pick a load, friction, a learner and its rate; see the error fall, and the estimates."""
 
     def __init__(self, **options):
-        motions = np.arange(1, MOTIONS + 1)
+        found = results.read("loop-learner")["loads"]
+        loads, learners = list(map(int, found)), list(found["0"])
+        number = len(found["0"]["none"]["errors"][0][0])
+        motions = np.arange(1, number + 1)
         super().__init__(
             _curves,
             [
-                Choice("load", "Load", {m: f"{m} kg" for m in LOADS}, 5, "slider"),
+                Choice("load", "Load", {m: f"{m} kg" for m in loads}, 5, "slider"),
                 Choice("friction", "Friction", {False: "off", True: "on"}, True, "switch"),
-                Choice("learner", "Learner", list(LEARNERS), LEARNERS[1]),
+                Choice("learner", "Learner", learners, learners[1]),
                 Choice("rate", "Rate", list(SPEEDS), "as in the chapter"),
             ],
             [
@@ -63,7 +66,7 @@ class LoopLearner(CurveWidget):
                     "Estimates over true values",
                     _LABELS,
                     "motions done, number",
-                    np.arange(MOTIONS + 1),
+                    np.arange(number + 1),
                     y_fit=True,
                     limits=_BOUNDS,
                 ),
@@ -91,6 +94,6 @@ def _curves(load, friction, learner, rate) -> dict:
     errors, estimates = found[learner]
     relative = estimates[int(friction), k] / _truth(load)
     curves = {name: np.clip(relative[:, place], *_BOUNDS) for name, place in _SHOWN.items()}
-    nobody = found[LEARNERS[0]][0][int(friction), 0]
+    nobody = found["none"][0][int(friction), 0]
     shown = np.minimum(errors[int(friction), k], _MOST_ERROR)
     return {"error": shown, "nobody": nobody, **curves}

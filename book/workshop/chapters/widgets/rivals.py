@@ -14,7 +14,8 @@ from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.lineup import REFERENCE
-from workshop.beyond.studies.rivals import GRID, TORQUES
+from workshop.beyond.studies.rivals import GRID
+from workshop.report import results
 
 _MEASURED = "measured"
 
@@ -32,7 +33,12 @@ class RivalPicker(CurveWidget):
     the measured ones first.
     """
 
-    def __init__(self, path: Path = TORQUES, rival: str = "linear filter", **options):
+    def __init__(
+        self,
+        path: Path = results.FOLDER / "rivals-torques.npz",
+        rival: str = "linear filter",
+        **options,
+    ):
         with np.load(path) as kept:
             names, torque = kept["names"].tolist(), kept["torque"].astype(float)
         self._torque = dict(zip(names, torque))

@@ -16,7 +16,8 @@ from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from workshop.beyond.studies.loop.motions import Circles, stirred
-from workshop.beyond.studies.loop.stirring import PICKER, PLACES, SHOWN
+from workshop.beyond.studies.loop.stirring import PLACES, SHOWN
+from workshop.report import results
 
 _HERE = Path(__file__).parent
 
@@ -58,7 +59,7 @@ class StirringPicker(CurveWidget):
     workspace = t.Dict(help="lengths, reach and part that is drawn, m", read_only=True)
     workspace.tag(sync=True)
 
-    def __init__(self, path: Path = PICKER, **options):
+    def __init__(self, path: Path = results.FOLDER / "stirring-picker.npz", **options):
         with np.load(path) as kept:
             names = kept["names"].tolist()
             self._hand = dict(zip(names, kept["hand"].astype(float)))

@@ -64,7 +64,7 @@ from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
 from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import (
-    VERDICTS,
+    _VERDICTS,
     Measured,
     _fresh,
     _shares,
@@ -137,7 +137,7 @@ class Claim:
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
         self.place()
-        one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
+        one_of(f"verdict of claim {self.id!r}", self.verdict, _VERDICTS)
         testable = self.verdict != "not testable"
         if testable != bool(self.band) or (testable and not self.is_measured):
             raise ValueError(

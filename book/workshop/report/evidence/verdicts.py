@@ -25,7 +25,7 @@ import numpy as np
 from ddlib._check import integer, one_of
 
 # All verdicts. The first three are decided by bands, best first.
-VERDICTS = (
+_VERDICTS = (
     "reproduced",
     "qualitative",
     "not reproduced",
@@ -155,7 +155,7 @@ def _fresh(found: Mapping[str, float]) -> str:
 
 def _stands(written: str, found: Mapping[str, float]) -> bool:
     """Whether shares of draws do not contradict a written verdict; see the module."""
-    one_of("written", written, VERDICTS)
+    one_of("written", written, _VERDICTS)
     if written == "undecided":
         return max(found.values()) < _CONTRADICTS
     return found.get(written, 0.0) >= STANDS

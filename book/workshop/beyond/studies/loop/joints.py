@@ -1,6 +1,6 @@
 """Section 7.1, joints three and four: the window network on arms of one to seven joints.
 
-Every training set has `CASES` windows, however many motions they come from.
+Every training set has `_CASES` windows, however many motions they come from.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from workshop.beyond.studies.loop import chain as arms
 from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 
-CASES = 750  # windows of a training set: what five motions have, every 20 ms
+_CASES = 750  # windows of a training set: what five motions have, every 20 ms
 _STEPS, _DECAY = 30, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 60 and this decay
 
 # Training motions by number of joints.
@@ -66,15 +66,15 @@ def solved(windows, torque, test, hidden=paper.HIDDEN_UNITS, seed=0, **options) 
 
 
 def sets(made: arms._Chain, motions: int, seed: int, **options) -> arms._Sample:
-    """A training set of `CASES` windows from so many motions of an arm."""
+    """A training set of `_CASES` windows from so many motions of an arm."""
     drawn = arms.extents(made.joints, motions, seed)
-    return arms.recorded(made, drawn, seed, **options).thinned(CASES)
+    return arms.recorded(made, drawn, seed, **options).thinned(_CASES)
 
 
 def tested(made: arms._Chain, **options) -> arms._Sample:
     """The test motions, every fourth of their windows."""
     drawn = arms.extents(made.joints, TEST_MOTIONS, TEST_SEED)
-    return arms.recorded(made, drawn, TEST_SEED, **options).thinned(CASES)
+    return arms.recorded(made, drawn, TEST_SEED, **options).thinned(_CASES)
 
 
 def linear(training: arms._Sample, test: arms._Sample) -> float:
@@ -196,7 +196,7 @@ def _cut(loop, spacing: int, motions: int) -> list[arms._Sample]:
     for first, last in pairwise(ends):
         x, y = windows[first:last], torque[first:last]
         flat = x.reshape(-1, *x.shape[2:]), y.reshape(-1, 2)
-        made.append(arms._Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(CASES))
+        made.append(arms._Sample(*flat, np.zeros((len(flat[1]), 0)), last - first).thinned(_CASES))
     return made
 
 
@@ -245,7 +245,7 @@ def _pairs(joints: int = 4, seeds: int = _SEEDS) -> dict:
         whole = arms.recorded(made, arms.extents(joints, _MAIN, seed), seed)
         runs = whole.torque.reshape(_MAIN, -1, joints)
         torques = {"real": runs, "unrelated": surrogate("phases", runs, seed)}
-        step = -(-len(whole.torque) // CASES)
+        step = -(-len(whole.torque) // _CASES)
         for kind, torque in torques.items():
             x, y = whole.windows[::step], torque.reshape(-1, joints)[::step]
             model = solved(x, y, test.pair, seed=seed).model[0]
@@ -312,7 +312,7 @@ def joints() -> dict:
     """All of it; what each part holds stands with its function."""
     second = {n: (5, _MAIN, 40) for n in (1, 2, 3, 4)}
     return {
-        "cases": CASES,
+        "cases": _CASES,
         "steps": _STEPS,
         "seeds": _SEEDS,
         "test motions": TEST_MOTIONS,

@@ -40,7 +40,7 @@ _SMALL = {"radius": (0.01, 0.025), "distance": (0.86, 0.865), "bearing_deg": (-5
 CELLS = 6  # along each axis of the states
 
 # Parts of a state: position, velocity and acceleration of the shoulder, then of the elbow.
-AXES = {
+_AXES = {
     "positions": [0, 3],
     "velocities": [1, 4],
     "accelerations": [2, 5],
@@ -215,7 +215,7 @@ def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording
 
 
 def states(recording: Recording, setup: Setup) -> np.ndarray:
-    """Every fifth true state of a recording's motions, shape (states, 6), as in `AXES`."""
+    """Every fifth true state of a recording's motions, shape (states, 6), as in `_AXES`."""
     return true_states(recording, setup)[:, ::5].reshape(-1, 6)
 
 
@@ -257,7 +257,7 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
     found: dict = {"tied": {}}
     for name, x in first.items():
         found["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
-    for (part, axes), (name, other) in product(AXES.items(), (pair, pair[::-1])):
+    for (part, axes), (name, other) in product(_AXES.items(), (pair, pair[::-1])):
         mine = (first[name] / deviation)[:, axes]
         found.setdefault(part, {})[name] = {
             kind: {

@@ -38,7 +38,7 @@ _DAYS, _MEMBERS = 10, 40  # of training; members of each family in a test
 _WIDTH, _WIDER = 21, (11, 41)
 
 _NAMES = ("network", "two units", "linear filter", "identified")
-PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.chapters.widgets.stirring`
+_PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.chapters.widgets.stirring`
 
 # Circles of the picker: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow.
 PLACES = {
@@ -237,7 +237,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
         reached[fine, e] = True
         hand[:, fine, e] = off(setup, through(setup, torques, reference))
         torque[:, fine, e] = torques[1:4][:, :, shown]
-    part = PICKER.with_name(PICKER.name + ".part")
+    part = _PICKER.with_name(_PICKER.name + ".part")
     with open(part, "wb") as file:
         np.savez_compressed(
             file,
@@ -246,7 +246,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
             hand=hand.reshape(-1, *shape).astype(np.float32),
             torque=torque.reshape(3, *shape, -1, 2).astype(np.float16),
         )
-    os.replace(part, PICKER)
+    os.replace(part, _PICKER)
 
 
 @study

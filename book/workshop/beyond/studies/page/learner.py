@@ -22,7 +22,7 @@ from workshop.beyond.studies.loop.runs.adaptive import (
 )
 from workshop.report.code_hash import study
 
-LOADS = (0, 5)  # kg, in the hand
+_LOADS = (0, 5)  # kg, in the hand
 
 # Rates of adaptation, as multiples of the chapter's.
 SPEEDS = {
@@ -32,8 +32,8 @@ SPEEDS = {
     "a hundred times": 100.0,
 }
 
-LEARNERS = ("none", "Slotine & Li", "Craig, Hsu & Sastry", "feedback-error learning")
-MOTIONS = 6  # one after another, with random extents
+_LEARNERS = ("none", "Slotine & Li", "Craig, Hsu & Sastry", "feedback-error learning")
+_MOTIONS = 6  # one after another, with random extents
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
     arm = with_load(setup.arm, load)
     begin = make("with friction", setup).estimate  # the arm without a load, and no friction
     laws = {
-        LEARNERS[0]: make("with friction", setup, factor=0.0),
-        LEARNERS[1]: make("with friction", setup, factor=factor),
-        LEARNERS[2]: make("measured acceleration", setup, factor=factor),
-        LEARNERS[3]: _Behind(_FeedbackError(begin, factor), SMOOTH),
+        _LEARNERS[0]: make("with friction", setup, factor=0.0),
+        _LEARNERS[1]: make("with friction", setup, factor=factor),
+        _LEARNERS[2]: make("measured acceleration", setup, factor=factor),
+        _LEARNERS[3]: _Behind(_FeedbackError(begin, factor), SMOOTH),
     }
     errors, estimates = [], [np.broadcast_to(begin, (len(laws), runs, len(_FULL)))]
-    for extents in _drawn(1, MOTIONS, seed=11):
+    for extents in _drawn(1, _MOTIONS, seed=11):
         done = trial(laws, np.tile(extents, (runs, 1)), arm, effects)
         laws = done.laws
         errors.append(np.minimum(done.settled, 1e3))  # of a stopped run it is infinite
@@ -97,13 +97,13 @@ def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
     return {
         name: {
             "errors": errors[k].reshape(*shape, -1),
-            "estimates": estimates[k].reshape(*shape, MOTIONS + 1, -1),
+            "estimates": estimates[k].reshape(*shape, _MOTIONS + 1, -1),
         }
-        for k, name in enumerate(LEARNERS)
+        for k, name in enumerate(_LEARNERS)
     }
 
 
 @study
 def loop_learner() -> dict:
     """Errors (mm) and estimates of all learners, by load."""
-    return {"loads": {str(load): _learned(load) for load in LOADS}}
+    return {"loads": {str(load): _learned(load) for load in _LOADS}}

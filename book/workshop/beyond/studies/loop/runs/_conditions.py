@@ -24,9 +24,9 @@ from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.networks import BySolver
 from workshop.beyond.rivals.protocol import Cases, Estimating
 from workshop.beyond.studies.loop import (
+    _learning as learning,
     joints,
     learners,
-    learning,
     motions,
     run_time_parts as run_time,
     stirring,
@@ -122,7 +122,7 @@ def _windows(seeds: int) -> dict:
         for count in (300, 750):
             part = recorded(made, extents(4, 20, seed), seed).thinned(count)
             found[f"{count} of twenty"].append(_error(part, test, seed))
-        five = recorded(made, extents(4, 5, seed), seed).thinned(joints.CASES)
+        five = recorded(made, extents(4, 5, seed), seed).thinned(joints._CASES)
         found["as it is"].append(_error(five, test, seed))
         decay, steps = _chosen_decay(five, seed)
         found["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
