@@ -444,8 +444,8 @@ function build({ model, el }) {
     const all = school.names[layer];
     const none = all.filter((k) => SHORT[spec.classes[k]] === undefined).length;
     const some = none === all.length ? "None" : String(all.length - none);
-    const left = none ? `, ${none} ${none === 1 ? "stays" : "stay"} without` : "";
-    return `${some} of the ${all.length} ${layer} filters ${all.length - none === 1 ? "has" : "have"} a name at the end${left}.`;
+    const left = none && none < all.length ? `, ${none} ${none === 1 ? "stays" : "stay"} without` : "";
+    return `${some} of the ${all.length} ${layer} filters ${all.length - none <= 1 ? "has" : "have"} a name at the end${left}.`;
   }
   function restart() {
     running = false;
