@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 import nbformat
 import pytest
-from book_pages import BACK_MATTER, CHAPTERS, PAGES, source
+from book_pages import BACK_MATTER, CHAPTERS, LESSONS, PAGES, source
 from bookkeeping import ends_with_a_bare_value, lines_of_bookkeeping, raw_prints, shows_something
-from chapter_rules import CHAPTER, EVERYWHERE, FROM_SCRATCH, visible_code_teaches
+from chapter_rules import CHAPTER, EVERYWHERE, FROM_SCRATCH, LESSON, visible_code_teaches
 
 NOTEBOOKS = [page for page in PAGES if (path := source(page)) and path.suffix == ".ipynb"]
 
@@ -16,12 +18,14 @@ def notebooks() -> dict:
     return {page: nbformat.read(source(page), as_version=4) for page in NOTEBOOKS}
 
 
-@pytest.mark.parametrize("rule", (*EVERYWHERE, *CHAPTER), ids=lambda rule: rule.__name__)
+@pytest.mark.parametrize("rule", (*EVERYWHERE, *CHAPTER, *LESSON), ids=lambda rule: rule.__name__)
 def test_notebooks_keep_to_the_rule(rule, notebooks):
-    pages = CHAPTERS if rule in CHAPTER else NOTEBOOKS
+    pages = (
+        [*LESSONS, *FROM_SCRATCH] if rule in LESSON else CHAPTERS if rule in CHAPTER else NOTEBOOKS
+    )
     if rule is visible_code_teaches:
         pages = [page for page in pages if page not in FROM_SCRATCH]
-    assert len(pages) >= 20
+    assert len(pages) >= 13
     assert not {page: wrong for page in pages if (wrong := rule(notebooks[page]))}
 
 
@@ -50,6 +54,24 @@ def test_a_planted_line_of_bookkeeping_is_seen():
     assert lines_of_bookkeeping(teaching) == []
     for line in BOOKKEEPING:
         assert lines_of_bookkeeping(f"{teaching}for x in y:\n    {line}\n"), line
+
+
+def test_another_order_of_a_lesson_is_seen(notebooks):
+    lesson = deepcopy(notebooks[LESSONS[0]])
+    cells = lesson.cells
+    figure = next(k for k, cell in enumerate(cells) if "mystnb" in cell.metadata)
+
+    def against() -> set[str]:
+        return {rule.__name__ for rule in LESSON if rule(lesson)}
+
+    assert not against()
+    cells.insert(9, cells.pop(figure))
+    assert against() == {"result_stands_first"}
+    cells.insert(figure, cells[9])
+    cells[0].source += "\n\n**The question.** Which?"
+    assert against() == {"title_and_thesis_stand_alone"}
+    cells[figure + 1].source += "\n\nThe answer first."
+    assert against() == {"title_and_thesis_stand_alone", "three_lines_follow"}
 
 
 def test_outputs_are_seen():

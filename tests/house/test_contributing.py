@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 from book_pages import ROOT
-from chapter_rules import CHAPTER, EVERYWHERE
+from chapter_rules import CHAPTER, EVERYWHERE, LESSON
 
 from ddlib.setups import SETUPS
 from workshop.chapters import dynamics
@@ -90,7 +90,7 @@ def chapter():
     return run(source)["chapter"]
 
 
-@pytest.mark.parametrize("rule", (*EVERYWHERE, *CHAPTER), ids=lambda rule: rule.__name__)
+@pytest.mark.parametrize("rule", (*EVERYWHERE, *CHAPTER, *LESSON), ids=lambda rule: rule.__name__)
 def test_the_chapter_keeps_to_the_rules(rule, chapter):
     assert not rule(nbformat.reads(nbformat.writes(chapter), as_version=4))
 

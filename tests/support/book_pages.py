@@ -14,6 +14,7 @@ TOC = yaml.safe_load((ROOT / "_toc.yml").read_text(encoding="utf-8"))
 CHAPTERS = [
     page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
 ]
+LESSONS = [page["file"] for part in TOC["parts"][:3] for page in part["chapters"]]
 BACK_MATTER = [
     page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
 ]

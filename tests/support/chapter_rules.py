@@ -12,9 +12,10 @@ from bookkeeping import (
     raw_prints,
     shows_something,
 )
+from needed import needed
 
 MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 18, 84  # "about 15", and what a page has room for
-MAX_THESIS = 200  # characters
+MAX_THESIS, MAX_PROMISE = 200, 30  # characters of a thesis, words of *You will*
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
 FROM_SCRATCH = {"book/use-it-on-your-arm"}  # open cells run alone, so they import and print
@@ -43,6 +44,10 @@ def headings(text: str, level: int) -> list[str]:
 
 def prose(notebook) -> str:
     return "\n\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+
+
+def paragraphs(text: str) -> list[str]:
+    return re.split(r"\n\s*\n", text.strip())
 
 
 # --- every notebook -----------------------------------------------------------------------
@@ -114,7 +119,7 @@ EVERYWHERE = (
 
 
 def title_then_thesis(notebook) -> list:
-    title, thesis = re.split(r"\n\s*\n", notebook.cells[0].source.strip())[:2]
+    title, thesis = paragraphs(notebook.cells[0].source)[:2]
     titled = re.fullmatch(r"(\([\w-]+\)=\n)?# .+", title)
     plain = not re.match(r"[#>`:|*-]+ |\*\*", thesis) and len(thesis) <= MAX_THESIS
     return [] if titled and plain else [title, thesis]
@@ -161,3 +166,41 @@ def answers_are_folded(notebook) -> list:
 
 
 CHAPTER = (title_then_thesis, opening, closing, answers_are_folded)
+
+
+# --- every lesson of Parts I to III -------------------------------------------------------
+
+
+def before_the_promise(notebook) -> list:
+    """The cells before the first one that has *You will* in it."""
+    promise = (k for k, cell in enumerate(notebook.cells) if "**You will**" in cell.source)
+    return notebook.cells[: next(promise, 0)]
+
+
+def title_and_thesis_stand_alone(notebook) -> list:
+    cells = [c.source for c in before_the_promise(notebook) if c.cell_type == "markdown"]
+    return [] if len(cells) == 1 and len(paragraphs(cells[0])) == 2 else cells or ["no title"]
+
+
+def result_stands_first(notebook) -> list:
+    """One cell shows something before the promise: a figure with its caption, or a widget."""
+    code = [cell for cell in before_the_promise(notebook) if cell.cell_type == "code"]
+    shown = [cell for cell in code if "remove-cell" not in tags(cell)]
+    widgets = [code[place] for place in needed([cell.source for cell in code])]
+    results = [c for c in shown if c.metadata.get("mystnb", {}).get("figure") or c in widgets]
+    folded = all("hide-input" in tags(cell) for cell in shown)
+    return [] if len(shown) == len(results) == 1 and folded else [len(shown), len(results)]
+
+
+def three_lines_follow(notebook) -> list:
+    """*You will* in one sentence, *You need*, *Time to run*: a paragraph each, nothing else."""
+    cell = notebook.cells[len(before_the_promise(notebook))]
+    lines = paragraphs(cell.source)
+    begins = ("**You will** ", "**You need** ", "**Time to run** {runtime}`")
+    if len(lines) != 3 or not all(map(str.startswith, lines, begins)):
+        return lines
+    words = lines[0].split()[2:]
+    return [] if len(words) <= MAX_PROMISE and not re.search(r"[.?!] ", lines[0]) else words
+
+
+LESSON = (title_and_thesis_stand_alone, result_stands_first, three_lines_follow)
