@@ -8,7 +8,7 @@ from ddlib.learning import Weights
 from workshop.beyond.others import staubli
 from workshop.beyond.studies import tx40
 from workshop.beyond.studies.tx40 import (
-    BLOCKS,
+    _BLOCKS,
     Ridge,
     Windowed,
     identified,
@@ -36,7 +36,7 @@ def test_windows_surround_the_same_moments():
 
 def test_no_window_reaches_from_one_side_to_the_other():
     data, seen, half = Windowed.of(100, 81), np.zeros(820, int), 0.4
-    for block in range(BLOCKS):
+    for block in range(_BLOCKS):
         training, test = data.fold(block)
         seen += test
         assert not (training & test).any() and training.sum() > 400

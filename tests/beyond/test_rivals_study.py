@@ -13,7 +13,7 @@ from workshop.report import results
 def test_the_budget_is_the_papers_network():
     weights = Weights.random(1, rivals._SAMPLES)[0]
     assert weights.count(biases=True) + 4 == rivals._BUDGET
-    rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup.REFERENCE]
+    rows = [r for r in results.read("rivals")["rows"] if r["rival"] == lineup._REFERENCE]
     assert max(r["count"] for r in rows) == rivals._BUDGET
 
 
@@ -33,7 +33,7 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     with np.load(tmp_path / "torques.npz") as kept:
         assert kept["names"].tolist() == ["measured", "nearest", "filter"]
         _, asked = rivals.recorded(1)
-        wanted = asked.torque.reshape(rivals.GRID**2, 30, 2)
+        wanted = asked.torque.reshape(rivals._GRID**2, 30, 2)
         np.testing.assert_allclose(kept["torque"][0], wanted, rtol=1e-3, atol=1e-3)
 
 

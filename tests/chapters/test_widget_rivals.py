@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.studies.lineup import REFERENCE
-from workshop.beyond.studies.rivals import _TORQUES, GRID
+from workshop.beyond.studies.lineup import _REFERENCE
+from workshop.beyond.studies.rivals import _GRID, _TORQUES
 from workshop.chapters.widgets.rivals import _MEASURED, RivalPicker
 
 
@@ -17,9 +17,9 @@ def test_curves_are_those_of_the_place_and_the_rival_on_the_page_too(picker):
     with np.load(_TORQUES) as file:
         names, torque = file["names"].tolist(), file["torque"].astype(float)
     picker.shoulder, picker.elbow, picker.rival = 2, 9, "linear filter"
-    run = 1 * GRID + 8  # the elbow changes fastest
+    run = 1 * _GRID + 8  # the elbow changes fastest
     for j, joint in enumerate(("shoulder", "elbow")):
-        for line, name in ((_MEASURED,) * 2, (REFERENCE,) * 2, ("rival", "linear filter")):
+        for line, name in ((_MEASURED,) * 2, (_REFERENCE,) * 2, ("rival", "linear filter")):
             wanted = torque[names.index(name), run, :, j]
             np.testing.assert_array_equal(picker.curves[f"{joint}, {line}"], wanted)
     scale = torque[0].reshape(-1, 2).std(0)

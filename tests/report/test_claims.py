@@ -140,10 +140,10 @@ def test_replicates_decide(finds):
     ):
         finds(2.0, np.repeat([2.0, 9.0], [good, 100 - good]))
         claim = make()
-        assert (claim.fresh(), claims.sure(claim)) == (fresh, sure)
+        assert (claim.fresh(), claim.sure()) == (fresh, sure)
         assert claim.judge() == sure.split(",")[0]
     finds(2.0, np.repeat([2.0, 9.0], [60, 40]))
-    told = claims.sure(make(verdict="undecided"))
+    told = make(verdict="undecided").sure()
     assert told == "undecided: 60 % reproduced, 40 % not reproduced of draws"
     for good, verdict in ((99, "undecided"), (100, "reproduced"), (0, "not reproduced")):
         finds(2.0, np.repeat([2.0, 9.0], [good, 100 - good]))
@@ -152,7 +152,7 @@ def test_replicates_decide(finds):
         for draws in ([2.0] * 100, None):  # all agree; without draws one value decides
             finds(2.0, draws)
             assert make(verdict=planted).judge() == "reproduced"
-    assert make().shares() == {} and claims.sure(make()) == "reproduced"
+    assert make().shares() == {} and make().sure() == "reproduced"
 
 
 def test_by_construction_is_measured_all_the_same(finds):
@@ -168,7 +168,7 @@ def test_not_testable_may_tell_where_it_would_turn(finds):
     claim = make(verdict="not testable", band={})
     finds(2.0, [2.0, 9.0])
     assert claim.judge() == claim.fresh() == "not testable"
-    assert claims.here(claim) == "text" and wall._bands(claim) == "not judged"
+    assert claim.here() == "text" and wall._bands(claim) == "not judged"
     assert claim.shares() == {}
 
 
@@ -212,7 +212,7 @@ def test_printed_numbers_keep_their_digits(tmp_path):
     for text, shown in (("0.10", "0.10"), ("700000", "700,000"), ("1.2 ms", "1.2 ms")):
         path.write_text(entry % text)
         (claim,) = claims.load(path)
-        assert claims.printed(claim) == shown
+        assert claim.as_printed() == shown
         assert isinstance(claim.printed, str) or claim.printed == float(text)
 
 
@@ -277,6 +277,6 @@ def test_a_sentence_is_judged_again_on_another_arm():
     for first, again in pairs:
         assert first.id == again.again and first.id in kept and again.id not in kept
         assert first.place() == again.place(), "another place of the paper"
-        assert claims.printed(first) == claims.printed(again)
+        assert first.as_printed() == again.as_printed()
         same = (first.band, first.loose) == (again.band, again.loose)
         assert same or again.id in other, again.id

@@ -51,7 +51,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         assert f"<b>{cards.worded(claim, claim.judge())}</b>" in head
         assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
         own = claim.printed == claims._OWN
-        assert ("This book's own claim" if own else typeset(claims.printed(claim))) in inside
+        assert ("This book's own claim" if own else typeset(claim.as_printed())) in inside
         page = [] if claim.chapter == _LEDGER else [claim.chapter]
         assert re.findall(r"\]\(([\w-]+)\.ipynb\)", inside) == page
         code = f'<a href="../_modules/{code_of(claim)}">code</a>'

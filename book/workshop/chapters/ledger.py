@@ -46,7 +46,7 @@ _SETS = ("random set A", "random set B", "trajectory 6")  # The data sets of Tab
 
 
 @dataclass(frozen=True)
-class Markdown:
+class _Markdown:
     """Text that a notebook shows as Markdown."""
 
     text: str
@@ -55,35 +55,35 @@ class Markdown:
         return self.text
 
 
-def cards(kind: str) -> Markdown:
+def cards(kind: str) -> _Markdown:
     """The cards of a kind: word, sentence and signs outside; a grid and all rows inside."""
-    return Markdown("\n\n".join(map(_card, of_kind(kind))))
+    return _Markdown("\n\n".join(map(_card, of_kind(kind))))
 
 
-def lists() -> Markdown:
+def lists() -> _Markdown:
     """All rows that hold by construction, and all that cannot be tested: a list each."""
     folds = []
     for verdict in LISTS:
         rows = [claim for claim in load() if claim.verdict == verdict]
         head = f"{mark(verdict)} <b>{len(rows)} rows</b> <span>{verdict}: {_LISTED[verdict]}</span>"
         folds.append(_fold(verdict.replace(" ", "-"), verdict, head, [_tiles(rows)]))
-    return Markdown("\n\n".join(folds))
+    return _Markdown("\n\n".join(folds))
 
 
-def folded(name: str, head: str, table: Table) -> Markdown:
+def folded(name: str, head: str, table: Table) -> _Markdown:
     """A table to open."""
     head = f'<span class="sign"></span> <b>table</b> <span>{head}</span>'
-    return Markdown(_fold(name, "", head, [table._repr_markdown_()]))
+    return _Markdown(_fold(name, "", head, [table._repr_markdown_()]))
 
 
-def legend() -> Markdown:
+def legend() -> _Markdown:
     """What each sign means; with a script they are buttons that filter."""
     told = {word: f"{word}, {OWN[word]}" for word in ("reproduced", "not reproduced", "undecided")}
     signs = (
         f'<span data-verdict="{word}">{mark(word)} {told.get(word, word)}</span>'
         for word in (*WORDS, *LISTS)
     )
-    return Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
+    return _Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
 
 
 def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:

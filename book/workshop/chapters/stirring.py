@@ -104,11 +104,6 @@ def error(
     return np.sqrt((np.array(rows[learnt][asked])[:, 1:] ** 2).mean(-1))
 
 
-def pooled_rmss(rival: str, learnt: str, asked: str, setup: str = JOINT_DAMPING.name) -> np.ndarray:
-    """RMSS by the test's own deviation, one for each day."""
-    return np.array(_row(setup)["errors"][rival][learnt][asked])[:, 0]
-
-
 def needed(setup: Setup, q, qd, qdd) -> np.ndarray:
     """Torque of the arm's equations with its friction, N m."""
     return exact(setup)(q, qd, qdd)

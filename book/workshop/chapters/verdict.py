@@ -14,7 +14,7 @@ from ddlib.figures import COLOURS, INK, Illustration, illustrate, legend_above
 from ddlib.tables import Table, typeset
 from workshop.report.evidence import cards, claims
 from workshop.report.evidence.cards import of_kind, tally, worded
-from workshop.report.evidence.claims import SECTIONS, Claim, here, load, printed, sure
+from workshop.report.evidence.claims import SECTIONS, Claim, load
 from workshop.report.evidence.verdicts import Measured
 from workshop.report.evidence.wall import window
 
@@ -44,12 +44,12 @@ def chosen(ids: Iterable[str]) -> Table:
     """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
     known, rows = {claim.id: claim for claim in load()}, []
     for claim in (known[one_of("ids", name, tuple(known))] for name in ids):
-        width, found = window(claim), here(claim)
+        width, found = window(claim), claim.here()
         told = rf"(window|at) {width}\b|\b{width} samples"
         if width and not re.search(told, f"{claim.claim} {found}"):
             found += f" (window {width})"
         sentence = f"{claim.claim} ({{doc}}`{claim.chapter}`)"
-        rows.append((sentence, printed(claim), found, worded(claim, sure(claim)), claim.why))
+        rows.append((sentence, claim.as_printed(), found, worded(claim, claim.sure()), claim.why))
     header = ("claim", "printed", "here", "verdict", "why")
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 

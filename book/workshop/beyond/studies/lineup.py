@@ -29,7 +29,7 @@ class _Line(NamedTuple):
     days: int = _DAYS
 
 
-REFERENCE = "network of 1988"  # ten hidden units, by descent
+_REFERENCE = "network of 1988"  # ten hidden units, by descent
 _PENALTY = 1e-4  # the one that leaving out trajectories chooses in `rivals_1988`
 
 
@@ -109,7 +109,7 @@ _LINES: dict[str, _Line] = {
         (10, 50, 200), "features", "Gaussian processes", _FEWER,
     ),
     # the paper's network
-    REFERENCE: _Line(_descent, (2, 10), "hidden units", "the paper's network"),
+    _REFERENCE: _Line(_descent, (2, 10), "hidden units", "the paper's network"),
     "second-order steps": _Line(_solver, (1, 2, 5, 10), "hidden units", "the paper's network"),
     "Adam": _Line(
         lambda hidden, seed: _ByAdam(hidden, seed=seed), (2, 10), "hidden units",

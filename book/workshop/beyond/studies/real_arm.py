@@ -22,10 +22,10 @@ from ddlib.trajectories import OutsideFamilyWarning
 from workshop.beyond.rivals.gaussian import GaussianProcess
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies.tx40 import (
+    _BLOCKS,
     _EPOCHS,
     _HIDDEN,
     _RATES,
-    BLOCKS,
     Ridge,
     Windowed,
     _best_penalty,
@@ -304,7 +304,7 @@ def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "filters": filters,
         "draws": draws,
         "epochs": _EPOCHS,
-        "blocks": BLOCKS,
+        "blocks": _BLOCKS,
         "grid": _grid(members),
         "differences": _differences(),
         "variants": _variants(members),

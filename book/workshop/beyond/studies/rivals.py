@@ -17,12 +17,12 @@ from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
 from workshop.beyond.rivals.gaussian import GaussianProcess, _SemiParametric
 from workshop.beyond.rivals.identified import Identified
 from workshop.beyond.rivals.protocol import Cases, Estimating, trial
-from workshop.beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, REFERENCE
+from workshop.beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, _REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 
 _SAMPLES = 21  # samples of the windows: the paper's best
-GRID = 9  # trajectories in a row of the square of extents
+_GRID = 9  # trajectories in a row of the square of extents
 
 _EVERY, _SHOWN = 4, 10  # samples of the square from test to test, and of those shown
 _BUDGET = 540  # stored numbers of the paper's network with ten hidden units
@@ -51,7 +51,7 @@ def recorded(day: int) -> tuple[dict[str, dict[str, Cases]], Cases]:
     """Cases of one day by `_INPUTS` and name (inside and outside the hull), and the square's."""
     setup = JOINT_DAMPING.repeated(day)
     training, six = split(setup.record())
-    whole = _square(setup, GRID)
+    whole = _square(setup, _GRID)
     parts = {
         "training": (training, 1),
         "trajectory 6": (six, 1),
@@ -111,7 +111,7 @@ def rivals() -> dict:
     return {
         "days": _RECORDINGS,
         "width": _SAMPLES,
-        "reference": REFERENCE,
+        "reference": _REFERENCE,
         "budget": _BUDGET,
         "floor": floor,
         "lines": {
@@ -140,7 +140,7 @@ def _asked(rival, asked: Cases) -> np.ndarray:
 
 def _keep(torques: dict, asked: Cases) -> None:
     """Measured and predicted torques of the square, shape (rivals + 1, runs, samples, joint)."""
-    shape = (-1, GRID**2, len(asked) // GRID**2, 2)
+    shape = (-1, _GRID**2, len(asked) // _GRID**2, 2)
     values = np.stack([asked.torque, *torques.values()]).reshape(shape)
     part = _TORQUES.with_name(_TORQUES.name + ".part")
     with open(part, "wb") as file:

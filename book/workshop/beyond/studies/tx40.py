@@ -13,7 +13,7 @@ from ddlib.identification import joint_columns
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
 from workshop.beyond.others import _RealArm, staubli
 
-BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
+_BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
 _RATES = {
     100: (5, 11, 21, 41, 81),
     200: (11, 21, 41),
@@ -67,7 +67,7 @@ class Windowed:
 
     def folds(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """The masks of each block."""
-        return [self.fold(block) for block in range(BLOCKS)]
+        return [self.fold(block) for block in range(_BLOCKS)]
 
     @property
     def flat(self) -> np.ndarray:
@@ -80,7 +80,7 @@ class Windowed:
         return -(-self.width * 100 // self.rate)
 
 
-def _fold(cases: int, block: int, gap: int, blocks: int = BLOCKS) -> tuple[np.ndarray, np.ndarray]:
+def _fold(cases: int, block: int, gap: int, blocks: int = _BLOCKS) -> tuple[np.ndarray, np.ndarray]:
     """Masks of training and test cases: a block is tested, none within `gap` of it is learnt."""
     size, place = cases / blocks, np.arange(cases)
     first, last = (round((block + k) * size) for k in (0, 1))

@@ -13,8 +13,6 @@ from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.beyond.studies.lineup import REFERENCE
-from workshop.beyond.studies.rivals import GRID
 from workshop.report import results
 
 _MEASURED = "measured"
@@ -42,6 +40,8 @@ class RivalPicker(CurveWidget):
         with np.load(path) as kept:
             names, torque = kept["names"].tolist(), kept["torque"].astype(float)
         self._torque = dict(zip(names, torque))
+        self._reference = results.read("rivals")["reference"]
+        self._side = round(torque.shape[1] ** 0.5)  # trajectories in a row of the square
         rivals = [name for name in names if name != _MEASURED]
         one_of("rival", rival, rivals)
         measured = self._torque[_MEASURED]
@@ -49,8 +49,9 @@ class RivalPicker(CurveWidget):
         self._errors = np.stack([rmss(self._torque[n], measured, scale=scale) for n in rivals], -1)
         times = np.arange(torque.shape[2]) * MOTION_SECONDS / torque.shape[2]
         labels = {name: f"{k}: {name}" for k, name in enumerate(rivals, 1)}
-        extents = {k: f"{MAX_EXTENT_DEG * k / GRID:g}°" for k in range(1, GRID + 1)}
-        lines = (_MEASURED, REFERENCE, "rival")
+        steps = range(1, self._side + 1)
+        extents = {k: f"{MAX_EXTENT_DEG * k / self._side:g}°" for k in steps}
+        lines = (_MEASURED, self._reference, "rival")
         panels = [
             *(
                 Panel(
@@ -83,7 +84,8 @@ class RivalPicker(CurveWidget):
             ],
             panels,
             **{
-                "alt": f"Torques of both joints over time: measured, by the {REFERENCE} and by "
+                "alt": "Torques of both joints over time: measured, by the "
+                f"{self._reference} and by "
                 f"the {rival}; below, bars with the errors of {len(rivals)} rivals.",
                 "title": "Picker of rivals",
                 "note": _NOTE,
@@ -93,8 +95,8 @@ class RivalPicker(CurveWidget):
         )
 
     def _curves(self, shoulder, elbow, rival) -> dict:
-        run = (shoulder - 1) * GRID + elbow - 1
-        lines = {_MEASURED: _MEASURED, REFERENCE: REFERENCE, "rival": rival}
+        run = (shoulder - 1) * self._side + elbow - 1
+        lines = {_MEASURED: _MEASURED, self._reference: self._reference, "rival": rival}
         curves = {
             f"{joint}, {line}": self._torque[name][run, :, j]
             for line, name in lines.items()

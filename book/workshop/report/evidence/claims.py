@@ -253,6 +253,26 @@ class Claim:
                 found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
         return sorted(set(found))
 
+    def as_printed(self) -> str:
+        """What the paper prints, for a table."""
+        if isinstance(self.printed, (str, _Printed)):
+            return getattr(self.printed, "text", self.printed)
+        return f"{self.printed:,g}"
+
+    def here(self) -> str:
+        """What we find, for a table."""
+        return self.measured().text if self.is_measured else "–"
+
+    def sure(self) -> str:
+        """The verdict, and in which share of the draws it comes out where that was found."""
+        verdict, found = self.judge(), self.shares()
+        if not found:
+            return verdict
+        if verdict == "undecided":
+            words = ", ".join(f"{share_told(share)} {name}" for name, share in found.items())
+            return f"undecided: {words} of draws"
+        return f"{verdict}, {share_told(found[verdict])} of draws"
+
     def _within(self, bounds, values: np.ndarray) -> np.ndarray:
         if "is" in bounds:
             return values.astype(bool) == bounds["is"]
@@ -370,26 +390,3 @@ def _of_chapter(chapter: str) -> list[Claim]:
     if not found:
         raise ValueError(f"chapter must have claims in {_FILE.name}, got {chapter!r}")
     return found
-
-
-def printed(claim: Claim) -> str:
-    """What the paper prints, for a table."""
-    if isinstance(claim.printed, (str, _Printed)):
-        return getattr(claim.printed, "text", claim.printed)
-    return f"{claim.printed:,g}"
-
-
-def here(claim: Claim) -> str:
-    """What we find, for a table."""
-    return claim.measured().text if claim.is_measured else "–"
-
-
-def sure(claim: Claim) -> str:
-    """The verdict, and in which share of the draws it comes out where that was found."""
-    verdict, found = claim.judge(), claim.shares()
-    if not found:
-        return verdict
-    if verdict == "undecided":
-        words = ", ".join(f"{share_told(share)} {name}" for name, share in found.items())
-        return f"undecided: {words} of draws"
-    return f"{verdict}, {share_told(found[verdict])} of draws"

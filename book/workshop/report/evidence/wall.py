@@ -23,9 +23,6 @@ from workshop.report.evidence.claims import (
     _function,
     _of_chapter,
     _Printed,
-    here,
-    printed,
-    sure,
 )
 from workshop.report.evidence.expressions import find
 
@@ -99,8 +96,8 @@ def _tile(claim: Claim, on: str) -> str:
 
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
-    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {printed(claim)}"
-    width, found = window(claim), here(claim)
+    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {claim.as_printed()}"
+    width, found = window(claim), claim.here()
     known = width is None or str(width) in f"{claim.claim} {found}"
     lines = [
         f"{typeset(source)} ({claim.where}). "
@@ -112,7 +109,7 @@ def _body(claim: Claim, on: str) -> list[str]:
         lines += [picture, ""]
     judged = ""
     if claim.band:
-        judged = typeset(worded(claim, f"Judged: {sure(claim)} ({_bands(claim)}). "))
+        judged = typeset(worded(claim, f"Judged: {claim.sure()} ({_bands(claim)}). "))
         judged += f"† The band was {_AFTER[claim.after]}. " if claim.after else ""
     head = _HEADS.get(claim.verdict, "What would have refuted it")
     lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]

@@ -28,7 +28,7 @@ def _made(
     of: Callable, layer: str, widths: Sequence = WINDOWS, setup: str = STATE_FEEDBACK.name
 ) -> list[tuple]:
     """What a function makes of filters, a cell for each window; and the same before training."""
-    return list(zip(*([of(f) for f in committed.filters(w, layer, setup)] for w in widths)))
+    return list(zip(*([of(f) for f in committed._filters(w, layer, setup)] for w in widths)))
 
 
 def of_class(
@@ -85,7 +85,7 @@ def _crossings(filters, shift: float) -> tuple[np.ndarray, np.ndarray]:
 
 def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
     """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
-    (two, off), (before, _) = (_crossings(f, shift) for f in committed.filters(width, "direct"))
+    (two, off), (before, _) = (_crossings(f, shift) for f in committed._filters(width, "direct"))
 
     def share(pair):
         return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)
@@ -123,7 +123,7 @@ def direct_smoothness() -> Measured:
 
 def changed_roughness(width: int = 41) -> Measured:
     """Roughness of what training adds to the initial weights of the hidden units."""
-    trained, before = committed.filters(width, "hidden")
+    trained, before = committed._filters(width, "hidden")
     change = roughness(trained - before)
     text = f"{spread(change)}; the filters have {spread(roughness(trained))}"
     return judged(median, change, text=text)
@@ -131,7 +131,7 @@ def changed_roughness(width: int = 41) -> Measured:
 
 def parts_sum_up() -> Measured:
     """Largest difference between a filter and the sum of its parts as the paper prints them."""
-    f = committed.filters(21, "hidden")[0].reshape(-1, 21)
+    f = committed._filters(21, "hidden")[0].reshape(-1, 21)
     gap = max(np.abs(decompose(f, c).sum() - f).max() for c in ("paper", "symmetric"))
     odd = decompose(f, "paper").odd
     skew = float(np.median(np.abs(odd + odd[:, ::-1]).max(-1) / np.abs(odd).max(-1)))

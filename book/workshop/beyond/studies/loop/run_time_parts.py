@@ -31,7 +31,6 @@ def _square_extents(points: int) -> np.ndarray:
 
 
 _EXTENTS = _square_extents(_POINTS)
-EDGE = _EXTENTS[:_POINTS, 1]
 _INSIDE = inside_hull(_EXTENTS)  # the hull of the training trajectories
 _FEWER = _EXTENTS.reshape(_POINTS, _POINTS, 2)[::2, ::2].reshape(-1, 2)
 _T = time_grid(CONTROL_STEP, REST)  # control samples, s

@@ -20,11 +20,11 @@ EPOCHS = 2000  # Epochs of a run in the page
 
 CHECK = 5  # Epochs between two looks at errors and shapes
 
-LEVEL = 0.2  # RMSS in training below which the error counts as gone
+_LEVEL = 0.2  # RMSS in training below which the error counts as gone
 
 MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is `default_rate`
 
-# What is waited for: the error below `LEVEL`, the first direct filter called "acceleration", and
+# What is waited for: the error below `_LEVEL`, the first direct filter called "acceleration", and
 # the first hidden filter with any name
 _EVENTS = ("error", "direct", "hidden")
 
@@ -50,7 +50,7 @@ def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
     direct = classify(weights.direct_weights) == "acceleration"
     hidden = classify(weights.hidden_weights) != "not analysable"
     shapes = [x.reshape(len(weights), -1).any(-1) for x in (direct, hidden)]
-    return np.stack([training < LEVEL, *shapes], -1)
+    return np.stack([training < _LEVEL, *shapes], -1)
 
 
 def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
@@ -92,4 +92,4 @@ def page_training(members: int = 25) -> dict:
         rows[f"{name}, shifted"] = {
             key: np.concatenate([run[key] for run in runs]) for key in runs[0]
         }
-    return {"members": members, "epochs": EPOCHS, "every": _EVERY, "level": LEVEL, "rows": rows}
+    return {"members": members, "epochs": EPOCHS, "every": _EVERY, "level": _LEVEL, "rows": rows}
