@@ -10,8 +10,9 @@ from matplotlib.lines import Line2D
 
 from ddlib.analysis import gains, half_penalty, ridge_filters
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate, legend_above
-from ddlib.setups import split, true_states
-from ddlib.simulation import LOG_STEP
+from ddlib.learning import TrainingSet
+from ddlib.setups import Setup, split, true_states
+from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.panels import Panel, Scalar
@@ -19,6 +20,7 @@ from ddlib.widgets.parts.parameters import Choice, Parameter
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median
 from workshop.report.studies.excitation import DRIVES, later, training_set
+from workshop.report.studies.nulls import TRIAL
 
 _STEPS = (0.0, 0.25, 0.5, 1.0)  # seconds that the widget can leave out
 
@@ -58,6 +60,20 @@ def half_foretold() -> Measured:
 
     text = "off by a factor of {:.2f} at most, " + f"{len(pairs)} recordings"
     return judged(worst, *pairs, text=text.format)
+
+
+def foretold_over_found(recording: Recording, setup: Setup, width: int = 21) -> float:
+    """How many times the penalty that leaves half of the mass its prediction is; NaN: never half.
+
+    Of one recording of the six runs and a window of `width` samples.
+    """
+    training = split(recording)[0]
+    data = TrainingSet.from_recording(training, width, scaling=TRIAL.scaling)
+    states = true_states(training, setup)
+    arm = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
+    mass = gains(ridge_filters(data, results.read("excitation")["penalties"]))[:, 0, 0, 2]
+    half = half_penalty(data, states.reshape(-1, 2, 3))
+    return half / float(half_measured({"ridge": [mass], "arm": arm})[0])
 
 
 def mass_of_networks(drive: str, seconds: float = 0.0) -> Measured:
