@@ -8,11 +8,11 @@ from ddlib.dynamics import CMU_DD_ARM_II as ARM
 from ddlib.simulation import record
 from ddlib.trajectories import Trajectory
 from workshop.beyond.control.windowed import (
+    PlannedTorque,
     WindowFeedforward,
     _MeasuredWindows,
     _poles_inside,
 )
-from workshop.chapters.run_time import PlannedTorque
 
 T = np.arange(0, 400) * 0.002
 Q = np.stack([np.sin(3 * T), np.cos(2 * T)], -1)

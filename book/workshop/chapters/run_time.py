@@ -1,14 +1,11 @@
-"""*Torques at run time*: windows as feedforward; what predicts the error, when loops turn; mm."""
+"""*Torques at run time*: what predicts the error of the hand (mm), and when loops turn."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib import paper
-from ddlib.control import ControlLaw, Controller, Feedforward
 from ddlib.figures import (
     COLOURS,
     FAINT,
@@ -20,8 +17,6 @@ from ddlib.figures import (
 )
 from ddlib.setups import JOINT_DAMPING
 from ddlib.tables import significant
-from ddlib.trajectories import Trajectory
-from workshop.beyond.control.windowed import WindowFeedforward
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 
@@ -68,23 +63,6 @@ def against(
         legend_above(figure, [handles[name] for name in names], names)
 
     return illustrate(draw, alt, 7.0, 2.9)
-
-
-@dataclass(frozen=True)
-class PlannedTorque:
-    """Torques of a planned motion by a model of windows, added to a feedback law (Figure 2-1).
-
-    `ddlib.control.Feedforward` does the same for any model; this one knows that a model of windows
-    has a sampling period, and refuses a loop that does not give it.
-    """
-
-    feedforward: WindowFeedforward
-    feedback: Controller
-
-    def start(self, reference: Trajectory, step: float) -> ControlLaw:
-        """The law that follows `reference`, called every `step` s."""
-        self.feedforward.check(step)
-        return Feedforward(self.feedforward, self.feedback).start(reference, step)
 
 
 def _reading(setup: str = JOINT_DAMPING.name) -> dict:

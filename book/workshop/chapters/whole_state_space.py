@@ -12,15 +12,7 @@ from matplotlib.ticker import NullLocator
 from ddlib import paper
 from ddlib._check import shaped
 from ddlib.analysis import shuffled, transition_range
-from ddlib.figures.style import (
-    COLOURS,
-    DASHES,
-    INK,
-    JOINTS,
-    Illustration,
-    illustrate,
-    plain_ticks,
-)
+from ddlib.figures.style import COLOURS, DASHES, INK, JOINTS, Illustration, illustrate, plain_ticks
 from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss

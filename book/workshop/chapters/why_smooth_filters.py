@@ -10,14 +10,7 @@ from matplotlib.lines import Line2D
 
 from ddlib._check import integer, positive, shaped
 from ddlib.analysis import content
-from ddlib.figures.style import (
-    COLOURS,
-    INK,
-    Illustration,
-    check_label,
-    illustrate,
-    legend_above,
-)
+from ddlib.figures.style import COLOURS, INK, Illustration, check_label, illustrate, legend_above
 from ddlib.learning import Directions
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module

@@ -32,6 +32,7 @@ from ddlib.figures.style import (
 )
 from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from workshop.report import results
 from workshop.report.studies.page import training as page
 
 
@@ -200,7 +201,8 @@ def own_inertia(extents_deg, members: int = 4) -> tuple[float, float]:
     data = TrainingSet.from_arrays(windows, torque, scaling=(-1, 1))
     windows, data = windows[::5], replace(data, x=data.x[::5], y=data.y[::5])
     start = Weights.random(members, 21, initial=INITIAL)
-    how = {"rate": default_rate(21), "momentum": page.MOMENTUM, "epochs": page.EPOCHS}
+    epochs = results.read("page-training")["epochs"]
+    how = {"rate": default_rate(21), "momentum": page.MOMENTUM, "epochs": epochs}
     model, *_ = train_ensemble(start, data, **how, progress=False)
     inertia = gains(mean_gradient(model, windows))[:, 0, 0, 2]
     return float(np.median(inertia)), float(

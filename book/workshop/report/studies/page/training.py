@@ -16,7 +16,7 @@ _WIDTH = 21  # Window of the networks
 
 _EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 6 all
 
-EPOCHS = 2000  # Epochs of a run in the page
+_EPOCHS = 2000  # Epochs of a run in the page
 
 CHECK = 5  # Epochs between two looks at errors and shapes
 
@@ -53,7 +53,7 @@ def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
     return np.stack([training < _LEVEL, *shapes], -1)
 
 
-def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = EPOCHS) -> dict:
+def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = _EPOCHS) -> dict:
     """Train, looking every `CHECK` epochs; what was seen of each network."""
     rate = default_rate(_WIDTH) / len(data.x)
     descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
@@ -92,4 +92,4 @@ def page_training(members: int = 25) -> dict:
         rows[f"{name}, shifted"] = {
             key: np.concatenate([run[key] for run in runs]) for key in runs[0]
         }
-    return {"members": members, "epochs": EPOCHS, "every": _EVERY, "level": _LEVEL, "rows": rows}
+    return {"members": members, "epochs": _EPOCHS, "every": _EVERY, "level": _LEVEL, "rows": rows}
