@@ -7,7 +7,7 @@ import re
 import pytest
 from book_pages import API, CHAPTERS
 
-WORDS = ("friction", "overfitting", "jerk", "inertia")
+WORDS = ("friction", "momentum", "jerk", "inertia")
 
 HITS = """() => [...document.querySelectorAll("#search-results li")].map((hit) => ({
   page: hit.querySelector("a").getAttribute("href").replace(/\\.html.*/, ""),
