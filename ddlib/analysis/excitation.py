@@ -48,6 +48,8 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     acceleration when the positions of all joints are regressed out. It moves a window along the
     parabola ``x^2 / 2`` less its mean, of length l, and ridge leaves ``v / (v + penalty)`` of what
     lies along a direction of variance v: here ``l^2 var(r)``, in units of the scaled windows.
+    Friction, rounding and the other joints are left out, and so is a swing that is fast for the
+    window: where they outweigh r, the mass goes at a far smaller penalty.
 
     Parameters
     ----------

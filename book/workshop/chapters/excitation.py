@@ -191,7 +191,7 @@ class MassAndPenalty(CurveWidget):
                 "title": "The arm's mass under a penalty",
                 "scalars": [
                     Scalar("now", "Inertia in the filter", "kg m²", 2),
-                    Scalar("half", "Half of the arm's is left at", scale="power"),
+                    Scalar("half", "Half of the arm's, by theory, at a penalty of", scale="power"),
                 ],
                 "depends": {"mass": ("drive", "skip"), "half": ("drive", "skip"),
                             "place": ("penalty",)},
