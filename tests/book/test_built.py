@@ -11,7 +11,8 @@ from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlsplit
 
 import pytest
-from book_pages import CHAPTERS, PAGES, ROOT, WITH_WIDGETS, code_cells, source
+import yaml
+from book_pages import CHAPTERS, PAGES, ROOT, WALK, WITH_WIDGETS, code_cells, evidence_of, source
 from bookkeeping import lines_of_bookkeeping
 from bs4 import BeautifulSoup, Comment
 from chapter_rules import FROM_SCRATCH
@@ -134,6 +135,19 @@ def test_code_in_the_open_teaches_and_none_is_lost(parsed):
 def test_no_answer_stands_in_the_open(parsed):
     assert not {name: found for name in CHAPTERS if (found := open_answers(parsed(name)))}
     assert all(parsed(name).select("#on-your-own details") for name in CHAPTERS)
+
+
+@built_test
+def test_old_addresses_within_lessons_lead_somewhere(parsed):
+    """On the lesson's page, or on its evidence page, to which `moved.js` leads."""
+    old = yaml.safe_load((ROOT / "tests" / "support" / "old_anchors.yml").read_text("utf-8"))
+    lost = {}
+    for page in WALK:
+        places = parsed(page), parsed(evidence_of(page))
+        names = old[page.removeprefix("book/")]
+        lost[page] = [n for n in names if not any(place.find(id=n) for place in places)]
+        assert parsed(page).select_one(f'article a[href^="{evidence_of(page)[5:]}.html"]')
+    assert not {page: names for page, names in lost.items() if names}
 
 
 # --- weight -------------------------------------------------------------------------------

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 from functools import cache
+from importlib import import_module
 
 import nbformat
 import prose
+import pytest
 import yaml
-from book_pages import API, PAGES, ROOT, source
+from book_pages import API, PAGES, ROOT, WALK, source
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
@@ -71,9 +73,17 @@ def test_typed_results_are_told_from_names_and_settings():
 
 
 def checks(page: str) -> list[str]:
-    """Names of the `stated` calls of a notebook; a constant that checks nothing is left out."""
+    """Names of the `stated` calls of a notebook, or of a lesson's module, which a test runs.
+
+    A constant that checks nothing is left out.
+    """
     cells = nbformat.read(source(page), as_version=4).cells
-    trees = [ast.parse(cell.source) for cell in cells if cell.cell_type == "code"]
+    code = [cell.source for cell in cells if cell.cell_type == "code"]
+    if page in WALK:
+        module = page.removeprefix("book/").replace("-", "_")
+        path = ROOT / "book" / "workshop" / "chapters" / f"{module}.py"
+        code += [path.read_text(encoding="utf-8")] if path.is_file() else []
+    trees = [ast.parse(text) for text in code]
     calls = [
         node.args
         for tree in trees
@@ -103,3 +113,11 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
         wrong += [(name, "behind no sentence", check) for check in set(known) - used]
     assert not wrong
     assert set(BOUND) <= set(NAMES) and sum(map(len, BOUND.values())) > 200
+
+
+@pytest.mark.parametrize("page", WALK)
+def test_what_a_lesson_states_is_so(page):
+    """By the `said` of the lesson's module, if the lesson binds words at all."""
+    name = page.removeprefix("book/")
+    if name in BOUND:
+        import_module(f"workshop.chapters.{name.replace('-', '_')}").said()

@@ -11,15 +11,25 @@ from needed import needed
 ROOT = Path(__file__).resolve().parents[2]
 TOC = yaml.safe_load((ROOT / "_toc.yml").read_text(encoding="utf-8"))
 
-CHAPTERS = [
+NUMBERED = [
     page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
 ]
+EVIDENCE = [page for page in NUMBERED if page.startswith("book/evidence-")]
+CHAPTERS = [page for page in NUMBERED if page not in EVIDENCE]
 LESSONS = [page["file"] for part in TOC["parts"][:3] for page in part["chapters"]]
 BACK_MATTER = [
     page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
 ]
 API = [page for page in BACK_MATTER if page.startswith("book/api")]
-PAGES = [TOC["root"], *CHAPTERS, *BACK_MATTER]
+PAGES = [TOC["root"], *NUMBERED, *BACK_MATTER]
+
+
+def evidence_of(lesson: str) -> str:
+    """The page with what stands behind a lesson."""
+    return lesson.replace("book/", "book/evidence-")
+
+
+WALK = [page for page in LESSONS if evidence_of(page) in EVIDENCE]  # in the shape of a lesson
 
 
 def source(page: str) -> Path | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import nbformat
+from book_pages import WALK
 from bookkeeping import (
     ends_with_a_bare_value,
     lines_of_bookkeeping,
@@ -18,9 +19,14 @@ MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 18, 84  # "about 15", and what a page h
 MAX_THESIS, MAX_PROMISE = 200, 30  # characters of a thesis, words of *You will*
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
-FROM_SCRATCH = {"book/use-it-on-your-arm"}  # open cells run alone, so they import and print
+TUTORIAL = "book/use-it-on-your-arm"
+FROM_SCRATCH = {TUTORIAL, *WALK}  # open cells run alone, so they import and print
 CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
+CLOSING_OF_LESSON = CLOSING[1:]  # the paper's sentences stand on the evidence page
 MIN_EXERCISES = 3
+CHANGE_THIS = "change-this"  # tag of the one cell whose settings all open cells follow
+MOST_WORDS, MOST_NUMBERS, MOST_IN_PARAGRAPH = 2500, 40, 3
+MOST_HIDDEN, LEAST_OPEN = 12, 0.6  # hidden lines of a lesson, share of its lines that stand open
 
 
 def tags(cell) -> set[str]:
@@ -87,7 +93,7 @@ def folds_open_onto_something(notebook) -> list:
     """One fold for the imports of a recipe is allowed where no chapter's grid is asked for."""
     folds = [c for c in code_of(notebook) if tags(c) & {"hide-input", "hide-cell", "hide-output"}]
     silent = [cell for cell in folds if not shows_something(cell.source)]
-    chapter = headings(prose(notebook), 2)[-3:] == CLOSING
+    chapter = headings(prose(notebook), 2)[-1:] == CLOSING[-1:]
     recipes = [c for c in silent if not chapter and set(only_imports(c.source)) == {True}]
     return [cell.id for cell in silent if cell not in recipes[:1]]
 
@@ -133,8 +139,10 @@ def opening(notebook) -> list:
 
 
 def closing(notebook) -> list:
-    found = headings(prose(notebook), 2)[-len(CLOSING) :]
-    return [] if found == CLOSING else found
+    walk = any(CHANGE_THIS in tags(cell) for cell in notebook.cells)
+    wanted = CLOSING_OF_LESSON if walk else CLOSING
+    found = headings(prose(notebook), 2)[-len(wanted) :]
+    return [] if found == wanted else found
 
 
 def exercises(notebook) -> list:
@@ -156,6 +164,8 @@ def open_answer(text: str) -> str:
 
 def answers_are_folded(notebook) -> list:
     """On the page by a tag, in JupyterLab by its own metadata; words by an element for both."""
+    if any(CHANGE_THIS in tags(cell) for cell in notebook.cells):
+        return exercises_wait_for_an_answer(notebook)
     cells = exercises(notebook)
     code = [cell for cell in cells if cell.cell_type == "code"]
     wrong = [
@@ -204,3 +214,95 @@ def three_lines_follow(notebook) -> list:
 
 
 LESSON = (title_and_thesis_stand_alone, result_stands_first, three_lines_follow)
+
+
+# --- every lesson in its whole shape, and the tutorial -------------------------------------
+
+
+def source_lines(cells) -> int:
+    return sum(bool(line.strip()) for cell in cells for line in cell.source.splitlines())
+
+
+def numbers(text: str) -> int:
+    """How many numbers of the book a text inserts."""
+    return len(re.findall(r"{glue:text}`", text))
+
+
+def captions(notebook) -> list[str]:
+    figures = (cell.metadata.get("mystnb", {}).get("figure") for cell in code_of(notebook))
+    return [figure["caption"] for figure in figures if figure]
+
+
+def is_starter(cell) -> bool:
+    """Whether a cell waits for an answer to an exercise."""
+    return cell.cell_type == "code" and re.search(r"^mine = \.\.\.", cell.source, re.M) is not None
+
+
+def is_check(cell) -> bool:
+    """Whether a cell judges an answer."""
+    uses = re.search(r"\bmine\b", cell.source) is not None
+    return cell.cell_type == "code" and uses and not is_starter(cell)
+
+
+def words(notebook) -> int:
+    """Words of the prose; a formula, a number or a link in the text is one, a display none."""
+    text = re.sub(r"^\$\$.*?^\$\$.*?$|<[^>]+>", " ", prose(notebook), flags=re.M | re.S)
+    text = re.sub(r"\$[^$]+\$|\{[\w:-]+\}`[^`]*`|`[^`]*`", "x", text)
+    return len(re.findall(r"[\w'’-]*\w", text))
+
+
+def is_short(notebook) -> list:
+    return [f"{words(notebook)} words"] if words(notebook) > MOST_WORDS else []
+
+
+def has_few_numbers(notebook) -> list:
+    texts = [*paragraphs(prose(notebook)), *captions(notebook)]
+    crowded = [t for t in texts if numbers(t) > MOST_IN_PARAGRAPH and not t.startswith("|")]
+    total = sum(map(numbers, texts))
+    return [*crowded, *[f"{total} numbers"] * (total > MOST_NUMBERS)]
+
+
+def one_cell_to_change_comes_first(notebook) -> list:
+    cells = [cell for cell in notebook.cells if CHANGE_THIS in tags(cell)]
+    first = visible(notebook)[:1] == cells and len(cells) == 1
+    headed = "Change this" in headings(prose(notebook), 2)
+    return [] if first and headed else [f"{len(cells)} cells to change, heading: {headed}"]
+
+
+def code_stands_open(notebook) -> list:
+    cells = [cell for cell in code_of(notebook) if "hide-cell" not in tags(cell)]
+    hidden = source_lines(c for c in cells if tags(c) & HIDDEN and not is_check(c))
+    shown = source_lines(visible(notebook))
+    fine = hidden <= MOST_HIDDEN and shown >= LEAST_OPEN * (shown + hidden) and shown >= 25
+    return [] if fine else [f"{shown} lines open, {hidden} hidden"]
+
+
+def figures_are_made_in_the_open(notebook) -> list:
+    """Below the first screen; what comes from a file says that it is the book's."""
+    later = notebook.cells[len(before_the_promise(notebook)) :]
+    hidden = [c for c in later if c.cell_type == "code" and tags(c) & HIDDEN]
+    told = (c.metadata.get("mystnb", {}).get("figure", {}).get("caption") for c in hidden)
+    return [text for text in told if text and "the book's" not in text.lower()]
+
+
+def exercises_wait_for_an_answer(notebook) -> list:
+    """A question, an empty starter, a check, a folded solution."""
+    cells = exercises(notebook)
+    kinds = [
+        "starter" if is_starter(cell) else "check" if is_check(cell) else cell.id
+        for cell in cells
+        if cell.cell_type == "code"
+    ]
+    asked = len(re.findall(r"^\*\*\d+\. ", prose(notebook).partition("## On your own")[2], re.M))
+    wrong = [] if kinds == ["starter", "check"] * asked and asked >= MIN_EXERCISES else [kinds]
+    return wrong + [c.id for c in cells if c.cell_type == "markdown" and open_answer(c.source)]
+
+
+SHAPE = (
+    is_short,
+    has_few_numbers,
+    one_cell_to_change_comes_first,
+    code_stands_open,
+    figures_are_made_in_the_open,
+    exercises_wait_for_an_answer,
+)

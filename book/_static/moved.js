@@ -1,0 +1,7 @@
+// An old address of a section that is no longer in a lesson leads to the lesson's evidence page.
+(() => {
+  const evidence = document.querySelector('article a[href^="evidence-"]');
+  const name = decodeURIComponent(location.hash.slice(1));
+  if (!evidence || !name || document.getElementById(name)) return;
+  location.replace(`${evidence.getAttribute("href").split("#")[0]}#${encodeURIComponent(name)}`);
+})();

@@ -1,0 +1,57 @@
+"""Lessons: short, with code in the open that runs alone, follows changes, and judges answers."""
+
+import pytest
+from book_pages import WALK, source
+from chapter_rules import SHAPE, TUTORIAL, headings, prose, words
+from open_cells import CHANGES, execute, exercises, imports, lesson, run
+
+MOST_SECONDS = 30  # of one core, for the open cells of a lesson
+LIBRARIES = {"ddlib", "numpy", "scipy", "sympy", "torch", "control", "matplotlib"}
+STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "time"}
+
+
+@pytest.mark.parametrize("rule", SHAPE, ids=lambda rule: rule.__name__)
+def test_lessons_have_the_shape(rule):
+    assert not {page: wrong for page in WALK if (wrong := rule(lesson(page)))}
+
+
+def test_lessons_are_short_together():
+    assert sum(words(lesson(page)) for page in WALK) <= 28_000
+
+
+@pytest.mark.parametrize("page", WALK)
+def test_open_cells_run_alone(page, tmp_path, monkeypatch):
+    """In a folder without the book, with public libraries; then the exercises are judged."""
+    assert imports(page) <= LIBRARIES | STANDARD
+    monkeypatch.chdir(tmp_path)
+    space, seconds = run(page)
+    assert seconds < MOST_SECONDS
+    found = exercises(page)
+    assert len(found) >= 3
+    for exercise in found:
+        execute(exercise.starter, space, "starter")
+        assert "in place of the dots" in execute(exercise.check, space, "check")
+        assert exercise.solution, exercise.check
+        execute(exercise.solution, space, "solution")
+        told = execute(exercise.check, space, "check")
+        assert told.startswith("Right"), (exercise.check, told)
+        space["mine"] = -1e9
+        assert not execute(exercise.check, space, "check").startswith("Right")
+
+
+@pytest.mark.parametrize(
+    "page, change", [(page, change) for page in WALK for change in CHANGES.get(page[5:], ())]
+)
+def test_a_change_goes_through_to_the_last_figure(page, change, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run(page, CHANGES[page[5:]][change])
+
+
+def test_each_lesson_is_run_with_three_other_settings():
+    assert {f"book/{name}" for name in CHANGES} == set(WALK)
+    assert all(len(changes) >= 3 for changes in CHANGES.values())
+
+
+def test_the_tutorial_has_a_cell_to_change():
+    assert "Change this" in headings(prose(lesson(TUTORIAL)), 2)
+    assert source(TUTORIAL)

@@ -1,0 +1,99 @@
+"""The open cells of a lesson, run as a reader runs them: in order, alone, after a change."""
+
+from __future__ import annotations
+
+import ast
+import io
+import re
+import sys
+import time
+from contextlib import redirect_stdout
+from typing import NamedTuple
+
+import matplotlib
+import nbformat
+import yaml
+from book_pages import ROOT, source
+from chapter_rules import CHANGE_THIS, headings, is_check, is_starter, tags, visible
+
+SHOWN = ("_repr_html_", "_repr_svg_", "_repr_markdown_", "_repr_png_", "_repr_mimebundle_")
+CHANGES = yaml.safe_load((ROOT / "tests" / "support" / "changes.yml").read_text("utf-8")) or {}
+
+
+class Exercise(NamedTuple):
+    """An exercise of a lesson: where an answer goes, what judges it, and a right one."""
+
+    starter: str
+    check: str
+    solution: str
+
+
+def lesson(page: str):
+    return nbformat.read(source(page), as_version=4)
+
+
+def imports(page: str) -> set[str]:
+    """Packages that the open cells import."""
+    nodes = [n for cell in visible(lesson(page)) for n in ast.walk(ast.parse(cell.source))]
+    found = {n.module.partition(".")[0] for n in nodes if isinstance(n, ast.ImportFrom)}
+    return found | {
+        name.name.partition(".")[0] for n in nodes if isinstance(n, ast.Import) for name in n.names
+    }
+
+
+def execute(source_code: str, space: dict, name: str) -> str:
+    """Run a cell: what it prints, and its last value as a notebook would show it."""
+    tree = ast.parse(source_code)
+    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        exec(compile(tree, name, "exec"), space)
+        if last is not None:
+            value = eval(compile(ast.Expression(last.value), name, "eval"), space)
+            for how in SHOWN:
+                if hasattr(value, how) and not isinstance(value, type):
+                    print(str(getattr(value, how)())[:200])
+                    break
+    return printed.getvalue()
+
+
+def run(page: str, change: str = "") -> tuple[dict, float]:
+    """What the open cells leave behind, and the seconds of one core that they took.
+
+    The change is added to the cell *Change this*.
+    """
+    space = {"__name__": "__main__"}
+    matplotlib.use("Agg")
+    started = time.process_time()
+    for cell in visible(lesson(page)):
+        if is_starter(cell):
+            continue
+        added = f"\n{change}" if CHANGE_THIS in tags(cell) else ""
+        execute(cell.source + added, space, f"{page}: {cell.id}")
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+    return space, time.process_time() - started
+
+
+def exercises(page: str) -> list[Exercise]:
+    """The exercises of a lesson that have a cell for an answer, in order."""
+    found, starter, check, below = [], "", "", False
+    for cell in lesson(page).cells:
+        if cell.cell_type == "markdown":
+            below = below or "On your own" in headings(cell.source, 2)
+            answer = re.search(r"<details.*?</details>", cell.source, flags=re.S)
+            if starter and check and answer:
+                found.append(Exercise(starter, check, solution(answer[0])))
+                starter = check = ""
+        elif below and is_starter(cell):
+            starter = cell.source
+        elif below and is_check(cell):
+            check = cell.source
+    return found
+
+
+def solution(answer: str) -> str:
+    """The code of a solution, in a fence or in backticks, that gives `mine`."""
+    fenced = re.findall(r"```python\n(.*?)```", answer, flags=re.S)
+    found = [code for code in fenced if "mine =" in code]
+    return (found or re.findall(r"`(mine = [^`]+)`", answer) or [""])[0]
