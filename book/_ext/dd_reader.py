@@ -2,7 +2,8 @@
 
 Numbers stand in the text, marked as the book's; links lead to other notebooks; figures have their
 captions below. Bookkeeping is folded, solutions are folded and not run. They take the place of the
-sources behind the download button, and `make lab` opens them.
+sources behind the download button, and `make lab` opens them. Of a lesson the open cells can be had
+as a script, too.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ NOTE = (
     "see figures and widgets; code that only keeps the book's numbers is folded."
 )
 FOLDED = ("remove-cell", "remove-input", "hide-input")
+CHANGE_THIS = "change-this"
+HEADING = re.compile(r"(?m)^#+ .+$")
 ROLE = re.compile(r"\{([\w:-]+)\}`([^`]+)`")
 TARGET = re.compile(r"(?s)(.*?)\s*<([^<>]+)>")
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*\(([\w-]+)\)[ \t]*$")
@@ -187,6 +190,40 @@ def _solution(source: str) -> str:
     return f"<details>\n<summary>Solution</summary>\n\n```python\n{source}\n```\n\n</details>"
 
 
+def script(notebook) -> str:
+    """The open cells alone, below the headings, as a script in cells (`# %%`)."""
+    parts = []
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            parts += [f"# %% [markdown]\n# {line}" for line in HEADING.findall(cell.source)]
+        elif not {*FOLDED, "hide-cell"} & set(cell.metadata.get("tags", [])):
+            parts.append(f"# %%\n{cell.source}")
+    return "\n\n".join(parts) + "\n"
+
+
+def has_script(notebook) -> bool:
+    """Whether the open cells of a notebook are written to be run alone."""
+    return any(CHANGE_THIS in cell.metadata.get("tags", []) for cell in notebook.cells)
+
+
+def offer_script(app, page, template, context, doctree):
+    """A button for it beside that for the notebook, once the theme has made its own."""
+    source = Path(app.srcdir, f"{page}.ipynb")
+    if not source.is_file() or not has_script(nbformat.read(source, as_version=4)):
+        return
+    button = {
+        "type": "link",
+        "url": f"{context['pathto']('_sources', 1)}/{page}.py",
+        "text": ".py",
+        "icon": "fas fa-file-code",
+        "tooltip": "Download the code that stands open, as a script",
+        "label": "download-script-button",
+    }
+    for group in context.get("header_buttons", ()):
+        if group.get("label") == "download-buttons":
+            group["buttons"].insert(1, button)
+
+
 def write(app, exception):
     """Put the readers' notebooks where the pages' download buttons lead."""
     if exception is not None or app.builder.format != "html":
@@ -200,8 +237,11 @@ def write(app, exception):
         target = Path(app.outdir, "_sources", path.relative_to(known.root))
         target.parent.mkdir(parents=True, exist_ok=True)
         nbformat.write(made, target)
+        if has_script(notebook):
+            target.with_suffix(".py").write_text(script(notebook), encoding="utf-8")
 
 
 def setup(app):
+    app.connect("html-page-context", offer_script, priority=502)
     app.connect("build-finished", write)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -7,12 +7,13 @@ from types import MappingProxyType, SimpleNamespace
 
 import nbformat
 import pytest
-from book_pages import ROOT
+from book_pages import ROOT, WALK
+from chapter_rules import TUTORIAL
 from chromium import HTML
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 
-from dd_reader import Plain, reader_notebook
+from dd_reader import Plain, has_script, reader_notebook, script
 from lab import lay_out
 
 ROLE = re.compile(r"\{[\w:-]+\}`[^`]*`|^(?:`{3,}|:{3,})\{", re.MULTILINE)
@@ -71,6 +72,27 @@ def test_cells_are_open_folded_or_a_folded_solution():
     assert solved.cell_type == "markdown" and "<details>" in solved.source
     assert caption.source == "**Fig. 3.3.** Curves."
     nbformat.validate(made)
+
+
+def test_a_script_has_the_open_cells_below_their_headings():
+    new = nbformat.v4
+    tags = {"mass = 2": ["change-this"], "hidden": ["hide-input"], "x = mass": []}
+    tags["solution"] = ["hide-cell"]
+    cells = [new.new_code_cell(code, metadata={"tags": found}) for code, found in tags.items()]
+    lesson = new.new_notebook(cells=[new.new_markdown_cell("# Title\n\nWords."), *cells])
+    assert has_script(lesson) and not has_script(new.new_notebook(cells=cells[1:]))
+    told = script(lesson)
+    assert told == "# %% [markdown]\n# # Title\n\n# %%\nmass = 2\n\n# %%\nx = mass\n"
+    compile(told, "script", "exec")
+
+
+@pytest.mark.built
+def test_lessons_hand_out_their_open_cells(parsed):
+    for page in (*WALK, TUTORIAL):
+        (link,) = [a["href"] for a in parsed(page).select("a[href]") if a["href"].endswith(".py")]
+        code = (HTML / page).parent.joinpath(link).read_text(encoding="utf-8")
+        compile(code, page, "exec")
+        assert "workshop" not in code.replace("workshop.html", "")
 
 
 def test_a_readers_own_changes_stay(tmp_path):
