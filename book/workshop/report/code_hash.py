@@ -50,13 +50,16 @@ def code_hash(result: str) -> str:
 
 
 def places() -> dict[str, tuple[str, str]]:
-    """Module and function that make each result: the functions with the decorator `study`."""
+    """Module and function that make each result: those with the decorator `study`.
+
+    They have no other use, so their names begin with an underscore, which results do without.
+    """
     found = {}
     for root, folder in _ROOTS.items():
         for path in sorted(folder.rglob("studies/**/*.py")):
             module = ".".join((root, *path.relative_to(folder).with_suffix("").parts))
             for name in _studies(path.read_text(encoding="utf-8")):
-                found[name.replace("_", "-")] = module, name
+                found[name.strip("_").replace("_", "-")] = module, name
     return found
 
 

@@ -160,7 +160,7 @@ def _as_published() -> dict:
 
 
 @study
-def characters() -> dict:
+def _characters() -> dict:
     """Every rival on both splits; the Lagrangian network also as published, on the loader's."""
     found = {}
     for split, test in _SPLITS.items():

@@ -297,7 +297,7 @@ def _memory(members: int) -> dict:
 
 
 @study
-def real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
+def _real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
     """Errors by blocks and windows, what changes them, and the filters beside their nulls."""
     return {
         "members": members,

@@ -87,7 +87,7 @@ def _floors(sets: dict) -> dict:
 
 
 @study
-def rivals() -> dict:
+def _rivals() -> dict:
     """Every line of `_LINES` at all its sizes, on several days; torques go into `_TORQUES`."""
     rows, torques, floor = {}, {}, None
     for day in range(1, _RECORDINGS + 1):
@@ -174,7 +174,7 @@ def _interval_row(rival, cases: Cases) -> dict:
 
 
 @study
-def gaussian_intervals() -> dict:
+def _gaussian_intervals() -> dict:
     """Share of measured torques in the intervals of several processes, on several days."""
     rows: dict = {name: {"kept out": [], "trajectory 6": []} for name in _PROCESSES}
     for day in range(1, _DAYS + 1):

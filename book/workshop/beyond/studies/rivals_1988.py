@@ -103,7 +103,7 @@ def _table(over: str, cells: int) -> Rival:
 
 
 @study
-def rivals_tables(days=_DAYS) -> dict:
+def _rivals_tables(days=_DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
     for kind in _KINDS:
@@ -218,7 +218,7 @@ _SLOTS = (16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 16384)  # weights of a jo
 
 
 @study
-def rivals_cmac(days=_DAYS) -> dict:
+def _rivals_cmac(days=_DAYS) -> dict:
     """Errors of CMAC by width, layers and slots; its collisions, and where it diverges."""
     settings = [
         *({"layers": _LAYERS, "width": width, "slots": None} for width in _WIDTHS),
@@ -302,7 +302,7 @@ _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 
 
 @study
-def rivals_bases(days=_DAYS) -> dict:
+def _rivals_bases(days=_DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen."""
     rows, chosen = [], {}
     for kind in _KINDS:

@@ -68,7 +68,7 @@ def _cell(order, seed, width, members):
 
 
 @study
-def harmonics(members=12, fewer=6) -> dict:
+def _harmonics(members=12, fewer=6) -> dict:
     """Networks of Table 4-1 trained on two harmonics; the networks go into ``.npz`` files.
 
     The arm, the controller, the noise, the five training runs and the test run, their extents

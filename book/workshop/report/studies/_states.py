@@ -48,7 +48,7 @@ def _sets(seed: int = 0) -> dict:
 
 
 @study
-def table_6_1(members=25, draws=8) -> dict:
+def _table_6_1(members=25, draws=8) -> dict:
     """Table 6-1 over initial weights and over draws of the sets; the networks are kept."""
     sets = _sets()
     model, history, _ = _train(sets["random set A"], members)
@@ -69,7 +69,7 @@ def table_6_1(members=25, draws=8) -> dict:
 
 
 @study
-def state_space_choices(members=8) -> dict:
+def _state_space_choices(members=8) -> dict:
     """What step size, momentum and initial weights decide in Table 6-1."""
     rows = []
     for rate, momentum, initial in (
@@ -147,7 +147,7 @@ def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
 
 
 @study
-def state_space_sizes() -> dict:
+def _state_space_sizes() -> dict:
     """Errors by number of samples, by number of hidden units, and over five times the epochs."""
     samples = [
         {

@@ -55,7 +55,7 @@ def _cell(setup, recording, width, members, snapshots=()):
 
 
 @study
-def table_4_1(members=25) -> dict:
+def _table_4_1(members=25) -> dict:
     """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
     table = {}
     for setup in SETUPS.values():
@@ -115,7 +115,7 @@ def _on_days(setup, days, networks, whiten=True) -> dict:
 
 
 @study
-def recordings(days=5, networks=5, fewer=1) -> dict:
+def _recordings(days=5, networks=5, fewer=1) -> dict:
     """Joint damping and its ablations on several days.
 
     `networks` for each day and window of the set-up itself, `fewer` of the ablations.
@@ -128,7 +128,7 @@ def recordings(days=5, networks=5, fewer=1) -> dict:
 
 
 @study
-def whitening(days=5, networks=2, members=8, width=41) -> dict:
+def _whitening(days=5, networks=2, members=8, width=41) -> dict:
     """Joint damping without whitening, on the days of `recordings`; and what whitening learns.
 
     Along each direction of the windows of one recording, the steepest first: the change of the
@@ -172,7 +172,7 @@ def _saturated(model, recording, width) -> np.ndarray:
 
 
 @study
-def longer(members=8, epochs=60_000) -> dict:
+def _longer(members=8, epochs=60_000) -> dict:
     """State feedback trained three times as long: where do the errors go?"""
     setup = replace(STATE_FEEDBACK, epochs=epochs)
     recording = setup.record()
@@ -181,7 +181,7 @@ def longer(members=8, epochs=60_000) -> dict:
 
 
 @study
-def clean(members=8) -> dict:
+def _clean(members=8) -> dict:
     """State feedback on an arm without friction, quantisation and torque noise."""
     effects = STATE_FEEDBACK.effects.without("friction", "encoder", "torque_sensor")
     setup = replace(STATE_FEEDBACK, effects=effects, name="perfect sensors, no friction")

@@ -108,7 +108,7 @@ class _Targets:
 
 
 @study
-def targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> dict:
+def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> dict:
     """Names of hidden filters by what was learnt, and by the size of the initial weights."""
     setup = replace(TRIAL, epochs=epochs)
     recording = setup.record()

@@ -31,7 +31,7 @@ def _acceleration_error(recording, width) -> float:
 
 
 @study
-def window_sizes(members=6) -> dict:
+def _window_sizes(members=6) -> dict:
     """Training and test error against the size of the window, far beyond the paper's three."""
     recording = STATE_FEEDBACK.record()
     rows = []
@@ -48,7 +48,7 @@ def window_sizes(members=6) -> dict:
 
 
 @study
-def hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
+def _hidden_units(members=6, width=21, units=(1, 2, 5, 10, 20, 40)) -> dict:
     """Training and test error of `members` networks of one `width` for each number of `units`."""
     recording = STATE_FEEDBACK.record()
     rows = []
@@ -67,7 +67,7 @@ _MEMORY_DECAY = 1e-3  # Weight decay with which weights stay about as large as t
 
 
 @study
-def memory(members=5) -> dict:
+def _memory(members=5) -> dict:
     """Networks that have nothing to learn but noise: how much of it do they memorise?
 
     The targets are the torques in shuffled order, so that no window says anything about its
@@ -148,7 +148,7 @@ def _states(recording: Recording, kind: str) -> np.ndarray:
 
 
 @study
-def state_inputs(members=6) -> dict:
+def _state_inputs(members=6) -> dict:
     """Networks that get the state at one moment: exact, by differences, by least squares.
 
     Each of the three quantities is scaled to its own range, and the training is the one of
@@ -184,7 +184,7 @@ def state_inputs(members=6) -> dict:
 
 
 @study
-def acceleration(members=25, epochs=2000, bits=3) -> dict:
+def _acceleration(members=25, epochs=2000, bits=3) -> dict:
     """With and without acceleration: errors by window and step size, and a race at window 21.
 
     Errors are those of `members` networks after `epochs`, with the table's acceleration. The race

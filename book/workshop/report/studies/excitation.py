@@ -102,7 +102,7 @@ def _linear(recording: Recording, setup: Setup) -> dict:
 
 
 @study
-def excitation(members: int = 8, days: int = 8, skipped=(0.0, 1.0)) -> dict:
+def _excitation(members: int = 8, days: int = 8, skipped=(0.0, 1.0)) -> dict:
     """Inertia of the shoulder in linear filters and networks, by drive and seconds left out.
 
     Linear filters by ridge regression on several days, with what the theory of `half_penalty`

@@ -263,7 +263,7 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
 
 
 @study
-def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
+def _filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
     """Filters of networks trained on real torques beside those trained on surrogates."""
     recording = TRIAL.record()
     windows = {str(w): _row(TRIAL, recording, w, members, draws, each, more=True) for w in WINDOWS}
@@ -271,7 +271,7 @@ def filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
 
 
 @study
-def filter_trial_elsewhere(
+def _filter_trial_elsewhere(
     members: int = 10, draws: int = 20, each: int = 1, width: int = 21
 ) -> dict:
     """The trial of the filters with one thing changed at a time, smaller.
@@ -309,7 +309,7 @@ def _response(torque, states) -> np.ndarray:
 
 
 @study
-def filter_responses(members: int = 15) -> dict:
+def _filter_responses(members: int = 15) -> dict:
     """How the first networks of `filter_trial` answer the shoulder's motion, kg m^2 (`_response`).
 
     Along trajectories `_SLOW`: as they were recorded, swings included, and as they were desired, a
@@ -348,7 +348,7 @@ def filter_responses(members: int = 15) -> dict:
 
 
 @study
-def null_controls(
+def _null_controls(
     members: int = 4, steps: int = 400, few: int = 120, tolerance: float = 1e-4
 ) -> dict:
     """Networks of window 21 that started elsewhere, or went on to an optimum.

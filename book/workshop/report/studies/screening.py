@@ -172,7 +172,7 @@ def _run(method: str, places: list, seeds: list) -> dict:
 
 
 @study
-def screened(networks=2) -> dict:
+def _screened(networks=2) -> dict:
     """The six errors at each run of the design, by both methods; every network has its own day."""
     settings = [
         {

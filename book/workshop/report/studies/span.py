@@ -137,7 +137,7 @@ def _correlations(seen, variance) -> dict:
 
 
 @study
-def span(members=5) -> dict:
+def _span(members=5) -> dict:
     """Learning curves of `members` networks along the directions of their windows.
 
     By state feedback with both scalings of the inputs, and on the arm with damped joints; three

@@ -141,7 +141,7 @@ def _rates(draw: learners.Draw) -> dict:
 
 
 @study
-def learning_in_the_loop() -> dict:
+def _learning_in_the_loop() -> dict:
     """End-point errors of all learners, mm, for each reading of section 4."""
     found = {}
     for setup in (JOINT_DAMPING, STATE_FEEDBACK):

@@ -290,7 +290,7 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
 
 
 @study
-def run_time() -> dict:
+def _run_time() -> dict:
     """Feedforwards of the square of extents, two readings: end-point errors, RMS, mm."""
     reference = parts.rounded(parts._EXTENTS, 0.0)
     found: dict = {

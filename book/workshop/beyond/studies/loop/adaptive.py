@@ -282,7 +282,7 @@ def _map(setup: Setup = JOINT_DAMPING) -> dict:
 
 
 @study
-def adaptive() -> dict:
+def _adaptive() -> dict:
     """Everything that the chapter on adaptive control says of runs."""
     both = {s.name: s for s in (JOINT_DAMPING, STATE_FEEDBACK)}
     return {

@@ -308,7 +308,7 @@ def _costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:
 
 
 @study
-def joints() -> dict:
+def _joints() -> dict:
     """All of it; what each part holds stands with its function."""
     second = {n: (5, _MAIN, 40) for n in (1, 2, 3, 4)}
     return {

@@ -250,7 +250,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 
 
 @study
-def stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
+def _stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     """Networks and rivals of each family of motions on all others, and their hands' errors."""
     found: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (

@@ -104,6 +104,6 @@ def _learned(load: int) -> dict[str, dict[str, np.ndarray]]:
 
 
 @study
-def loop_learner() -> dict:
+def _loop_learner() -> dict:
     """Errors (mm) and estimates of all learners, by load."""
     return {"loads": {str(load): _learned(load) for load in _LOADS}}

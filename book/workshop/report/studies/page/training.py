@@ -79,7 +79,7 @@ def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = _EP
 
 
 @study
-def page_training(members: int = 25) -> dict:
+def _page_training(members: int = 25) -> dict:
     """Networks of window 21 trained as the page trains them, on torques real and shifted."""
     rows = {}
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):

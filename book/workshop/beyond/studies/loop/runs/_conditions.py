@@ -205,7 +205,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
 
 
 @study
-def loop_conditions(days: int = 10, seeds: int = 10) -> dict:
+def _loop_conditions(days: int = 10, seeds: int = 10) -> dict:
     """Four findings under other conditions, both set-ups where they were found in both."""
     both = (JOINT_DAMPING, STATE_FEEDBACK)
     solved = replace(STATE_FEEDBACK, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
