@@ -1,0 +1,109 @@
+"""Copies of the actuator network of a walking robot, and networks that learnt shuffled pairs."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import torch
+
+from workshop import BOOK
+from workshop.report.code_hash import study
+
+STEP = 0.005
+"""Seconds between two entries of an error's history."""
+
+_UNITS = 32
+_MEMBERS, _CASES, _EPOCHS, _RATE = 10, 1500, 1500, 0.01
+_SIZES, _FREQUENCIES = (0.0, 0.15), (0.5, 8.0)  # of a sine in a history: rad, Hz
+
+
+def layers(file: str = "unitree-go1-actuator") -> list[tuple[np.ndarray, np.ndarray]]:
+    """Weights and biases of the published network, layer by layer."""
+    with np.load(BOOK / "data" / f"{file}.npz") as stored:
+        return [(stored[f"{k}_weight"], stored[f"{k}_bias"]) for k in (0, 2, 4)]
+
+
+def torque(x, network) -> np.ndarray:
+    """Torque (N m) for histories of error and velocity at lags 0, 1, 2, shape (cases, 6)."""
+    for k, (weight, bias) in enumerate(network):
+        x = x @ weight.T + bias
+        x = x / (1 + np.abs(x)) if k < len(network) - 1 else x
+    return x[..., 0]
+
+
+def gradient(x, network) -> np.ndarray:
+    """Change of the torque with each entry of the histories, shape (cases, 6)."""
+    chain = np.eye(x.shape[-1])
+    for k, (weight, bias) in enumerate(network):
+        x, chain = x @ weight.T + bias, weight @ chain
+        if k < len(network) - 1:
+            chain = chain / (1 + np.abs(x))[..., None] ** 2
+            x = x / (1 + np.abs(x))
+    return chain[..., 0, :]
+
+
+def histories(cases: int, seed: int) -> np.ndarray:
+    """Histories of three sines in position and three in target, shape (cases, 6)."""
+    rng, t = np.random.default_rng(seed), -STEP * np.arange(3)
+    error, velocity = np.zeros((2, cases, 3))
+    for _ in range(3):
+        moved, wanted = rng.uniform(*_SIZES, (2, cases, 1))
+        w = 2 * np.pi * rng.uniform(*_FREQUENCIES, (cases, 1))
+        first, second = rng.uniform(0, 2 * np.pi, (2, cases, 1))
+        error += moved * np.sin(w * t + first) - wanted * np.sin(w * t + second)
+        velocity += moved * w * np.cos(w * t + first)
+    return np.concatenate([error, velocity], axis=1)
+
+
+def _trained(x, y, seed: int) -> tuple[list, float]:
+    """A network of the same sizes that learnt y from x, and its training RMSS."""
+    generator = torch.Generator().manual_seed(seed)
+    sizes = (x.shape[1], _UNITS, _UNITS, 1)
+    start = [
+        ((2 * torch.rand(n, m + 1, generator=generator) - 1).double() / m**0.5).requires_grad_()
+        for m, n in pairwise(sizes)
+    ]
+    middle, spread = x.mean(0), x.std(0)
+    z, goal = torch.tensor((x - middle) / spread), torch.tensor((y - y.mean()) / y.std())
+
+    def output():
+        h = z
+        for k, w in enumerate(start):
+            h = h @ w[:, :-1].T + w[:, -1]
+            h = torch.nn.functional.softsign(h) if k < 2 else h
+        return h[:, 0]
+
+    descent = torch.optim.Adam(start, _RATE)
+    for _ in range(_EPOCHS):
+        descent.zero_grad()
+        loss = ((output() - goal) ** 2).mean()
+        loss.backward()
+        descent.step()
+    arrays = [w.detach().numpy() for w in start]
+    made = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
+    made[0] = made[0][0] / spread, made[0][1] - made[0][0] / spread @ middle
+    made[-1] = made[-1][0] * y.std(), made[-1][1] * y.std() + y.mean()
+    return made, float(np.sqrt(loss.detach()))
+
+
+@study
+def _walking() -> dict:
+    """Mean gradients of the network, of copies, of networks on shuffled pairs, of random ones."""
+    network, x = layers(), histories(_CASES, seed=0)
+    y, rows = torque(x, network), {"copies": [], "shuffled": []}
+    for seed in range(_MEMBERS):
+        shuffled = np.random.default_rng(seed).permutation(y)
+        for name, goal in (("copies", y), ("shuffled", shuffled)):
+            copy, error = _trained(x, goal, seed)
+            rows[name].append({"error": error, "gradient": gradient(x, copy).mean(0)})
+    drawn = []
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        random = [
+            (rng.uniform(-1, 1, w.shape) / w.shape[1] ** 0.5, rng.uniform(-1, 1, b.shape))
+            for w, b in network
+        ]
+        drawn.append(gradient(x, random).mean(0) * y.std() / torque(x, random).std())
+    own = gradient(x, network).mean(0)
+    return {"step": STEP, "network": own, "random": np.array(drawn), **rows}
