@@ -9,17 +9,15 @@ from ddlib.widgets.parts._common import filled
 
 STATES = {
     "EXPLORER_CODE": (
-        "convolution-filters",
+        "evidence-convolution-filters",
         {"width": 21, "seed": 15, "unit": "hidden 8", "joint": "shoulder"},
         "acceleration",
     ),
-    "PLAYER_CODE": ("hinton-diagrams", {"epoch": 1000, "unit": "hidden 3"}, "training"),
     "SPECTRUM_CODE": (
         "why-smooth-filters",
         {"case": 1, "width": 11, "direction": 4, "epoch": 1000},
         "measured",
     ),
-    "WINDOW_CODE": ("window-networks", {"width": 11, "sample": 75}, "[["),
     "PICKER_CODE": ("trajectories-and-recording", {"shoulder_deg": 39.5, "elbow_deg": 14.4}, "11 "),
     "CODE": ("index", {"motion": 1}, "[["),
 }
