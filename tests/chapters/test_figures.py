@@ -1,17 +1,13 @@
 """All figures of the book: sound and accessible, and what is drawn are the data that were given."""
 
 import re
-from functools import partial
 
-import control
 import figure_examples as given
 import numpy as np
 import pytest
 from figure_examples import EXAMPLES, SHOWN, T, X, fitted, made
 from matplotlib.collections import QuadMesh
-from matplotlib.colors import LogNorm
-from matplotlib.contour import ContourSet
-from pictures import black_or_white, check_sound, curves, ids, shapes, words
+from pictures import black_or_white, check_sound, ids, shapes, words
 
 from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -21,7 +17,6 @@ from workshop.beyond import figures as beyond
 from workshop.chapters import (
     convolution_filters as filters,
     dynamics,
-    feedback,
     trajectories_and_recording as recording,
     what_lagrange_euler_leaves_out as left_out,
     whole_state_space as states,
@@ -30,8 +25,8 @@ from workshop.chapters import (
 )
 
 UPON_A_COLOUR = {
-    "ranking": "#000000", "hinton": "#ffffff", "hinton_states": "#ffffff", "plane": "#ffffff",
-    "maps": "#ffffff", "hand_paths": "#ffffff", "arm_sketch": "#ffffff",
+    "ranking": "#000000", "hinton": "#ffffff", "hinton_states": "#ffffff",
+    "maps": "#ffffff", "arm_sketch": "#ffffff",
 }  # fmt: skip
 """What these paint black or white lies on a colour, or has an edge in the page's ink."""
 
@@ -55,7 +50,7 @@ def test_sound_accessible_and_true_to_the_data(name):
         for points in map(np.asarray, wanted):
             same = [part for part in drawn if part.shape == points.shape]
             assert any(np.allclose(part, points, equal_nan=True) for part in same), points
-        if "map" not in name and name != "plane":
+        if "map" not in name:
             scales = {"x": axis.get_xscale(), "y": axis.get_yscale()}
             logarithmic = {side for side, scale in scales.items() if scale == "log"}
             assert logarithmic == set(LOGARITHMIC.get(name, ""))
@@ -88,17 +83,6 @@ def test_maps_have_a_cell_for_every_value():
     def cells(axis):
         return next(part for part in axis.collections if isinstance(part, QuadMesh))
 
-    plane = made("plane")[1].axes[0]
-    np.testing.assert_array_equal(cells(plane).get_array(), given.PLANE)
-    corners = cells(plane).get_coordinates()
-    middles = (corners[1:, 1:] + corners[:-1, :-1]) / 2
-    np.testing.assert_allclose(middles, np.stack(np.meshgrid(given.ACROSS, given.UP), -1))
-    assert isinstance(cells(plane).norm, LogNorm)
-    assert {tuple(corner) for corner in plane.patches[0].get_xy()} == set(
-        given.PLACES[0][:3]
-    )  # the hull
-    (contours,) = (part for part in plane.collections if isinstance(part, ContourSet))
-    assert list(contours.levels) == [0.5, 1.0]
     for axis, (title, values) in zip(made("maps")[1].axes, given.SQUARES.items()):
         assert axis.get_title(loc="left") == title
         np.testing.assert_array_equal(cells(axis).get_array(), values.T)
@@ -108,44 +92,12 @@ def test_maps_have_a_cell_for_every_value():
     )
 
 
-def test_hand_paths_begin_in_one_point_and_end_where_the_arm_does():
-    _, figure = made("hand_paths")
-    paths = [max(curves(figure, colour), key=len) for colour in COLOURS]
-    starts, turns = np.array([(path[0], path[-1]) for path in paths]).swapaxes(0, 1)
-    l1, l2 = CMU_DD_ARM_II.lengths
-    np.testing.assert_allclose(starts, np.tile([l1 + l2, 0.0], (len(COLOURS), 1)), atol=1e-9)
-    t = np.deg2rad(-APPENDIX_I)
-    x = l1 * np.cos(t[:, 0]) + l2 * np.cos(t.sum(1))
-    y = l1 * np.sin(t[:, 0]) + l2 * np.sin(t.sum(1))
-    np.testing.assert_allclose(turns, np.stack([x, y], -1), atol=1e-9)
-    assert figure.axes[0].get_aspect() == 1.0
-
-
 def test_shares_stand_beside_repeated_estimates_only():
     picture, _ = made("estimates")
     shares = [text.removesuffix(" %") for text in words(picture) if re.fullmatch(r"\d+ %", text)]
     fair = 100 * fitted(100).covers([1.0, 2.0]).mean(0)
     assert shares == [f"{fair[0]:.0f}", "0", f"{fair[1]:.0f}", "0"]  # two panels
     assert "off: x 50, y 25" in picture.alt and "fair: x" in picture.alt
-
-
-def test_root_loci_name_the_poles():
-    """Of s² + s / 4 + 25, and of s² + 25 s / 4 + 25."""
-    picture, figure = made("root_loci")
-    assert picture.alt == "Root loci. Poles at factor 1: P: −0.12 ± 5i; PD: −3.1 ± 3.9i."
-    for axis, loop in zip(figure.axes, given.LOOPS.values()):
-        start = axis.lines[1].get_xydata()[0]
-        assert np.abs(loop.poles() - complex(*start)).min() < 0.05
-
-
-def test_nyquist_tells_the_largest_sensitivity():
-    """Against python-control's stability margin, the smallest distance from -1."""
-    picture, _ = made("nyquist")
-    told = []
-    for title, loop in given.LOOPS.items():
-        _, _, nearest, _, _, at = control.stability_margins(loop)
-        told.append(f"{title}: {1 / nearest:.3g} at {at:.2g} rad/s")
-    assert picture.alt == f"Nyquist plots. Largest sensitivity: {'; '.join(told)}."
 
 
 def test_bars_stand_in_order_and_are_as_long_as_their_torques():
@@ -160,7 +112,6 @@ def test_bars_stand_in_order_and_are_as_long_as_their_torques():
 
 
 BAD = np.nan
-PLANE = partial(windows.plane, levels=(), training=(), test=())
 ARM = CMU_DD_ARM_II
 LABELS = "x, s", "error, m"
 REFUSALS = [
@@ -176,18 +127,13 @@ REFUSALS = [
     (figures.decomposition, ({"a": np.ones(10)}, 0.01), "f must have an odd"),
     (beyond.maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
     (dynamics.arm_sketch, (ARM, [0.1, BAD]), "q must be finite"),
-    (dynamics.hand_paths, (ARM, [BAD, 0.0]), "extents_deg must"),
     (dynamics.estimates, ({"a": fitted()}, [1.0], ("x", "y"), 5.0), "truth must"),
-    (feedback.root_loci, (given.LOOPS, [2, 1]), "gains must"),
-    (feedback.nyquist, (given.LOOPS, [1, BAD]), "frequencies must"),
     (recording.extents_square, (APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
     (recording.reached, ({"a": np.full((1, 10, 6), BAD)}, 1.0), r"states\['a'\] must"),
     (recording.rounding, ([0.0, 0.1, 0.2], [0, 1, BAD], {}), "steps must"),
     (recording.tied, ({"a": {"b": np.zeros((1, 5, 3))}},), "points of 'b' must"),
     (left_out.ranking, ({"a": [-1, 1]},), "sizes"),
-    (PLANE, (X, X[:2], given.PLANE, (), "A."), r"values must have .* \(2, 6\), got"),
     (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
-    (filters.clusters, ({"a": ({"b": [BAD]}, 1.0)}, "N m", "A."), "values of 'b' must"),
     (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
     (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
     (smooth.predicted_curves, (X, {"a": (X, X[:3])}, {}, (), "A."), "values of 'a' must have"),

@@ -72,7 +72,7 @@ def shows_something(code: str) -> bool:
     """Whether a cell has an output: it prints, or ends with a value."""
     tree = ast.parse(code)
     every, last = list(statements(tree.body)), tree.body[-1]
-    silent = re.fullmatch(r"quote|glue|stated|.*assert_\w+|warnings\.\w+", called(last))
+    silent = re.fullmatch(r"(\w+\.)?quoted?|glue|stated|.*assert_\w+|warnings\.\w+", called(last))
     return "print" in map(called, every) or (isinstance(last, ast.Expr) and not silent)
 
 

@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 from pictures import drawn
 
 from ddlib import figures as shared
-from ddlib.control import loop_gain
 from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import Illustration
 from ddlib.identification import Equations, least_squares
@@ -55,7 +54,6 @@ COUNTS = {
     "steep": {n: Operations(10**n, 3) for n in (2, 3, 4)},
     "level": {n: Operations(500, 3) for n in (2, 3, 4)},
 }
-LOOPS = {"P": loop_gain(4.0, 1.0, 100.0), "PD": loop_gain(4.0, 1.0, 100.0, 0.0, 24.0)}
 RINGING = np.zeros((2, 30, 6))
 RINGING[1, 3] = [0.5, -0.7, 1.5, 0.0, 0.0, -9.0]
 TIED = {
@@ -68,11 +66,6 @@ SIDES = {
     ("e", "f"): {"alone": (X, X)},
 }
 SIZES = {"small": [0.02, 0.01], "large": [8.0, 2.0], "middle": [0.5, 0.9]}
-MEASURED = np.sin(T)
-PREDICTED = {"window 11": np.cos(T), "window 41": 0.9 * np.sin(T)}
-ACROSS, UP = np.linspace(0, 45, 4), np.linspace(0, 45, 3)
-PLANE = np.outer([1.0, 2.0, 4.0], [0.1, 0.2, 0.5, 1.0])
-PLACES = [(0, 0), (45, 0), (0, 45), (20, 20)], [(40, 10)]
 INTERVALS = {
     "left": {"a": {"gain": (0.5, 1.0, 2.0), "friction": (1.0, 1.0, 1.0)}, "b": {"gain": (1, 2, 4)}},
     "right": {"a": {"gain": (0.2, 0.3, 0.4)}},
@@ -153,15 +146,13 @@ EXAMPLES = {
     "decomposition": partial(shared.decomposition, FILTERS, 0.01),
 
     "arm_sketch": partial(dynamics.arm_sketch, CMU_DD_ARM_II, [0.6, 0.9]),
-    "hand_paths": partial(dynamics.hand_paths, CMU_DD_ARM_II, APPENDIX_I),
     "operations": partial(
         dynamics.operations, COUNTS, {"book": (4, 9000), "paper": (3, 600)}, (200, 1000)
     ),
     "estimates": lambda: dynamics.estimates(
         {"fair": fitted(100), "off": fitted(100, 0.5), "once": fitted()}, [1, 2], ("x", "y"), 20.0
     ),
-    "root_loci": partial(feedback.root_loci, LOOPS, np.geomspace(1e-4, 5, 50)),
-    "nyquist": partial(feedback.nyquist, LOOPS, np.geomspace(0.5, 50, 401)),
+    "ringing": feedback.ringing,
     "feedforward_loop": feedforward.feedforward_loop,
     "extents_square": partial(
         recording.extents_square, APPENDIX_I[:5], APPENDIX_I[5], [[10.0, 20.0]]
@@ -176,16 +167,8 @@ EXAMPLES = {
     "side_by_side": partial(left_out.side_by_side, SIDES, "Three panels."),
     "side_by_side, log": partial(left_out.side_by_side, SIDES, "The same.", log=True),
     "ranking": partial(left_out.ranking, SIZES),
-    "overlay": partial(windows.overlay, T, MEASURED, PREDICTED),
-    "plane": partial(
-        windows.plane, ACROSS, UP, PLANE, ("shoulder, °", "elbow, °", "error"), "A map.",
-        levels=(1.0, 0.5), training=PLACES[0], test=PLACES[1],
-    ),
     "intervals": partial(
         windows.intervals, INTERVALS, "factor", "Rows.", log=True, band=(0.7, 1.4)
-    ),
-    "clusters": partial(
-        filters.clusters, {"left": (GROUPS, 4.0), "right": (GROUPS, 0.0)}, "N m", "Groups."
     ),
     "against_nulls": partial(filters.against_nulls, NULLS, "share of the filters", "Bars."),
     "by_explained": partial(
@@ -287,8 +270,6 @@ SHOWN = {
     "tied": [[DOTS * [180 / np.pi, 1]]],
     "side_by_side": SIDE_BY_SIDE,
     "side_by_side, log": SIDE_BY_SIDE,
-    "overlay": [xy(T, MEASURED, torque) for torque in PREDICTED.values()],
-    "plane": [PLACES],
     "intervals": [  # one series above the other
         [
             [(0.5, -0.15), (2, -0.15)], [(1, -0.15)], [(1, 0.15), (4, 0.15)], [(2, 0.15)],

@@ -1,109 +1,99 @@
-"""Figures of the chapter *What feedback does*, and what its claims measure."""
+"""What the lesson *What feedback does* shows, quotes and asks, and what its claims measure."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import control
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 
-from ddlib._check import finite_array
-from ddlib.effects import Effects
-from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
-from ddlib.simulation import Load
-from ddlib.tables import significant
-from ddlib.trajectories import APPENDIX_I
+from ddlib.control import linear, pd
+from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.effects import Effects, ViscousFriction
+from ddlib.figures import by_case
+from ddlib.figures.style import Illustration
+from ddlib.setups import KD, KP
+from ddlib.simulation import CONTROL_STEP, Load, follow
+from ddlib.tables import quote, significant
+from ddlib.trajectories import APPENDIX_I, Trajectory
+from ddlib.widgets import PIDTuner
+from workshop.chapters.exercises import judge
 from workshop.chapters.feedforward import _errors, _geared, _rms
 from workshop.report.evidence.verdicts import Measured
 
-
-def root_loci(loops: Mapping[str, control.TransferFunction], gains) -> Illustration:
-    """Poles of closed loops while the whole loop gain is multiplied by a factor.
-
-    Crosses are the open loop's poles, rings its zeros, dots the poles at factor 1.
-    """
-    gains = finite_array("gains", gains)
-    if gains.ndim != 1 or gains.size < 2 or gains[0] <= 0 or (np.diff(gains) <= 0).any():
-        raise ValueError(f"gains must be positive and increase, got shape {gains.shape}")
-    if not loops:
-        raise ValueError("loops must hold one loop or more, got none")
-    poles = {title: control.feedback(loop, 1).poles() for title, loop in loops.items()}
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(loops), squeeze=False)[0]
-        for axis, (title, loop) in zip(axes, loops.items()):
-            branches = control.root_locus_map(loop, gains=gains).loci
-            axis.axvline(0, color=FAINT, lw=1)
-            for k, branch in enumerate(branches.T):
-                axis.plot(branch.real, branch.imag, color=COLOURS[k % len(COLOURS)])
-            axis.plot(loop.poles().real, loop.poles().imag, "x", color=INK, ms=7, mew=1.5)
-            axis.plot(loop.zeros().real, loop.zeros().imag, "o", color=INK, ms=7, mfc="none")
-            axis.plot(poles[title].real, poles[title].imag, "o", color=INK, ms=5)
-            axis.set(title=title, xlabel="real part, 1/s")
-            axis.margins(0.08)
-        axes[0].set_ylabel("imaginary part, rad/s")
-
-    where = "; ".join(
-        f"{title}: " + ", ".join(_words(p) for p in sorted(x, key=abs) if p.imag >= 0)
-        for title, x in poles.items()
-    )
-    return illustrate(draw, f"Root loci. Poles at factor 1: {where}.", 7.0, 2.9)
+_VISCOUS = (0.5, 0.15)  # friction of the joints, N m s/rad; assumed
 
 
-def _words(pole) -> str:
-    imaginary = f" ± {pole.imag:.2g}i" if pole.imag > 1e-9 else ""
-    return f"{pole.real + 0.0:.2g}{imaginary}".replace("-", "−")
+def ringing() -> Illustration:
+    """The elbow's swing below, at and above the limit of the sampled P loop, and with a damper."""
+    inertia = ARM.mass_matrix([0.0, 0.0])[0, 0]
+    limit = linear.proportional_limit(inertia, _VISCOUS[0], CONTROL_STEP) / KP[0]
+    t = np.arange(0, 6, CONTROL_STEP)
+    target = np.deg2rad(2) * (t > 0)[:, None] * np.ones(2)
+    stiffness = np.outer([1, limit, 3 * limit, 3 * limit], KP)
+    law = pd(stiffness, np.outer([0, 0, 0, 1], KD))
+    still = Trajectory(target, 0 * target, 0 * target)
+    run = follow(ARM, law, still, t, effects=Effects((ViscousFriction(_VISCOUS),)))
+    alone = ("the book's gains", "gains at the limit", "3 × the limit")
+    names = [*(f"springs alone, {gain}" for gain in alone), "3 × the limit, with a damper"]
+    cases = dict(zip(names, np.rad2deg(run.tracking_error[:, 1:, 1])))
+    alt = "Elbow error over six seconds below, at and above the limit: decaying, "
+    alt += "steady, growing; with a damper it is over in two seconds."
+    return by_case(run.t[1:], cases, "time, s", "error, °", alt, height=0.9)
 
 
-def nyquist(loops: Mapping[str, control.TransferFunction], frequencies) -> Illustration:
-    """Open loops in the complex plane, and how near each comes to the point -1.
-
-    The circle around -1 has the radius of the smallest distance, which is one over the largest
-    sensitivity ``max |1 / (1 + L)|``; a dot marks where the loop touches it.
-    """
-    frequencies = finite_array("frequencies", frequencies)
-    if frequencies.ndim != 1 or frequencies.size < 2 or frequencies[0] <= 0:
-        raise ValueError(f"frequencies must be positive, got shape {frequencies.shape}")
-    if (np.diff(frequencies) <= 0).any():
-        raise ValueError("frequencies must increase")
-    if not loops:
-        raise ValueError("loops must hold one loop or more, got none")
-    answers = {title: np.ravel(loop(1j * frequencies)) for title, loop in loops.items()}
-    nearest = {title: _nearest(loops[title], L, frequencies) for title, L in answers.items()}
-    largest = {title: 1 / abs(1 + L) for title, (_, L) in nearest.items()}
-
-    def draw(figure: Figure):
-        panels = figure.subplots(1, len(loops), squeeze=False, sharex=True, sharey=True)[0]
-        for axis, (title, L) in zip(panels, answers.items()):
-            axis.axhline(0, color=FAINT, lw=1)
-            axis.axvline(0, color=FAINT, lw=1)
-            axis.add_patch(Circle((0, 0), 1, fill=False, ec=FAINT, ls=":"))
-            axis.add_patch(Circle((-1, 0), 1 / largest[title], fill=False, ec=COLOURS[1]))
-            axis.plot(L.real, L.imag, color=COLOURS[0])
-            axis.plot(-1, 0, "+", color=INK, ms=8, mew=1.5)
-            _, near = nearest[title]
-            axis.plot(near.real, near.imag, "o", color=COLOURS[1], ms=5)
-            axis.set(title=f"{title}, $M_s$ = {largest[title]:.3g}", xlabel="real part of L")
-            axis.set_aspect("equal")
-            axis.set(xlim=(-3, 1.2), ylim=(-2.4, 1.8))
-        panels[0].set_ylabel("imaginary part of L")
-
-    told = "; ".join(
-        f"{title}: {largest[title]:.3g} at {at:.2g} rad/s" for title, (at, _) in nearest.items()
-    )
-    return illustrate(draw, f"Nyquist plots. Largest sensitivity: {told}.", 7.0, 2.9)
+def quoted() -> None:
+    """The numbers of the lesson: what moving the tuner's sliders changes."""
+    tuner = PIDTuner()
+    moves = {"base": {}, "damped": {"kd": 80}, "loose": {"kd": 0}}
+    moves |= {"ahead": {"feedforward": True}, "patient": {"ki": 150}}
+    times = np.array(tuner.spec["panels"][0]["x"])
+    late = (times >= 1) & (times < 3)
+    for name, move in moves.items():
+        seen = tuner.interpolate(**move)
+        quote(f"pid-tune-margin-{name}", seen["shoulder phase margin"][0])
+        quote(f"pid-tune-late-{name}", np.sqrt((seen["shoulder error"][late] ** 2).mean()))
 
 
-def _nearest(loop, answers, frequencies) -> tuple[float, complex]:
-    """Where a loop comes nearest to -1, rad/s, and its value there."""
-    k = int(np.abs(1 + answers).argmin())
-    low, high = frequencies[[max(k - 1, 0), min(k + 1, frequencies.size - 1)]]
-    fine = np.linspace(low, high, 1001)
-    values = np.ravel(loop(1j * fine))
-    best = int(np.abs(1 + values).argmin())
-    return float(fine[best]), complex(values[best])
+def check(number: int, mine, inertia: float, friction: float, period: float) -> None:
+    """Judge an answer to an exercise, for a joint and a control period."""
+
+    def quick(gains):
+        joint, t = linear.plant(inertia, friction), np.linspace(0, 4, 4001)
+        loop = linear.closed_loop(joint, gains[0], kd=gains[1])
+        angle = control.forced_response(loop, t, [1 + 0 * t, 0 * t]).outputs[0]
+        late = linear.opened_loop(joint, gains[0], 0, gains[1], period, 1)
+        return (
+            angle.max() <= 1.05,
+            np.abs(angle[t > 0.8] - 1).max() <= 0.01,
+            linear.margins(late).phase_deg >= 60,
+        )
+
+    def only(place):
+        """Whether the demand of this place is the first that is not met."""
+        return lambda gains: not quick(gains)[place] and all(quick(gains)[:place])
+
+    limit, root = friction / period, np.sqrt(2)
+    if number == 1:
+        slips = [
+            (2 * limit, "that is the limit without the delay."),
+            (limit, "the hold costs half a period, the delay a whole one. Add them."),
+        ]
+        judge(mine, limit / 1.5, "the spring is one and a half periods late.", slips,
+              "How late is the spring, and what torque along the velocity is that?")  # fmt: skip
+    elif number == 2:
+        slips = [
+            (only(0), "it overshoots by more than 5 %. What raises the damping ratio?"),
+            (only(1), "it has not settled after 0.8 s. What makes it die out sooner?"),
+            (only(2), "the margin is below 60°. Is the crossover too high for the delay?"),
+        ]
+        judge(mine, lambda gains: all(quick(gains)), "all three demands are met.", slips,
+              "Give two positive gains, kp and kd.")  # fmt: skip
+    else:
+        slips = [
+            (lambda x: np.isclose(x[0], 2), "the natural frequency has a root in it."),
+            (lambda x: np.isclose(x[1], [1, 2]).any(), "in ζ both gains stand, one under a root."),
+            (lambda x: np.isclose(x[2], 2), "does a stiffer spring give way more?"),
+        ]
+        judge(mine, (root, root, 0.5), "frequency and damping by √2, the angle by a half.", slips)
 
 
 # --- what the claims of the chapter measure
