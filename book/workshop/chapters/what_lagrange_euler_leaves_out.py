@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from ddlib._check import finite_array
 from ddlib.analysis import savitzky_golay
-from ddlib.control import difference, end_slope, late_poles, linear, noise_gain
+from ddlib.control import difference, end_slope, late_poles, linear, noise_gain, pd
 from ddlib.control.velocity import EstimatedVelocity
 from ddlib.effects import DeadZone, Effects, FlexibleJoint, Quantisation, Ripple, StribeckFriction
 from ddlib.figures.style import (
@@ -35,8 +35,10 @@ from ddlib.figures.style import (
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import STATE_FEEDBACK
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow, record, residual_torque, rms
-from ddlib.tables import significant
+from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.widgets.switches import RealArmSwitches
+from workshop.chapters.exercises import judge
 from workshop.report.evidence.verdicts import Measured, turns_at
 
 
@@ -92,7 +94,7 @@ def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
             look = dict(color=COLOURS[j], alpha=0.85, hatch="" if j == 0 else "///", lw=0)
             bars = axis.barh(rows, values[:, j] - low, height * 0.88, left=low, label=joint, **look)
             words = [significant(value, 2) for value in values[:, j]]
-            axis.bar_label(bars, words, padding=3, fontsize=7.5, color=INK)
+            axis.bar_label(bars, words, padding=3, fontsize=7, color=INK)
         axis.set_yticks(places, [""] * len(order) if slim else order)
         axis.set(xscale="log", xlim=(low, values.max() * 2.5), xlabel="torque, N m (RMS)")
         axis.set_ylim(len(order) - 0.4, -0.8 if slim else -0.6)
@@ -107,7 +109,7 @@ def ranking(sizes: Mapping[str, np.ndarray]) -> Illustration:
         f"{name} {' and '.join(significant(v, 2) for v in row)}" for name, row in zip(order, values)
     )
     alt = f"Bars of torque in N m for shoulder and elbow, largest first: {listed}."
-    size = 7.0, 0.36 * len(order) + 0.9
+    size = 7.0, 0.26 * len(order) + 0.9
     return illustrate(draw, alt, *size, narrow_height=0.46 * len(order) + 0.9)
 
 
@@ -190,6 +192,50 @@ def torques_left() -> dict[str, np.ndarray]:
         )
         found[f"encoder, acceleration {name}"] = other - one
     return {name: rms(torque) for name, torque in found.items()}
+
+
+def quoted() -> None:
+    """Quote what the lesson says of the book's arm."""
+    sizes, switches = torques_left(), RealArmSwitches()
+    quote("left-rings", sizes["flexible shaft"][0])
+    rubbing = rms(sum(_left(None, friction=(one,)) for one in _SETUP.effects.friction))
+    for name, whole in {"driven": "rigid body", "asked": "rigid body, reference"}.items():
+        quote(f"left-friction-{name}", 100 * (rubbing / sizes[whole])[0])
+    for name in ("friction", "quantisation"):
+        alone = dict.fromkeys(switches.values, "off") | {name: "strong"}
+        quote(f"left-{name}-position", switches.interpolate(**alone)["shoulder position"][0])
+
+
+def check(number: int, mine, arm=None, kp=None, other=None, extents=None) -> None:
+    """Judge an answer to an exercise of the lesson."""
+
+    def jump(share):
+        return lambda f: np.isclose(f(3.0, 1.0, 300.0), share * 2 / 300)
+
+    def path(zone):
+        effects = Effects(actuator=(DeadZone((zone, 0.0)),))
+        return record(arm, pd(kp, other), extents, effects=effects).q_true
+
+    def grows(answer):
+        joints = linear.plant(arm.mass_matrix([0.0, 0.0]), other)
+        gain = np.hstack([np.diag(answer[1] * np.asarray(kp)), np.zeros((2, 2))])
+        return np.abs(late_poles(joints, gain, answer[0], 1.2e-3)).max() >= 1
+
+    if number == 1:
+        half = jump(1), "there it balances the friction, at full speed. How far does it swing on?"
+        judge(mine, jump(2), "it overshoots by as much as it was held back.", [half])
+    elif number == 2:
+        ideal, half, whole = map(path, (0.0, 0.5, 1.0))
+        share = rms(half - ideal, None) / rms(whole - ideal, None)
+        told = "How wide is the zone that is left?"
+        judge(mine, share, "what is left is a zone half as wide.", (), told, tolerance=0.1)
+    else:
+        slips = [
+            (lambda m: m[0] < 1.2e-3, "the arithmetic does not fit into the period."),
+            (lambda m: m[1] < 0.85, "that is less than 85 % of the gains."),
+            (grows, "a swing grows. Which of the two delays can be shortened?"),
+        ]
+        judge(mine, lambda m: not any(is_so(m) for is_so, _ in slips), "no swing grows.", slips)
 
 
 def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:
