@@ -1,20 +1,27 @@
-"""What the claims of the chapter *The global view* measure: hidden units at work."""
+"""What the lesson *The global view* quotes, and what its claims measure: hidden units at work."""
 
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 
 import numpy as np
 from scipy.linalg import orth
 
 from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated, transition_width
-from ddlib.learning import cases
+from ddlib.figures.style import Illustration
+from ddlib.learning import MATCHED, cases
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS
+from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, errors
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import significant
+from ddlib.tables import quote, significant
+from workshop.chapters.exercises import judge
+from workshop.chapters.window_networks import intervals
 from workshop.report import committed
+from workshop.report.evidence import claims
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
+from workshop.report.measures import filter_trial
 
 
 def in_transition(width: int) -> Measured:
@@ -84,6 +91,73 @@ def linear_alone(width: int = 21, setup: str = JOINT_DAMPING.name) -> np.ndarray
     """Errors of a linear filter of the window, by least squares: training, trajectory 6."""
     (x, _, y), (new, _, answer) = _features(width, setup)
     return refitted(x, y, new, answer)
+
+
+@cache
+def beside_linear() -> dict:
+    """By set-up and window: training and test errors of a linear filter, and of the networks."""
+    found = {(name, w): [linear_alone(w, name)] for name, w in product(SETUPS, WINDOWS)}
+    for (name, w), each in found.items():
+        networks = errors(committed.networks(w, name), committed.recording(name))
+        each.append(np.stack([networks.training, networks.test], -1))
+    return found
+
+
+def over_linear() -> Illustration:
+    """The networks' errors over those of a linear filter of the same window."""
+    panels, alt = {}, "Errors of networks over those of a linear filter, medians."
+    for k, where in enumerate(_RUNS):
+        over = {f"{n}, {w}": whole[:, k] / a[k] for (n, w), (a, whole) in beside_linear().items()}
+        row = {name: tuple(np.quantile(each, (0.1, 0.5, 0.9))) for name, each in over.items()}
+        panels[where] = {"networks": row}
+        alt += f" On {where}: {', '.join(f'{n} {m:.2f}' for n, (_, m, _) in row.items())}."
+    return intervals(panels, "error / linear filter's", alt, log=True, band=(0.25, 1))
+
+
+def quoted() -> None:
+    """Put the book's numbers into the lesson."""
+    row, hidden = filter_trial.row(21), _features(21, JOINT_DAMPING.name)[0][1]
+    quote("global-saturated-21", 100 * np.median(saturated(hidden)))
+    quote("global-friction", claims.measured("compensate-friction").value)
+    for key in ("real", "untrained"):
+        quote(f"global-cancel-{key}", 100 * np.median(row[key]["cancelled"]))
+        quote(f"global-read-{key}", np.median(np.array(row[key]["probe"])[:, [0, 2]]))
+    whole, pure, rest = (
+        np.array(row["interventions"][name]["at once"])[:, 0]
+        for name in ("as trained", "pure parts", "without pure parts")
+    )
+    quote("global-pure", np.median(pure / whole))
+    quote("global-without-pure", np.median(rest / whole))
+
+
+def said() -> None:
+    """Check what the lesson says in words of the book's networks."""
+    gap = [resampled(whole[:, 1] / alone[1]) > 1.1 for alone, whole in beside_linear().values()]
+    stated("global-linear-better", np.all(gap, 0))
+    row = filter_trial.row(21)
+    least = min(np.min(row["nulls"][kind]["saturated"]) for kind in MATCHED)
+    stated("global-nulls-saturate-more", resampled(row["real"]["saturated"]) < least)
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to one of the lesson's exercises, for the reader's own cases."""
+    if number == 1:
+        slips = [(1 / np.sqrt(10), "that is what is left."), (0.9, "do deviations add up?")]
+        told, otherwise = (
+            "variances add up, deviations do not.",
+            "what of unrelated signals adds up?",
+        )
+        judge(mine, 1 - 1 / np.sqrt(10), told, slips, otherwise)
+    elif number == 2:
+        units, window = given
+        right = "larger" if units > window else "smaller"
+        told = f"{units:.3f} from the units alone, {window:.3f} from the window."
+        judge(mine, lambda word: word == right, told, otherwise="ten numbers stand for a window.")
+    else:
+        errors_with, alone = given
+        told = "less error than the window alone has, in training and in the test."
+        otherwise = "one of the two errors is not smaller. Try sizes ten times apart."
+        judge(mine, lambda x: all(np.less(errors_with(x), alone)), told, otherwise=otherwise)
 
 
 def hidden_units_add(
