@@ -42,9 +42,9 @@ def page_tags(tags: list[str]) -> list[str]:
 
 
 def lines(source: str) -> str:
-    """How much plumbing a cell is, in words."""
+    """How much code a cell hides, in words."""
     count = len([line for line in source.splitlines() if line.strip()])
-    return f"{count} line{'s' * (count != 1)} of plumbing"
+    return f"{count} line{'s' * (count != 1)} of code"
 
 
 def as_on_the_page(cell: NotebookNode) -> NotebookNode:

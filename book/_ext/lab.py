@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 MADE = ROOT / "_build" / "html" / "_sources" / "book"
 LAB = ROOT / "_build" / "lab"
-EXAMPLE = ROOT / "book" / "data" / "example-arm.csv"  # as one page reads it
+DATA = ROOT / "book" / "data"  # as some pages read it
 
 
 def lay_out(made: Path, lab: Path) -> list[str]:
@@ -25,8 +25,7 @@ def lay_out(made: Path, lab: Path) -> list[str]:
             continue
         shutil.copyfile(path, own)
         shutil.copyfile(path, before)
-    (lab / "data").mkdir(exist_ok=True)
-    shutil.copyfile(EXAMPLE, lab / "data" / EXAMPLE.name)
+    shutil.copytree(DATA, lab / "data", dirs_exist_ok=True)
     return kept
 
 

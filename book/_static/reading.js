@@ -32,7 +32,7 @@
     for (const fold of folds) fold.open = all;
     button.setAttribute("aria-pressed", String(all));
     const lines = folds.reduce((sum, fold) => sum + parseInt(fold.textContent, 10), 0);
-    button.title = `${all ? "Hide" : "Show"} the ${lines} lines of plumbing on this page`;
+    button.title = `${all ? "Hide" : "Show"} the ${lines} lines of hidden code on this page`;
   };
 
   // What the reader looks at stays where it is; the browser's own guess is a fold that goes.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import chromium
 import pytest
-from book_pages import CHAPTERS, LESSONS, code_cells, source
+from book_pages import LESSONS, WALK, code_cells, source
 
 browser_test = pytest.mark.browser
 
+MOST_SCREENS = 15
+FULL = "book/rivals"  # has open code and much that is hidden
 BUTTON = ".btn-all-code"
 # Pieces of code that a reader sees, with what the page calls a piece of code to read.
 SEEN = """
@@ -40,10 +42,20 @@ def test_the_result_begins_on_the_first_screen(name, site, visit):
 
 
 @browser_test
+@pytest.mark.parametrize("name", WALK)
+def test_a_lesson_has_at_most_fifteen_screens(name, site, visit):
+    page = visit(f"{site}/{name}.html").page
+    page.set_viewport_size({"width": 1280, "height": 800})
+    chromium.settle(page)
+    tall = page.evaluate("document.querySelector('article').getBoundingClientRect().height")
+    assert tall <= MOST_SCREENS * 800
+
+
+@browser_test
 @pytest.mark.parametrize("kind", ["file", "http"])
 def test_one_switch_shows_all_code(kind, built, site, visit):
     """By keyboard; it is remembered, and what was looked at stays where it is."""
-    name = CHAPTERS[0]
+    name = FULL
     address = (built / f"{name}.html").as_uri() if kind == "file" else f"{site}/{name}.html"
     opened = visit(address)
     page = opened.page
@@ -86,7 +98,7 @@ def test_without_storage_the_switch_works_and_a_phone_has_room_for_it(site, brow
     page.add_init_script(
         "Object.defineProperty(window, 'localStorage', {get() { throw new Error('denied'); }})"
     )
-    page.goto(f"{site}/{CHAPTERS[0]}.html")
+    page.goto(f"{site}/{FULL}.html")
     box = page.locator(BUTTON).bounding_box()
     assert box["x"] > 0 and box["x"] + box["width"] < 390 and box["height"] >= 24
     page.locator(BUTTON).click()
@@ -98,7 +110,7 @@ def test_without_storage_the_switch_works_and_a_phone_has_room_for_it(site, brow
 @browser_test
 def test_paper_has_the_code_that_teaches(site, visit):
     """With its folds open, as `print.js` leaves them: no plumbing, unless all code is shown."""
-    page = visit(f"{site}/{CHAPTERS[0]}.html").page
+    page = visit(f"{site}/{FULL}.html").page
     page.emulate_media(media="print")
     page.evaluate("document.querySelectorAll('article details').forEach((el) => (el.open = true))")
     plumbing = page.locator("article :is(.tag_plumbing, .tag_bookkeeping) .cell_input")

@@ -1,10 +1,11 @@
 """Lessons: short, with code in the open that runs alone, follows changes, and judges answers."""
 
 import pytest
-from book_pages import WALK, source
+from book_pages import LESSONS, ROOT, WALK, source
 from chapter_rules import SHAPE, TUTORIAL, headings, prose, words
 from open_cells import CHANGES, execute, exercises, imports, lesson, run
 
+DATA = ROOT / "book" / "data"  # goes with the notebooks
 MOST_SECONDS = 30  # of one core, for the open cells of a lesson
 LIBRARIES = {"ddlib", "numpy", "scipy", "sympy", "torch", "control", "matplotlib"}
 STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "time"}
@@ -16,13 +17,14 @@ def test_lessons_have_the_shape(rule):
 
 
 def test_lessons_are_short_together():
-    assert sum(words(lesson(page)) for page in WALK) <= 28_000
+    assert sum(words(lesson(page)) for page in LESSONS) <= 28_000
 
 
 @pytest.mark.parametrize("page", WALK)
 def test_open_cells_run_alone(page, tmp_path, monkeypatch):
-    """In a folder without the book, with public libraries; then the exercises are judged."""
+    """In a folder with the book's data alone; then the exercises are judged."""
     assert imports(page) <= LIBRARIES | STANDARD
+    (tmp_path / "data").symlink_to(DATA)
     monkeypatch.chdir(tmp_path)
     space, seconds = run(page)
     assert seconds < MOST_SECONDS
@@ -43,6 +45,7 @@ def test_open_cells_run_alone(page, tmp_path, monkeypatch):
     "page, change", [(page, change) for page in WALK for change in CHANGES.get(page[5:], ())]
 )
 def test_a_change_goes_through_to_the_last_figure(page, change, tmp_path, monkeypatch):
+    (tmp_path / "data").symlink_to(DATA)
     monkeypatch.chdir(tmp_path)
     run(page, CHANGES[page[5:]][change])
 

@@ -29,7 +29,7 @@ def evidence_of(lesson: str) -> str:
     return lesson.replace("book/", "book/evidence-")
 
 
-WALK = [page for page in LESSONS if evidence_of(page) in EVIDENCE]  # in the shape of a lesson
+WALK = [page for page in CHAPTERS if evidence_of(page) in EVIDENCE]  # in the shape of a lesson
 
 
 def source(page: str) -> Path | None:
