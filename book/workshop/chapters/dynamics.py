@@ -1,4 +1,4 @@
-"""Figures of the chapter *Dynamics*, and what its claims measure."""
+"""The lesson *Dynamics*: figures, exercises, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -23,64 +23,81 @@ from ddlib.dynamics import (
     newton_euler,
     recursive_lagrange,
 )
-from ddlib.figures.style import COLOURS, DASHES, FAINT, INK, NARROW, Illustration, illustrate
+from ddlib.figures import curves
+from ddlib.figures.style import (
+    COLOURS,
+    DASHES,
+    FAINT,
+    INK,
+    JOINTS,
+    NARROW,
+    Illustration,
+    illustrate,
+)
 from ddlib.identification import (
     FRICTION,
     RIGID,
     Estimate,
     by_modulation,
+    excitation,
     least_squares,
     repeat,
     true_parameters,
 )
 from ddlib.setups import STATE_FEEDBACK
-from ddlib.tables import scientific
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place, random_extents
+from ddlib.tables import quote, scientific
+from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
+from workshop.chapters.exercises import judge
 from workshop.report.evidence.verdicts import Measured, judged
 
 _MARKERS = "os^DvPX"
-_CENTRED = dict(ha="center", va="center")
+_LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
+_TIMES = np.arange(300) * 0.01
 
 
-def hand_paths(arm: Arm, extents_deg) -> Illustration:
-    """Paths of the hand on pick-and-place trajectories, with the arm where each turns back."""
-    extents = finite_array("extents_deg", extents_deg, 2).reshape(-1, 2)
-    t = np.linspace(0.0, MOTION_SECONDS / 2, 60)
-    points = arm.forward_kinematics(pick_and_place(extents, t).q)  # (runs, time, point, xy)
-    reach = np.linalg.norm(points[:, -1, 1], axis=-1)
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        turned = np.concatenate([np.zeros((len(points), 1, 2)), points[:, -1]], 1)
-        along = np.linspace(0.0, 1.0, 40)[:, None, None, None]
-        arms = turned[:, :-1] + along * np.diff(turned, axis=1)
-        drawn = np.concatenate([points[:, :, 1].reshape(-1, 2), arms.reshape(-1, 2)])
-        for k, path in enumerate(points):
-            joints = np.vstack([np.zeros(2), path[-1]])
-            axis.plot(*joints.T, color=FAINT, lw=2.5, alpha=0.45, solid_joinstyle="round")
-            colour = COLOURS[k % len(COLOURS)]
-            axis.plot(*path[:, 1].T, color=colour, ls=DASHES[k % len(DASHES)], lw=2)
-            axis.plot(*path[-1, 1], "o", color=colour, ms=5)
-            axis.text(*_free_place(path[-1, 1], drawn), str(k + 1), color=colour, **_CENTRED)
-        rest = np.vstack([np.zeros(2), points[0, 0]])
-        axis.plot(*rest.T, color=INK, lw=3.5, marker="o", ms=6, mfc="white", mec=INK)
-        axis.set(xlabel="x, m", ylabel="y, m", aspect="equal")
-        axis.margins(0.06)
-
-    alt = (
-        f"The arm from above at rest and at the turning points of {len(extents)} trajectories, "
-        f"with the path of the hand; its distance from the shoulder at the turning points runs "
-        f"from {reach.min():.2f} to {reach.max():.2f} m."
-    )
-    return illustrate(draw, alt, 5.2, 3.9)
+def quoted() -> None:
+    """Numbers of the lesson's prose: multiplications by two joints, by six of a general arm."""
+    quote("dynamics-full", costs.count_closed_form(_LINKS, shared=True).multiplications)
+    quote("dynamics-closed", costs.count(lagrange_euler, PUMA_560).multiplications)
+    quote("dynamics-newton", costs.count(newton_euler, PUMA_560).multiplications)
 
 
-def _free_place(point, drawn, distance: float = 0.035):
-    """Where a label near a point is farthest from what is drawn, all in metres."""
-    angle = np.arange(0.0, 2 * np.pi, np.pi / 12)
-    places = point + distance * np.stack([np.cos(angle), np.sin(angle)], -1)
-    room = np.linalg.norm(places[:, None] - drawn, axis=-1).min(-1)
-    return places[room.argmax()]
+def check(number: int, mine, M=None) -> None:
+    """Judge an answer to an exercise; the first needs the lesson's mass matrix `M`."""
+    if number == 1:
+        lag = M(np.zeros(2))[1, 0] / M(np.zeros(2))[1, 1]
+        slips = (lag, "which way?"), (-1.0, "then the forearm would not turn. Does it?")
+        told = "the forearm even turns backwards."
+        judge(mine, -lag, told, slips, "What must the second row of the equation be?")
+    elif number == 2:
+        unseen = np.array([-2.0, 1.0, -1.0])
+        right = lambda x: np.allclose(np.cross(np.reshape(x, 3), unseen), 0) and np.any(x)  # noqa: E731
+        otherwise = "Write both torques with the elbow straight."
+        judge(mine, right, "both torques stay what they are.", (), otherwise)
+    else:
+        size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
+        slips = (
+            (lambda x: np.min(x) < 0 or np.max(x) > 45, "extents are between 0 and 45°."),
+            (lambda x: np.isinf(size(x)), "some combination of the three leaves no trace."),
+            (lambda x: size(x) >= 7, "the condition number is not below 7 yet."),
+        )
+        right = lambda x: np.min(x) >= 0 and np.max(x) <= 45 and size(x) < 7  # noqa: E731
+        otherwise = "Give two pairs of extents."
+        judge(mine, right, "more data are not always better data.", slips, otherwise)
+
+
+def torques() -> Illustration:
+    """Torque of both joints on trajectory 1, by origin."""
+    parts = ARM.torque_terms(*pick_and_place(APPENDIX_I[0], _TIMES))
+    parts["Coriolis"] = parts.pop("coriolis")
+    shown = {name: part for name, part in parts.items() if part.any()}
+    shown["actuation"] = sum(parts.values())
+    panels = {
+        f"{joint} torque, N m": {name: part[:, k] for name, part in shown.items()}
+        for k, joint in enumerate(JOINTS)
+    }
+    alt = "Inertial, coupling, centrifugal, Coriolis and actuation torque of both joints in time."
+    return curves(_TIMES, panels, "time, s", alt, columns=2, height=2.8)
 
 
 def operations(
@@ -208,14 +225,12 @@ def arm_sketch(arm: Arm, q) -> Illustration:
         f"The arm from above: link 1 turned by q1 = {np.rad2deg(q[0]):.0f} degrees from the "
         f"x axis, link 2 by q2 = {np.rad2deg(q[1]):.0f} degrees from link 1's direction."
     )
-    return illustrate(draw, alt, 4.6, 3.0)
+    return illustrate(draw, alt, 4.0, 2.6)
 
 
 # --- what the claims of the chapter measure
 
 _SETUP = STATE_FEEDBACK
-_TIMES = np.arange(300) * 0.01
-_LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
 
 
 def nonlinearity() -> Measured:
