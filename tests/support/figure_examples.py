@@ -11,7 +11,6 @@ from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import Illustration
 from ddlib.identification import Equations, least_squares
 from ddlib.learning import Weights
-from ddlib.trajectories import APPENDIX_I
 from workshop.beyond.figures import maps
 from workshop.chapters import (
     adaptive_control,
@@ -81,8 +80,6 @@ NULLS = {
         "jerk": {"real": np.ones(5), "one": np.zeros(3), "two": np.zeros(4)},
     },
 }
-COURSES = {"slow": (X, 2 * X), "fast": (X**2, X**3)}
-ENDS = {"one": ([1e-3, 1.0], [1e-2, 1.0]), "two": ([10.0], [5.0])}
 EXACT = np.stack([np.sin(T), 0.1 * np.cos(T)], -1)
 NETWORKS = EXACT + np.array([0.01, 0.02, 0.05])[:, None, None]
 ACTIVITY = np.zeros((2, 3, 6, 4))
@@ -154,9 +151,7 @@ EXAMPLES = {
     ),
     "ringing": feedback.ringing,
     "feedforward_loop": feedforward.feedforward_loop,
-    "extents_square": partial(
-        recording.extents_square, APPENDIX_I[:5], APPENDIX_I[5], [[10.0, 20.0]]
-    ),
+    "wrong_models": feedforward.wrong_models,
     "reached": partial(
         recording.reached, {"quiet": 0.1 * RINGING, "ringing": RINGING}, radius=np.pi
     ),
@@ -175,10 +170,7 @@ EXAMPLES = {
         filters.by_explained, NULLS["hidden"], {"mixed": GROUPS},
         ("share of the filters", "share explained"), "Two panels.",
     ),
-    "predicted_curves": partial(
-        smooth.predicted_curves, X, COURSES, ENDS, ("epoch", "change", "foreseen", "measured"),
-        "Lines and dots.",
-    ),
+    "four_directions": smooth.four_directions,
     "hinton_states": lambda: states.hinton_states(Weights.random(1, 3)[0]),
     "torque_along": partial(states.torque_along, T, EXACT, NETWORKS),
     "error_by_size": partial(states.error_by_size, BY_SIZE),
@@ -264,7 +256,6 @@ SHOWN = {
     ],
     "arm_sketch": [[[(0, 0), ELBOW], [ELBOW, HAND]]],
     "operations": [[[(2, 100), (3, 1000), (4, 10_000)], [(2, 500), (3, 500), (4, 500)]]],
-    "extents_square": [[[(10, 20)], APPENDIX_I[:5], APPENDIX_I[5:]]],
     "reached": [list(RINGING[..., 2 * k : 2 * k + 2]) for k in range(3)],
     "rounding": [xy(T[:4], [0, 1, 1, 3]), xy(T[:4], [1, -1, 1, -1], [0, 0, 0, 0])],
     "tied": [[DOTS * [180 / np.pi, 1]]],
@@ -297,10 +288,6 @@ SHOWN = {
             [(0.2, -0.38), (0.2, 0.38)], [(0.1, 0.62), (0.1, 1.38)], [(0.4, 0)], [(1, 1)],
         ],
         [[(0, 3), (1, 5)], [(0, 1.1), (0, 5.6)], [(1, 3), (1, 8.4)]],
-    ],
-    "predicted_curves": [
-        [*xy(X, X, 2 * X), *xy(X, X**2, X**3)],
-        [[(1e-3, 1e-2), (1, 1)], [(10, 5)], [(1e-3, 1e-3), (10, 10)]],
     ],
     "torque_along": [xy(T, EXACT[:, j], NETWORKS[1, :, j]) for j in range(2)],  # the median network
     "error_by_size": [
