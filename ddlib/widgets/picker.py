@@ -8,14 +8,14 @@ from functools import lru_cache
 
 import numpy as np
 import traitlets as t
+from scipy.spatial import ConvexHull
 
 from ddlib._check import finite_array, number
 from ddlib.effects import IDEAL
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.metrics import rmss
-from ddlib.paper import TEST_TRAJECTORY, TRAINING_TRAJECTORIES
-from ddlib.setups import _HULL, STATE_FEEDBACK, Setup, inside_hull
+from ddlib.setups import STATE_FEEDBACK, Setup
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine._live import LiveWidget
@@ -30,8 +30,6 @@ _TIMES = np.linspace(0.0, MOTION_SECONDS, 76)  # where the curves are sampled, s
 _AXIS = np.linspace(0.0, MAX_EXTENT_DEG, 31)  # extents at which the map of errors is computed, °
 _STEP = 0.1  # between two shades of the map, RMSS
 _SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
-
-_TRAINING = APPENDIX_I[np.array(TRAINING_TRAJECTORIES) - 1]
 
 _NOTE = (
     "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
@@ -67,7 +65,7 @@ class _Extents(t.TraitType):
 class TrajectoryPicker(LiveWidget):
     """Pick a trajectory of the paper's family; see arm, joint angles and torques; record it.
 
-    The pad is the square of extents from 0 to 45 degrees with the trajectories of Appendix I.
+    The pad is the square of extents from 0 to 45 degrees with the trajectories of the recording.
     The Lagrange-Euler torques are those of the reference motion itself: no controller, no
     friction. With `models` the trajectory is also recorded, without quantisation and noise of
     the sensors, and the networks see the recorded positions. The page computes all of it by the
@@ -83,6 +81,8 @@ class TrajectoryPicker(LiveWidget):
     on_record : callable, optional
         Called with the extents when the reader records; default ``setup.record``, sensors
         included. Its result is kept in `recording`.
+    trajectories_deg : array_like, shape (runs, 2)
+        Extents of the recording within the square, degrees; the last one is the test.
     **options
         Passed on to `LiveWidget`.
 
@@ -114,6 +114,7 @@ class TrajectoryPicker(LiveWidget):
         models: Mapping[str, TorqueModel] | None = None,
         setup: Setup = STATE_FEEDBACK,
         on_record: Callable | None = None,
+        trajectories_deg=APPENDIX_I,
         **options,
     ):
         models = dict(models or {})
@@ -124,23 +125,30 @@ class TrajectoryPicker(LiveWidget):
         if on_record is not None and not callable(on_record):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
         self._on_record = on_record or setup.record
-        curves = _Curves(setup, models)
+        family = finite_array("trajectories_deg", trajectories_deg, 2)
+        if len(family) < 4 or family.min() < 0 or family.max() > MAX_EXTENT_DEG:
+            raise ValueError(
+                f"trajectories_deg must hold 4 pairs or more from 0 to {MAX_EXTENT_DEG:g} degrees, "
+                f"got {family.tolist()}"
+            )
+        self._hull = ConvexHull(family[:-1])
+        curves = _Curves(setup, models, family[:-1])
         square = curves(*(x.ravel() for x in np.meshgrid(_AXIS, _AXIS, indexing="ij")))
         self.numbers = {n: x.reshape(2 * _AXIS.shape) for n, x in square.items() if x.ndim == 1}
         peaks = (Scalar(f"peak {j}", f"Largest {_RIGID} torque, {j}", "N m") for j in JOINTS)
         super().__init__(
             curves.one,
-            _parameters(),
+            _parameters(family[-1].tolist()),
             _panels([_RIGID, _RECORDED, *models] if models else [_RIGID]),
             title="Trajectory picker",
-            alt="The square of shoulder and elbow extents with the six trajectories of Appendix I, "
-            "and beside it joint angles and torques of trajectory 6, the test, over 3 seconds.",
+            alt="The square of shoulder and elbow extents with the trajectories of a recording; "
+            "beside it joint angles and torques of the last one, the test, over 3 seconds.",
             scalars=[*peaks, *(Scalar(f"RMSS, {n}", f"RMSS, {n}", digits=2) for n in models)],
-            pad=_pad(),
+            pad=_pad(family, self._hull),
             note=_NOTE if models else "",
             presets={
                 str(k): {f"{joint}_deg": x for joint, x in zip(JOINTS, extents)}
-                for k, extents in enumerate(APPENDIX_I.tolist(), 1)
+                for k, extents in enumerate(family.tolist(), 1)
             },
             presets_title="Trajectory",
             ranges={name: (x.min(), x.max()) for name, x in square.items()},
@@ -161,11 +169,13 @@ class TrajectoryPicker(LiveWidget):
         self.observe(self._from_parameters, [f"{joint}_deg" for joint in JOINTS])
         self.observe(self._to_parameters, "extents_deg")
         self.on_msg(self._on_message)
+        self.extents_deg = family[-1].tolist()
 
     @property
     def interpolates(self) -> bool:
         """Whether the extents lie in the hull."""
-        return bool(inside_hull(self.extents_deg))
+        equations = self._hull.equations
+        return bool((equations[:, :2] @ self.extents_deg + equations[:, 2] <= 1e-9).all())
 
     def record(self):
         """Record the trajectory as it stands; returns and keeps the recording."""
@@ -200,20 +210,19 @@ def _digits(value: float) -> str:
     return np.base_repr(min(max(round(value), 0), 36**2 - 1), 36).lower().zfill(2)
 
 
-def _parameters() -> list[Parameter]:
-    start = APPENDIX_I[TEST_TRAJECTORY - 1].tolist()
+def _parameters(start) -> list[Parameter]:
     return [
         Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, MAX_EXTENT_DEG, x, "°")
         for joint, x in zip(JOINTS, start)
     ]
 
 
-def _pad() -> Pad:
+def _pad(family, hull) -> Pad:
     marks = [
-        Mark(x, y, str(k), "test" if k == TEST_TRAJECTORY else "training")
-        for k, (x, y) in enumerate(APPENDIX_I.tolist(), 1)
+        Mark(x, y, str(k), "test" if k == len(family) else "training")
+        for k, (x, y) in enumerate(family.tolist(), 1)
     ]
-    corners = _TRAINING[_HULL.vertices].tolist()
+    corners = family[hull.vertices].tolist()
     label = "hull of the training set"
     return Pad("shoulder_deg", "elbow_deg", marks, corners, label, snap=_SNAP)
 
@@ -231,12 +240,12 @@ def _panels(lines) -> list[Panel]:
 class _Curves:
     """All curves of the picker at many extents at once."""
 
-    def __init__(self, setup: Setup, models: Mapping[str, TorqueModel]):
+    def __init__(self, setup: Setup, models: Mapping[str, TorqueModel], training):
         silent = setup.effects.without("encoder", "torque_sensor")
         self.setup, self.models = replace(setup, effects=silent), models
         self.one = lru_cache(maxsize=16)(self._one)
         if models:
-            training = self.setup.record(_TRAINING)
+            training = self.setup.record(training)
             self.loop = loop(self.setup, training)
             # near zero extents a motion's own deviation vanishes: that of the training set
             self.scale = training.tau[:, training.motion].reshape(-1, 2).std(0)

@@ -12,7 +12,6 @@ from pictures import black_or_white, check_sound, ids, shapes, words
 from ddlib import figures
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.figures import COLOURS, INK
-from ddlib.trajectories import APPENDIX_I
 from workshop.beyond import figures as beyond
 from workshop.chapters import (
     convolution_filters as filters,
@@ -20,7 +19,6 @@ from workshop.chapters import (
     trajectories_and_recording as recording,
     what_lagrange_euler_leaves_out as left_out,
     whole_state_space as states,
-    why_smooth_filters as smooth,
     window_networks as windows,
 )
 
@@ -32,10 +30,10 @@ UPON_A_COLOUR = {
 
 
 LOGARITHMIC = {
-    **dict.fromkeys(("curves", "side_by_side, log", "predicted_curves", "error_by_size"), "xy"),
+    **dict.fromkeys(("curves", "side_by_side, log", "error_by_size"), "xy"),
     **dict.fromkeys(("ladders", "growth", "costs", "against", "traded"), "xy"),
     **dict.fromkeys(("families", "rmss_by_window", "operations", "courses", "by_trial"), "y"),
-    **dict.fromkeys(("ranking", "intervals", "by_motion"), "x"),
+    **dict.fromkeys(("ranking", "intervals", "by_motion", "four_directions"), "x"),
 }
 
 
@@ -128,7 +126,6 @@ REFUSALS = [
     (beyond.maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
     (dynamics.arm_sketch, (ARM, [0.1, BAD]), "q must be finite"),
     (dynamics.estimates, ({"a": fitted()}, [1.0], ("x", "y"), 5.0), "truth must"),
-    (recording.extents_square, (APPENDIX_I[:5], [np.inf, 0.0]), "test must be finite"),
     (recording.reached, ({"a": np.full((1, 10, 6), BAD)}, 1.0), r"states\['a'\] must"),
     (recording.rounding, ([0.0, 0.1, 0.2], [0, 1, BAD], {}), "steps must"),
     (recording.tied, ({"a": {"b": np.zeros((1, 5, 3))}},), "points of 'b' must"),
@@ -136,7 +133,6 @@ REFUSALS = [
     (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
     (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
     (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
-    (smooth.predicted_curves, (X, {"a": (X, X[:3])}, {}, (), "A."), "values of 'a' must have"),
     (states.torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
     (states.responses, (X, given.ACTIVITY[0]), "activity must have shape"),
 ]

@@ -18,7 +18,11 @@ STATES = {
         {"case": 1, "width": 11, "direction": 4, "epoch": 1000},
         "measured",
     ),
-    "PICKER_CODE": ("trajectories-and-recording", {"shoulder_deg": 39.5, "elbow_deg": 14.4}, "11 "),
+    "PICKER_CODE": (
+        "evidence-trajectories-and-recording",
+        {"shoulder_deg": 39.5, "elbow_deg": 14.4},
+        "11 ",
+    ),
     "CODE": ("index", {"motion": 1}, "[["),
 }
 

@@ -72,6 +72,17 @@ def test_networks_see_what_the_simulator_records(full, networks):
         assert error == pytest.approx(errors(network, measured).by_training_deviation, rel=0.02)
 
 
+def test_the_square_is_of_the_trajectories_that_were_recorded():
+    own = [[5, 5], [40, 5], [5, 40], [20, 20]]
+    picker = TrajectoryPicker(trajectories_deg=own)
+    assert picker.extents_deg == (20, 20) and picker.interpolates
+    picker.extents_deg = (40, 40)
+    assert not picker.interpolates
+    for bad in ([[1, 2]], [*own, [46, 0]], [[0, 0, 0]]):
+        with pytest.raises(ValueError, match="trajectories_deg"):
+            TrajectoryPicker(trajectories_deg=bad)
+
+
 def test_the_map_is_of_the_exact_errors(full, picker):
     assert full.map["side"] == _AXIS.size and _AXIS[[0, -1]].tolist() == [0, 45]
     low, high = ({c["name"]: c[end] for c in full.spec["curves"]} for end in ("low", "high"))

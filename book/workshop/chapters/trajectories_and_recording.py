@@ -7,20 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patches import Rectangle
 from scipy.spatial import Delaunay
 from scipy.stats import binom
 
 from ddlib import paper
-from ddlib._check import finite_array, number, shaped
+from ddlib._check import number, shaped
 from ddlib.analysis import cells_reached, log10_reachable_share, used_dimensions
 from ddlib.control import proportional
-from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
+from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
 from ddlib.setups import KP, POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS, true_states
 from ddlib.simulation import LOG_STEP, Recording, rms
-from ddlib.tables import scientific, significant
+from ddlib.tables import quote, scientific, significant
 from ddlib.trajectories import (
     APPENDIX_I,
     MAX_EXTENT_DEG,
@@ -29,9 +29,13 @@ from ddlib.trajectories import (
     random_extents,
     time_grid,
 )
+from workshop.chapters.exercises import judge
 from workshop.report import committed
 from workshop.report.evidence.verdicts import Measured, turns_at
 from workshop.report.exact_states import RADIUS
+from workshop.report.two_harmonics import record_two_harmonics
+
+_TRAINING = len(TRAINING_TRAJECTORIES)
 
 
 def reached(states: Mapping[str, np.ndarray], radius: float) -> Illustration:
@@ -138,40 +142,57 @@ def tied(panels: Mapping[str, Mapping[str, np.ndarray]]) -> Illustration:
     return illustrate(draw, alt, 7.0, 3.0)
 
 
-def extents_square(training, test, extra=None) -> Illustration:
-    """The square of extents with the training and test trajectories and their hull."""
-    from scipy.spatial import ConvexHull
+def three_recordings() -> dict[str, dict[str, np.ndarray]]:
+    """Position and acceleration of the shoulder, for `tied`: ringing, quiet, and by two sines."""
+    panels = {}
+    for title, setup, recording in (
+        ("position feedback", POSITION_FEEDBACK, POSITION_FEEDBACK.record()),
+        ("state feedback", STATE_FEEDBACK, STATE_FEEDBACK.record()),
+        ("two sines", STATE_FEEDBACK, record_two_harmonics()),
+    ):
+        wanted = np.stack(recording.reference, -1)[:_TRAINING, recording.motion, 0]
+        states = true_states(recording, setup)[:_TRAINING, :, 0, ::2]
+        panels[title] = {
+            "reference": wanted[:, ::10, ::2],
+            "recorded, first 0.5 s": states[:, :50:5],
+            "recorded, later": states[:, 50::10],
+        }
+    return panels
 
-    training, test = finite_array("training", training, 2), finite_array("test", test, 2)
-    hull = training[ConvexHull(training).vertices]
 
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        axis.add_patch(Rectangle((0, 0), 45, 45, fill=False, edgecolor=INK, lw=0.8))
-        shade = Polygon(hull, facecolor=COLOURS[0], alpha=0.18, edgecolor="none")
-        axis.add_patch(shade)
-        if extra is not None:
-            axis.plot(*np.asarray(extra).T, ".", color=FAINT, ms=4, label="random members")
-        axis.plot(*training.T, "o", color=COLOURS[0], ms=8, label="training", clip_on=False)
-        axis.plot(*test, "D", color=COLOURS[1], ms=8, label="test", clip_on=False)
-        for i, (x, y) in enumerate([*training, test], 1):
-            axis.annotate(str(i), (x, y), (7, 5), textcoords="offset points")
-        axis.set(xlabel="shoulder extent, degrees", ylabel="elbow extent, degrees")
-        axis.set(xlim=(-2, 50), ylim=(-2, 50), aspect="equal", xticks=range(0, 46, 15))
-        axis.set_yticks(range(0, 46, 15))
-        legend_above(figure, *axis.get_legend_handles_labels())
+def quoted() -> None:
+    """Quote what the lesson says of the book's recordings."""
+    training, step = committed.training(), STATE_FEEDBACK.effects.encoder[0].step
+    windows = sliding_windows(training.q, 21, training.motion).reshape(-1, 42)
+    quote("recording-dimensions", used_dimensions(windows, step))
+    quote("recording-cells", 100 * coverage().value)
 
-    alt = (
-        "Square of extents from 0 to 45 degrees for shoulder and elbow with five training "
-        f"trajectories and test trajectory 6 at {test[0]:g} and {test[1]:g} degrees; the convex "
-        "hull of the training trajectories is shaded."
-    )
-    return illustrate(draw, alt, 4.4, 3.9)
+
+def check(number: int, mine, motion=None) -> None:
+    """Judge an answer to an exercise of the lesson."""
+
+    def told(share):
+        q, qd, qdd = (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
+        moving = qd != 0
+        return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2, np.abs(qd).max()
+
+    if number == 1:
+        slip = 4.0, "at twice the frequency, yes. And how large is the wave of a squared sine?"
+        judge(mine, 2.0, "twice as large, but no jump of velocity.", [slip])
+    elif number == 2:
+        draws = random_extents(12_000, seed=3).reshape(2000, 6, 2)
+        outside = np.mean([Delaunay(d[:5]).find_simplex(d[5]) < 0 for d in draws])
+        hint = "draw some, and count."
+        judge(mine, outside, "more often than not.", (), hint, tolerance=0.1)
+    else:
+        slips = [
+            (lambda x: told(x)[1] > 1.2 * told(0.0)[1], "the arm would have to be too fast."),
+            (lambda x: told(x)[0] >= 0.1, "position still tells too much of the acceleration."),
+        ]
+        judge(mine, lambda x: not any(bad(x) for bad, _ in slips), "told apart.", slips)
 
 
 # --- what the claims of the chapter measure
-
-_TRAINING = len(TRAINING_TRAJECTORIES)
 
 
 def ends_and_middle() -> Measured:
