@@ -56,10 +56,11 @@ _TIMES = np.arange(300) * 0.01
 
 
 def quoted() -> None:
-    """Numbers of the lesson's prose: multiplications by two joints, by six of a general arm."""
-    quote("dynamics-full", costs.count_closed_form(_LINKS, shared=True).multiplications)
-    quote("dynamics-closed", costs.count(lagrange_euler, PUMA_560).multiplications)
-    quote("dynamics-newton", costs.count(newton_euler, PUMA_560).multiplications)
+    """What of the elbow's torque the shoulder causes without gears and behind 100 to 1, in %."""
+    motion = pick_and_place(APPENDIX_I[0], _TIMES)
+    share = 100 * share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
+    quote("dynamics-gear-direct", share[0])
+    quote("dynamics-gear-hundred", share[1])
 
 
 def check(number: int, mine, M=None) -> None:
@@ -97,7 +98,7 @@ def torques() -> Illustration:
         for k, joint in enumerate(JOINTS)
     }
     alt = "Inertial, coupling, centrifugal, Coriolis and actuation torque of both joints in time."
-    return curves(_TIMES, panels, "time, s", alt, columns=2, height=2.8)
+    return curves(_TIMES, panels, "time, s", alt, columns=2, height=2.5)
 
 
 def operations(
@@ -225,7 +226,7 @@ def arm_sketch(arm: Arm, q) -> Illustration:
         f"The arm from above: link 1 turned by q1 = {np.rad2deg(q[0]):.0f} degrees from the "
         f"x axis, link 2 by q2 = {np.rad2deg(q[1]):.0f} degrees from link 1's direction."
     )
-    return illustrate(draw, alt, 4.0, 2.6)
+    return illustrate(draw, alt, 3.4, 2.2)
 
 
 # --- what the claims of the chapter measure
