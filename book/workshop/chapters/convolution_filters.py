@@ -1,4 +1,4 @@
-"""Figures of the chapter *Convolution filters*."""
+"""The lesson *Convolution filters*: its numbers and answers, and figures of its evidence page."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib._check import finite_array, number, shaped
+from ddlib._check import finite_array, shaped
+from ddlib.analysis import purest, shares, upright
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -20,37 +21,94 @@ from ddlib.figures.style import (
     illustrate,
     legend_above,
 )
+from ddlib.setups import JOINT_DAMPING
+from ddlib.simulation import LOG_STEP
+from ddlib.tables import quote
+from ddlib.widgets.engine import builder
+from workshop.chapters import excitation
+from workshop.chapters.exercises import judge
+from workshop.report import results
+from workshop.report.evidence.statements import resampled, stated
+from workshop.report.measures import filter_trial as trial
 
 
-def clusters(
-    panels: Mapping[str, tuple[Mapping[str, np.ndarray], float]], unit: str, alt: str
-) -> Illustration:
-    """A quantity of many networks in several groups, beside the value that it should have."""
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
-    for groups, wanted in panels.values():
-        number("wanted", wanted)
-        for name, values in groups.items():
-            shaped(f"values of {name!r}", values, "(networks,)")
+def trained_unit() -> np.ndarray:
+    """The hidden filter purest in acceleration, of networks of damped joints by the solver."""
+    every = results.networks(21, JOINT_DAMPING.name).weights.hidden_weights.reshape(-1, 21)
+    return upright(purest(every, "acceleration"))
 
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(panels), squeeze=False)[0]
-        for axis, (title, (groups, wanted)) in zip(axes, panels.items()):
-            axis.axhline(wanted, color=INK, ls="--", lw=1.0)
-            for k, values in enumerate(map(np.asarray, groups.values())):
-                colour = COLOURS[k % len(COLOURS)]
-                x = k + np.linspace(-0.25, 0.25, len(values))
-                axis.plot(x, values, "os^Dv"[k % 5], color=colour, ms=3.5, mew=0, alpha=0.7)
-                middle = np.median(values)
-                axis.plot([k - 0.36, k + 0.36], [middle, middle], color=colour, lw=2.2)
-            axis.set_xticks(range(len(groups)), [name.replace(", ", "\n") for name in groups])
-            axis.tick_params("x", labelsize=7.5)
-            axis.grid(visible=False, axis="x")
-            axis.set(title=title, xlim=(-0.6, len(groups) - 0.4))
-            axis.set_ylim(min(0.0, axis.get_ylim()[0]), None)
-        axes[0].set_ylabel(unit)
 
-    return illustrate(draw, alt, 7.0, 2.9)
+def _velocity() -> tuple[np.ndarray, list[float]]:
+    row = trial.row(21)
+    nulls = [trial.share(x, "hidden", ["velocity"]).mean() for x in trial.matched(row).values()]
+    return trial.share(row["real"], "hidden", ["velocity"]), nulls
+
+
+def quoted() -> None:
+    """Numbers of the lesson."""
+    quote("filters-bend", 1e3 * LOG_STEP**2)
+    quote("filters-encoder", 1e3 * builder.readings()[2])
+    for width in (5, 11, 21):
+        quote(f"filters-own-{width}", builder.score(builder.starts()[f"Savitzky–Golay, {width}"]))
+    real, nulls = _velocity()
+    quote("filters-velocity", 100 * real.mean())
+    quote("filters-velocity-least", 100 * min(nulls))
+    quote("filters-velocity-most", 100 * max(nulls))
+    quote("filters-inertia-off", 100 * trial.calibrated("inertia", 21).value)
+    quote("filters-off-by", excitation.half_foretold().value)
+
+
+def said() -> None:
+    """What the lesson says in words about committed results."""
+    lost, back = (
+        np.array(excitation.cell(drive, 1.0)["descent"]["M11"])[-1]
+        for drive in ("state feedback", "state feedback, two sines")
+    )
+    stated("filters-half-foretold", excitation.half_foretold().replicates < 3)
+    every = results.read("excitation")["cells"]
+    reached = [np.isfinite(excitation.half_measured(each)).all() for each in every]
+    stated("filters-half-but-one", sum(reached) == len(every) - 1)
+    stated("filters-swing-lost", resampled(lost) < resampled(back, seed=1) / 4)
+    real, nulls = _velocity()
+    stated("filters-fewer-velocity", resampled(real, np.mean) < min(nulls))
+    unit = trained_unit()
+    scores = {name: builder.score(f) for name, f in builder.starts().items()}
+    stated("filters-own-difference", scores["Second difference"] > 0.9)
+    stated("filters-own-mean", builder.score(unit - unit.mean()) < builder.score(unit))
+    row, places = trial.row(21), list(trial.ENTRIES["inertia"].values())
+    kinds = row["real"], row["nulls"]["shifted"], row["nulls"]["phases"]
+    gains = (np.moveaxis(np.array(x["gains"]), 0, -1) for x in kinds)
+    real, *nulls = (np.transpose([each[at] for at in places]) for each in gains)
+    true = np.array([trial.arm_gains()[at] for at in places])
+    stated("filters-no-null", max(trial.near_by_chance(x, real, true) for x in nulls) < 0.06)
+
+
+def check(number: int, mine, x) -> None:
+    """Judge an answer to an exercise; x is the time of the window's samples from its centre, s."""
+    k = np.round(x / (x[1] - x[0]))
+    if number == 1:
+        slips = [(1.0, "that holds in a window of three. In this one the line runs on."),
+                 (4 / (k @ k), "divide by the energy of the difference, too.")]  # fmt: skip
+        judge(mine, 2 / (k @ k), "it measures velocity, but from two samples only.", slips,
+              "divide the energy along the line by that of the whole filter.")  # fmt: skip
+    elif number == 2:
+        early = (k - 3) ** 2
+        share = shares(early - early.mean())[2]
+        judge(mine, lambda guess: abs(guess - share) < 0.1,
+              f"{share:.2f} of its energy is left to acceleration, the rest is velocity.",
+              otherwise="too far off: expand (k - 3)² and compare the parts.")  # fmt: skip
+    elif number == 3:
+        moments = np.array([x**0, x, x**2 / 2])
+        wanted = np.array([0.0, 3.0, 2.0])
+        least = np.linalg.pinv(moments) @ wanted
+
+        def fits(g):
+            return np.allclose(moments @ np.asarray(g, float), wanted, atol=1e-3)
+
+        judge(mine, lambda g: fits(g) and np.sum(np.square(g)) < 1.001 * least @ least,
+              "three moments, and no energy to spare.",
+              [(fits, "the moments are right, but a filter of less energy has them, too.")],
+              f"it needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip
 
 
 def against_nulls(

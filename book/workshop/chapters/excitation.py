@@ -24,6 +24,15 @@ from workshop.report.studies.nulls import TRIAL
 
 _STEPS = (0.0, 0.25, 0.5, 1.0)  # seconds that the widget can leave out
 
+SWINGS = {
+    "damped joints": ("damped joints", 0.0),
+    "damped joints, first second cut": ("damped joints", 1.0),
+    "state feedback": ("state feedback", 0.0),
+    "state feedback, first second cut": ("state feedback", 1.0),
+    "two sines, first second cut": ("state feedback, two sines", 1.0),
+}
+"""What the lesson's first figure shows, as `cell` takes it."""
+
 _SHOWN = (
     "damped joints", "state feedback", "stiffer, well damped", "state feedback, two sines",
 )  # fmt: skip
