@@ -1,0 +1,84 @@
+"""What the lesson *Window size against generalisation* shows, quotes and judges."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from ddlib import figures, paper
+from ddlib.figures.style import Illustration
+from ddlib.tables import quote
+from workshop.chapters.exercises import judge
+from workshop.report import results
+from workshop.report.evidence import claims
+from workshop.report.evidence.statements import resampled, stated
+
+
+def _medians(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """The ten windows, and the medians of a quantity over the networks of each."""
+    rows = results.read("window-sizes")["rows"]
+    return np.array([row["width"] for row in rows]), np.array([np.median(r[name]) for r in rows])
+
+
+def errors_by_size() -> Illustration:
+    """Median errors over ten window sizes by state feedback, and what the paper prints."""
+    (sizes, training), (_, test), (_, best) = map(_medians, ("training", "test", "best test"))
+    printed = np.array(list(paper.TABLE_4_1))
+    told = np.array([(t.training, t.test) for t in paper.TABLE_4_1.values()])
+    lines = {
+        "training": training,
+        "test, after 20,000 epochs": test,
+        "test, best on the way": best,
+        "printed, training": (printed, told[:, 0]),
+        "printed, test": (printed, told[:, 1]),
+    }
+    alt = "Five curves over window sizes on logarithmic axes. From the shortest window to the "
+    alt += f"longest the training error goes from {training[0]:.2f} to {training[-1]:.2f}, the "
+    alt += f"test error from {test[0]:.1f} to {test[-1]:.1f}."
+    how = {"x_log": True, "y_log": True, "height": 3.2}
+    return figures.curves(sizes, {"RMSS": lines}, "window, samples", alt, **how)
+
+
+def quoted() -> None:
+    """Put the book's numbers into the lesson."""
+    for width, error in zip(*_medians("test")):
+        quote(f"size-test-{width}", error)
+    cell = next(c for c in results.read("span")["cells"] if c["width"] == 41)
+    quote("size-learnt", np.median(cell["measured"]["learnt"]))
+    quote("size-directions", len(cell["variance"]))
+    quote("size-encoder", claims.measured("short-window").value)
+    quote("size-another-day", claims.measured("memorises").value)
+    shuffled = results.read("memory")["rows"][-1]
+    quote("size-memory-descent", np.median(shuffled["training"]))
+    quote("size-memory-solver", np.median(shuffled["solver"]["training"]))
+
+
+def said() -> None:
+    """Check what the lesson says in words of the book's networks."""
+    rows, sizes = results.read("window-sizes")["rows"], _medians("test")[0]
+
+    def trend(name):
+        drawn = np.array([resampled(row[name], seed=row["width"]) for row in rows])[:, :500]
+        return np.array([spearmanr(sizes, medians)[0] for medians in drawn.T])
+
+    stated("size-training-falls", trend("training") < -0.9)
+    stated("size-test-falls", trend("test") < -0.5)
+
+
+def check(number: int, mine, floor=None) -> None:
+    """Judge an answer to one of the lesson's exercises; `floor` is the reader's, over bits."""
+    if number == 1:
+        slips = [
+            (2**0.5, "that is averaging alone; the window's times grow, too."),
+            (4.0, "that is the times alone; more samples are averaged, too."),
+            (8.0, "averaging goes with the root of the number of samples."),
+        ]
+        judge(mine, 2**2.5, "times enter twice, the samples by their root.", slips)
+    elif number == 2:
+        told = "odd powers of s do not touch the middle curvature of a symmetric window."
+        otherwise = "which terms of the sums over s vanish, when s runs from -h to h?"
+        judge(mine, 1.0, told, otherwise=otherwise, tolerance=1e-3)
+    else:
+        told = "this one is fine enough, and half a bit less is not."
+        otherwise = "either its floor is above 0.05, or half a bit less would do, too."
+        judge(mine, lambda b: floor(b) <= 0.05 < floor(b - 0.5), told, otherwise=otherwise)
