@@ -1,22 +1,27 @@
-"""Figures and widget of the chapter *Why the filters are smooth*."""
+"""What the chapter *Why the filters are smooth* shows, quotes, says and judges; its widget."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from ddlib._check import integer, positive, shaped
+from ddlib._check import integer
 from ddlib.analysis import content
-from ddlib.figures.style import COLOURS, INK, Illustration, check_label, illustrate, legend_above
-from ddlib.learning import Directions
+from ddlib.figures.style import COLOURS, Illustration, illustrate
+from ddlib.learning import Directions, TrainingSet, Weights, effective_steps, train_ensemble
+from ddlib.setups import JOINT_DAMPING, WINDOWS
 from ddlib.simulation import LOG_STEP
+from ddlib.tables import quote
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+from workshop.chapters.exercises import judge
+from workshop.report import results
+from workshop.report.evidence.statements import resampled, stated
+from workshop.report.studies.span import READINGS
 
 _WHO = ("measured", "predicted")
 _FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
@@ -28,42 +33,116 @@ _TWO_BY_TWO = """
 """
 
 
-def predicted_curves(
-    x,
-    curves: Mapping[str, tuple],
-    clouds: Mapping[str, tuple],
-    labels: tuple[str, str, str, str],
-    alt: str,
-) -> Illustration:
-    """Courses as predicted (dashed) and measured (solid), and all their ends side by side."""
-    points = len(shaped("x", x, "(points,)"))
-    for length, named in ((points, curves), ("ends", clouds)):
-        for name, pair in named.items():
-            first, second = (positive(f"values of {name!r}", v, f"({length},)") for v in pair)
-            shaped(f"values of {name!r}", second, first.shape)
+SPECTRUM_CODE = """\
+from workshop.report import results
 
-    def draw(figure: Figure):
-        left, right = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
-        for k, (name, (measured, predicted)) in enumerate(curves.items()):
-            colour = COLOURS[k % len(COLOURS)]
-            left.plot(x, predicted, color=colour, ls="--", lw=1.2)
-            left.plot(x, measured, color=colour, lw=1.9, marker="os^Dv*"[k % 6], ms=3.5, label=name)
-        handles, names = left.get_legend_handles_labels()
-        handles.append(Line2D([], [], color=INK, ls="--", lw=1.2))
-        for k, (name, (foreseen, found)) in enumerate(clouds.items()):
-            style = {"ls": "", "marker": "os^Dv*"[k % 6], "mfc": "none", "ms": 4}
-            right.plot(foreseen, found, color=COLOURS[k % len(COLOURS)], label=name, **style)
-        ends = np.concatenate([np.concatenate(pair) for pair in clouds.values()])
-        ends = ends.min(), ends.max()
-        right.plot(ends, ends, color=INK, lw=0.8)
-        right.legend(loc="upper left", handletextpad=0.1)
-        for axis, pair in ((left, labels[:2]), (right, labels[2:])):
-            axis.set(xscale="log", yscale="log")
-            axis.set_xlabel(check_label(pair[0]))
-            axis.set_ylabel(check_label(pair[1]))
-        legend_above(figure, handles, [*names, "predicted"])
+study = results.read("span")
+names = list(dict.fromkeys((x["setup"], *x["scaling"]) for x in study["cells"]))
+cell = next(
+    x
+    for x in study["cells"]
+    if (x["setup"], *x["scaling"]) == names[{case}] and x["width"] == {width}
+)
+place, direction = study["epochs"].index({epoch}), {direction} - 1
+for who in ("measured", "predicted"):
+    print(who, cell[who]["change over start"][place][direction])"""
 
-    return illustrate(draw, alt, 7.0, 3.5)
+
+def _windows() -> tuple[TrainingSet, np.ndarray, np.ndarray]:
+    """The lesson's training set on centred windows, their variances, and their directions."""
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21, scaling=(-1, 1))
+    data = replace(data, x=data.x - data.x.mean(0))
+    _, values, axes = np.linalg.svd(data.x.reshape(len(data.x), -1), full_matrices=False)
+    return data, values**2 / len(data.x), axes
+
+
+def four_directions() -> Illustration:
+    """Directions of three kinds and of noise, and what descent leaves of the error along them."""
+    _, variance, axes = _windows()
+    filters, steps = axes.reshape(-1, 2, 21), np.geomspace(1, 1e5, 200)
+    named = {"position": 0, "velocity": 2, "acceleration": 4, "noise": 41}
+
+    def draw(figure):
+        axis = figure.subplots()
+        for place, (name, k) in enumerate(named.items()):
+            colour, shape = COLOURS[place], filters[k, (filters[k] ** 2).sum(-1).argmax()]
+            inset = axis.inset_axes([0.01 + 0.25 * place, 0.66, 0.22, 0.24])
+            inset.plot(shape * np.sign(shape[-1]), color=colour)
+            inset.set(title=name, ylim=(-0.6, 0.6), xticks=[], yticks=[])
+            axis.semilogx(steps, (1 - variance[k] / (2 * variance[0])) ** steps, color=colour)
+        axis.set(xlabel="steps of descent", ylabel="error left, share", ylim=(-0.05, 1.8))
+        axis.set_yticks([0, 0.5, 1])
+
+    alt = "A flat filter, a line, a parabola and noise; their errors go in this order, noise last."
+    return illustrate(draw, alt, 7.0, 3.0)
+
+
+def quoted() -> None:
+    """When errors along directions are halved, and how far the tangent is off, in the study."""
+    for name, half in _halves().items():
+        quote(f"smooth-{name}", round(float(np.exp(np.median(half))), -1))
+    factors = results.read("span")["cells"][WINDOWS.index(21)]["factor"]
+    quote("smooth-factor", float(np.median(factors, 0)[-1]))
+
+
+def _halves() -> dict[str, np.ndarray]:
+    """Logarithms of the epochs at which networks have halved the error along two directions."""
+    cell = results.read("span")["cells"][WINDOWS.index(21)]
+    half = np.log(np.array(cell["measured"]["halves"], dtype=float))
+    return {"velocity": half[:, 3:5].mean(1), "acceleration": half[:, 5:7].mean(1)}
+
+
+def said() -> None:
+    """What the lesson says of networks: of the book's, and of eight that are trained as in it."""
+    velocity, acceleration = _halves().values()
+    stated("smooth-velocity-first", resampled(acceleration - velocity) > 0)
+    data, _, axes = _windows()
+    start = Weights.random(8, 21)
+    how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
+    trained = train_ensemble(start, data, **how)[0].weights
+    pair = (w.direct_weights.reshape(8, 2, -1) @ axes.T for w in (start, trained))
+    before, after = pair
+    ratio = np.sqrt(((after - before) ** 2).sum(1) / (before**2).sum(1))
+    stated("smooth-flat-stay", resampled(np.median(ratio[:, 12:], 1)) < 0.2)
+    stated("smooth-acceleration-most", resampled(ratio[:, 4:6].min(1) / ratio[:, :4].max(1)) > 1)
+
+
+def check(number: int, mine, given) -> None:
+    """Judge an answer, `given` the epochs, step times variance by direction, or the windows."""
+    if number == 1:
+        worth = effective_steps([0.0], [given], 0.98)[0, 0]
+        slips = (
+            (given / 0.02, "momentum takes some steps to gather."),
+            (given, "that is without it."),
+        )
+        judge(mine, worth, "nearly fifty for each epoch.", slips, tolerance=0.005)
+    elif number == 2:
+        half = np.log(0.5) / np.log1p(-given[4])
+        slips = (
+            (1 / given[4], "then 37 % are left."),
+            (-np.log(0.5) / given[2], "that is velocity."),
+        )
+        judge(mine, half, "so many steps for acceleration.", slips)
+    else:
+
+        def level(matrix):
+            values = np.linalg.svd(given @ matrix, compute_uv=False)
+            return np.allclose(values, values[0], rtol=1e-3) and values[0] > 0
+
+        judge(mine, level, "all variances are equal.", (), "take the variances of X @ mine.")
+
+
+def explorer() -> SpectrumExplorer:
+    """The widget, of the networks of the study."""
+    known = {}
+    for setup in READINGS:
+        known[setup.name] = known.get(setup.name) or setup.record()[:5]
+    sets = (
+        TrainingSet.from_recording(known[setup.name], width, scaling=setup.scaling)
+        for setup in READINGS
+        for width in WINDOWS
+    )
+    return SpectrumExplorer(results.read("span"), [*map(Directions.of, sets)], code=SPECTRUM_CODE)
 
 
 class SpectrumExplorer(CurveWidget):
