@@ -120,8 +120,10 @@ def copied(page, name="Code") -> str:
 
 
 def code_of(chapter: str, name: str) -> str:
-    """The text that a cell of a chapter keeps under a name."""
-    for source in code_cells(ROOT / "book" / f"{chapter}.ipynb"):
+    """The text that a cell of a chapter, or its module, keeps under a name."""
+    module = ROOT / "book" / "workshop" / "chapters" / f"{chapter.replace('-', '_')}.py"
+    kept = [module.read_text(encoding="utf-8")] if module.is_file() else []
+    for source in code_cells(ROOT / "book" / f"{chapter}.ipynb") + kept:
         for line in ast.parse(source).body if f"{name} = " in source else ():
             if isinstance(line, ast.Assign) and line.targets[0].id == name:
                 return ast.literal_eval(line.value)

@@ -1,110 +1,159 @@
-"""What the chapter *Window networks* draws, and what its screening design tells."""
+"""What the lesson *Window networks* quotes and judges, and what its evidence page draws."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
-from matplotlib.colorbar import Colorbar
-from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
-from matplotlib.ticker import NullLocator
-from scipy.spatial import ConvexHull
-from scipy.special import softmax
-from scipy.stats import qmc
-from sklearn.linear_model import BayesianRidge
-from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import PolynomialFeatures
 
+from ddlib import paper
 from ddlib._check import finite_array
-from ddlib.analysis import gains, mean_gradient
-from ddlib.figures.maps import COLOUR_MAP, SIGNS
+from ddlib.figures.maps import SIGNS, rmss_by_window
 from ddlib.figures.style import (
     COLOURS,
     FAINT,
-    INK,
     Illustration,
     illustrate,
     legend_above,
     plain_ticks,
 )
-from ddlib.learning import TrainingSet, Weights, cases, default_rate, train_ensemble
-from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from ddlib.learning import cases
+from ddlib.metrics import rmss
+from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
+from ddlib.tables import quote
+from workshop.chapters.exercises import judge
 from workshop.report import results
-from workshop.report.studies.page import training as page
+from workshop.report.evidence import claims
+from workshop.report.evidence.statements import resampled, stated
+
+_KINDS = ("training", "test")
+_PRINTED = {what: {w: getattr(paper.TABLE_4_1[w], what) for w in WINDOWS} for what in _KINDS}
+
+TRAINER_CODE = """\
+from dataclasses import replace
+
+from ddlib.analysis import gains, mean_gradient
+from ddlib.learning import TrainingSet, cases, surrogate, train_ensemble
+from ddlib.setups import JOINT_DAMPING, split
+from ddlib.widgets.engine import trainer
+
+extents_deg, shifted = {extents}, {shifted}
+training, test = split(JOINT_DAMPING.record(extents_deg))
+windows, torque = cases(training, 21)
+if shifted is not None:
+    torque = surrogate("shifted", training.tau[:, training.motion], shifted)
+    torque = torque.reshape(-1, 2)
+data = TrainingSet.from_arrays(windows, torque, scaling={scaling})
+data = replace(data, x=data.x[::5], y=data.y[::5])
+start = trainer.first_weights({seed})
+how = dict(rate={rate}, momentum={momentum}, epochs={epochs})
+test_set = data.transform(*cases(test, 21))
+model, history, _ = train_ensemble(start, data, test=test_set, **how)
+print(history.training[-1, 0], history.test[-1, 0])
+inertia = gains(mean_gradient(model, windows[::5]))[0, 0, 0, 2]
+print(f"inertia in the network: {inertia:.1f} kg m²")"""
 
 
-def overlay(t, measured, predicted: Mapping[str, np.ndarray]) -> Illustration:
-    """Figure 4-1: measured torque (fine) under the networks' (bold), one panel each."""
+def _errors() -> dict:
+    """RMSS of the book's networks: ``{reading: {column: {window: errors}}}``."""
+    days, table = results.read("recordings")["setups"], results.read("table-4-1")["setups"]
 
-    def draw(figure: Figure):
-        axes = figure.subplots(len(predicted), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-        for axis, (title, torque) in zip(axes, predicted.items()):
-            axis.plot(t, torque, color=COLOURS[1], lw=2.6, alpha=0.85, label="network")
-            axis.plot(t, measured, color=INK, lw=0.8, label="measured")
-            axis.set_title(title)
-            axis.set_ylabel("torque, N m")
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=2)
-        axes[-1].set_xlabel("time, s")
+    def of(name, what, w):
+        cell = days[name][str(w)] if name in days else table[name][str(w)]["errors"]
+        return np.ravel(cell[what])
 
-    worst = max(np.sqrt(np.mean((np.asarray(p) - measured) ** 2)) for p in predicted.values())
-    alt = (
-        f"Measured shoulder torque on the test trajectory with the torque of networks "
-        f"({', '.join(predicted)}) laid over it; largest root mean square difference "
-        f"{worst:.2f} N m."
+    return {
+        name: {what: {w: of(name, what, w) for w in WINDOWS} for what in _KINDS} for name in SETUPS
+    }
+
+
+def table_4_1() -> Illustration:
+    """The printed errors and the book's, under three readings."""
+    return rmss_by_window(_errors(), _PRINTED)
+
+
+def _factors() -> dict:
+    """By how much medians are off the printed errors, up or down: ``{reading: (cells,)}``."""
+    every = [(what, w) for what in _KINDS for w in WINDOWS]
+    off = {n: [np.median(x[a][w]) / _PRINTED[a][w] for a, w in every] for n, x in _errors().items()}
+    return {name: np.exp(np.abs(np.log(ratios))) for name, ratios in off.items()}
+
+
+def _events(row: str) -> dict[str, np.ndarray]:
+    """Epochs at which the page's networks come to error and direct shape; infinite if never."""
+    found = results.read("page-training")["rows"][f"{row}, real"]
+    return {key: np.array(found[key], dtype=float) for key in ("error", "direct")}
+
+
+def quoted() -> None:
+    """Numbers of the lesson's prose."""
+    live, seen, off = results.read("page-training"), _events("centred"), _factors()
+    quote("window-live-networks", live["members"])
+    quote("window-live-first", int((seen["direct"] < seen["error"]).sum()))
+    quote("window-live-level", live["level"])
+    quote("window-live-direct", np.median(seen["direct"]))
+    quote("window-live-error", np.median(seen["error"]))
+    quote("window-live-shifted", np.median(live["rows"]["centred, shifted"]["test"]))
+    quote("window-worst", off[JOINT_DAMPING.name].max())
+    quote("window-worst-state", off["state feedback"].max())
+
+
+def said() -> None:
+    """What the lesson says in words of the book's networks."""
+    off, live = _factors(), {row: _events(row) for row in ("centred", "as printed")}
+    measured = [
+        (claims.measured(f"table-4-1-{what}-{w}-damping"), _PRINTED[what][w])
+        for what in _KINDS
+        for w in WINDOWS
+    ]
+    drawn = np.abs(np.log([found.replicates / printed for found, printed in measured])).max(0)
+    others = min(off[name].max() for name in SETUPS if name != JOINT_DAMPING.name)
+    stated("window-only-damping", np.exp(drawn) < others)
+    stated("window-live-ahead", (live["centred"]["direct"] < live["centred"]["error"]).mean() > 0.9)
+    stated("window-live-longer", live["as printed"]["error"].min() > live["centred"]["error"].max())
+    rows = results.read("page-training")["rows"]
+    shifted, real = (
+        resampled(rows[f"centred, {x}"]["named"], np.mean, k)
+        for k, x in enumerate(("shifted", "real"))
     )
-    return illustrate(draw, alt, 7.0, 1.7 * len(predicted) + 0.4)
+    stated("window-live-named", shifted > real)
+    training, test = split(JOINT_DAMPING.record())
+    left = []
+    for w in WINDOWS:
+        (x, tau), (x6, tau6) = cases(training, w), cases(test, w)
+        x, x6 = (np.column_stack([a.reshape(len(a), -1), np.ones(len(a))]) for a in (x, x6))
+        left.append(rmss(x6 @ np.linalg.lstsq(x, tau, rcond=None)[0], tau6))
+    more = [found.replicates > each for (found, _), each in zip(measured[3:], left)]
+    stated("window-linear", np.all(more, 0))
 
 
-def plane(
-    x,
-    y,
-    values,
-    labels: tuple[str, str, str],
-    alt: str,
-    *,
-    levels,
-    training,
-    test,
-) -> Illustration:
-    """A positive quantity over a plane, as colours on a logarithmic scale, with contour lines."""
-    x, y, values = (finite_array(n, v) for n, v in (("x", x), ("y", y), ("values", values)))
-    if x.ndim != 1 or y.ndim != 1 or values.shape != (y.size, x.size):
-        raise ValueError(
-            f"values must have shape (len(y), len(x)) = ({y.size}, {x.size}), got {values.shape}"
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise; what is given comes from the lesson's open cells."""
+    if number == 1:
+        window, hidden = given
+        direct, biases = 4 * window, hidden + 2
+        right = hidden * (2 * window + 2) + direct
+        slips = (
+            (right + biases, "biases were not asked for."),
+            (right - direct, "inputs reach the outputs on a second way, too."),
+            (right - hidden * window - direct // 2, "each joint has a window of its own."),
         )
-    if not (values > 0).all():
-        raise ValueError(f"values must be above 0, got {values.min():g}")
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        norm = LogNorm(values.min(), values.max())
-        mesh = axis.pcolormesh(x, y, values, norm=norm, cmap=COLOUR_MAP, shading="nearest",
-                               linewidth=0.2, edgecolor="face")  # fmt: skip
-        lines = axis.contour(x, y, values, levels=sorted(levels), colors="white", linewidths=1.0)
-        axis.clabel(lines, fmt="%g", fontsize=8)
-        axis.add_patch(Polygon(_hull(training), fill=False, ec="white", ls="--", lw=1.2))
-        look = {"ls": "", "clip_on": False, "zorder": 3}
-        axis.plot(*np.transpose(training), marker="o", color="white", mec=INK, ms=7, **look)
-        axis.plot(*np.transpose(test), marker="D", color=COLOURS[1], mec="white", ms=8, **look)
-        axis.set(xlabel=labels[0], ylabel=labels[1])
-        axis.grid(False)
-        _finish(figure.colorbar(mesh, ax=axis, label=labels[2]))
-
-    return illustrate(draw, alt, 5.6, 3.6)
-
-
-def _finish(bar: Colorbar):
-    plain_ticks(bar.ax.yaxis)
-    bar.ax.yaxis.set_minor_locator(NullLocator())
-    bar.outline.set_visible(False)
-
-
-def _hull(points):
-    points = np.asarray(points, dtype=float)
-    return points[ConvexHull(points).vertices]
+        judge(mine, right, "inputs to hidden, hidden to outputs, inputs to outputs.", slips,
+              "Count the lines of each of the three bundles in the figure.", 1e-9)  # fmt: skip
+    elif number == 2:
+        (left,) = given
+        most = paper.TABLE_4_1[21].test
+        small = lambda w: w % 2 == 1 and w > 0 and 2 * (2 * w + 1) < 50  # noqa: E731
+        judge(mine, lambda w: small(w) and left(w) < most, "it can only add.",
+              [(lambda w: not small(w), "that is even, or too many weights."),
+               (small, "it is small enough, but too much is left.")])  # fmt: skip
+    else:
+        factor = given[0] / given[1]
+        told = f"the error is {factor:.0f} times as large, about that of a guess of the mean."
+        word = "larger" if factor > 2 else "smaller" if factor < 0.5 else "alike"
+        judge(mine, lambda m: m == word, told,
+              otherwise="Along which of the two paths did the measured torque drive?")  # fmt: skip
 
 
 def intervals(
@@ -160,51 +209,3 @@ def effects(design, logs, count: int) -> tuple[np.ndarray, float]:
     slopes = design.T @ logs / (design**2).sum(0)[:, None]
     factors = np.exp(2 * slopes)
     return factors[:count], float(np.exp(2 * np.abs(slopes[count:])).max())
-
-
-def width_left(places, logs, printed, settings: int = 2**14) -> dict[str, float]:
-    """Width of the ranges that printed errors leave, in percent, as a geometric mean.
-
-    A polynomial of second order through the runs of a design (places: (runs, quantities); logs of
-    errors: (runs, networks, errors)) stands in for all settings. Each is weighed by how likely it
-    prints the table, with the polynomial's own error "counted", or as if it were "exact".
-    """
-    runs, networks, count = logs.shape
-    apart = (logs - logs.mean(1, keepdims=True)).reshape(-1, count)
-    scatter = apart.T @ apart / (runs * (networks - 1))  # of one network on one recording
-    x = 2 * qmc.Sobol(np.shape(places)[1], rng=0).random(settings) - 1
-    fits = [
-        make_pipeline(PolynomialFeatures(2, include_bias=False), BayesianRidge())
-        .fit(places, values)
-        .predict(x, return_std=True)
-        for values in logs.mean(1).T
-    ]
-    means, errors = np.transpose(fits, (1, 2, 0))
-    left = {}
-    for name, own in (("counted", errors), ("exact", np.zeros_like(errors))):
-        total = scatter + own[:, :, None] ** 2 * np.eye(count)
-        miss = printed - means
-        fit = (miss * np.linalg.solve(total, miss[..., None])[..., 0]).sum(1)
-        weights = softmax(-0.5 * (fit + np.linalg.slogdet(total)[1]))
-        deviation = np.sqrt(np.cov(x.T, aweights=weights, ddof=0).diagonal())
-        left[name] = float(100 * np.exp(np.mean(np.log(np.sqrt(3) * deviation))))
-    return left
-
-
-def own_inertia(extents_deg, members: int = 4) -> tuple[float, float]:
-    """Inertia at the shoulder, kg m²: in networks that learn as in the page, median, and the arm's.
-
-    They learn from the first five trajectories, every fifth window of width 21.
-    """
-    training, _ = split(JOINT_DAMPING.record(extents_deg))
-    windows, torque = cases(training, 21)
-    data = TrainingSet.from_arrays(windows, torque, scaling=(-1, 1))
-    windows, data = windows[::5], replace(data, x=data.x[::5], y=data.y[::5])
-    start = Weights.random(members, 21, initial=INITIAL)
-    epochs = results.read("page-training")["epochs"]
-    how = {"rate": default_rate(21), "momentum": page.MOMENTUM, "epochs": epochs}
-    model, *_ = train_ensemble(start, data, **how, progress=False)
-    inertia = gains(mean_gradient(model, windows))[:, 0, 0, 2]
-    return float(np.median(inertia)), float(
-        JOINT_DAMPING.arm.mass_matrix(windows[..., 10])[:, 0, 0].mean()
-    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import traitlets as t
+from scipy.spatial import ConvexHull
 
 from ddlib._check import integer, one_of
 from ddlib.analysis import CLASSES, basis
@@ -212,5 +213,6 @@ def _still(panels, training, test) -> tuple[str, str]:
         f"it the measured torques of both joints on trajectory {TEST_TRAJECTORY}, and what a "
         "network with random weights makes of the positions, before the reader has trained it."
     )
-    extents = {p.name: p for p in _parameters()}
-    return still_picture(curves, panels, extents, _pad(), alt), alt
+    pad = _pad(APPENDIX_I, ConvexHull(APPENDIX_I[:-1]))
+    extents = {p.name: p for p in _parameters(APPENDIX_I[-1].tolist())}
+    return still_picture(curves, panels, extents, pad, alt), alt
