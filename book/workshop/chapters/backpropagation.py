@@ -1,7 +1,4 @@
-"""What *Backpropagation* shows: parity as a polynomial and as networks; its claims' measures.
-
-`monomials` counts what a polynomial needs, exactly; `NETWORKS` have weights set by hand.
-"""
+"""What *Backpropagation* says and asks, parity in two forms, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -12,21 +9,22 @@ import numpy as np
 
 from ddlib import paper
 from ddlib._check import finite_array, integer, number, one_of, shaped
-from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork
-from ddlib.setups import STATE_FEEDBACK, WINDOWS
-from ddlib.tables import scientific, significant, spread
+from ddlib.figures import Illustration, families
+from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
+from ddlib.tables import quote, scientific, significant, spread
+from workshop.chapters.exercises import judge
 from workshop.report import committed, results
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median
 from workshop.report.parity import CODINGS, parity, parity_cases, patterns, right
 
 
 def monomials(values, coding: str = "bits") -> np.ndarray:
-    """Coefficients of the polynomial that equals a function of bits on all its inputs.
+    """Coefficients of the polynomial that equals a function of bits on all its inputs, exactly.
 
-    No variable appears squared in it, since a bit (or a sign) squared is nothing new; so the
-    polynomial is unique. Its coefficients come from the Möbius transform for bits and from the
-    Walsh-Hadamard transform for signs, and are exact: whole numbers for bits, whole numbers over
-    ``2**bits`` for signs.
+    No variable is squared in it, so it is unique: the Möbius transform for bits, the Walsh-Hadamard
+    transform for signs.
     """
     values, coding = finite_array("values", values), one_of("coding", coding, CODINGS)
     bits = values.size.bit_length() - 1
@@ -44,11 +42,7 @@ def monomials(values, coding: str = "bits") -> np.ndarray:
 
 @dataclass(frozen=True)
 class _UnitNetwork:
-    """Units one after the other, each seeing the inputs and any unit before it.
-
-    The last unit is the output. Weights and biases are small whole or half numbers; `activity`
-    multiplies them by a gain.
-    """
+    """Units in a row, each seeing the inputs and any before it; the last is the output."""
 
     weights: np.ndarray  # (units, inputs + units); 0 means no connection
     bias: np.ndarray  # (units,)
@@ -67,12 +61,6 @@ class _UnitNetwork:
     def coefficients(self) -> int:
         """Number of weights and biases."""
         return self.connections + self.bias.size
-
-    @property
-    def word(self) -> int:
-        """Bits that the largest weight or bias needs: counted in halves, with its sign."""
-        largest = max(np.abs(self.weights).max(), np.abs(self.bias).max())
-        return int(np.ceil(2 * largest)).bit_length() + 1
 
     @property
     def depth(self) -> int:
@@ -123,10 +111,9 @@ def _direct(bits: int) -> _UnitNetwork:
 
 
 def _counter(bits: int) -> _UnitNetwork:
-    """Parity by a counter: each unit is a binary digit of the number of bits that are on.
+    """Parity by a counter: units are binary digits of the number of bits that are on.
 
-    A unit sees all inputs and the higher digits, which take their value away from the number;
-    the lowest digit is parity. About ``bits log2(bits)`` weights, in a depth of ``log2(bits)``.
+    Each sees the inputs and the higher digits, which take their value away; the lowest is parity.
     """
     bits = integer("bits", bits, 1)
     higher = [2**j for j in range(bits.bit_length() - 1, 0, -1)]
@@ -165,9 +152,88 @@ NETWORKS = {
 }
 
 
-# --- what the claims of the chapter measure
+# --- the lesson
 
 _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are timed
+
+
+@cache
+def _raced() -> dict[str, History]:
+    """Eight networks of the lesson's recordings without and with momentum, at the same step."""
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, (0.1, 0.9), scaling=(-1, 1))
+    momenta = {"no momentum": 0.0, "momentum 0.9": 0.9, "momentum 0.98": 0.98}
+    how = {"epochs": 2000, "warm_up": 500, "progress": False}
+    start = Weights.random(8, 21)
+    return {n: train_ensemble(start, data, momentum=m, **how)[1] for n, m in momenta.items()}
+
+
+def race() -> Illustration:
+    """Their training errors."""
+    lines = {name: (run.epochs, run.training) for name, run in _raced().items()}
+    ends = "; ".join(f"{name} {np.median(y[-1]):.2f}" for name, (_, y) in lines.items())
+    alt = f"Families of curves over the epochs; medians at the end: {ends}."
+    return families({"": lines}, ("epoch", "training RMSS"), alt, height=2.3, y_log=True)
+
+
+def _needed() -> tuple[np.ndarray, ...]:
+    """Epochs to `_LEVEL` of the networks that learn as in 1988, without and with momentum."""
+    kept = map(results.read("acceleration")["race"].get, ("without", "with"))
+    runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in kept]
+    return tuple(np.minimum(reach(run), run.epochs[-1]) for run in runs)
+
+
+def quoted() -> None:
+    """The book's numbers in the lesson's prose."""
+    plain, quick = map(np.median, _needed())
+    kept = results.read("acceleration")["parity"]
+    quote("backpropagation-needed-without", plain)
+    quote("backpropagation-needed-with", quick)
+    quote("backpropagation-race-gain", plain / quick)
+    quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
+
+
+def said() -> None:
+    """What the lesson says of networks in words."""
+    plain, *_, quick = (np.median(run.training[-1]) for run in _raced().values())
+    epochs = map(resampled, _needed())
+    stated("backpropagation-faster", (plain > 3 * quick) & (next(epochs) > 2 * next(epochs)))
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        alpha = np.array([0.0, 0.5, 0.9])
+
+        def bound(f):
+            return lambda mine: np.allclose([mine(a) for a in alpha], f(alpha))
+
+        slips = [
+            (bound(lambda a: 2 + 0 * a), "that is the bound without momentum."),
+            (bound(lambda a: 1 / (1 - a)), "that is how far repeated steps add up."),
+            (bound(lambda a: 2 * (1 - a)), "momentum allows larger steps, not smaller."),
+        ]
+        told = "there a root leaves the unit circle, at −1."
+        hint = "Give a function of alpha. For which r does the first root reach size 1?"
+        judge(mine, bound(lambda a: 2 * (1 + a)), told, slips, hint)
+    elif number == 2:
+        misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
+        best = min(misses, key=misses.get)
+        slips = [
+            (lambda eta: 0 < eta < best, "so small a change drowns in rounding."),
+            (lambda eta: eta > best, "so large a change meets the curvature."),
+        ]
+        told = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
+        judge(mine, lambda eta: best / 11 < eta < 11 * best, told, slips)
+    else:
+        descend, x, d, level = given
+        end = cache(lambda mine: descend(x, d, *mine, epochs=300, warm_up=0)[1][-1])
+        slips = [(lambda mine: end(mine) > 1, "off course, the steps are too large.")]
+        hint = f"the training RMSS has to fall below {level / 2:.2f} in 300 epochs."
+        told = "what momentum adds up, patience need not."
+        judge(mine, lambda mine: end(mine) < level / 2, told, slips, hint)
+
+
+# --- what the claims of the chapter measure
 
 
 @cache
@@ -205,27 +271,17 @@ def reach(history: History, level: float = _LEVEL) -> np.ndarray:
     """Epochs after which each member's training error first falls below a level."""
     found = []
     for error in history.training.T:
-        below = np.flatnonzero(error < level)
-        if not below.size:
-            found.append(np.inf)
-        elif below[0] == 0:
-            found.append(float(history.epochs[0]))
-        else:
-            k = slice(below[0] - 1, below[0] + 1)
-            found.append(float(np.interp(-level, -error[k], history.epochs[k])))
+        first = next(iter(np.flatnonzero(error < level)), None)
+        k = slice(max((first or 0) - 1, 0), (first or 0) + 1)
+        there = np.interp(-level, -error[k], history.epochs[k])
+        found.append(np.inf if first is None else float(there))
     return np.array(found)
 
 
 def acceleration() -> Measured:
-    """How much more acceleration speeds up learning on the windows than on parity.
-
-    Epochs without over with it: to a training RMSS of `_LEVEL`, and until all inputs are right.
-    """
+    """How much more momentum speeds up learning on the windows than on parity, in epochs."""
     kept = results.read("acceleration")
-    runs = [kept["race"][name] for name in ("without", "with")]
-    histories = [History(np.array(run["epochs"]), np.array(run["training"])) for run in runs]
-    here = tuple(np.minimum(reach(h), h.epochs[-1]) for h in histories)
-    cells = [here, tuple(kept["parity"][name] for name in ("without", "with"))]
+    cells = [_needed(), tuple(kept["parity"][name] for name in ("without", "with"))]
 
     def faster(pair):
         return median(pair[0]) / median(pair[1])
@@ -278,10 +334,7 @@ def network(name: str = "binary counter", most: int = 10, large: int = 1024) -> 
 
 
 def stable(widths=WINDOWS) -> Measured:
-    """Change of all weights over the second half of training, the largest median of a window.
-
-    Two networks of each are kept: too few to draw from, so there are no replicates.
-    """
+    """Change of all weights over the second half of training, the largest median of a window."""
     found = {width: _late_change(width) for width in widths}
     half, last, _ = found[widths[0]]
     value = max(change for *_, change in found.values())
