@@ -1,0 +1,281 @@
+"""The lesson *Networks that make robots walk*: its numbers, first figure, widget, and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from ddlib import figures
+from ddlib.analysis import decompose
+from ddlib.tables import quote
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.parts.parameters import Choice
+from workshop import BOOK
+from workshop.beyond.studies.walking import STEP, gradient, layers, torque
+from workshop.chapters.exercises import judge
+from workshop.report import results
+from workshop.report.evidence.verdicts import Measured
+
+_REACH = 41  # samples of the memory that are read
+_SMALL = 0.05, 2.0  # rad, Hz: histories of the first figure
+_SIZES = 0.02, 0.1, 0.3, 0.8  # of the widget's jump, rad
+_JUMPS = 24  # samples that a jump of the widget may be old
+
+
+def _sines(size, frequency, samples, cases=300):
+    t, w = -STEP * np.arange(samples), 2 * np.pi * frequency
+    phase = np.random.default_rng(0).uniform(0, 2 * np.pi, (cases, 1))
+    return size * np.sin(w * t + phase), size * w * np.cos(w * t + phase)
+
+
+def _squashed(s):
+    return 1 / (1 + np.exp(-s))
+
+
+@cache
+def _memory() -> dict[str, np.ndarray]:
+    with np.load(BOOK / "data" / "anydrive-lstm.npz") as stored:
+        return dict(stored)
+
+
+def _remembered(x) -> np.ndarray:
+    """Torque of ANYmal's network after each sample of histories, shape (cases, samples)."""
+    kept = _memory()
+    h, c, told = np.zeros((2, len(x), 8)), np.zeros((2, len(x), 8)), []
+    for z in np.moveaxis(x * kept["in_scale"], 1, 0):
+        for k in (0, 1):
+            s = z @ kept[f"lstm_weight_ih_l{k}"].T + kept[f"lstm_bias_ih_l{k}"]
+            s += h[k] @ kept[f"lstm_weight_hh_l{k}"].T + kept[f"lstm_bias_hh_l{k}"]
+            i, f, new, o = np.split(s, 4, axis=-1)
+            c[k] = _squashed(f) * c[k] + _squashed(i) * np.tanh(new)
+            z = h[k] = _squashed(o) * np.tanh(c[k])
+        told.append(z @ kept["linear_weight"][0] + kept["linear_bias"][0])
+    return np.stack(told, axis=1) * kept["out_scale"][0]
+
+
+def _answers(size, frequency, cases=100) -> np.ndarray:
+    """Gradient of the last torque by age of error and velocity, shape (cases, 2, samples)."""
+    error, velocity = _sines(size, frequency, 2 * _REACH, cases)
+    history, push = np.stack([error, velocity], -1)[:, ::-1], 1e-5
+    nudges = np.zeros((2, _REACH, 1, *history.shape[1:]))
+    for lag in range(_REACH):
+        nudges[0, lag, 0, -1 - lag, 0] = nudges[1, lag, 0, -1 - lag, 1] = push
+    ends = [
+        _remembered((history + sign * nudges).reshape(-1, *history.shape[1:]))[:, -1]
+        for sign in (1, -1)
+    ]
+    found = ((ends[0] - ends[1]) / (2 * push)).reshape(2, _REACH, cases)
+    return np.moveaxis(found, -1, 0)
+
+
+def _moments(g) -> np.ndarray:
+    """Stiffness (N m/rad), delay (ms) and damping (N m s/rad) of answers, shape (..., 3)."""
+    g = np.asarray(g, dtype=float)
+    position, velocity = np.split(g, 2, axis=-1)
+    stiffness = position.sum(-1)
+    late = position @ (1e3 * STEP * np.arange(position.shape[-1])) / stiffness
+    return np.stack([stiffness, late, velocity.sum(-1)], axis=-1)
+
+
+def _of_go1(size, frequency) -> np.ndarray:
+    x = np.concatenate(_sines(size, frequency, 3), axis=1)
+    return -gradient(x, layers())
+
+
+def _of_memory(size, frequency) -> np.ndarray:
+    return (_answers(size, frequency) * [[1], [-1]]).reshape(100, -1)
+
+
+def _rows(name: str) -> np.ndarray:
+    return -np.array([row["gradient"] for row in results.read("walking")[name]])
+
+
+def moments_agree() -> Measured:
+    """Largest relative departure of a copy's stiffness or delay from the network's own."""
+    own = _moments(-np.array(results.read("walking")["network"]))[:2]
+    off = np.abs(_moments(_rows("copies"))[:, :2] / own - 1)
+    return Measured(off.max(), f"{100 * off.max():.1f} % at most, of {len(off)} copies")
+
+
+def lags_differ() -> Measured:
+    """Range over the copies of the share of the stiffness that the middle sample has."""
+    shares = _middle()
+    text = f"{100 * shares.min():.0f} to {100 * shares.max():.0f} % of the stiffness"
+    return Measured(np.ptp(shares), text)
+
+
+def _middle() -> np.ndarray:
+    position = _rows("copies")[:, :3]
+    return position[:, 1] / position.sum(1)
+
+
+def quoted() -> None:
+    """The numbers of the lesson's prose."""
+    quote("walk-copy-off", 100 * moments_agree().value)
+    quote("walk-copy-least", 100 * _middle().min())
+    quote("walk-copy-most", 100 * _middle().max())
+    shuffled = _rows("shuffled")[:, :3]
+    quote("walk-null-bar", np.abs(shuffled).max())
+    quote("walk-null-stiffness", np.abs(shuffled.sum(1)).max())
+
+
+def by_lag() -> figures.Illustration:
+    """The first figure: answers to the error by its age, of both networks."""
+    own, memory = _of_go1(*_SMALL).mean(0), _of_memory(*_SMALL).mean(0)
+    copies, age = _rows("copies")[:, :3], 1e3 * STEP * np.arange(_REACH)
+    (go1, late, _), (anymal, later, _) = _moments(own), _moments(memory)
+
+    def draw(figure):
+        left, right = figure.subplots(1, 2, width_ratios=(1, 2))
+        left.bar(age[:3], own[:3], 3.5, color=figures.COLOURS[0])
+        left.plot(age[:3], copies.T, color=figures.COLOURS[1], lw=0.8)
+        left.set(title=f"Go1: {go1:.0f} N m/rad, {late:.0f} ms late", xticks=age[:3])
+        right.bar(age, memory[:_REACH], 3.5, color=figures.COLOURS[0])
+        right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {later:.0f} ms late")
+        for axis in (left, right):
+            axis.axhline(0, color=figures.INK, lw=0.7)
+            axis.set(xlabel="the error is so old, ms", ylabel="answer, N m/rad")
+
+    alt = (
+        f"Answers to the position error by its age. Go1: nearly all of {go1:.0f} N m/rad at 5 ms, "
+        "copies spread over 0 to 10 ms. ANYmal: a hump over 70 ms with the sum "
+        f"{anymal:.0f} N m/rad and the mean {later:.0f} ms."
+    )
+    return figures.illustrate(draw, alt, 7.2, 2.7)
+
+
+def over_sizes() -> tuple[Sequence[str], list]:
+    """Table of moments over sizes and frequencies, with their spread."""
+    rows = []
+    for name, of in (("Go1", _of_go1), ("ANYmal", _of_memory)):
+        for frequency in (1, 3, 10):
+            for size in (0.01, 0.1, 0.4):
+                found = _moments(of(size, frequency))
+                whole = _moments(of(size, frequency).mean(0))
+                cells = (f"{m:.2f} ({s:.2f})" for m, s in zip(whole, found.std(0)))
+                rows.append((name, f"{frequency} Hz", f"{size:g} rad", *cells))
+    heads = ("network", "frequency", "size", "stiffness, N m/rad", "delay, ms")
+    return (*heads, "damping, N m s/rad"), rows
+
+
+def copies() -> tuple[Sequence[str], list]:
+    """Table of the network, ten copies, and the ranges of the nulls."""
+    study = results.read("walking")
+    own = -np.array(study["network"])
+    rows = [("network", "0", *(f"{b:.1f}" for b in own[:3]), *_cells(own))]
+    for kind in ("copies", "shuffled"):
+        for k, row in enumerate(study[kind]):
+            g = -np.array(row["gradient"])
+            bars = (f"{b:.1f}" for b in g[:3])
+            rows.append((f"{kind}, {k}", f"{row['error']:.3f}", *bars, *_cells(g)))
+    random = -np.array(study["random"])
+    ends = np.percentile(np.column_stack([random[:, :3], random[:, :3].sum(1)]), (5, 95), axis=0)
+    told = [f"{a:.1f} to {b:.1f}" for a, b in ends.T]
+    rows.append(("random, nine tenths of 100", "", *told, "", ""))
+    rows = [tuple(cell.replace("-", "−") for cell in row) for row in rows]
+    heads = ("who", "error, RMSS", "now", "5 ms ago", "10 ms ago", "sum, N m/rad")
+    return (*heads, "delay, ms", "damping, N m s/rad"), rows
+
+
+def _cells(g) -> list[str]:
+    stiffness, late, damping = _moments(g)
+    sure = abs(stiffness) > 5
+    return [f"{stiffness:.1f}", f"{late:.1f}" if sure else "", f"{damping:.2f}"]
+
+
+def parts() -> tuple[Sequence[str], list]:
+    """Table of the energies of the constant, even and odd parts of the memory's answers."""
+    rows = []
+    for size in (0.01, 0.1, 0.4):
+        f = _of_memory(size, 2.0).mean(0)[:_REACH]
+        energy = np.array([(part**2).sum() for part in decompose(f)])
+        shares = 100 * energy / energy.sum()
+        rows.append((f"{size:g} rad", *(f"{share:.0f} %" for share in shares)))
+    return ("size", "constant", "even", "odd"), rows
+
+
+def check(number: int, mine, left: float | None = None) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        slips = [(85 / 0.011, "divide or multiply?"), (85 * 11, "the delay is in milliseconds.")]
+        judge(mine, 85 * 0.011, "stiffness times delay.", slips, "Expand the late error in d.")
+    elif number == 2:
+        slips = [(lambda a: 0 <= a < left, "more is left."), (lambda a: 1 >= a > left, "too much.")]
+        judge(mine, left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2)
+    else:
+
+        def apart(e):
+            now, one, two = e
+            return abs(20 * (one - (now + one + two) / 3)) >= 2 and max(map(abs, e)) <= 0.1
+
+        slips = [(lambda e: len(e) == 3 and max(map(abs, e)) > 0.1, "an error is above 0.1 rad.")]
+        told = "it turns at every sample, as no smooth motion does."
+        judge(mine, apart, told, slips, "Write down the difference of the two torques first.")
+
+
+class LateSpring(CurveWidget):
+    """An error jumps; its age and size are turned, and each sample's share of the answer shown."""
+
+    def __init__(self, **options):
+        age = 1e3 * STEP * np.arange(_JUMPS + 1)
+        super().__init__(
+            _jumped,
+            [
+                Choice("robot", "Network", ["Go1", "ANYmal"], "Go1"),
+                Choice(
+                    "old", "The jump is so old", {n: f"{5 * n} ms" for n in range(25)}, 0, "slider"
+                ),
+                Choice("size", "Size of the jump", {s: f"{s:g} rad" for s in _SIZES}, 0.1),
+            ],
+            [
+                Panel(
+                    "Error by its age, rad",
+                    ("error",),
+                    "age, ms",
+                    age,
+                    kind="stems",
+                    y_range=(0.0, 0.8),
+                ),
+                Panel(
+                    "Torque since the jump, N m", {"torque": "so far"}, "time, ms", age, y_fit=True
+                ),
+                Panel(
+                    "Answer by age, N m/rad", ("answer",), "age, ms", age, kind="stems", y_fit=True
+                ),
+            ],
+            **{
+                "title": "A spring that is late",
+                "alt": "The error's history, the torque since it jumped, and the share of each "
+                "sample in the answer.",
+                "note": "Positive torque turns the joint towards its target. The joint is held.",
+                **options,
+            },
+        )
+
+
+def _jumped(robot: str, old: int, size: float) -> dict[str, np.ndarray]:
+    """The error by age, the torque since the jump, and the gradient by age."""
+    reach = _JUMPS + 1
+    error = np.where(np.arange(reach) < old, size, 0.0)
+    steps = np.concatenate([np.zeros(reach + 16), np.full(reach, size)])
+    if robot == "Go1":
+        seen = np.stack([steps[2 - k : len(steps) - k] for k in range(3)], -1)
+        told = -torque(np.column_stack([seen, np.zeros_like(seen)]), layers())[-reach:]
+        told = told - told[0]
+        now = np.concatenate([error[:3], np.zeros(3)])
+        answer = np.zeros(reach)
+        answer[:3] = -gradient(now[None], layers())[0, :3]
+    else:
+        told = _remembered(np.stack([steps, np.zeros_like(steps)], -1)[None])[0, -reach:]
+        told = told - told[0]
+        now = np.concatenate([np.zeros(40), error[::-1]])
+        push = 1e-5 * np.eye(len(now))[::-1][:reach]
+        ends = [
+            _remembered(np.stack([now + s * push, np.zeros_like(push)], -1))[:, -1] for s in (1, -1)
+        ]
+        answer = (ends[0] - ends[1]) / 2e-5
+    so_far = np.where(np.arange(reach) <= old, told, np.nan)
+    return {"error": error, "torque": np.nan_to_num(so_far, nan=told[old]), "answer": answer}
