@@ -30,7 +30,7 @@ UPON_A_COLOUR = {
 
 
 LOGARITHMIC = {
-    **dict.fromkeys(("curves", "side_by_side, log", "error_by_size"), "xy"),
+    **dict.fromkeys(("curves", "side_by_side, log"), "xy"),
     **dict.fromkeys(("ladders", "growth", "costs", "against", "traded"), "xy"),
     **dict.fromkeys(("families", "rmss_by_window", "operations", "courses", "by_trial"), "y"),
     **dict.fromkeys(("ranking", "intervals", "by_motion", "four_directions"), "x"),
@@ -134,7 +134,6 @@ REFUSALS = [
     (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
     (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
     (states.torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
-    (states.responses, (X, given.ACTIVITY[0]), "activity must have shape"),
 ]
 
 

@@ -82,15 +82,6 @@ NULLS = {
 }
 EXACT = np.stack([np.sin(T), 0.1 * np.cos(T)], -1)
 NETWORKS = EXACT + np.array([0.01, 0.02, 0.05])[:, None, None]
-ACTIVITY = np.zeros((2, 3, 6, 4))
-ACTIVITY[1, 0] = np.linspace(0.0, 1.0, 6)[:, None]
-BY_SIZE = {
-    "samples": {
-        "solver": {100: [0.4, 0.2, 0.1], 10_000: [0.05, 0.02, 0.01]},
-        "descent": {100: [0.3, 0.3]},
-    },
-    "units": {"descent": {5: [0.2], 80: [0.1]}},
-}
 
 # Part IV
 SIZE = np.array([5, 10, 20])
@@ -173,8 +164,6 @@ EXAMPLES = {
     "four_directions": smooth.four_directions,
     "hinton_states": lambda: states.hinton_states(Weights.random(1, 3)[0]),
     "torque_along": partial(states.torque_along, T, EXACT, NETWORKS),
-    "error_by_size": partial(states.error_by_size, BY_SIZE),
-    "responses": partial(states.responses, X, ACTIVITY),
 
     "courses": partial(
         adaptive_control.courses,
@@ -290,11 +279,6 @@ SHOWN = {
         [[(0, 3), (1, 5)], [(0, 1.1), (0, 5.6)], [(1, 3), (1, 8.4)]],
     ],
     "torque_along": [xy(T, EXACT[:, j], NETWORKS[1, :, j]) for j in range(2)],  # the median network
-    "error_by_size": [
-        [[(100, 0.4), (100, 0.2), (100, 0.1)], [(100, 0.2), (10_000, 0.02)], [(100, 0.3)]],
-        [[(5, 0.2), (80, 0.1)]],
-    ],
-    "responses": [xy(X, *activity.T) for activity in ACTIVITY.reshape(6, len(X), 4)],
     "courses": [xy([1, 2, 3], MIDDLE, 2 * MIDDLE), xy([1, 2, 3], MIDDLE)],
     "stops_map": [[[(1, 0)]]],
     "ladders": [

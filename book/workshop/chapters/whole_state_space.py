@@ -1,29 +1,28 @@
-"""Figures of the chapter *The whole state space*, and what its claims measure."""
+"""Figures of *The whole state space*, what it says and asks, and what its claims measure."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from matplotlib.ticker import NullLocator
 
 from ddlib import paper
 from ddlib._check import shaped
-from ddlib.analysis import shuffled, transition_range
-from ddlib.figures.style import COLOURS, DASHES, INK, JOINTS, Illustration, illustrate, plain_ticks
+from ddlib.analysis import input_shares, shuffled, transition_range
+from ddlib.figures.style import COLOURS, INK, JOINTS, Illustration, illustrate
 from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
-from ddlib.tables import significant, spread
+from ddlib.tables import quote, spread
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.exact_states import random_states, states_along, torque
 
 _SYMBOLS = ("$q_1$", "$v_1$", "$a_1$", "$q_2$", "$v_2$", "$a_2$")  # the six inputs in their order
-_UNITS = ("rad", "rad/s", "rad/s²") * 2
-_MARKERS = "osD^v"
 _WIDTH, _BLOB = 12.0, "#8c8c8c"
 
 
@@ -121,71 +120,73 @@ def torque_along(t, exact, predicted) -> Illustration:
     return illustrate(draw, alt, 7.0, 1.8 * exact.shape[1] + 0.5)
 
 
-def error_by_size(panels: Mapping[str, Mapping[str, Mapping[int, np.ndarray]]]) -> Illustration:
-    """Error against a size: every network as a point, the medians joined; log-log."""
-    names = list(dict.fromkeys(name for named in panels.values() for name in named))
-    look = {name: k for k, name in enumerate(names)}
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
-        handles = {}
-        for axis, (label, named) in zip(axes, panels.items()):
-            for name, by_size in named.items():
-                k = look[name]
-                colour, marker = COLOURS[k % len(COLOURS)], _MARKERS[k % len(_MARKERS)]
-                for size, errors in by_size.items():
-                    axis.plot([size] * len(errors), errors, ".", ms=4, color=colour, alpha=0.55)
-                medians = [float(np.median(errors)) for errors in by_size.values()]
-                (handles[name],) = axis.plot(
-                    list(by_size), medians, color=colour, ls=DASHES[k % len(DASHES)],
-                    marker=marker, ms=5,
-                )  # fmt: skip
-            sizes = sorted({size for by_size in named.values() for size in by_size})
-            axis.set(xscale="log", yscale="log", xlabel=label)
-            axis.xaxis.set_minor_locator(NullLocator())
-            axis.set_xticks(sizes, [_short(size) for size in sizes])
-        plain_ticks(axes[0].yaxis)
-        axes[0].set_ylabel("RMSS")
-        figure.legend(handles.values(), handles, loc="outside upper left", ncols=2)
-
-    parts = []
-    for label, named in panels.items():
-        for name, by_size in named.items():
-            sizes = list(by_size)
-            first, last = sizes[0], sizes[-1]
-            e0, e1 = (significant(np.median(by_size[size]), 2) for size in (first, last))
-            parts.append(f"{name}: from {e0} with {first:,} to {e1} with {last:,} {label}")
-    return illustrate(draw, "Median RMSS by size. " + "; ".join(parts) + ".", 7.2, 3.3)
+# --- the lesson
 
 
-def responses(values, activity) -> Illustration:
-    """Activity of every hidden unit while one of the six inputs moves, one panel each."""
-    values = shaped("values", values, "(points,)")
-    activity = shaped("activity", activity, f"(2, 3, {values.size}, hidden)")
-    swing = np.ptp(activity, axis=2).mean(-1).ravel()
-
-    def draw(figure: Figure):
-        axes = figure.subplots(2, 3, sharex=True, sharey=True).ravel()
-        for k, axis in enumerate(axes):
-            axis.plot(values, activity[k // 3, k % 3], color=COLOURS[k // 3], lw=1.1)
-            axis.set_title(f"{_SYMBOLS[k]}, {_UNITS[k]}")
-            axis.set_ylim(-0.04, 1.04)
-        for row in (0, 3):
-            axes[row].set_ylabel("activity")
-
-    listed = ", ".join(
-        f"{name} {size:.2f}" for name, size in zip(("q1", "v1", "a1", "q2", "v2", "a2"), swing)
-    )
-    alt = (
-        f"Activities of {activity.shape[-1]} hidden units while one input moves, six panels. "
-        f"Mean swing by input: {listed}."
-    )
-    return illustrate(draw, alt, 7.0, 3.6)
+def _errors() -> dict[str, np.ndarray]:
+    """Errors of the book's 25 networks on each set, by its own deviation."""
+    found = results.read("table-6-1")["errors"]
+    return {name: np.array(each["own deviation"]) for name, each in found.items()}
 
 
-def _short(size: int) -> str:
-    """A number for a crowded axis: 30,000 as 30k."""
-    return f"{size // 1000}k" if size >= 1000 and size % 1000 == 0 else str(size)
+def _states() -> np.ndarray:
+    return states_along(paper.APPENDIX_I_EXTENTS_DEG[paper.TEST_TRAJECTORY - 1])
+
+
+def on_trajectory() -> Illustration:
+    """Torque along trajectory 6, by the equations and by the book's 25 networks."""
+    states = _states()
+    t = np.arange(len(states)) * 3.0 / len(states)
+    return torque_along(t, torque(states), _networks().torque(states))
+
+
+def quoted() -> None:
+    """The book's numbers in the lesson's prose."""
+    for key, errors in zip(("a", "b", "six"), _errors().values()):
+        quote(f"states-book-{key}", float(np.median(errors)))
+    quote("states-book-printed", paper.TABLE_6_1["trajectory 6"])
+    for key, share in zip(("q2", "v1"), _watched().mean(1)):
+        quote(f"states-book-{key}", 100 * share)
+
+
+def _watched() -> np.ndarray:
+    """Share of each network's hidden units that depend on q2 and on v1 most, (2, networks)."""
+    shares = input_shares(_networks().weights)
+    largest = shares.reshape(*shares.shape[:2], 6).argmax(-1)
+    return np.stack([(largest == k).mean(1) for k in (3, 1)])
+
+
+def _said() -> None:
+    """What the lesson says of the book's networks in words."""
+    a, _, six = _errors().values()
+    stated("states-six-worse", resampled(six / a) > 2)
+    stated("states-elbow-watched", resampled(_watched()[0], np.mean) > 0.55)
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        b, d = given[0].b, given[0].d
+        shared = (2 * d**2 + b**2 / 2) * np.pi**2 / 3
+        right = b**2 * np.pi**4 / 18 / (shared + b**2 * np.pi**4 / 10)
+        slips = [(0.0, "it is true of the velocity. Average over that, and keep the angle."),
+                 (right * 1.8, "v₁⁴ has the mean π⁴/5, and (v₁²)'s mean is π²/3.")]  # fmt: skip
+        judge(mine, right, "the angle alone is worth something, the velocity nothing.", slips)
+    elif number == 2:
+        turned, before = given
+        told = f"it grows {turned / before:.2f} times."
+        slips = [
+            (lambda m: m > 1, "is the torque another one?"),
+            (lambda m: 0 < m < 1, "why less?"),
+        ]
+        judge(mine, lambda m: 0.5 < m * before / turned < 2, told, slips)
+    else:
+        error_from, before = given
+        found = cache(lambda m: error_from(np.array(m)))
+        told = "near zero the torque is almost linear, and the samples lie where they count."
+        judge(mine, lambda m: 3 * found(m) < before, told,
+              [(lambda m: found(m) > 0, "the error on the trajectory is not below a third.")],
+              "Give three limits.")  # fmt: skip
 
 
 # --- what the claims of the chapter measure
@@ -197,7 +198,7 @@ def _networks() -> TorqueModel:
 
 def trajectory_shoulder() -> Measured:
     """Error of the shoulder's torque on trajectory 6, by its own deviation: the median."""
-    states = states_along(paper.APPENDIX_I_EXTENTS_DEG[paper.TEST_TRAJECTORY - 1])
+    states = _states()
     errors = rmss(_networks().torque(states), torque(states), pooled=False)[:, 0]
     return judged(median, errors, text=f"RMSS {spread(errors)}")
 
