@@ -117,7 +117,7 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
 
 @pytest.mark.parametrize("page", WALK)
 def test_what_a_lesson_states_is_so(page):
-    """By the `said` of the lesson's module, if the lesson binds words at all."""
+    """By the `_said` of the lesson's module, if the lesson binds words at all."""
     name = page.removeprefix("book/")
     if name in BOUND:
-        import_module(f"workshop.chapters.{name.replace('-', '_')}").said()
+        import_module(f"workshop.chapters.{name.replace('-', '_')}")._said()

@@ -192,7 +192,7 @@ def quoted() -> None:
     quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
 
 
-def said() -> None:
+def _said() -> None:
     """What the lesson says of networks in words."""
     plain, *_, quick = (np.median(run.training[-1]) for run in _raced().values())
     epochs = map(resampled, _needed())

@@ -58,7 +58,7 @@ def quoted() -> None:
     quote("filters-off-by", excitation.half_foretold().value)
 
 
-def said() -> None:
+def _said() -> None:
     """What the lesson says in words about committed results."""
     lost, back = (
         np.array(excitation.cell(drive, 1.0)["descent"]["M11"])[-1]

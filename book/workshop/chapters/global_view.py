@@ -130,7 +130,7 @@ def quoted() -> None:
     quote("global-without-pure", np.median(rest / whole))
 
 
-def said() -> None:
+def _said() -> None:
     """Check what the lesson says in words of the book's networks."""
     gap = [resampled(whole[:, 1] / alone[1]) > 1.1 for alone, whole in beside_linear().values()]
     stated("global-linear-better", np.all(gap, 0))

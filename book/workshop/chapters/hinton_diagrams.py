@@ -50,7 +50,7 @@ def diagram() -> figures.Illustration:
     return figures.illustrate(draw, alt, 7.0, 1.8)
 
 
-def said() -> None:
+def _said() -> None:
     """What the lesson says of smooth and rough parts, in eight networks."""
     smooth, like = [], []
     for shifted in (False, True):

@@ -92,7 +92,7 @@ def _halves() -> dict[str, np.ndarray]:
     return {"velocity": half[:, 3:5].mean(1), "acceleration": half[:, 5:7].mean(1)}
 
 
-def said() -> None:
+def _said() -> None:
     """What the lesson says of networks: of the book's, and of eight that are trained as in it."""
     velocity, acceleration = _halves().values()
     stated("smooth-velocity-first", resampled(acceleration - velocity) > 0)

@@ -99,7 +99,7 @@ def quoted() -> None:
     quote("window-worst-state", off["state feedback"].max())
 
 
-def said() -> None:
+def _said() -> None:
     """What the lesson says in words of the book's networks."""
     off, live = _factors(), {row: _events(row) for row in ("centred", "as printed")}
     measured = [

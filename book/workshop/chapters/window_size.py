@@ -53,7 +53,7 @@ def quoted() -> None:
     quote("size-memory-solver", np.median(shuffled["solver"]["training"]))
 
 
-def said() -> None:
+def _said() -> None:
     """Check what the lesson says in words of the book's networks."""
     rows, sizes = results.read("window-sizes")["rows"], _medians("test")[0]
 
