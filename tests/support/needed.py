@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import re
 
+MADE = re.compile(r"widgets\.|chapter\.(explorer$|[A-Z]+[a-z])")  # by modules: calls that make one
+
 
 def needed(cells: list[str]) -> list[int]:
     """Places of the cells that make widgets, and of those whose names they need.
@@ -34,7 +36,7 @@ def needed(cells: list[str]) -> list[int]:
 def makes(tree: ast.AST, makers: set[str]) -> bool:
     """Whether one of the makers is called."""
     calls = [ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)]
-    return any(call in makers or call.startswith("widgets.") for call in calls)
+    return any(call in makers or MADE.match(call) for call in calls)
 
 
 def names(tree: ast.AST) -> tuple[set[str], set[str]]:
