@@ -226,7 +226,7 @@ class LateSpring(CurveWidget):
             [
                 Choice("robot", "Network", ["Go1", "ANYmal"], "Go1"),
                 Choice(
-                    "old", "The jump is so old", {n: f"{5 * n} ms" for n in range(25)}, 0, "slider"
+                    "old", "The jump is so old", {n: f"{5 * n} ms" for n in range(25)}, 4, "slider"
                 ),
                 Choice("size", "Size of the jump", {s: f"{s:g} rad" for s in _SIZES}, 0.1),
             ],
