@@ -1,0 +1,69 @@
+"""The first figure of *Use it on your arm*."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ddlib import figures
+from ddlib.analysis import gains, mean_gradient, ridge_filters
+from ddlib.control import pd
+from ddlib.dynamics import Arm, Link
+from ddlib.effects import CoulombFriction, Effects, Quantisation, ViscousFriction
+from ddlib.learning import TrainingSet, Weights, cases, surrogate, train_ensemble
+from ddlib.simulation import record
+from ddlib.trajectories import random_extents
+
+_ENTRIES = {"shoulder": (0, 0), "coupling": (0, 1), "elbow": (1, 1)}
+
+
+def four_answers() -> figures.Illustration:
+    """Inertia of the page's arm: its own, by least squares, by networks, and by a null."""
+    links = Link(4.0, 0.35, 0.16, 0.050), Link(2.5, 0.30, 0.14, 0.025)
+    arm = Arm.from_links("my arm", *links)
+    friction = (ViscousFriction((0.4, 0.2)), CoulombFriction((0.1, 0.03)))
+    effects = Effects(friction=friction, encoder=(Quantisation.encoder(bits=16),))
+    controller = pd((60.0, 20.0), (0.0, 0.0))
+    log = record(arm, controller, random_extents(6, seed=1), effects=effects)[:5]
+    windows = cases(log, 21)[0]
+    real = TrainingSet.from_recording(log, 21, scaling=(-1, 1))
+    moved = surrogate("shifted", log.tau[:, log.motion], seed=0).reshape(-1, 2)
+    shifted = TrainingSet.from_arrays(windows, moved, scaling=(-1, 1))
+    start = Weights.random(members=3, width=21, hidden=10)
+    how = {"momentum": 0.98, "warm_up": 500, "epochs": 3000, "progress": False}
+
+    def in_networks(data):
+        return gains(mean_gradient(train_ensemble(start, data, **how)[0], windows))[..., 2]
+
+    return _drawn(
+        {
+            "the arm": arm.mass_matrix(log.q_true[:, log.motion]).mean((0, 1))[None],
+            "least squares": gains(ridge_filters(real, [0.0]))[..., 2],
+            "networks": in_networks(real),
+            "networks, torques shifted": in_networks(shifted),
+        }
+    )
+
+
+def _drawn(found) -> figures.Illustration:
+    def draw(figure):
+        axis = figure.subplots()
+        handles = []
+        for k, (name, values) in enumerate(found.items()):
+            y = np.stack([values[:, i, j] for i, j in _ENTRIES.values()])
+            x = np.broadcast_to(np.arange(3)[:, None] + 0.16 * (k - 1.5), y.shape)
+            look = {"color": figures.COLOURS[k], "marker": "_os^"[k], "ls": ""}
+            size = {"ms": 16, "mew": 3} if name == "the arm" else {"ms": 7}
+            axis.plot(x.ravel(), y.ravel(), **look, **size)
+            handles += axis.plot([], [], **look, ms=8, mew=2)
+        axis.axhline(0, color=figures.FAINT, lw=0.7)
+        axis.set_xticks(range(3), _ENTRIES)
+        axis.set(ylabel="inertia, kg m²", xlim=(-0.5, 2.5))
+        figures.legend_above(figure, handles, list(found))
+
+    told = "; ".join(
+        f"{name}: "
+        + ", ".join(f"{e} {np.median(v[:, i, j]):.2f}" for e, (i, j) in _ENTRIES.items())
+        for name, v in found.items()
+    )
+    alt = f"Inertia of an arm in kg m². {told}.".replace("-", "−")
+    return figures.illustrate(draw, alt, 7.0, 2.7)
