@@ -190,14 +190,39 @@ def _solution(source: str) -> str:
     return f"<details>\n<summary>Solution</summary>\n\n```python\n{source}\n```\n\n</details>"
 
 
+SHOW = """# In an editor with cells (# %%) figures and tables appear. Run as a whole, this prints
+# tables and saves figures in the folder where it is run.
+def show(made, saved=[]):
+    if hasattr(made, "save"):
+        saved.append(f"figure-{len(saved) + 1}.svg")
+        made.save(saved[-1])
+        print(f"Saved {saved[-1]}.")
+    elif hasattr(made, "_repr_markdown_"):
+        print(made._repr_markdown_())
+    return made"""
+
+
+def shown(source: str) -> str:
+    """A cell's code with its last value handed to `show`."""
+    *_, last = ast.parse(source).body
+    if (
+        not isinstance(last, ast.Expr)
+        or getattr(getattr(last.value, "func", 0), "id", "") == "print"
+    ):
+        return source
+    lines = source.splitlines()
+    before, value = lines[: last.lineno - 1], "\n".join(lines[last.lineno - 1 : last.end_lineno])
+    return "\n".join([*before, f"show({value})"])
+
+
 def script(notebook) -> str:
     """The open cells alone, below the headings, as a script in cells (`# %%`)."""
-    parts = []
+    parts = [SHOW]
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             parts += [f"# %% [markdown]\n# {line}" for line in HEADING.findall(cell.source)]
         elif not {*FOLDED, "hide-cell"} & set(cell.metadata.get("tags", [])):
-            parts.append(f"# %%\n{cell.source}")
+            parts.append(f"# %%\n{shown(cell.source)}")
     return "\n\n".join(parts) + "\n"
 
 

@@ -11,6 +11,8 @@ from book_pages import ROOT, WALK
 from chapter_rules import TUTORIAL
 from chromium import HTML
 
+from ddlib.tables import Table
+
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 
 from dd_reader import Plain, has_script, reader_notebook, script
@@ -74,16 +76,21 @@ def test_cells_are_open_folded_or_a_folded_solution():
     nbformat.validate(made)
 
 
-def test_a_script_has_the_open_cells_below_their_headings():
+def test_a_script_has_the_open_cells_below_their_headings(capsys):
     new = nbformat.v4
-    tags = {"mass = 2": ["change-this"], "hidden": ["hide-input"], "x = mass": []}
+    tags = {"mass = 2": ["change-this"], "hidden": ["hide-input"], "x = mass\nf(\n    x\n)": []}
     tags["solution"] = ["hide-cell"]
     cells = [new.new_code_cell(code, metadata={"tags": found}) for code, found in tags.items()]
     lesson = new.new_notebook(cells=[new.new_markdown_cell("# Title\n\nWords."), *cells])
     assert has_script(lesson) and not has_script(new.new_notebook(cells=cells[1:]))
     told = script(lesson)
-    assert told == "# %% [markdown]\n# # Title\n\n# %%\nmass = 2\n\n# %%\nx = mass\n"
-    compile(told, "script", "exec")
+    _, _, cells = told.partition("return made\n\n")
+    assert cells == (
+        "# %% [markdown]\n# # Title\n\n# %%\nmass = 2\n\n# %%\nx = mass\nshow(f(\n    x\n))\n"
+    )
+    space = {"f": lambda x: Table(("mass",), [(x,)])}
+    exec(compile(told, "script", "exec"), space)
+    assert "| 2 |" in capsys.readouterr().out
 
 
 @pytest.mark.built
