@@ -23,7 +23,7 @@ def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "_RECORDINGS", 2)
     monkeypatch.setattr(rivals, "_TORQUES", tmp_path / "torques.npz")
-    rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals.rivals()["rows"]}
+    rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals._rivals()["rows"]}
     names = [("nearest", inputs, 1) for inputs in rivals._INPUTS]
     assert set(rows) == {*names, ("filter", "positions", 5), ("filter", "positions", 21)}
     assert len(rows["nearest", "positions", 1]["seconds"]) == 1
