@@ -63,6 +63,7 @@ def _said() -> None:
 
     stated("size-training-falls", trend("training") < -0.9)
     stated("size-test-falls", trend("test") < -0.5)
+    stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
 
 
 def check(number: int, mine, floor=None) -> None:
