@@ -160,7 +160,7 @@ _LEVEL = 0.75  # Training RMSS to which runs with and without acceleration are t
 @cache
 def _raced() -> dict[str, History]:
     """Eight networks of the lesson's recordings without and with momentum, at the same step."""
-    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, (0.1, 0.9), scaling=(-1, 1))
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:-1], 21, scaling=(-1, 1))
     momenta = {"no momentum": 0.0, "momentum 0.9": 0.9, "momentum 0.98": 0.98}
     how = {"epochs": 2000, "warm_up": 500, "progress": False}
     start = Weights.random(8, 21)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ddlib._check import integer
 from ddlib.analysis import content
-from ddlib.figures.style import COLOURS, Illustration, illustrate
+from ddlib.figures.style import COLOURS, NARROW, Illustration, illustrate
 from ddlib.learning import Directions, TrainingSet, Weights, effective_steps, train_ensemble
 from ddlib.setups import JOINT_DAMPING, WINDOWS
 from ddlib.simulation import LOG_STEP
@@ -63,18 +63,21 @@ def four_directions() -> Illustration:
     named = {"position": 0, "velocity": 2, "acceleration": 4, "noise": 41}
 
     def draw(figure):
-        axis = figure.subplots()
+        axis, columns = figure.subplots(), 4 if figure.get_figwidth() > NARROW else 2
         for place, (name, k) in enumerate(named.items()):
+            row, column = divmod(place, columns)
             colour, shape = COLOURS[place], filters[k, (filters[k] ** 2).sum(-1).argmax()]
-            inset = axis.inset_axes([0.01 + 0.25 * place, 0.66, 0.22, 0.24])
+            corner = 0.01 + column / columns, (0.66 if columns == 4 else 0.8) - 0.27 * row
+            inset = axis.inset_axes([*corner, 0.88 / columns, 0.24 if columns == 4 else 0.14])
             inset.plot(shape * np.sign(shape[-1]), color=colour)
             inset.set(title=name, ylim=(-0.6, 0.6), xticks=[], yticks=[])
             axis.semilogx(steps, (1 - variance[k] / (2 * variance[0])) ** steps, color=colour)
-        axis.set(xlabel="steps of descent", ylabel="error left, share", ylim=(-0.05, 1.8))
+        axis.set(xlabel="steps of descent", ylabel="error left, share")
+        axis.set(ylim=(-0.05, 1.8 if columns == 4 else 2.2))
         axis.set_yticks([0, 0.5, 1])
 
     alt = "A flat filter, a line, a parabola and noise; their errors go in this order, noise last."
-    return illustrate(draw, alt, 7.0, 3.0)
+    return illustrate(draw, alt, 7.0, 3.0, narrow_height=4.2)
 
 
 def quoted() -> None:
