@@ -9,11 +9,13 @@ as a script, too.
 from __future__ import annotations
 
 import ast
+import codecs
 import json
 import re
 import textwrap
 from pathlib import Path
 
+import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
 from dd_lessons import chapters
@@ -65,7 +67,8 @@ class Known:
         """Authors and year of an entry of the bibliography."""
         entry = self.books[key]
         people = entry.persons.get("author") or entry.persons.get("editor") or []
-        names = [" ".join((*p.prelast_names, *p.last_names)).strip("{}") for p in people]
+        names = [" ".join((*p.prelast_names, *p.last_names)) for p in people]
+        names = [re.sub("[{}]", "", codecs.decode(name, "ulatex")) for name in names]
         told = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
         return told or entry.fields.get("title", key), entry.fields.get("year", "")
 
