@@ -28,10 +28,11 @@ def missing(code: str) -> list[str]:
 
 
 def test_names_in_shown_code_exist():
-    sources = [path.read_text("utf-8") for path in (ROOT / "ddlib" / "widgets").rglob("*.py")]
+    homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
+    sources = [path.read_text("utf-8") for home in homes for path in home.rglob("*.py")]
     sources += [code for path in (ROOT / "book").glob("*.ipynb") for code in code_cells(path)]
     codes = {code for source in sources for code in shown(source)}
-    assert len(codes) >= 8
+    assert len(codes) >= 10
     assert not [name for code in codes for name in missing(code)]
     code = "from workshop.report.studies.page import training as page\npage.nothing({x})"
     assert missing(shown(repr(code))[0]) == ["workshop.report.studies.page.training.nothing"]
