@@ -30,7 +30,7 @@ PRELOADED = (
     "matplotlib.figure",
     "sympy",
     "torch",
-    "workshop.report.measures",
+    "workshop.report._measures",
     "workshop.report.evidence.wall",
     "ddlib.figures.style",
     "ddlib.widgets.base",

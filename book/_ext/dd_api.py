@@ -12,8 +12,8 @@ from docutils import nodes
 from sphinx import addnodes
 
 SHOWN = (
-    "workshop.report.measures",
-    "workshop.beyond.measures",
+    "workshop.report._measures",
+    "workshop.beyond._measures",
     "workshop.chapters",
     "workshop.report.evidence.expressions",
 )

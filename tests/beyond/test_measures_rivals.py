@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.measures import rivals as measures
+from workshop.beyond._measures import rivals as measures
 from workshop.report import results
 
 DAY = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])  # hard days are hard for all

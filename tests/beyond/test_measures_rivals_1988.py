@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.measures import rivals_1988 as measures
+from workshop.beyond._measures import rivals_1988 as measures
 from workshop.beyond.studies.rivals_1988 import _practised_distance
 from workshop.report import results
 

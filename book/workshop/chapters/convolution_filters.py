@@ -29,7 +29,7 @@ from workshop.chapters import excitation
 from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
-from workshop.report.measures import filter_trial as trial
+from workshop.report._measures import filter_trial as trial
 
 
 def trained_unit() -> np.ndarray:

@@ -21,7 +21,7 @@ from workshop.report import committed
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
-from workshop.report.measures import filter_trial
+from workshop.report._measures import filter_trial
 
 
 def in_transition(width: int) -> Measured:

@@ -24,7 +24,7 @@ from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, wor
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
 from workshop.report.evidence.wall import Tiles, mark, window
-from workshop.report.measures.filters import parts_sum_up
+from workshop.report._measures.filters import parts_sum_up
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
 
