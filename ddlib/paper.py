@@ -43,9 +43,6 @@ TABLE_6_1 = MappingProxyType({"random set A": 0.068, "random set B": 0.083, "tra
 LARGEST_WEIGHT = MappingProxyType({11: 18.9, 21: 11.7, 41: 4.2})
 """Magnitude of the largest weight by window size, captions of Figures 5-1 to 5-3."""
 
-LARGEST_WEIGHT_SIMULATION = 9.63
-"""Magnitude of the largest weight of the simulation network, caption of Figure 6-1."""
-
 HIDDEN_UNITS = 10
 """Hidden units of every network, section 3.3."""
 

@@ -32,12 +32,14 @@ from ddlib.widgets.parts.parameters import Choice
 
 _SHARE = np.array([1.0, 0.3])  # strength of an effect at shoulder and elbow, over the shoulder's
 
-# Strengths at the shoulder.
-FRICTION = {"off": 0.0, "assumed": 0.5, "strong": 2.0}  # Coulomb, N m, and viscous, N m s/rad
-DEAD_ZONE = {"off": 0.0, "weak": 0.1, "strong": 2.0}  # torque that the motor loses, N m
-SATURATION = {"off": 1e9, "weak": 20.0, "strong": 15.0}  # largest torque of the motor, N m
-QUANTISATION = {"off": None, "assumed": 16, "strong": 14}  # bits of the encoders
-DELAY = {"off": 0, "weak": 1, "strong": 10}  # control periods between a reading and its torque
+STRENGTHS = {
+    "friction": {"off": 0.0, "assumed": 0.5, "strong": 2.0},  # Coulomb N m, viscous N m s/rad
+    "dead_zone": {"off": 0.0, "weak": 0.1, "strong": 2.0},  # torque that the motor loses, N m
+    "saturation": {"off": 1e9, "weak": 20.0, "strong": 15.0},  # largest torque of the motor, N m
+    "quantisation": {"off": None, "assumed": 16, "strong": 14},  # bits of the encoders
+    "delay": {"off": 0, "weak": 1, "strong": 10},  # control periods from a reading to its torque
+}
+"""Strengths of the effects by their names; at the shoulder."""
 
 _STEPS = np.arange(round(3.5 / CONTROL_STEP) + 1)
 _T = _STEPS * CONTROL_STEP
@@ -108,18 +110,13 @@ class RealArmSwitches(LiveWidget):
             ),
             **options,
         )
-        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in QUANTISATION.items()}
+        bits = STRENGTHS["quantisation"]
+        steps = {key: Quantisation.encoder(n).step if n else 0 for key, n in bits.items()}
         loop = {
             "plant": plant(arm, Effects(friction=(CoulombFriction((0.0, 0.0)),))),
             "gains": gains(pd(KP, KD)),
             "share": _SHARE.tolist(),
-            "levels": {
-                "friction": FRICTION,
-                "dead_zone": DEAD_ZONE,
-                "saturation": SATURATION,
-                "quantisation": steps,
-                "delay": DELAY,
-            },
+            "levels": STRENGTHS | {"quantisation": steps},
             "extents": np.deg2rad(APPENDIX_I[TEST_TRAJECTORY - 1]).tolist(),
             "motion": MOTION_SECONDS,
             "step": CONTROL_STEP,
@@ -131,16 +128,17 @@ class RealArmSwitches(LiveWidget):
 
 
 def _choices() -> list[Choice]:
-    milliseconds = {key: 1e3 * CONTROL_STEP * periods for key, periods in DELAY.items()}
-    switches = {
-        "friction": ("Friction", "{:g} N m", FRICTION),
-        "dead_zone": ("Dead zone", "{:g} N m", DEAD_ZONE),
-        "saturation": ("Torque limit", "±{:g} N m", SATURATION),
-        "quantisation": ("Encoder", "{} bits", QUANTISATION),
-        "delay": ("Delay", "{:g} ms", milliseconds),
+    texts = {
+        "friction": ("Friction", "{:g} N m"),
+        "dead_zone": ("Dead zone", "{:g} N m"),
+        "saturation": ("Torque limit", "±{:g} N m"),
+        "quantisation": ("Encoder", "{} bits"),
+        "delay": ("Delay", "{:g} ms"),
     }
     choices = []
-    for name, (label, text, levels) in switches.items():
+    for name, (label, text) in texts.items():
+        unit = 1e3 * CONTROL_STEP if name == "delay" else 1
+        levels = {key: level and level * unit for key, level in STRENGTHS[name].items()}
         options = {key: text.format(level) for key, level in levels.items()}
         options |= {key: f"{options[key]}, as assumed" for key in options if key == "assumed"}
         start = "assumed" if "assumed" in options else "off"
@@ -155,11 +153,15 @@ def _panel(title, what, times, ideal) -> Panel:
 
 def _effects(friction, dead_zone, saturation, quantisation, delay) -> Effects:
     """Effects of the named strengths."""
-    lost, limit = DEAD_ZONE[dead_zone] * _SHARE, SATURATION[saturation] * _SHARE
-    slowing, bits = FRICTION[friction] * _SHARE, QUANTISATION[quantisation]
+    lost, limit = STRENGTHS["dead_zone"][dead_zone], STRENGTHS["saturation"][saturation]
+    slowing, bits = (
+        STRENGTHS["friction"][friction] * _SHARE,
+        STRENGTHS["quantisation"][quantisation],
+    )
+    late = STRENGTHS["delay"][delay]
     return Effects(
         friction=(ViscousFriction(slowing), CoulombFriction(slowing)),
-        actuator=(Delay(DELAY[delay]), DeadZone(lost), Saturation(limit)),
+        actuator=(Delay(late), DeadZone(lost * _SHARE), Saturation(limit * _SHARE)),
         encoder=(Quantisation.encoder(bits),) if bits else (),
     )
 

@@ -116,5 +116,5 @@ def test_best_possible_answers_to_noisy_parity():
 def test_when_errors_reach_a_level():
     errors = np.array([[1.0, 0.5, 3.0], [0.8, 0.4, 2.0], [0.6, 0.3, 1.0]])
     history = History(np.array([10, 20, 40]), errors, None)
-    np.testing.assert_allclose(backpropagation.reach(history, 0.75), [25.0, 10.0, np.inf])
-    np.testing.assert_allclose(backpropagation.reach(history, 0.9), [15.0, 10.0, np.inf])
+    np.testing.assert_allclose(backpropagation._reach(history, 0.75), [25.0, 10.0, np.inf])
+    np.testing.assert_allclose(backpropagation._reach(history, 0.9), [15.0, 10.0, np.inf])

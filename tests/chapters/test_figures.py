@@ -133,7 +133,7 @@ REFUSALS = [
     (windows.intervals, ({"a": {"b": {"c": (1, 0, 2)}}}, "x", "A."), "of 'c' must be in order"),
     (filters.against_nulls, ({"a": {"b": {"c": [[1.0]]}}}, "share", "A."), "of 'b' must"),
     (filters.by_explained, ({"a": {"b": [BAD]}}, {}, LABELS, "A."), "'b' of 'a' must"),
-    (states.torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
+    (states._torque_along, (T, given.EXACT, given.EXACT), "predicted must"),
 ]
 
 

@@ -8,7 +8,7 @@ from widget_pages import settings
 
 from ddlib.analysis import basis
 from ddlib.learning import Directions
-from workshop.chapters.why_smooth_filters import _FLOOR, _WHO, SpectrumExplorer
+from workshop.chapters.why_smooth_filters import _FLOOR, _WHO, _SpectrumExplorer
 
 EPOCHS = (0, 1, 10, 100, 1000, 20_000)
 WIDTHS, SHOWN = (7, 11), 5
@@ -56,7 +56,7 @@ def along(study):
 
 @pytest.fixture(scope="module")
 def widget(study, along):
-    return SpectrumExplorer(study, along)
+    return _SpectrumExplorer(study, along)
 
 
 def test_curves_are_those_of_the_study(widget, study, along):

@@ -18,7 +18,7 @@ LINES = {
 }
 """Lines that a room may have. They may only fall: what is added replaces something."""
 
-LONGEST, LARGEST, NAMES = 400, 9, 786
+LONGEST, LARGEST, NAMES = 400, 9, 700
 """Lines of a module, modules of a package, public names of ddlib and the workshop together.
 
 They may only fall, too.

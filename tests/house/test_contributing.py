@@ -85,7 +85,7 @@ def test_the_widget_shows_its_function():
 def test_the_module_of_a_lesson_quotes_states_and_judges(capsys):
     (source,) = examples("A lesson")
     names = run(source)
-    names["quoted"](), names["_said"]()
+    names["_quoted"](), names["_said"]()
     capsys.readouterr()
     for answer, begins in ((..., "Put"), (names["MASS"][0], "Right"), (-1, "Wrong")):
         names["check"](1, answer, CMU_DD_ARM_II)

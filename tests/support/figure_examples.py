@@ -163,7 +163,7 @@ EXAMPLES = {
     ),
     "four_directions": smooth.four_directions,
     "hinton_states": lambda: states.hinton_states(Weights.random(1, 3)[0]),
-    "torque_along": partial(states.torque_along, T, EXACT, NETWORKS),
+    "torque_along": partial(states._torque_along, T, EXACT, NETWORKS),
 
     "courses": partial(
         adaptive_control.courses,

@@ -53,7 +53,7 @@ def test_nothing_beats_least_squares_here():
     for far in (1e-3, 1e-2, 0.1, 1.0):
         for _ in range(20):
             assert builder.score(best + far * size * rng.normal(size=21)) > least
-    elsewhere = [builder.score(best, zero) for zero in builder.zeros()[1:]]
+    elsewhere = [builder.score(best, zero) for zero in builder._zeros()[1:]]
     assert np.median(elsewhere) > 1.05 * least
 
 
@@ -61,7 +61,7 @@ def test_nothing_beats_least_squares_here():
 def test_the_page_computes_the_same(evaluate):
     q, truth, step = builder.readings()
     every = [*drawn(), *builder.starts().values(), builder.least_squares()]
-    zeros = builder.zeros()[[0, 3, 20]]
+    zeros = builder._zeros()[[0, 3, 20]]
     fits = evaluate(
         """([q, truth, step, zeros, filters]) => filters.map((f) => zeros.map((zero) => {
           const seen = q.map((x) => encoderReading(step, x + zero) - zero);

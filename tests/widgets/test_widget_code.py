@@ -13,7 +13,7 @@ STATES = {
         {"width": 21, "seed": 15, "unit": "hidden 8", "joint": "shoulder"},
         "acceleration",
     ),
-    "SPECTRUM_CODE": (
+    "_SPECTRUM_CODE": (
         "why-smooth-filters",
         {"case": 1, "width": 11, "direction": 4, "epoch": 1000},
         "measured",

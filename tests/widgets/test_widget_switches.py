@@ -12,7 +12,7 @@ from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Delay, Effects
 from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.switches import _CLOSE_UP, _TIMES, DELAY, RealArmSwitches
+from ddlib.widgets.switches import _CLOSE_UP, _TIMES, STRENGTHS, RealArmSwitches
 
 NAMES = ("friction", "dead_zone", "saturation", "quantisation", "delay")
 OFF = dict.fromkeys(NAMES, "off")
@@ -41,7 +41,7 @@ def recorded(effects, times):
             {"friction": "assumed", "quantisation": "assumed"},
             CMU_DD_ARM_II_EFFECTS.without("actuator", "torque_sensor"),
         ),
-        ({"delay": "strong"}, Effects(actuator=(Delay(DELAY["strong"]),))),
+        ({"delay": "strong"}, Effects(actuator=(Delay(STRENGTHS["delay"]["strong"]),))),
     ],
     ids=["off", "as assumed", "delay"],
 )

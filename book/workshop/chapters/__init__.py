@@ -3,3 +3,10 @@
 Most have its figures and what its claims measure, ``ledger`` and ``status`` their tables,
 ``widgets`` what is handled.
 """
+
+from importlib import import_module
+
+
+def quoted(chapter: str) -> None:
+    """Quote the numbers of a chapter's prose, which its module's `_quoted` names."""
+    import_module(f"workshop.chapters.{chapter}")._quoted()

@@ -179,10 +179,10 @@ def _needed() -> tuple[np.ndarray, ...]:
     """Epochs to `_LEVEL` of the networks that learn as in 1988, without and with momentum."""
     kept = map(results.read("acceleration")["race"].get, ("without", "with"))
     runs = [History(np.array(run["epochs"]), np.array(run["training"])) for run in kept]
-    return tuple(np.minimum(reach(run), run.epochs[-1]) for run in runs)
+    return tuple(np.minimum(_reach(run), run.epochs[-1]) for run in runs)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     plain, quick = map(np.median, _needed())
     kept = results.read("acceleration")["parity"]
@@ -267,7 +267,7 @@ def chain_rule() -> Measured:
     return Measured(gap / largest, f"{scientific(gap / largest)} of the largest derivative")
 
 
-def reach(history: History, level: float = _LEVEL) -> np.ndarray:
+def _reach(history: History, level: float = _LEVEL) -> np.ndarray:
     """Epochs after which each member's training error first falls below a level."""
     found = []
     for error in history.training.T:

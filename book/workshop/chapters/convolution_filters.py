@@ -28,8 +28,8 @@ from ddlib.widgets.engine import builder
 from workshop.chapters import excitation
 from workshop.chapters.exercises import judge
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
 from workshop.report._measures import filter_trial as trial
+from workshop.report.evidence.statements import resampled, stated
 
 
 def trained_unit() -> np.ndarray:
@@ -44,7 +44,7 @@ def _velocity() -> tuple[np.ndarray, list[float]]:
     return trial.share(row["real"], "hidden", ["velocity"]), nulls
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Numbers of the lesson."""
     quote("filters-bend", 1e3 * LOG_STEP**2)
     quote("filters-encoder", 1e3 * builder.readings()[2])

@@ -55,7 +55,7 @@ _LINKS = (Link(14.0, 0.50, 0.22, 0.40), Link(14.0, 0.40, 0.09, 0.60))
 _TIMES = np.arange(300) * 0.01
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """What of the elbow's torque the shoulder causes without gears and behind 100 to 1, in %."""
     motion = pick_and_place(APPENDIX_I[0], _TIMES)
     share = 100 * share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]

@@ -40,7 +40,7 @@ def ringing() -> Illustration:
     return by_case(run.t[1:], cases, "time, s", "error, °", alt, height=0.9)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The numbers of the lesson: what moving the tuner's sliders changes."""
     tuner = PIDTuner()
     moves = {"base": {}, "damped": {"kd": 80}, "loose": {"kd": 0}}

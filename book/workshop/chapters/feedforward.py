@@ -144,7 +144,7 @@ def wrong_models() -> Illustration:
     return curves(_FACTORS, panels, "torque of the model over the right torque", alt, height=2.6)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The number of the lesson: what the right inertias leave on an arm with friction."""
     quote("pid-wrong-least", min(_left()["with friction and sensors that no model knows"]))
 

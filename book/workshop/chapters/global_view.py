@@ -18,10 +18,10 @@ from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
 from workshop.chapters.window_networks import intervals
 from workshop.report import committed
+from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
-from workshop.report._measures import filter_trial
 
 
 def in_transition(width: int) -> Measured:
@@ -114,7 +114,7 @@ def over_linear() -> Illustration:
     return intervals(panels, "error / linear filter's", alt, log=True, band=(0.25, 1))
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Put the book's numbers into the lesson."""
     row, hidden = filter_trial.row(21), _features(21, JOINT_DAMPING.name)[0][1]
     quote("global-saturated-21", 100 * np.median(saturated(hidden)))

@@ -11,7 +11,7 @@ from ddlib.figures.weights import dots
 from ddlib.learning import TrainingSet, Weights, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
 
-STATIONS = "arm equations loop recording window network weights filters".split()
+_STATIONS = "arm equations loop recording window network weights filters".split()
 
 
 def stations(width: int = 21) -> figures.Illustration:
@@ -88,7 +88,7 @@ def stations(width: int = 21) -> figures.Illustration:
             x, y = k % columns / columns, 1 - (1 + k // columns) / rows
             place = (x + 0.02, y + 0.03, 1 / columns - 0.04, 1 / rows - 0.11)
             picture(axis := whole.inset_axes(place))
-            axis.set_title(f"{k + 1} {STATIONS[k]}")
+            axis.set_title(f"{k + 1} {_STATIONS[k]}")
             axis.set_xticks([])
             axis.set_yticks([])
             axis.grid(False)

@@ -20,11 +20,11 @@ from ddlib.tables import Table, significant, typeset
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 from workshop import BOOK
 from workshop.report import results
+from workshop.report._measures.filters import parts_sum_up
 from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, worded
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
 from workshop.report.evidence.wall import Tiles, mark, window
-from workshop.report._measures.filters import parts_sum_up
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
 

@@ -112,7 +112,7 @@ def _middle() -> np.ndarray:
     return position[:, 1] / position.sum(1)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The numbers of the lesson's prose."""
     quote("walk-copy-off", 100 * moments_agree().value)
     quote("walk-copy-least", 100 * _middle().min())

@@ -160,7 +160,7 @@ def three_recordings() -> dict[str, dict[str, np.ndarray]]:
     return panels
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Quote what the lesson says of the book's recordings."""
     training, step = committed.training(), STATE_FEEDBACK.effects.encoder[0].step
     windows = sliding_windows(training.q, 21, training.motion).reshape(-1, 42)

@@ -194,7 +194,7 @@ def torques_left() -> dict[str, np.ndarray]:
     return {name: rms(torque) for name, torque in found.items()}
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Quote what the lesson says of the book's arm."""
     sizes, switches = torques_left(), RealArmSwitches()
     quote("left-rings", sizes["flexible shaft"][0])

@@ -85,7 +85,7 @@ def hinton_states(weights: Weights) -> Illustration:
     return illustrate(draw, alt, 5.6, 5.6 * height)
 
 
-def torque_along(t, exact, predicted) -> Illustration:
+def _torque_along(t, exact, predicted) -> Illustration:
     """Figure 6-2: the exact torque (fine) and networks' torque (bold) along a trajectory.
 
     The bold line is the network whose root mean square error, each joint in units of its torque's
@@ -137,10 +137,10 @@ def on_trajectory() -> Illustration:
     """Torque along trajectory 6, by the equations and by the book's 25 networks."""
     states = _states()
     t = np.arange(len(states)) * 3.0 / len(states)
-    return torque_along(t, torque(states), _networks().torque(states))
+    return _torque_along(t, torque(states), _networks().torque(states))
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     for key, errors in zip(("a", "b", "six"), _errors().values()):
         quote(f"states-book-{key}", float(np.median(errors)))

@@ -33,7 +33,7 @@ _TWO_BY_TWO = """
 """
 
 
-SPECTRUM_CODE = """\
+_SPECTRUM_CODE = """\
 from workshop.report import results
 
 study = results.read("span")
@@ -80,7 +80,7 @@ def four_directions() -> Illustration:
     return illustrate(draw, alt, 7.0, 3.0, narrow_height=4.2)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """When errors along directions are halved, and how far the tangent is off, in the study."""
     for name, half in _halves().items():
         quote(f"smooth-{name}", round(float(np.exp(np.median(half))), -1))
@@ -135,7 +135,7 @@ def check(number: int, mine, given) -> None:
         judge(mine, level, "all variances are equal.", (), "take the variances of X @ mine.")
 
 
-def explorer() -> SpectrumExplorer:
+def explorer() -> _SpectrumExplorer:
     """The widget, of the networks of the study."""
     known = {}
     for setup in READINGS:
@@ -145,10 +145,10 @@ def explorer() -> SpectrumExplorer:
         for setup in READINGS
         for width in WINDOWS
     )
-    return SpectrumExplorer(results.read("span"), [*map(Directions.of, sets)], code=SPECTRUM_CODE)
+    return _SpectrumExplorer(results.read("span"), [*map(Directions.of, sets)], code=_SPECTRUM_CODE)
 
 
-class SpectrumExplorer(CurveWidget):
+class _SpectrumExplorer(CurveWidget):
     """Pick a direction of the windows; see its shape, and watch it being learnt.
 
     Curves are medians over the networks of the study "span". The slider steps over the epochs

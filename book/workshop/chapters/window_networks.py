@@ -86,7 +86,7 @@ def _events(row: str) -> dict[str, np.ndarray]:
     return {key: np.array(found[key], dtype=float) for key in ("error", "direct")}
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Numbers of the lesson's prose."""
     live, seen, off = results.read("page-training"), _events("centred"), _factors()
     quote("window-live-networks", live["members"])

@@ -39,7 +39,7 @@ def errors_by_size() -> Illustration:
     return figures.curves(sizes, {"RMSS": lines}, "window, samples", alt, **how)
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """Put the book's numbers into the lesson."""
     for width, error in zip(*_medians("test")):
         quote(f"size-test-{width}", error)

@@ -48,7 +48,7 @@ def readings() -> tuple[np.ndarray, np.ndarray, float]:
     return q, true_states(run, JOINT_DAMPING)[:, 0, 2], encoder.step
 
 
-def zeros() -> np.ndarray:
+def _zeros() -> np.ndarray:
     """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn within a step."""
     drawn = np.random.default_rng(15).uniform(0.0, readings()[2], _ZEROS)
     return np.concatenate([[0.0], drawn])
@@ -146,7 +146,7 @@ class FilterBuilder(_PageWidget):
             "samples": len(q),
             "period": LOG_STEP,
             "step": step,
-            "zeros": zeros().tolist(),
+            "zeros": _zeros().tolist(),
             "levels": _LEVELS,
             "starts": [[name, f.tolist()] for name, f in starts().items()],
             "rivals": [

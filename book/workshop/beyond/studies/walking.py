@@ -43,7 +43,7 @@ def gradient(x, network) -> np.ndarray:
     return chain[..., 0, :]
 
 
-def histories(cases: int, seed: int) -> np.ndarray:
+def _histories(cases: int, seed: int) -> np.ndarray:
     """Histories of three sines in position and three in target, shape (cases, 6)."""
     rng, t = np.random.default_rng(seed), -STEP * np.arange(3)
     error, velocity = np.zeros((2, cases, 3))
@@ -90,7 +90,7 @@ def _trained(x, y, seed: int) -> tuple[list, float]:
 @study
 def _walking() -> dict:
     """Mean gradients of the network, of copies, of networks on shuffled pairs, of random ones."""
-    network, x = layers(), histories(_CASES, seed=0)
+    network, x = layers(), _histories(_CASES, seed=0)
     y, rows = torque(x, network), {"copies": [], "shuffled": []}
     for seed in range(_MEMBERS):
         shuffled = np.random.default_rng(seed).permutation(y)

@@ -18,7 +18,7 @@ An entry has these fields:
     The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
 ``measure`` or ``find``, ``with``
     A function of `workshop.report._measures` as "module.function", and its keyword arguments, or
-    one of `workshop.beyond._measures` or `workshop.chapters` with "beyond." or "chapters." in front;
+    one of `workshop.beyond._measures` or `workshop.chapters` with "beyond." or "chapters." before;
     or an expression of `workshop.report.evidence.expressions`, and what its placeholders stand for.
 ``band``, ``loose``
     What makes the claim "reproduced", and what still makes it "qualitative": ``{factor: 1.5}``

@@ -18,17 +18,17 @@ _EVERY = 5  # Of the training windows the page shows every fifth; of trajectory 
 
 _EPOCHS = 2000  # Epochs of a run in the page
 
-CHECK = 5  # Epochs between two looks at errors and shapes
+_CHECK = 5  # Epochs between two looks at errors and shapes
 
 _LEVEL = 0.2  # RMSS in training below which the error counts as gone
 
-MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is `default_rate`
+_MOMENTUM = 0.98  # Acceleration of the page's descent at its start; its step is `default_rate`
 
 # What is waited for: the error below `_LEVEL`, the first direct filter called "acceleration", and
 # the first hidden filter with any name
 _EVENTS = ("error", "direct", "hidden")
 
-SHIFTS = 5  # Draws of torques shifted in time
+_SHIFTS = 5  # Draws of torques shifted in time
 
 
 def _page_set(scaling=(-1.0, 1.0), shifted: int | None = None) -> tuple[TrainingSet, tuple]:
@@ -54,20 +54,20 @@ def _events(weights: Weights, training: np.ndarray) -> np.ndarray:
 
 
 def _watched(weights: Weights, data: TrainingSet, test: tuple, epochs: int = _EPOCHS) -> dict:
-    """Train, looking every `CHECK` epochs; what was seen of each network."""
+    """Train, looking every `_CHECK` epochs; what was seen of each network."""
     rate = default_rate(_WIDTH) / len(data.x)
-    descent = learning.Descent(weights, data.x, data.y, rate, MOMENTUM)
+    descent = learning.Descent(weights, data.x, data.y, rate, _MOMENTUM)
     spreads = data.y.std(0), test[1].std(0)
     sets = (descent.inputs, descent.targets), learning.prepare(*test)
     first = np.full((len(weights), len(_EVENTS)), np.nan)
-    for epoch in range(0, epochs + 1, CHECK):
+    for epoch in range(0, epochs + 1, _CHECK):
         errors = [
             np.sqrt((descent.mean_square(*s) / spread**2).mean(-1))
             for s, spread in zip(sets, spreads)
         ]
         now = descent.weights()
         first[_events(now, errors[0]) & np.isnan(first)] = epoch
-        for _ in range(CHECK if epoch < epochs else 0):
+        for _ in range(_CHECK if epoch < epochs else 0):
             descent.epoch()
     named = classify(now.hidden_weights) != "not analysable"
     return {
@@ -85,7 +85,7 @@ def _page_training(members: int = 25) -> dict:
     for name, scaling in (("centred", (-1.0, 1.0)), ("as printed", (0.0, 1.0))):
         start = Weights.random(members, _WIDTH, initial=INITIAL)
         rows[f"{name}, real"] = _watched(start, *_page_set(scaling))
-        shares = np.array_split(np.arange(members), SHIFTS)
+        shares = np.array_split(np.arange(members), _SHIFTS)
         runs = [
             _watched(start[share], *_page_set(scaling, shifted=k)) for k, share in enumerate(shares)
         ]
