@@ -63,6 +63,10 @@ addEventListener("DOMContentLoaded", () => {
     const terms = hits.some(isTerm);
     const kept = hits.filter((hit) => (hit[3] || !told.has(place(hit)))
       && (!terms || hit[0] !== GLOSSARY || isTerm(hit)));
+    // shown last to first: sections that are called what was asked for come first
+    const asking = asked[0].toLowerCase().trim();
+    const called = ([, title]) => Number(title.toLowerCase().split(" > ").pop() === asking);
+    kept.sort((one, other) => called(one) - called(other));
     return kept.map((hit) => (isTerm(hit) ? [hit[0], `Glossary > ${named(hit[2])}`, ...hit.slice(2)] : hit));
   };
 }, { capture: true });
