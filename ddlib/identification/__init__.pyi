@@ -24,3 +24,6 @@ from .regression import (
     least_squares as least_squares,
     true_parameters as true_parameters,
 )
+from .window_filters import (
+    FilteredEquations as FilteredEquations,
+)
