@@ -210,9 +210,9 @@ def _digits(value: float) -> str:
     return np.base_repr(min(max(round(value), 0), 36**2 - 1), 36).lower().zfill(2)
 
 
-def _parameters(start) -> list[Parameter]:
+def _parameters(start, most=MAX_EXTENT_DEG) -> list[Parameter]:
     return [
-        Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, MAX_EXTENT_DEG, x, "°")
+        Parameter(f"{joint}_deg", f"{joint.title()} extent", 0, most, x, "°")
         for joint, x in zip(JOINTS, start)
     ]
 

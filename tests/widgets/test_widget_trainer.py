@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,9 @@ import torch
 from widget_pages import code_of, copied, drag, flat, functions, opened
 
 from ddlib.analysis import CLASSES, classify, gains, mean_gradient
-from ddlib.learning import Descent, TorqueModel, default_rate
+from ddlib.dynamics import CMU_DD_ARM_II, with_load
+from ddlib.effects import IDEAL
+from ddlib.learning import Descent, TorqueModel, cases, default_rate
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import APPENDIX_I
@@ -106,6 +109,42 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     assert page["inertia"] == pytest.approx(inertia, rel=1e-4)
     own = JOINT_DAMPING.arm.mass_matrix(windows[..., 10])[:, 0, 0].mean()
     assert page["arm"] == pytest.approx(own, rel=1e-9)
+
+
+@pytest.mark.browser
+def test_a_readers_own_arm_window_and_trajectories(evaluate):
+    """With a load in the hand: what the page is told to learn from, and the mass to be found."""
+    own = replace(JOINT_DAMPING, arm=with_load(CMU_DD_ARM_II, 4.0))
+    extents = [(60.0, 10.0), (20.0, 30.0), (40.0, 40.0), (20.0, 5.0)]
+    widget = NetworkTrainer(own, extents, width=11, hidden=3)
+    page = taught(evaluate, widget, 20)
+    weights = trainer.first_weights(1, 11, 3)
+    assert len(page["all"]) == flat(weights[0]).size
+    recording = own.record(extents)
+    windows, _ = cases(recording[:-1], 11)
+    heavier = own.arm.mass_matrix(windows[::5][..., 5])[:, 0, 0].mean()
+    assert page["arm"] == pytest.approx(heavier, rel=1e-9) and heavier > 8
+    assert widget.spec["most"] == 60 and "trajectory 4" in widget.still_alt
+    noise = np.frombuffer(widget.noise, "<f4").tolist()
+    other = [*extents[:-1], (30.0, 25.5)]
+    positions, _ = evaluate(RECORD, [widget.spec, book(widget), noise, other])
+    motion, read = recording.motion, own.record(other).q[-1]
+    seen = read[motion.start - 5 : motion.stop + 5] / widget.spec["encoder"]
+    assert np.abs(np.reshape(positions, (4, -1, 2))[-1] - seen).max() < 1.01
+
+
+@pytest.mark.parametrize(
+    "given, says",
+    [
+        ({"width": 12}, "width must be odd"),
+        ({"hidden": 0}, "hidden must be"),
+        ({"extents_deg": [(1, 2)] * 3}, "extents_deg must be 4 pairs"),
+        ({"setup": replace(JOINT_DAMPING, effects=IDEAL)}, "encoder must round"),
+    ],
+)
+def test_what_the_trainer_refuses(given, says):
+    with pytest.raises(ValueError, match=says):
+        NetworkTrainer(**given)
 
 
 @pytest.mark.browser

@@ -6,7 +6,7 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import integer, one_of
+from ddlib._check import integer, one_of, shaped
 from ddlib.analysis import CLASSES, basis
 from ddlib.figures import JOINTS
 from ddlib.learning import (
@@ -18,17 +18,18 @@ from ddlib.learning import (
     default_rate,
     surrogate,
 )
-from ddlib.paper import HIDDEN_UNITS, TEST_TRAJECTORY
-from ddlib.setups import INITIAL, JOINT_DAMPING, split
+from ddlib.learning.windows import check_width
+from ddlib.paper import HIDDEN_UNITS
+from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
 from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
-from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop
+from ddlib.widgets.engine._plain import _FIELDS, _TRAINING, ENGINE, lean, loop, plant
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.picker import _pad, _parameters
 
-_WIDTH = 21  # samples of the window
+_FINEST = 5e-5  # step of the encoder, rad: readings are sent as int16
 _EVERY = 5  # of the training windows the page shows every fifth; of trajectory 6 all
 _SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
@@ -36,31 +37,32 @@ _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _ERRORS = (0.03, 2.0)  # range of the errors shown
 
 _HINT = (
-    "A network with ten hidden units learns the torques of both joints from windows of 21 "
-    "positions, by the descent of this chapter, in your browser. For speed it sees every fifth "
-    "window of the five training runs; its error on trajectory 6 is over all. Other trajectories "
-    "are recorded here, too, with the same controller, friction and encoder; the torque sensor "
-    "repeats its noise. The inertia is the gain on acceleration of the mean gradient of the "
-    "shoulder's torque, over the training windows; the arm's is their mean M₁₁. Shifted torques "
-    "have nothing to do with the motion. A filter's name follows the rule of the chapter on "
-    "convolution filters."
+    "A network with {hidden} hidden units learns the torques of both joints from windows of "
+    "{width} positions, by the descent of this chapter, in your browser. For speed it sees every "
+    "fifth window of the training runs; its error on trajectory {last} is over all. Other "
+    "trajectories are recorded here, too, with the same controller, friction and encoder; the "
+    "torque sensor repeats its noise. The inertia is the gain on acceleration of the mean "
+    "gradient of the shoulder's torque, over the training windows; the arm's is their mean M₁₁. "
+    "Shifted torques have nothing to do with the motion. A filter's name follows the rule of the "
+    "chapter on convolution filters."
 )
 
 
-def first_weights(seed: int) -> Weights:
+def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Weights:
     """The page's random initial weights, as an ensemble of one network.
 
     Parameters
     ----------
     seed : int
         0 to 2**32 - 1, of the generator mulberry32.
+    width, hidden : int
+        Samples of the window; hidden units.
     """
-    state = integer("seed", seed, 0, 2**32 - 1)
-    width, joints = _WIDTH, len(JOINTS)
+    state, joints = integer("seed", seed, 0, 2**32 - 1), len(JOINTS)
     shapes = {
-        "hidden_weights": (HIDDEN_UNITS, joints, width),
-        "hidden_bias": (HIDDEN_UNITS,),
-        "output_weights": (joints, HIDDEN_UNITS),
+        "hidden_weights": (hidden, joints, width),
+        "hidden_bias": (hidden,),
+        "output_weights": (joints, hidden),
         "direct_weights": (joints, joints, width),
         "output_bias": (joints,),
     }
@@ -88,6 +90,13 @@ class NetworkTrainer(_PageWidget):
 
     Parameters
     ----------
+    setup : Setup
+        Arm, effects and PID whose recordings it learns from. The page's engine knows viscous and
+        Coulomb friction, saturation, and quantisation, here of 5e-5 rad or more.
+    extents_deg : array_like, shape (runs, 2)
+        Of four trajectories or more at the start, degrees; the last one is the test.
+    width, hidden : int
+        Samples of the window, odd; hidden units.
     epochs, check : int
         Epochs of a run, and between two looks at errors and shapes.
     level : float
@@ -116,7 +125,11 @@ class NetworkTrainer(_PageWidget):
 
     def __init__(
         self,
+        setup: Setup = JOINT_DAMPING,
+        extents_deg=APPENDIX_I,
         *,
+        width: int = 21,
+        hidden: int = HIDDEN_UNITS,
         epochs: int = 2000,
         check: int = 5,
         level: float = 0.2,
@@ -125,56 +138,65 @@ class NetworkTrainer(_PageWidget):
         code: str = "",
     ):
         one_of("momentum", momentum, _MOMENTA)
-        recording = JOINT_DAMPING.record()
-        training, test = split(recording)
-        motion, half = recording.motion, _WIDTH // 2
-        (encoder,) = JOINT_DAMPING.effects.encoder
+        check_width(width)
+        integer("hidden", hidden, 1)
+        extents = shaped("extents_deg", extents_deg, "(runs, 2)")
+        if len(extents) < 4 or extents.min() < 0:
+            raise ValueError(f"extents_deg must be 4 pairs or more, 0 or above, got {extents_deg}")
+        widest = max(MAX_EXTENT_DEG, float(np.ceil(extents.max())))
+        step = plant(setup.arm, setup.effects)["encoder"]
+        if step < _FINEST:
+            raise ValueError(f"setup.effects.encoder must round to {_FINEST} rad or more")
+        recording = setup.record(extents)
+        training, test = recording[:-1], recording[-1]
+        motion, half, last = recording.motion, width // 2, len(extents)
         seen = recording.q[:, motion.start - half : motion.stop + half]
         torque = recording.tau[:, motion]
         samples = torque.shape[1]
         place = np.arange(samples)[None, :, None] * np.ones((len(training.q), 1, 2))
         shifted = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(shifts)]
         looks = np.maximum(1, np.arange(0, epochs + 1, check))
-        panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion])
+        panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion], last)
         spec = {
             "title": "Train a network",
-            "hint": _HINT,
+            "hint": _HINT.format(hidden=hidden, width=width, last=last),
             "code": code,
             "layout": {
-                "hidden": HIDDEN_UNITS,
+                "hidden": hidden,
                 "outputs": len(JOINTS),
                 "joints": len(JOINTS),
-                "width": _WIDTH,
+                "width": width,
             },
             "runs": len(recording.q),
             "samples": samples,
             "every": _EVERY,
-            "encoder": encoder.step,
+            "encoder": step,
             "ranges": {name: list(pair) for name, pair in _SCALINGS.items()},
             "target": list(TARGET_RANGE),
-            "loop": loop(JOINT_DAMPING, recording),
-            "extents": APPENDIX_I.tolist(),
-            "most": MAX_EXTENT_DEG,
+            "loop": loop(setup, recording),
+            "extents": extents.tolist(),
+            "home": "Appendix I" if np.array_equal(extents, APPENDIX_I) else "As given",
+            "most": widest,
             "shifts": [shift.tolist() for shift in shifted],
             "initial": INITIAL,
-            "rate": default_rate(_WIDTH),
+            "rate": default_rate(width),
             "steps": list(_STEPS),
             "momenta": list(_MOMENTA),
             "momentum": momentum,
             "epochs": epochs,
             "check": check,
             "level": level,
-            "basis": basis(_WIDTH).tolist(),
+            "basis": basis(width).tolist(),
             "classes": list(CLASSES),
             "panels": [panel.description() for panel in panels],
             "curves": [
                 {"name": name, "low": low, "high": high} for name, (low, high) in ranges.items()
             ],
         }
-        still, alt = _still(panels[1:], training, test)
+        still, alt = _still(panels[1:], training, test, extents, width, hidden)
         self._keep(
             spec=spec,
-            positions=np.round(seen / encoder.step).astype("<i2").tobytes(),
+            positions=np.round(seen / step).astype("<i2").tobytes(),
             torques=torque.astype("<f4").tobytes(),
             noise=(torque - recording.tau_true[:, motion]).astype("<f4").tobytes(),
             still=still,
@@ -183,36 +205,39 @@ class NetworkTrainer(_PageWidget):
         super().__init__()
 
 
-def _charts(epochs, time, torque) -> tuple[list[Panel], dict]:
+def _charts(epochs, time, torque, last: int) -> tuple[list[Panel], dict]:
     """Charts of the errors and of the torques on the test run, and the ranges of their curves."""
-    errors = {"training": "training", "test": f"trajectory {TEST_TRAJECTORY}"}
+    errors = {"training": "training", "test": f"trajectory {last}"}
     panels = [Panel("Error, RMSS", errors, "epoch", epochs, "log", "log", y_range=_ERRORS)]
     ranges = dict.fromkeys(errors, _ERRORS)
     for joint, most in zip(JOINTS, (1.15 * np.abs(torque).max(0)).tolist()):
         lines = {f"{joint} network": "network", f"{joint} true": "measured"}
-        title = f"{joint.title()} torque on trajectory {TEST_TRAJECTORY}, N m"
+        title = f"{joint.title()} torque on trajectory {last}, N m"
         ends = f"{joint} low", f"{joint} high"  # of the run as it stands
         panels.append(Panel(title, lines, "time, s", time, y_range=ends))
         ranges |= dict.fromkeys(lines, (-most, most))
     return panels, ranges
 
 
-def _still(panels, training, test) -> tuple[str, str]:
+def _still(panels, training, test, extents, width, hidden) -> tuple[str, str]:
     """The trajectories, the torques to be learnt, and what an untrained network makes of them."""
-    data = TrainingSet.from_recording(training, _WIDTH, scaling=_SCALINGS["centred"])
-    windows, torque = cases(test, _WIDTH)
-    model = TorqueModel(first_weights(1)[0], data.inputs, data.outputs)
+    data = TrainingSet.from_recording(training, width, scaling=_SCALINGS["centred"])
+    windows, torque = cases(test, width)
+    model = TorqueModel(first_weights(1, width, hidden)[0], data.inputs, data.outputs)
     told = model.torque(windows)
     curves = {}
     for j, joint in enumerate(JOINTS):
         curves |= {f"{joint} network": told[:, j], f"{joint} true": torque[:, j]}
         most = 1.15 * np.abs(torque[:, j]).max(keepdims=True)
         curves |= {f"{joint} low": -most, f"{joint} high": most}
+    last = len(extents)
     alt = (
-        "The square of shoulder and elbow extents with the six trajectories of Appendix I. Beside "
-        f"it the measured torques of both joints on trajectory {TEST_TRAJECTORY}, and what a "
+        f"The square of shoulder and elbow extents with the {last} trajectories. Beside it the "
+        f"measured torques of both joints on trajectory {last}, and what a "
         "network with random weights makes of the positions, before the reader has trained it."
     )
-    pad = _pad(APPENDIX_I, ConvexHull(APPENDIX_I[:-1]))
-    extents = {p.name: p for p in _parameters(APPENDIX_I[-1].tolist())}
-    return still_picture(curves, panels, extents, pad, alt), alt
+    pad = _pad(extents, ConvexHull(extents[:-1], qhull_options="QJ"))  # they may be in line
+    chosen = {
+        p.name: p for p in _parameters(extents[-1].tolist(), max(MAX_EXTENT_DEG, extents.max()))
+    }
+    return still_picture(curves, panels, chosen, pad, alt), alt

@@ -60,7 +60,7 @@ const accelerationGain = (f, step) =>
 
 // Where the reader picks the runs' extents, degrees: a square with a mark for each run, to be dragged,
 // and a table of numbers. changed() is called after every change.
-function picksOf({ extents: known, most, runs }, changed) {
+function picksOf({ extents: known, home, most, runs }, changed) {
   const extents = known.map((pair) => [...pair]);
   const [size, left, top] = [160, 36, 10];
   const place = ([a, b]) => [short(left + (size * a) / most), short(top + size * (1 - b / most))];
@@ -134,9 +134,9 @@ function picksOf({ extents: known, most, runs }, changed) {
   const heads = extents.map((_, run) => (run < runs - 1 ? String(run + 1) : "test"));
   const rows = NAMES.map((name, j) => make("tr", {}, make("th", { scope: "row" }, `${name}, °`), ...cells("td", fields.map((pair) => pair[j]))));
   const table = make("table", {}, make("thead", {}, make("tr", {}, make("td", {}), ...cells("th", heads))), make("tbody", {}, ...rows));
-  const title = make("div", { class: "title" }, "Five trajectories to learn from, and a sixth to be tested on: how far each joint goes");
-  const alike = buttonOf("1 to 5 alike", () => set(extents.flatMap((pair, run) => (run < runs - 1 ? extents[0] : pair))));
-  const back = buttonOf("Appendix I", () => set(known.flat()));
+  const title = make("div", { class: "title" }, `${runs - 1} trajectories to learn from, and one more to be tested on: how far each joint goes`);
+  const alike = buttonOf(`1 to ${runs - 1} alike`, () => set(extents.flatMap((pair, run) => (run < runs - 1 ? extents[0] : pair))));
+  const back = buttonOf(home, () => set(known.flat()));
   const fit = () => JOINTS.every((j) => extents.slice(0, -1).some((pair) => pair[j] >= 1));
   show();
   return { extents, svg, title, table, buttons: make("div", { class: "buttons" }, alike, back), set, fit };

@@ -311,7 +311,7 @@ function build({ model, el }) {
   for (const one of [play, once]) one.setAttribute("aria-describedby", status.id);
   const said = make("p", { class: "verdict", role: "status" });
   const [inside, error6] = [make("b"), make("b")];
-  const sums = { "Inertia in the network, M₁₁": inside, "RMSS on trajectory 6": error6 };
+  const sums = { "Inertia in the network, M₁₁": inside, [`RMSS on trajectory ${spec.runs}`]: error6 };
   const weighed = make("div", { class: "weighed" }, ...Object.entries(sums).map(([text, value]) => make("div", {}, make("span", {}, text), value)));
   const labels = [`Error below ${spec.level}`, "Direct weights measure acceleration", "A hidden filter has a name"];
   const events = labels.map((text) => ({ text, output: make("dd") }));
@@ -412,7 +412,7 @@ function build({ model, el }) {
   function ended() {
     pause();
     told();
-    const path = own() ? "your own" : "Appendix I";
+    const path = own() ? "your own" : spec.home;
     history.unshift({ ...state, path, events: [...school.events], error: school.test.at(-1), inertia: school.inertia().toFixed(1) });
     history.length = Math.min(5, history.length);
     const heads = ["weights", "trajectories", "torques", "small error", "direct", "hidden", "error on 6", "M₁₁, kg m²"];
@@ -465,7 +465,7 @@ function build({ model, el }) {
       one.disabled = ready && school.epoch > 0;
     });
     for (const one of [play, once, record]) one.disabled = !ready || !picks.fit();
-    const kept = own() ? "Recorded in your browser." : "Appendix I of the paper, recorded beforehand.";
+    const kept = own() ? "Recorded in your browser." : `${spec.home}, recorded beforehand.`;
     write(recorded, !picks.fit() ? "Each joint must move by a degree or more in training." : stale() ? "Changed, and not recorded yet." : kept);
     once.setAttribute("aria-disabled", String(over()));
     write(play, running ? "Pause" : over() ? "Begin anew" : "Train");
