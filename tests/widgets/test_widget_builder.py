@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from widget_pages import NEXT_FRAME, copied, functions, opened
 
 from ddlib.analysis import followed, frequency_response
+from ddlib.dynamics import CMU_DD_ARM_II, with_load
+from ddlib.effects import IDEAL
+from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets import FilterBuilder
 from ddlib.widgets.engine import builder
@@ -32,6 +37,16 @@ def drawn(n=20, seed=0):
     return np.concatenate([f, f - f.mean(1, keepdims=True)])
 
 
+def test_a_readers_own_arm_without_an_encoder():
+    """Nothing is rounded, so that least squares measure the acceleration all the better."""
+    own = replace(JOINT_DAMPING, arm=with_load(CMU_DD_ARM_II, 4.0), effects=IDEAL)
+    widget, given = FilterBuilder(np.ones(21), own), FilterBuilder(np.ones(21))
+    assert widget.motion != given.motion and widget.spec["step"] < 1e-6
+    left = [builder._fitted(builder.least_squares(s), 0.0, s) - builder.readings(s)[1]
+            for s in (own, JOINT_DAMPING)]  # fmt: skip
+    assert np.std(left[0]) < 0.1 * np.std(left[1])
+
+
 # The error
 
 
@@ -53,7 +68,7 @@ def test_nothing_beats_least_squares_here():
     for far in (1e-3, 1e-2, 0.1, 1.0):
         for _ in range(20):
             assert builder.score(best + far * size * rng.normal(size=21)) > least
-    elsewhere = [builder.score(best, zero) for zero in builder._zeros()[1:]]
+    elsewhere = [builder.score(best, zero) for zero in builder._zeros(JOINT_DAMPING)[1:]]
     assert np.median(elsewhere) > 1.05 * least
 
 
@@ -61,7 +76,7 @@ def test_nothing_beats_least_squares_here():
 def test_the_page_computes_the_same(evaluate):
     q, truth, step = builder.readings()
     every = [*drawn(), *builder.starts().values(), builder.least_squares()]
-    zeros = builder._zeros()[[0, 3, 20]]
+    zeros = builder._zeros(JOINT_DAMPING)[[0, 3, 20]]
     fits = evaluate(
         """([q, truth, step, zeros, filters]) => filters.map((f) => zeros.map((zero) => {
           const seen = q.map((x) => encoderReading(step, x + zero) - zero);

@@ -11,16 +11,17 @@ from ddlib._check import shaped
 from ddlib.analysis import frequency_response, savitzky_golay
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, split, true_states
+from ddlib.setups import JOINT_DAMPING, Setup, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
-from ddlib.widgets.engine._plain import lean
+from ddlib.widgets.engine._plain import lean, plant
 from ddlib.widgets.parts.panels import Panel
 
 _WIDTH = 21  # stems of the window
 _ZEROS = 20  # other zeros of the encoder by which the same motion is read again
 _FREQUENCIES = np.geomspace(0.5, 50.0, 81)  # of the gain, Hz: up to half the sampling rate
+_FINEST = 1e-9  # step that stands for no encoder, rad
 _LEVELS = 600  # a stem stands at a whole multiple of one part in so many of its largest height
 _TALL = 0.9  # largest stem of a starting point, of the height there is
 _GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
@@ -36,35 +37,35 @@ _HINT = (
 
 
 @cache
-def readings() -> tuple[np.ndarray, np.ndarray, float]:
-    """The shoulder along trajectory 6 of the set-up with damped joints.
+def readings(setup: Setup = JOINT_DAMPING) -> tuple[np.ndarray, np.ndarray, float]:
+    """The shoulder along trajectory 6, by default of the set-up with damped joints.
 
     Returns true positions (rad, half a window more than the motion at either end), true
     accelerations in the motion (rad/s^2), and the step of the encoder that reads them (rad).
     """
-    run = split(JOINT_DAMPING.record())[1]
-    half, (encoder,) = _WIDTH // 2, JOINT_DAMPING.effects.encoder
+    run = split(setup.record())[1]
+    half, step = _WIDTH // 2, plant(setup.arm, setup.effects)["encoder"] or _FINEST
     q = run.q_true[run.motion.start - half : run.motion.stop + half, 0]
-    return q, true_states(run, JOINT_DAMPING)[:, 0, 2], encoder.step
+    return q, true_states(run, setup)[:, 0, 2], step
 
 
-def _zeros() -> np.ndarray:
+def _zeros(setup: Setup) -> np.ndarray:
     """Zeros of the encoder, rad: that of the recording, then `ZEROS` drawn within a step."""
-    drawn = np.random.default_rng(15).uniform(0.0, readings()[2], _ZEROS)
+    drawn = np.random.default_rng(15).uniform(0.0, readings(setup)[2], _ZEROS)
     return np.concatenate([[0.0], drawn])
 
 
-def windows(zero: float = 0.0) -> np.ndarray:
+def windows(zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
     """Windows of the positions as an encoder with this zero (rad) reads them, shape (300, 21)."""
-    q, _, step = readings()
+    q, _, step = readings(setup)
     read = np.round((q + zero) / step) * step - zero
     return sliding_windows(read[:, None], _WIDTH, slice(_WIDTH // 2, len(q) - _WIDTH // 2))[:, 0]
 
 
-def _fitted(f, zero: float = 0.0) -> np.ndarray:
+def _fitted(f, zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
     """Output of a filter (rad/s^2) with the factor and the constant that fit best, shape (300,)."""
     f = shaped("f", f, (_WIDTH,))
-    output, truth = windows(zero) @ f, readings()[1]
+    output, truth = windows(zero, setup) @ f, readings(setup)[1]
     output = output - output.mean()
     power = output @ output
     factor = output @ truth / power if power > 1e-20 else 0.0
@@ -76,11 +77,11 @@ def score(f, zero: float = 0.0) -> float:
     return float(rmss(_fitted(f, zero)[:, None], readings()[1][:, None]))
 
 
-def least_squares() -> np.ndarray:
+def least_squares(setup: Setup = JOINT_DAMPING) -> np.ndarray:
     """The weights with the least `score` there is on the recording, shape (21,)."""
-    seen = windows()
+    seen = windows(0.0, setup)
     seen = np.column_stack([seen, np.ones(len(seen))])
-    return np.linalg.lstsq(seen, readings()[1], rcond=None)[0][:-1]
+    return np.linalg.lstsq(seen, readings(setup)[1], rcond=None)[0][:-1]
 
 
 def starts() -> dict[str, np.ndarray]:
@@ -112,6 +113,8 @@ class FilterBuilder(_PageWidget):
     ----------
     unit : array_like, shape (21,)
         The trained unit: its weights, oldest sample first.
+    setup : Setup
+        Whose shoulder moves along trajectory 6, and whose encoder, if any, reads it.
     """
 
     _esm = lean(
@@ -123,9 +126,9 @@ class FilterBuilder(_PageWidget):
     motion = t.Bytes(help="true positions, then accelerations, as float64", read_only=True)
     motion.tag(sync=True)
 
-    def __init__(self, unit):
+    def __init__(self, unit, setup: Setup = JOINT_DAMPING):
         unit = shaped("unit", unit, (_WIDTH,))
-        q, truth, step = readings()
+        q, truth, step = readings(setup)
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()
 
@@ -146,13 +149,13 @@ class FilterBuilder(_PageWidget):
             "samples": len(q),
             "period": LOG_STEP,
             "step": step,
-            "zeros": _zeros().tolist(),
+            "zeros": _zeros(setup).tolist(),
             "levels": _LEVELS,
             "starts": [[name, f.tolist()] for name, f in starts().items()],
             "rivals": [
                 ["unit", "A trained unit", unit.tolist()],
                 ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
-                ["least", "Least squares on this recording", least_squares().tolist()],
+                ["least", "Least squares on this recording", least_squares(setup).tolist()],
             ],
             "panels": [panel.description() for panel in panels],
             "curves": [
@@ -161,22 +164,22 @@ class FilterBuilder(_PageWidget):
             ],
         }
         motion = np.concatenate([q, truth]).astype("<f8").tobytes()
-        still, alt = _still(time, truth)
+        still, alt = _still(time, truth, setup)
         self._keep(spec=spec, motion=motion, still=still, still_alt=alt)
         super().__init__()
 
 
-def _still(time, truth) -> tuple[str, str]:
+def _still(time, truth, setup) -> tuple[str, str]:
     """A textbook filter, its output and its gain, and what the picture shows."""
     name = "Savitzky–Golay, 11"
     f = starts()[name]
     response = frequency_response(f, _FREQUENCIES, LOG_STEP)
-    output = windows() @ f
+    output = windows(0.0, setup) @ f
     factor = np.polyfit(output - output.mean(), truth, 1)[0]
     half = _WIDTH // 2 * LOG_STEP * 1e3
     curves = {
         "weights": f,
-        "output": _fitted(f),
+        "output": _fitted(f, 0.0, setup),
         "gain": np.clip(np.abs(factor * response), _GAINS[0], None),
     }
     ideal = {"ideal": (2 * np.pi * _FREQUENCIES) ** 2}
