@@ -29,7 +29,7 @@ from workshop.beyond.rivals.identified import Linear
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies.lineup import _DAYS
 from workshop.beyond.studies.rivals import _EVERY, _GRID, _SAMPLES, _square
-from workshop.beyond.studies.tx40 import Windowed, known_structure, wrong
+from workshop.beyond.studies.tx40 import _BLOCKS, Windowed, known_structure, wrong
 from workshop.report.code_hash import study
 
 _NAMES = RIGID + FRICTION
@@ -133,24 +133,27 @@ def _real(rate: int, width: int, block: int) -> dict:
 @study
 def _learnt_filters() -> dict:
     """Errors by day, which filters matter, what they are; the real arm's errors by block."""
-    run = joblib.Parallel(n_jobs=2)
-    days = run(joblib.delayed(_day)(day) for day in range(1, _DAYS + 1))
-    jobs = [(*where, block) for where in _REAL for block in range(5)]
-    blocks = run(joblib.delayed(_real)(*job) for job in jobs)
+    jobs = [(*where, block) for where in _REAL for block in range(_BLOCKS)]
+    with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
+        days = joblib.Parallel()(joblib.delayed(_day)(day) for day in range(1, _DAYS + 1))
+        blocks = joblib.Parallel()(joblib.delayed(_real)(*job) for job in jobs)
     errors = {
         name: {part: [day["errors"][name][part] for day in days] for part in row}
         for name, row in days[0]["errors"].items()
     }
-    found, step = {}, LOG_STEP
+    found = {}
     for name, row in days[0]["found"].items():
         each = {key: np.array([day["found"][name][key] for day in days]) for key in row}
         width = each["filters"].shape[-1]
-        first = FilteredEquations(_NAMES, width, step).first
+        first = FilteredEquations(_NAMES, width, LOG_STEP).first
         each["spread of filters"] = each["filters"].std(0)
         each["filters"] = each["filters"].mean(0)
         if "errors of filters" in each:
             each["errors of filters"] = np.median(each["errors of filters"], 0)
-        found[name] = each | {"read": _read(each["filters"], step), "first": _read(first, step)}
+        found[name] = each | {
+            "read": _read(each["filters"], LOG_STEP),
+            "first": _read(first, LOG_STEP),
+        }
     real = {}
     for (rate, width, _), block in zip(jobs, blocks):
         row = real.setdefault(f"{rate}, {width}", {key: [] for key in block})
