@@ -5,6 +5,7 @@ import pytest
 
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.studies import characters, rivals
+from workshop.beyond.studies.checks import published
 
 
 @pytest.fixture(scope="module")
@@ -48,3 +49,21 @@ def test_the_share_that_intervals_hold():
     assert found["covered"] == 0.75  # 5 lies outside 1.96 times 2
     np.testing.assert_allclose(found["half width"], 2 * 1.96, rtol=1e-4)
     assert found["rmss"] == pytest.approx(2.5 / torque.std())
+
+
+def test_published_weights_keep_their_energy(drawn):
+    """Power goes into energy, whose parts a finite step along the motion tells."""
+    weights, x = published._published(3), characters.states(drawn, 0.0).x[::7]
+
+    def energy(q, qd):
+        at = np.stack([q, 0 * q, 0 * q], -1)
+        mass = characters._parts(lambda x: published._lagrangian(weights, x), at)["mass_matrix"]
+        assert (np.linalg.eigvalsh(mass) > 0).all()
+        np.testing.assert_allclose(mass, mass.mT, atol=1e-12)
+        stored = published._layers(weights, "potential_energy", q)[0][:, 0]
+        return np.einsum("ni,nij,nj->n", qd, mass, qd) / 2 + stored
+
+    (q, qd, qdd), step = np.moveaxis(x, -1, 0), 1e-5
+    ends = [energy(q + h * qd + h**2 / 2 * qdd, qd + h * qdd) for h in (-step, step)]
+    power = (published._lagrangian(weights, x) * qd).sum(-1)
+    np.testing.assert_allclose((ends[1] - ends[0]) / (2 * step), power, rtol=1e-5, atol=1e-6)

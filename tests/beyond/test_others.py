@@ -11,14 +11,16 @@ PAGE = (others._FOLDER / "README.md").read_text(encoding="utf-8")
 
 
 def test_files_are_as_they_came():
-    for name, digest in (
-        ("characters", "482a697e1bf620e12763255cd067cfdcb84257dfc58b8d048cfa46872f7628c9"),
-        ("staubli-tx40", "665c1c7ba945f08339efa795e4fd5a47fd855b3e3d676aaeea21699f777558f7"),
-    ):
+    for name, licence, digest in (
+        ("characters", "", "482a697e1bf620e12763255cd067cfdcb84257dfc58b8d048cfa46872f7628c9"),
+        ("staubli-tx40", "", "665c1c7ba945f08339efa795e4fd5a47fd855b3e3d676aaeea21699f777558f7"),
+        ("delan-published", "characters",
+         "558d09312ec245c3e519c7a797073c16b8b1f735f9c3d03ff0376041df080945"),
+    ):  # fmt: skip
         content = (others._FOLDER / f"{name}.npz").read_bytes()
         assert hashlib.sha256(content).hexdigest() == digest
-        assert digest in PAGE and f"LICENSE-{name}" in PAGE
-        assert (others._FOLDER / f"LICENSE-{name}").stat().st_size > 500
+        assert digest in PAGE and f"LICENSE-{licence or name}" in PAGE
+        assert (others._FOLDER / f"LICENSE-{licence or name}").stat().st_size > 500
 
 
 def test_characters_are_sampled_evenly():
