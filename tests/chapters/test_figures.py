@@ -31,9 +31,9 @@ UPON_A_COLOUR = {
 
 LOGARITHMIC = {
     **dict.fromkeys(("curves", "side_by_side, log"), "xy"),
-    **dict.fromkeys(("ladders", "growth", "costs", "against", "traded"), "xy"),
+    **dict.fromkeys(("ladders", "growth", "against", "traded"), "xy"),
     **dict.fromkeys(("families", "rmss_by_window", "operations", "courses", "by_trial"), "y"),
-    **dict.fromkeys(("ranking", "intervals", "by_motion", "four_directions"), "x"),
+    **dict.fromkeys(("ranking", "intervals", "by_motion", "four_directions", "dots"), "x"),
 }
 
 

@@ -101,8 +101,6 @@ RATIOS = {
     "the same": {"one": np.array([0.1, 0.2, 0.9]), "two": np.array([1.0, 2.0, 3.0])},
     "faster": {"one": np.array([0.5, 0.6, 0.7]), "two": np.array([1.0, 4.0, 5.0])},
 }
-COST = [100, 10, 1000], np.full((3, 4), 0.1), np.full((3, 4), 0.3)
-UNSORTED = COST[0], ERRORS / 2, ERRORS
 MEMBERS = {"11": (np.array([1.0, 2.0]), np.array([3.0, 4.0])), "21": (np.ones(3), 7 * np.ones(3))}
 WANTED = np.stack([np.cos(2 * T), np.sin(2 * T)], -1)
 OFF = WANTED + np.array((0.01, -0.02))
@@ -199,9 +197,9 @@ EXAMPLES = {
         real_arm.gains_by_joint, {"velocity": (GAINS, UNRELATED[:, None] / 2 * np.ones(6))}, "gain",
         "Two nets.",
     ),
-    "costs": partial(
-        rivals.costs, {"tables": {"one": UNSORTED, "two": COST}, "bases": {"three": COST}},
-        ("network", COST), 0.02, ("stored numbers", "RMSS"), "Errors over numbers.",
+    "dots": partial(
+        rivals.dots, {"worse": ([0.2, 0.4, 0.3], "7"), "better": ([0.1, 0.2], "90")}, "better",
+        0.02, ("RMSS", "numbers"), "Two rivals.",
     ),
     "against": partial(
         run_time.against,
@@ -316,9 +314,7 @@ SHOWN = {
             *xy(JOINTS - 0.15, GAINS[0]), *xy(JOINTS + 0.15, GAINS[1]),
         ]
     ],
-    "costs": [  # from small to large
-        [*xy([10, 100, 1000], MIDDLE[[1, 0, 2]], MIDDLE[[1, 0, 2]] / 2), [(10, 0.1), (10, 0.3)]]
-    ],
+    "dots": [[[(0.1, 0), (0.2, 0)], [(0.2, 1), (0.4, 1)], [(0.3, 1)]]],  # the least on top
     "against": [[*xy([1, 2], [3, 4]), *xy([1] * 3, [7] * 3)], [[(5, 6)] * 2, [(5, 5), (6, 6)]]],
     "traded": [[[(1, 30), (2, 20)], [(3, 4)], [(10, 0), (10, 1)], [(0, 15), (1, 15)]]],
     "paths": [[WANTED, WANTED + np.array((0.1, -0.2))], [WANTED]],  # errors are exaggerated
