@@ -32,9 +32,10 @@ class FilteredEquations:
 
     ``torque = Y(p @ window, v @ window, a @ window) @ parameters``, with the same ``p``, ``v`` and
     ``a`` for all joints; all are fitted together, by variable projection (Golub & Pereyra 1973),
-    from the filters of Savitzky & Golay (1964) on. What fixes the scale: ``p`` sums to 1; ``v`` gives 0 at
-    rest and 1 for a ramp of slope 1; ``a`` gives 0 at rest and for ramps, 1 for ``t^2 / 2``. All
-    else is free, delay and smoothing included. Joints count by the inverse of their noise.
+    from the filters of Savitzky & Golay (1964) on. What fixes the scale: ``p`` sums to 1; ``v``
+    gives 0 at rest and 1 for a ramp of slope 1; ``a`` gives 0 at rest and for ramps, 1 for
+    ``t^2 / 2``. All else is free, delay and smoothing included. Joints count by the inverse of
+    their noise.
 
     Parameters
     ----------
