@@ -7,6 +7,7 @@ from ddlib.identification import joint_terms
 from ddlib.learning import Weights
 from workshop.beyond.others import staubli
 from workshop.beyond.studies import tx40
+from workshop.beyond.studies.checks import wired
 from workshop.beyond.studies.tx40 import (
     _BLOCKS,
     Ridge,
@@ -99,3 +100,13 @@ def test_decayed_networks_are_at_an_optimum_of_what_is_said():
     slope = approx_fprime(at, objective, 1e-6)
     assert objective(at) < objective(begin)
     assert np.abs(slope).max() < 0.02 * np.abs(approx_fprime(begin, objective, 1e-6)).max()
+
+
+def test_apart_a_joint_hears_its_own_window_alone():
+    x, y = RNG.normal(size=(60, 6, 5)), RNG.normal(size=(60, 6))
+    other, training = x.copy(), np.arange(60) < 40
+    other[:, 1:] = RNG.normal(size=(60, 5, 5))
+    for model in (wired._linear, wired._network):
+        a, b = (wired._apart(model, each, y, training, 1e-3, 0) for each in (x, other))
+        np.testing.assert_allclose(a[:, 0], b[:, 0], rtol=1e-12)
+        assert np.abs(a[:, 1] - b[:, 1]).max() > 0.01

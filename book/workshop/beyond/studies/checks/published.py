@@ -1,7 +1,5 @@
 """Characters: the ten published Lagrangian networks by their weights, and larger plain networks."""
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 from torch import nn
