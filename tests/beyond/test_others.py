@@ -16,6 +16,8 @@ def test_files_are_as_they_came():
         ("staubli-tx40", "", "665c1c7ba945f08339efa795e4fd5a47fd855b3e3d676aaeea21699f777558f7"),
         ("delan-published", "characters",
          "558d09312ec245c3e519c7a797073c16b8b1f735f9c3d03ff0376041df080945"),
+        ("double-pendulum", "",
+         "e495f9aad48e7993f48030ec02032fee706fb3d4fa47ac0504d3e5420d9eb9fc"),
     ):  # fmt: skip
         content = (others._FOLDER / f"{name}.npz").read_bytes()
         assert hashlib.sha256(content).hexdigest() == digest

@@ -1,0 +1,364 @@
+"""The report's experiment on a real two-link arm: what is identified, predicted and read."""
+
+from __future__ import annotations
+
+import warnings
+from functools import cache
+from itertools import combinations
+
+import joblib
+import numpy as np
+from scipy.signal import butter, filtfilt, savgol_filter
+
+from ddlib import paper
+from ddlib.analysis import gains, mean_gradient, ridge_filters
+from ddlib.dynamics import Arm
+from ddlib.identification import FilteredEquations
+from ddlib.learning import (
+    NotConverged,
+    TorqueModel,
+    TrainingSet,
+    Weights,
+    sliding_windows,
+    solve,
+    train_ensemble,
+)
+from workshop import BOOK
+from workshop.report.code_hash import study
+
+_STEP = 0.01  # seconds between two samples, as in the report
+
+# Recordings of each design in which both torques were commanded: all of them, chosen before
+# anything was trained
+_RUNS = {
+    "A0": ("A0_00", "A0_01", "A0_02", "A0_03", "A0_04", "A0_05", "A0_11"),
+    "C0": ("C0_00", "C0_01", "C0_02", "C0_12", "C0_13"),
+    "C1": ("C1_143339", "C1_143524", "C1_143601", "C1_154220", "C1_154548"),
+}
+_WIDTHS = tuple(paper.TABLE_4_1)
+_MARGIN, _EVERY = 20, 5  # samples: before the first case, from one case to the next
+_LENGTHS = (5, 7, 9, 11, 13, 17, 21, 25, 31, 41, 45)  # windows for derivatives, samples
+_AVERAGE = 21  # samples over which both sides of the equations are averaged
+_SETTLED = 13  # the window in front of it
+_STILL, _ENCODER = 8.0, 3.8147e-4  # Hz: all that moves the arm is below; rad: the encoder's step
+_BANDS = ((6, 12), (12, 25), (25, 50))  # Hz
+_PENALTIES = tuple(10.0**-k for k in range(1, 8))
+_POINTS = (500, 1000, 2000, 4000, 8000)  # epochs of descent after which networks are tested
+_DECAYS, _STEPS = (1e-4, 1e-3), 60  # of the solver, at window 21
+_MEMBERS, _ELBOW = 10, np.linspace(-1.5, 1.5, 7)  # networks that are read; rad
+
+
+def _published(m1, m2, l1, r1, r2, i1, i2, rotor, f1, f2) -> dict[str, float]:
+    """The builders' parameters (kg, m, kg m^2, N m) in the order of `_regressor`."""
+    a, d, g1 = i1 + i2 + m2 * l1**2 + 37 * rotor, i2 - 6 * rotor, 9.81 * (m1 * r1 + m2 * l1)
+    found = {"a": a, "b": m2 * l1 * r2, "d": d, "g1": g1, "g2": 9.81 * m2 * r2, "r": 42 * rotor}
+    return found | {"F_v1": 0.001, "F_v2": 0.001, "F_c1": f1, "F_c2": f2, "o1": 0.0, "o2": 0.0}
+
+
+# What the builders identified, by design: kg m^2, N m, N m s/rad; their gears are 6 to 1
+_PUBLISHED = {
+    "A0": _published(0.55938, 0.60435, 0.3, 0.3, 0.18378, 0.05347, 0.02392, 7.659e-5, 0.093, 0.078),
+    "C0": _published(0.64169, 0.56394, 0.2, 0.2, 0.32127, 0.02671, 0.05388, 9.937e-5, 0.093, 0.078),
+    "C1": _published(0.52346, 0.62557, 0.2, 0.2, 0.25569, 0.03189, 0.05087, 6.287e-5, 0.16, 0.12),
+}
+
+
+@cache
+def _recording(run: str, step: float = _STEP) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (rad) and measured torques (N m), ``(samples, 2)`` each: means over `step` s."""
+    with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
+        t, *columns = kept[run].astype(float).T
+    many = round(1000 * step)  # milliseconds
+    count = int((t[-1] - t[0]) / step)
+    fine = t[0] + 1e-3 * np.arange(count * many)
+    q1, q2, tau1, tau2 = (np.interp(fine, t, x).reshape(count, many).mean(1) for x in columns)
+    return np.stack([q1, q2], -1), np.stack([tau1, tau2], -1)
+
+
+def _regressor(states) -> np.ndarray:
+    """Y with ``torque = Y @ parameters`` for states ``(cases, joint, 3)``: ``(cases, 2, 12)``."""
+    q, v, a = np.moveaxis(states, -1, 0)
+    friction = [x[..., None] * np.eye(2) for x in (v, np.tanh(v / 0.05), np.ones_like(v))]
+    return np.concatenate([Arm.regressor(q, v, a), (a * [0, 1])[..., None], *friction], -1)
+
+
+def _states(q, width, step=_STEP, degree=3) -> np.ndarray:
+    found = [savgol_filter(q, width, degree, k, step, axis=0) for k in range(3)]
+    return np.stack(found, -1)
+
+
+def _solved(rows, torque) -> np.ndarray:
+    """Parameters by least squares, each joint in units of its torque's deviation."""
+    spread = torque.std(0)
+    a = (rows / spread[:, None]).reshape(-1, rows.shape[-1])
+    return np.linalg.lstsq(a, (torque / spread).ravel())[0]
+
+
+def _smooth(x, width=_AVERAGE) -> np.ndarray:
+    return savgol_filter(x, width, 3, axis=0)
+
+
+@cache
+def _still(run: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The motion below 8 Hz, as it is and as rounded readings, and its published torque; 100 Hz."""
+    fast = _STEP / 2
+    q = filtfilt(*butter(3, _STILL, fs=1 / fast), _recording(run, fast)[0], axis=0)
+    torque = _regressor(_states(q, 5, fast, 4)) @ np.array(list(_PUBLISHED[run[:2]].values()))
+    every, cut = (q, _ENCODER * np.round(q / _ENCODER), torque), len(q) // 2 * 2
+    return tuple(x[:cut].reshape(-1, 2, 2).mean(1) for x in every)
+
+
+def _found(runs, width, kind="measured") -> np.ndarray:
+    """Parameters from derivatives over windows of `width` samples."""
+    rows, torques = [], []
+    for run in runs:
+        q, torque = _recording(run)
+        if kind in ("smooth", "rounded", "wiggles"):
+            smooth, rounded, torque = _still(run)
+            q = {"smooth": smooth, "rounded": rounded, "wiggles": q}[kind]
+        y = _regressor(_states(q, width))
+        if kind == "averaged":
+            y, torque = _smooth(y), _smooth(torque)
+        inside = slice(width // 2 + _MARGIN, -width // 2 - _MARGIN)
+        rows.append(y[inside])
+        torques.append(torque[inside])
+    return _solved(np.concatenate(rows), np.concatenate(torques))
+
+
+def _jackknife(runs, *how) -> np.ndarray:
+    """Standard errors of `_found` from leaving out one run at a time."""
+    each = np.array([_found([r for r in runs if r != out], *how) for out in runs])
+    return np.sqrt((len(runs) - 1) * ((each - each.mean(0)) ** 2).mean(0))
+
+
+def _identified(runs) -> dict:
+    kinds = ("measured", "averaged", "smooth", "rounded", "wiggles")
+    by_length = {kind: [_found(runs, w, kind) for w in _LENGTHS] for kind in kinds}
+    errors = [_jackknife(runs, w) for w in _LENGTHS]
+    settled = {"values": _found(runs, _SETTLED, "averaged")}
+    settled["errors"] = _jackknife(runs, _SETTLED, "averaged")
+    return {"by length": by_length, "errors by length": errors, "settled": settled}
+
+
+def _together(run) -> list[float]:
+    """Correlation of the two joints' accelerations in some bands of frequency."""
+    fast = _STEP / 2
+    a = _states(_recording(run, fast)[0], 5, fast)[..., 2]
+    bands = (filtfilt(*butter(3, band, "bandpass", fs=1 / fast), a, axis=0) for band in _BANDS)
+    return [float(np.corrcoef(x[_MARGIN:-_MARGIN].T)[0, 1]) for x in bands]
+
+
+def _windows(q, width, cases) -> np.ndarray:
+    """Windows around some samples, turned by whole turns so that their centres are within pi."""
+    half = width // 2
+    x = sliding_windows(q, width)[cases - half]
+    return x - 2 * np.pi * np.round(x[..., half] / (2 * np.pi))[..., None]
+
+
+@cache
+def _cases(run: str) -> dict:
+    """What models see of a run, by name, and its torques."""
+    q, torque = _recording(run)
+    cases = np.arange(_MARGIN, len(q) - _MARGIN, _EVERY)
+    seen = {width: _windows(q, width, cases) for width in _WIDTHS}
+    for width in _LENGTHS[:-4]:
+        y = _regressor(_states(q, width))
+        seen |= {(width, "plain"): y[cases], (width, "averaged"): _smooth(y)[cases]}
+    return {"torque": torque[cases], "smooth torque": _smooth(torque)[cases], **seen}
+
+
+def _all(runs, name) -> np.ndarray:
+    return np.concatenate([_cases(run)[name] for run in runs])
+
+
+def _error(guess, run) -> float:
+    torque = _cases(run)["torque"]
+    return float(np.sqrt((((guess - torque) / torque.std(0)) ** 2).mean()))
+
+
+def _linear(runs, others, setting) -> list[float]:
+    width, penalty = setting
+    x, y = _all(runs, width).reshape(-1, 2 * width), _all(runs, "torque")
+    middle = x.mean(0)
+    square = (x - middle).T @ (x - middle) + penalty * len(x) * np.eye(2 * width)
+    w = np.linalg.solve(square, (x - middle).T @ (y - y.mean(0)))
+    seen = (_cases(run)[width].reshape(-1, 2 * width) for run in others)
+    return [_error((z - middle) @ w + y.mean(0), run) for z, run in zip(seen, others)]
+
+
+def _rigid(runs, others, setting) -> list[float]:
+    torque = "smooth torque" if setting[1] == "averaged" else "torque"
+    found = _solved(_all(runs, setting), _all(runs, torque))
+    return [_error(_cases(run)[setting] @ found, run) for run in others]
+
+
+def _tuned(model, settings, runs, others) -> list[float]:
+    """Errors on other runs; the setting has the least mean log error on runs left out of these."""
+    kept = [([r for r in runs if r != out], [out]) for out in runs]
+    wrong = [sum(np.log(model(few, out, s)[0]) for few, out in kept) for s in settings]
+    return model(runs, others, settings[int(np.argmin(wrong))])
+
+
+def _learnt(x, y, members, **targets) -> tuple[TorqueModel, np.ndarray, dict]:
+    """Networks by descent, their training RMSS, and models after some epochs."""
+    data, width = TrainingSet.from_arrays(x, y, scaling=(-1, 1)), x.shape[-1]
+    how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _POINTS[-1]}
+    targets = {k: data.outputs.scale(v) for k, v in targets.items()}
+    start = Weights.random(members, width, paper.HIDDEN_UNITS)
+    made = train_ensemble(start, data, snapshots=_POINTS, progress=False, **how, **targets)
+    model, history, kept = made
+    models = {e: TorqueModel(w, data.inputs, data.outputs, _STEP) for e, w in kept.items()}
+    return model, history.training[-1], models
+
+
+def _optimal(x, y, members, decay, steps) -> TorqueModel:
+    """Networks by Levenberg and Marquardt, with a trace of weight decay, converged or nearly."""
+    data = TrainingSet.from_arrays(x, y, scaling=(-1, 1))
+    start = Weights.random(members, x.shape[-1], paper.HIDDEN_UNITS)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotConverged)
+        return solve(start, data, decay=decay, steps=steps, progress=False).model
+
+
+def _split(runs) -> dict:
+    """Networks of each window trained on some runs: errors on all others, and moments."""
+    others = [run for run in _RUNS[runs[0][:2]] if run not in runs]
+    tests, training = {}, []
+    for width in _WIDTHS:
+        x = _all(runs, width)
+        model, error, models = _learnt(x, _all(runs, "torque"), 1)
+        training.append(float(error[0]))
+        if width == _WIDTHS[1]:
+            models |= {d: _optimal(x, _all(runs, "torque"), 1, d, _STEPS) for d in _DECAYS}
+        for how, one in models.items():
+            for run in others:
+                tests[width, how, run] = _error(one.torque(_cases(run)[width])[0], run)
+    moments = gains(mean_gradient(model, x)[0], _STEP)  # of the widest window
+    return {"tests": tests, "training": training, "moments": moments}
+
+
+def _few(runs) -> list[tuple]:
+    """The runs without one of them."""
+    return [tuple(r for r in runs if r != out) for out in runs]
+
+
+def _predicted(design) -> list[dict]:
+    """Every choice of runs to train on, and every other run as the test."""
+    every = _RUNS[design]
+    chosen = list(combinations(every, min(5, len(every) - 1)))
+    needed = sorted({few for runs in chosen for few in (runs, *_few(runs))})
+    with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
+        split = dict(zip(needed, joblib.Parallel()(map(joblib.delayed(_split), needed))))
+    settings = [(w, e) for w in _WIDTHS for e in _POINTS] + [(_WIDTHS[1], d) for d in _DECAYS]
+    lengths = [(w, how) for w in _LENGTHS[:-4] for how in ("plain", "averaged")]
+    rows = []
+    for runs in chosen:
+        others = [run for run in every if run not in runs]
+        left_out = list(zip(_few(runs), runs))
+        wrong = [
+            sum(np.log(split[few]["tests"][*s, out]) for few, out in left_out) for s in settings
+        ]
+        best = settings[int(np.argmin(wrong))]
+        linear = _tuned(_linear, [(w, p) for w in _WIDTHS for p in _PENALTIES], runs, others)
+        rigid = _tuned(_rigid, lengths, runs, others)
+        seen = [_cases(run)[_WIDTHS[1]] for run in (*runs, *others)]
+        filtered = FilteredEquations(_regressor, _WIDTHS[1], _STEP)
+        filtered.fit(seen[: len(runs)], [_cases(run)["torque"] for run in runs])
+        for k, run in enumerate(others):
+            tests = {str(w): split[runs]["tests"][w, _POINTS[-1], run] for w in _WIDTHS}
+            tests["solved"] = split[runs]["tests"][_WIDTHS[1], _DECAYS[0], run]
+            errors = {"linear filter": linear[k], "equations": rigid[k]}
+            errors["equations with filters"] = _error(filtered.predict(seen[len(runs) + k]), run)
+            errors["network"] = split[runs]["tests"][*best, run]
+            rows.append({"training": runs, "test": run, "errors": errors, "by window": tests,
+                         "training errors": split[runs]["training"], "tuned": best,
+                         "moments": split[runs]["moments"]})  # fmt: skip
+    return rows
+
+
+def _slopes(states, parameters) -> np.ndarray:
+    """How torques change with states, ``(cases, torque, joint, 3)``; friction by its best line."""
+    rigid, found = np.where(np.arange(12) < 6, parameters, 0.0), np.zeros((len(states), 2, 2, 3))
+    for j, k in np.ndindex(2, 3):
+        nudge = np.zeros((2, 3))
+        nudge[j, k] = 1e-4
+        up, down = (_regressor(states + sign * nudge) @ rigid for sign in (1, -1))
+        found[..., j, k] = (up - down) / 2e-4
+    force = _regressor(states)[..., 6:10] @ parameters[6:10]
+    v = states[..., 1]
+    found[:, [0, 1], [0, 1], 1] += (force * v).mean(0) / (v**2).mean(0)
+    return found
+
+
+def _unrelated(runs, kind, seed) -> np.ndarray:
+    """Torques of the same runs, or of others, moved in time around their ends."""
+    rng, torques = np.random.default_rng(seed), [_cases(run)["torque"] for run in runs]
+    sources = np.roll(np.arange(len(runs)), rng.integers(1, len(runs)))
+    moved = []
+    for torque, source in zip(torques, sources):
+        if kind == "other run":
+            torque = np.resize(torques[source], torque.shape)
+        count = len(torque)
+        moved.append(np.roll(torque, rng.integers(count // 10, count - count // 10), axis=0))
+    return np.concatenate(moved)
+
+
+def _read(design, width) -> dict:
+    """Moments of networks of all runs, of unrelated torques, and of the published equations'."""
+    runs, published = _RUNS[design], np.array(list(_PUBLISHED[design].values()))
+    x, torque = _all(runs, width), _all(runs, "torque")
+
+    def cut(values):
+        return values[_MARGIN : len(values) - _MARGIN : _EVERY]
+
+    states = np.concatenate([cut(_states(_recording(r)[0], _SETTLED)) for r in runs])
+    slopes = _slopes(states, published)
+    model, errors, _ = _learnt(x, torque, _MEMBERS)
+    data = TrainingSet.from_arrays(x, torque, scaling=(-1, 1))
+    row = {
+        "published": slopes.mean(0),
+        "networks": gains(mean_gradient(model, x), _STEP),
+        "linear": gains(ridge_filters(data, [1e-6])[0], _STEP),
+        "training": errors,
+    }
+    told = np.concatenate([cut(_still(r)[-1]) for r in runs])
+    smooth = [_still(r)[0] for r in runs]
+    still = [_windows(q, width, cut(np.arange(len(q)))) for q in smooth]
+    for name, seen, goal in (("solved", x, torque), ("solved, known", np.concatenate(still), told)):
+        solved = _optimal(seen, goal, _MEMBERS // 2, _DECAYS[0], 2 * _STEPS)
+        row[name] = gains(mean_gradient(solved, seen), _STEP)
+    if width == _WIDTHS[-1]:
+        exact, *_ = _learnt(x, told, _MEMBERS)
+        row["exact"] = gains(mean_gradient(exact, x), _STEP)
+        for kind in ("shifted", "other run"):
+            targets = np.stack([_unrelated(runs, kind, k) for k in range(_MEMBERS)])
+            null, *_ = _learnt(x, torque, _MEMBERS, targets=targets)
+            row[kind] = gains(mean_gradient(null, x), _STEP)
+        place = np.digitize(x[:, 1, width // 2], _ELBOW)
+        bins = [place == k for k in range(1, len(_ELBOW))]
+        row["by elbow"] = {
+            "networks": [gains(mean_gradient(model, x[b]), _STEP)[..., 2] for b in bins],
+            "exact": [gains(mean_gradient(exact, x[b]), _STEP)[..., 2] for b in bins],
+            "published": [slopes[b].mean(0)[..., 2] for b in bins],
+            "cases": [int(b.sum()) for b in bins],
+        }
+    return row
+
+
+@study
+def _two_link() -> dict:
+    """What is identified, predicted and read, by design."""
+    designs, tasks = {}, [(design, width) for design in _RUNS for width in _WIDTHS]
+    with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
+        made = joblib.Parallel()(joblib.delayed(_read)(*task) for task in tasks)
+    readings = dict(zip(tasks, made))
+    for design, runs in _RUNS.items():
+        designs[design] = {
+            "runs": runs,
+            "published": _PUBLISHED[design],
+            "identified": _identified(runs),
+            "together": [_together(run) for run in runs],
+            "predicted": _predicted(design),
+            "read": {str(width): readings[design, width] for width in _WIDTHS},
+        }
+    return {"lengths": _LENGTHS, "elbow": _ELBOW, "bands": _BANDS, "designs": designs}
