@@ -26,7 +26,7 @@ def test_files_are_as_they_came():
 
 
 def test_characters_are_sampled_evenly():
-    found = others.characters()
+    found = others._read_characters()
     assert len(found) == 20 and found.length.sum() == len(found.t) == 2913
     begins = np.cumsum(found.length)[:-1]
     steps = np.delete(np.diff(found.t), begins - 1)
@@ -35,7 +35,7 @@ def test_characters_are_sampled_evenly():
 
 def test_what_is_not_there_is_refused():
     for make, message in (
-        (lambda: others.characters().of(("e", "B")), r"labels must be some of b, .*, got \["),
+        (lambda: others._read_characters().of(("e", "B")), r"labels must be some of b, .*, got \["),
         *((lambda rate=rate: others.staubli().at(rate), "rate must") for rate in (0, 3000, 300)),
     ):
         with pytest.raises(ValueError, match=message):

@@ -7,7 +7,7 @@ from workshop.report.evidence import cards, claims, wall
 pytestmark = pytest.mark.browser
 
 ROWS = claims.load()
-CARDS = len(cards.cards()) + len(cards.LISTS)
+CARDS = len(cards._cards()) + len(cards.LISTS)
 
 
 @pytest.fixture
@@ -65,13 +65,13 @@ def test_filters_leave_what_fits_and_the_address_restores_them(ledger):
     for verdict in ("undecided", "in part", "qualitative", "qualitative"):
         bar.locator(f'[data-verdict="{verdict}"]').click()  # the first alone, others are added
     wanted = sum(
-        card.sign(claims.Claim.judge) in ("undecided", "in part") for card in cards.cards()
+        card.sign(claims.Claim.judge) in ("undecided", "in part") for card in cards._cards()
     )
     assert wanted and shown(page) == wanted
     assert bar.locator("output").inner_text() == f"{wanted} of {CARDS} cards"
     again = ledger("#" + page.url.partition("#")[2])
     assert shown(again) == wanted
-    hidden = next(f"#card-{card.id}" for card in cards.cards() if card.sign() == "reproduced")
+    hidden = next(f"#card-{card.id}" for card in cards._cards() if card.sign() == "reproduced")
     again.evaluate("(name) => { location.hash = name; }", hidden)
     again.locator(f"{hidden}[open]").wait_for(state="visible")
     again.locator(".claim-filter input").fill("simple velocity filter")

@@ -27,13 +27,13 @@ def card(*verdicts, kind="system", real=(), beside=()) -> cards.Card:
 
 
 def test_every_row_is_in_one_card():
-    named = Counter(claim.id for card in cards.cards() for claim in card.claims)
+    named = Counter(claim.id for card in cards._cards() for claim in card.claims)
     listed = {claim.id for claim in ALL if claim.verdict in cards.LISTS}
     assert named == Counter(claim.id for claim in ALL if claim.id not in listed)
 
 
 def test_cards_are_few_and_short():
-    found = cards.cards()
+    found = cards._cards()
     assert 80 <= len(found) <= 100
     assert {card.kind for card in found} == set(cards.KINDS)
     assert len({card.id for card in found}) == len(found)
@@ -96,7 +96,7 @@ def test_a_card_of_unknown_rows_is_refused(tmp_path):
     entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["period", "nowhere"]}
     path.write_text(yaml.safe_dump({"system": [entry]}))
     with pytest.raises(ValueError, match=r"rows of card 'a' must be ids of claims.*'nowhere'"):
-        cards.cards(path)
+        cards._cards(path)
 
 
 def test_bands_that_were_set_after_a_trial_are_marked():

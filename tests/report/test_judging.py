@@ -61,9 +61,9 @@ def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
 
     half = np.repeat([1.0, 0.6], 1000)
     monkeypatch.setattr(judging, "load", lambda: [planted("qualitative")])
-    assert judging.main([]) == 1
+    assert judging._main([]) == 1
     assert "| CONTRADICTED\ncontradicted: a" in capsys.readouterr().out
     monkeypatch.setattr(judging, "load", lambda: [planted("qualitative", replicates=half)])
-    assert judging.main([]) == 0
+    assert judging._main([]) == 0
     assert "50.0 % qualitative" in (out := capsys.readouterr().out)
     assert "| undecided | qualitative | stands" in out

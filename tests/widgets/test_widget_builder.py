@@ -42,7 +42,7 @@ def test_a_readers_own_arm_without_an_encoder():
     own = replace(JOINT_DAMPING, arm=with_load(CMU_DD_ARM_II, 4.0), effects=IDEAL)
     widget, given = FilterBuilder(np.ones(21), own), FilterBuilder(np.ones(21))
     assert widget.motion != given.motion and widget.spec["step"] < 1e-6
-    left = [builder._fitted(builder.least_squares(s), 0.0, s) - builder.readings(s)[1]
+    left = [builder._fitted(builder._least_squares(s), 0.0, s) - builder.readings(s)[1]
             for s in (own, JOINT_DAMPING)]  # fmt: skip
     assert np.std(left[0]) < 0.1 * np.std(left[1])
 
@@ -62,7 +62,7 @@ def test_the_error_is_what_is_left_of_the_acceleration():
 
 
 def test_nothing_beats_least_squares_here():
-    best = builder.least_squares()
+    best = builder._least_squares()
     least, size = builder.score(best), np.abs(best).max()
     rng = np.random.default_rng(2)
     for far in (1e-3, 1e-2, 0.1, 1.0):
@@ -75,7 +75,7 @@ def test_nothing_beats_least_squares_here():
 @pytest.mark.browser
 def test_the_page_computes_the_same(evaluate):
     q, truth, step = builder.readings()
-    every = [*drawn(), *builder.starts().values(), builder.least_squares()]
+    every = [*drawn(), *builder.starts().values(), builder._least_squares()]
     zeros = builder._zeros(JOINT_DAMPING)[[0, 3, 20]]
     fits = evaluate(
         """([q, truth, step, zeros, filters]) => filters.map((f) => zeros.map((zero) => {

@@ -79,7 +79,7 @@ class _RealArm:
         return _RealArm(t, q, current, many * self.step)
 
 
-def characters() -> _Characters:
+def _read_characters() -> _Characters:
     """Twenty characters, drawn by somebody else's simulated arm (MIT licence).
 
     Source: M. Lutter, C. Ritter, J. Peters, "Deep Lagrangian Networks", ICLR 2019; the file is

@@ -77,7 +77,7 @@ def score(f, zero: float = 0.0) -> float:
     return float(rmss(_fitted(f, zero)[:, None], readings()[1][:, None]))
 
 
-def least_squares(setup: Setup = JOINT_DAMPING) -> np.ndarray:
+def _least_squares(setup: Setup = JOINT_DAMPING) -> np.ndarray:
     """The weights with the least `score` there is on the recording, shape (21,)."""
     seen = windows(0.0, setup)
     seen = np.column_stack([seen, np.ones(len(seen))])
@@ -155,7 +155,7 @@ class FilterBuilder(_PageWidget):
             "rivals": [
                 ["unit", "A trained unit", unit.tolist()],
                 ["bare", "That unit without its mean", (unit - unit.mean()).tolist()],
-                ["least", "Least squares on this recording", least_squares(setup).tolist()],
+                ["least", "Least squares on this recording", _least_squares(setup).tolist()],
             ],
             "panels": [panel.description() for panel in panels],
             "curves": [

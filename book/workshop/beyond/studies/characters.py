@@ -13,7 +13,7 @@ import numpy as np
 
 from ddlib.dynamics import Arm
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.others import _Characters, characters as data
+from workshop.beyond.others import _Characters, _read_characters as data
 from workshop.beyond.rivals.bases import Polynomial, _Fourier
 from workshop.beyond.rivals.cmac import CMAC
 from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures

@@ -103,7 +103,7 @@ def _settled(verdicts: set[str]) -> str:
 
 
 @cache
-def cards(path: Path = _FILE) -> tuple[Card, ...]:
+def _cards(path: Path = _FILE) -> tuple[Card, ...]:
     """All cards, in the order of the file, that have rows to judge."""
     known, found = {claim.id: claim for claim in load()}, []
 
@@ -127,7 +127,7 @@ def cards(path: Path = _FILE) -> tuple[Card, ...]:
 
 def of_kind(*kinds: str) -> list[Card]:
     """The cards of some kinds."""
-    return [card for card in cards() if card.kind in kinds]
+    return [card for card in _cards() if card.kind in kinds]
 
 
 def tally(some: Iterable[Card], of: Callable = attrgetter("verdict")) -> dict[str, int]:

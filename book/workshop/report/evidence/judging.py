@@ -54,9 +54,9 @@ def _line(claim: Claim) -> str:
     return " | ".join(cells).rstrip(" |")
 
 
-def main(arguments=None) -> int:
+def _main(arguments=None) -> int:
     """List the verdicts of all measured claims; 1 if a written one is contradicted."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser = argparse.ArgumentParser(description=_main.__doc__)
     parser.add_argument("--write", action="store_true", help="keep the fresh ones, too")
     options = parser.parse_args(arguments)
     measured = [claim for claim in load() if claim.band]
@@ -71,4 +71,4 @@ def main(arguments=None) -> int:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(_main())
