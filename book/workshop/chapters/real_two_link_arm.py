@@ -179,7 +179,7 @@ def _window_figure() -> figures.Illustration:
                     right.plot(place, found[:, 0, 0, 0] / true, look, color=colour, ms=4)
         for axis, title in ((left, "Least squares"), (right, "Networks of 1988")):
             axis.axhline(1, color=figures.INK, lw=0.7, ls="--")
-            axis.set(title=title, xlabel="window, ms", ylabel="shoulder's gravity, found/builders'")
+            axis.set(title=title, xlabel="window, ms", ylabel="gravity, found/builders'")
         figures.legend_above(figure, *left.get_legend_handles_labels())
 
     told = "; ".join(
