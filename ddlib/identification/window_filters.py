@@ -52,9 +52,11 @@ class FilteredEquations:
     learn : sequence of str
         Filters to learn, of "position", "velocity", "acceleration"; the others stay as they are.
 
+    Notes
+    -----
     After `fit`, `filters` and their standard errors `filter_errors` are ``(3, width)``, oldest
-    sample first, in 1, 1/s, 1/s^2, like `first`; `estimate` is an `Estimate`. The errors allow for
-    noise that overlapping windows share (Newey & West 1987), not for bias.
+    sample first, in 1, 1/s and 1/s^2, like `first`; `estimate` is an `Estimate`. The errors allow
+    for noise that overlapping windows share (Newey & West 1987), not for bias.
     """
 
     def __init__(self, regressor, width, step, pull=None, learn=_QUANTITIES):

@@ -80,11 +80,7 @@ class _RealArm:
 
 
 def _read_characters() -> _Characters:
-    """Twenty characters, drawn by somebody else's simulated arm (MIT licence).
-
-    Source: M. Lutter, C. Ritter, J. Peters, "Deep Lagrangian Networks", ICLR 2019; the file is
-    that of the repository milutter/deep_lagrangian_networks.
-    """
+    """Twenty characters of the repository milutter/deep_lagrangian_networks (MIT licence)."""
     with np.load(_FOLDER / "characters.npz") as file:
         return _Characters(**file)
 
