@@ -17,9 +17,10 @@ from ddlib.setups import (
     STATE_FEEDBACK,
     Setup,
 )
-from ddlib.simulation import smooth_pick_and_place
+from ddlib.simulation import CONTROL_STEP, REST, smooth_pick_and_place
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from workshop.beyond.control.adaptive import SlotineLi
+from workshop.beyond.studies.loop.run_time_parts import rounded
 from workshop.beyond.studies.loop.runs import adaptive as batch
 from workshop.beyond.studies.loop.runs.adaptive import _LAWS
 from workshop.report.code_hash import study
@@ -32,6 +33,7 @@ _BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
 _PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
+_CORNER = 0.1  # s over which the corners of a rounded plan are averaged, as in `_run_time`
 
 # What is added to the set-up's effects.
 _BED = {
@@ -58,10 +60,8 @@ def _course(setup: Setup, seed: int = 1) -> dict:
         **{law: batch.make(law, setup, start) for law in _LAWS},
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
-    extents, effects = batch._drawn(_SEEDS, 2 * TRIALS, seed), batch._rounding(setup, _SEEDS, seed)
-    found, laws = batch._trials(laws, extents[:TRIALS], setup.arm, effects)
-    loaded, laws = batch._trials(laws, extents[TRIALS:], with_load(setup.arm, _PICKED), effects)
-    found += loaded
+    extents = batch._drawn(_SEEDS, 2 * TRIALS, seed)
+    found = _taken_up(setup, laws, extents[:TRIALS], extents[TRIALS:], seed)
     known = [n for n in laws if n.startswith(_LAWS)]
     return {
         "settled": batch._by_law(found, laws),
@@ -71,6 +71,37 @@ def _course(setup: Setup, seed: int = 1) -> dict:
             n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
         },
         "unloaded": {n: found[TRIALS - 1].laws[n].estimate for n in known},
+    }
+
+
+def _taken_up(setup: Setup, laws, before, after, seed: int, **options) -> list:
+    """Motions before and after a load is taken up."""
+    effects = batch._rounding(setup, _SEEDS, seed)
+    found, laws = batch._trials(laws, before, setup.arm, effects, **options)
+    return found + batch._trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
+
+
+def _rounded(extents, t) -> Trajectory:
+    """The family's plan with rounded corners, at the samples `t`."""
+    first = round((t[0] + REST) / CONTROL_STEP)
+    return Trajectory(*(x[..., first : first + len(t), :] for x in rounded(extents, _CORNER)))
+
+
+def _again(setup: Setup, plan, seed: int = 1) -> dict:
+    """Errors along the same motions before and after a load, by the family's plan or `_rounded`.
+
+    A rounded plan is followed itself, without the model that smooths a jump.
+    """
+    start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
+    laws = {**batch._fixed(setup), **{law: batch.make(law, setup, start) for law in _LAWS}}
+    if plan is _rounded:
+        laws = {n: x.controller if isinstance(x, batch._Behind) else x for n, x in laws.items()}
+    extents = batch._drawn(_SEEDS, TRIALS, seed)
+    found = _taken_up(setup, laws, extents, extents, seed, plan=plan)
+    return {
+        "settled": batch._by_law(found, laws),
+        "hand": batch._by_law(found, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
     }
 
 
@@ -287,6 +318,10 @@ def _adaptive() -> dict:
     both = {s.name: s for s in (JOINT_DAMPING, STATE_FEEDBACK)}
     return {
         "course": {name: _course(s) for name, s in both.items()},
+        "same motions": {
+            plan: {name: _again(s, made) for name, s in both.items()}
+            for plan, made in (("as it is", pick_and_place), ("rounded", _rounded))
+        },
         "loads": {
             JOINT_DAMPING.name: _loads(JOINT_DAMPING, _DELAYS),
             STATE_FEEDBACK.name: _loads(STATE_FEEDBACK),

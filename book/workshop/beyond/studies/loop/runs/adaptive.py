@@ -135,13 +135,14 @@ class _Trial(NamedTuple):
     laws: dict  # the controllers with what they know after it
 
 
-def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects, **options) -> _Trial:
-    """One motion of extents ``(runs, 2)``, degrees, of all laws side by side."""
+def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
+          plan=pick_and_place, **options) -> _Trial:  # fmt: skip
+    """One motion, planned by `plan`, of extents ``(runs, 2)``, degrees, of all laws side by side."""
     steps = np.arange(
         -round(_AFTER / CONTROL_STEP), round((MOTION_SECONDS + _AFTER) / CONTROL_STEP)
     )
     t = steps * CONTROL_STEP
-    reference = pick_and_place(extents, t)
+    reference = plan(extents, t)
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
     guard = Watched(_Guarded(_Abreast(list(laws.values()), [1] * len(laws))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
