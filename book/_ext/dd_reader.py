@@ -2,7 +2,8 @@
 
 Numbers stand in the text, marked as the book's; links lead to other notebooks; figures have their
 captions below. Bookkeeping is folded, solutions are folded and not run. They take the place of the
-sources behind the download button, and `make lab` opens them. Of a lesson the open cells can be had
+sources behind the download button, in Colab and in one archive of all; `make lab` opens them. Taken
+elsewhere, the first cell fetches the book and what it lacks. Of a lesson the open cells can be had
 as a script, too.
 """
 
@@ -13,12 +14,14 @@ import codecs
 import json
 import re
 import textwrap
+import zipfile
 from pathlib import Path
 
 import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
 from dd_lessons import chapters
+from dd_public import address, repository
 from pybtex.database import parse_file
 
 NOTE = (
@@ -26,6 +29,21 @@ NOTE = (
     "book's, from the run that made its pages: they stay when you change code. Run all cells to "
     "see figures and widgets; code that only keeps the book's numbers is folded."
 )
+SETUP = """# @title Where the book is not installed (in Colab, say), this fetches it: a minute, once
+import importlib.util, os, subprocess, sys
+
+if importlib.util.find_spec("workshop") is None:
+    source = os.environ.get("DDLIB_SOURCE", "{address}")
+    if not source:
+        raise SystemExit("Not installed here: `make lab` in the book's folder opens this.")
+    if not os.path.isdir("the-book"):
+        subprocess.run(["git", "clone", "--quiet", "--depth", "1", source, "the-book"], check=True)
+    subprocess.run([sys.executable, "the-book/book/_ext/missing.py"], check=True)
+    sys.path[:0] = [os.path.abspath("the-book/book"), os.path.abspath("the-book")]
+    os.chdir("the-book/book")
+    if "google.colab" in sys.modules:
+        sys.modules["google.colab"].output.enable_custom_widget_manager()"""
+ARCHIVE = "notebooks.zip"  # beside the first page
 FOLDED = ("remove-cell", "remove-input", "hide-input")
 CHANGE_THIS = "change-this"
 HEADING = re.compile(r"(?m)^#+ .+$")
@@ -182,7 +200,9 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
         if figure:
             told = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
             cells.append(nbformat.v4.new_markdown_cell(told))
-    cells.insert(1, nbformat.v4.new_markdown_cell(NOTE))
+    setup = nbformat.v4.new_code_cell(SETUP.format(address=address(repository())))
+    setup.metadata = {"jupyter": {"source_hidden": True}, "cellView": "form"}
+    cells[1:1] = [nbformat.v4.new_markdown_cell(NOTE), setup]
     made = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
     for number, cell in enumerate(made.cells):  # the same text at every build
         cell["id"] = f"cell-{number}"
@@ -267,6 +287,17 @@ def write(app, exception):
         nbformat.write(made, target)
         if has_script(notebook):
             target.with_suffix(".py").write_text(script(notebook), encoding="utf-8")
+    pack(Path(app.outdir), known.root / "book" / "data")
+
+
+def pack(site: Path, data: Path) -> None:
+    """All readers' notebooks and the data that they read, in one archive."""
+    paths = {path.name: path for path in (site / "_sources" / "book").glob("*.ipynb")}
+    paths |= {f"data/{path.relative_to(data)}": path for path in data.rglob("*") if path.is_file()}
+    with zipfile.ZipFile(site / ARCHIVE, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, path in sorted(paths.items()):
+            entry = zipfile.ZipInfo(f"notebooks/{name}", (1988, 8, 1, 0, 0, 0))  # as ever the same
+            archive.writestr(entry, path.read_bytes(), zipfile.ZIP_DEFLATED)
 
 
 def setup(app):
