@@ -137,7 +137,7 @@ class _Trial(NamedTuple):
 
 def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
           plan=pick_and_place, **options) -> _Trial:  # fmt: skip
-    """One motion, planned by `plan`, of extents ``(runs, 2)``, degrees, of all laws side by side."""
+    """One motion of extents ``(runs, 2)``, degrees, by a `plan`, of all laws side by side."""
     steps = np.arange(
         -round(_AFTER / CONTROL_STEP), round((MOTION_SECONDS + _AFTER) / CONTROL_STEP)
     )
