@@ -22,7 +22,13 @@ def planted(monkeypatch):
     ]
     study = {"reference": "network", "budget": 100, "rows": rows}
     study["lines"] = dict.fromkeys(r for r, *_ in ROWS)
-    monkeypatch.setattr(results, "read", {"rivals": study}.__getitem__)
+    tuned = {
+        "network": (True, DAY), "small": (True, 0.5 * DAY[:5]), "worse": (True, 4 * DAY),
+        "large": (False, 0.1 * DAY), "ours": (True, 0.1 * DAY),
+    }  # fmt: skip
+    rows = {n: {"within": w, "errors": {"trajectory 6": e}} for n, (w, e) in tuned.items()}
+    tuned = {"reference": "network", "own": "ours", "rivals": rows}
+    monkeypatch.setattr(results, "read", {"rivals": study, "tuned": tuned}.__getitem__)
 
 
 def test_the_size_is_the_largest_within_the_budget():

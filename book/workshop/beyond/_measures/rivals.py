@@ -24,16 +24,16 @@ def row(rival: str, inputs: str = "positions", size=None) -> dict:
 
 
 def better(part: str = "trajectory 6") -> Measured:
-    """Share of the rivals within the budget that have less error than the network."""
-    study = results.read("rivals")
-    names = [name for name in study["lines"] if name != study["reference"]]
-    within = [r for r in map(row, names) if r["count"] <= study["budget"]]
-    network = np.array(row(study["reference"])["errors"][part])
-    mine = [np.array(r["errors"][part]) for r in within]
+    """Share of the tuned rivals within the budget that have less error than the tuned network."""
+    study = results.read("tuned")
+    network = np.array(study["rivals"][study["reference"]]["errors"][part])
+    aside = study["reference"], study["own"]
+    within = [name for name, r in study["rivals"].items() if r["within"] and name not in aside]
+    mine = [np.array(study["rivals"][name]["errors"][part]) for name in within]
     cells = [(errors, network[: len(errors)]) for errors in mine]
 
     def share(*drawn):
         return np.mean([median(a / b) < 1 for a, b in drawn], axis=0)
 
-    won = [one["rival"] for one, (a, b) in zip(within, cells) if np.median(a / b) < 1]
-    return judged(share, *cells, text=f"{len(won)} of {len(within)}: {', '.join(won)}")
+    won = [name for name, (a, b) in zip(within, cells) if np.median(a / b) < 1]
+    return judged(share, *cells, text=f"{len(won)} of {len(within)}: {', '.join(won) or 'none'}")
