@@ -1,0 +1,90 @@
+"""Put a release together in `dist/`: wheel, site, PDF, EPUB, notebooks, and their checksums.
+
+`python book/_ext/release.py` says what does not agree, and writes nothing then: the version of the
+package, of the citation and of the newest entry of the changelog, its date and the citation's, the
+tag at this commit, and a tree without changes. `make release` makes what is collected first.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import yaml
+
+ROOT = Path(__file__).parents[2]
+ENTRY = re.compile(r"^## (\S+) \((\d{4}-\d\d-\d\d)\)$", re.M)
+MADE = {"notebooks.zip": "html/notebooks.zip", "walk.pdf": "pdf/walk.pdf",
+        "evidence.pdf": "pdf/evidence.pdf", "book.epub": "epub/book.epub"}  # fmt: skip
+"""Names in the release, and where they are made below `_build`."""
+
+
+def git(root: Path, *words: str) -> str:
+    """What git says, or nothing where it fails."""
+    told = subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=False)
+    return told.stdout.strip() if told.returncode == 0 else ""
+
+
+def disagreements(root: Path) -> list[str]:
+    """What speaks against a release of a folder, a sentence each."""
+    package = tomllib.loads((root / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
+    newest = ENTRY.search((root / "CHANGELOG.md").read_text("utf-8"))
+    wrong = []
+    if newest is None:
+        wrong.append('CHANGELOG.md has no entry like "## 1.2.3 (2026-01-31)"')
+    elif newest[1] != package:
+        wrong.append(f"pyproject.toml has version {package}, CHANGELOG.md begins with {newest[1]}")
+    if str(cited["version"]) != package:
+        wrong.append(f"pyproject.toml has version {package}, CITATION.cff {cited['version']}")
+    if newest is not None and str(cited.get("date-released")) != newest[2]:
+        said = cited.get("date-released")
+        wrong.append(f"CHANGELOG.md is of {newest[2]}, CITATION.cff of {said}")
+    if f"v{package}" not in git(root, "tag", "--points-at", "HEAD").split():
+        wrong.append(f"this commit has no tag v{package}: git tag -a v{package}")
+    if git(root, "status", "--porcelain"):
+        wrong.append("there are changes that are not committed")
+    return wrong
+
+
+def collect(root: Path, folder: Path) -> list[Path]:
+    """Make the wheel and the site's archive, copy the rest, sum them up; what is there then.
+
+    Raises
+    ------
+    FileNotFoundError
+        If something has not been made; the folder is not touched.
+    """
+    built, version = root / "_build", git(root, "describe", "--tags", "--always")
+    missing = [str(path) for path in MADE.values() if not (built / path).is_file()]
+    missing += ["html/index.html"] * (not (built / "html" / "index.html").is_file())
+    if missing:
+        raise FileNotFoundError(f"not made yet, below _build: {', '.join(missing)}")
+    new = folder.with_name(f".{folder.name}")  # whole or not at all
+    shutil.rmtree(new, ignore_errors=True)
+    new.mkdir(parents=True)
+    wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new, root]
+    subprocess.run(wheel, check=True)
+    shutil.make_archive(str(new / f"site-{version}"), "zip", built / "html")
+    for name, path in MADE.items():
+        stem, dot, ending = name.rpartition(".")
+        shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")
+    made = sorted(new.iterdir())
+    sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in made]
+    (new / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")
+    shutil.rmtree(folder, ignore_errors=True)
+    new.rename(folder)
+    return sorted(folder.iterdir())
+
+
+if __name__ == "__main__":
+    if found := disagreements(ROOT):
+        sys.exit("".join(f"==> {one}\n" for one in found) + "==> No release was made")
+    if "--check" not in sys.argv[1:]:
+        for path in collect(ROOT, ROOT / "dist"):
+            print(f"==> {path.relative_to(ROOT)}, {path.stat().st_size / 1e6:.1f} MB")
