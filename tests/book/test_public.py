@@ -1,0 +1,149 @@
+"""What knows the repository's address, what a reader's notebook fetches, what a release asks."""
+
+import json
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import nbformat
+import pytest
+from book_pages import ROOT
+from packaging.requirements import Requirement
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_public
+import dd_reader
+import missing
+import release
+
+
+@pytest.mark.parametrize(
+    "origin, name",
+    [
+        ("https://github.com/someone/the-arm.git", "someone/the-arm"),
+        ("git@github.com:someone/the-arm", "someone/the-arm"),
+        ("ssh://git@github.com/someone/the-arm.git", "someone/the-arm"),
+        ("https://example.org/someone/the-arm.git", ""),
+        ("/somewhere/the-arm", ""),
+        ("https://github.com/someone/the-arm/and/more", ""),
+    ],
+)
+def test_the_address_is_githubs_or_none(origin, name, tmp_path, monkeypatch):
+    monkeypatch.delenv("GITHUB_REPOSITORY", raising=False)
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    subprocess.run(["git", "-C", tmp_path, "remote", "add", "origin", origin], check=True)
+    assert dd_public.repository.__wrapped__(tmp_path) == name
+    monkeypatch.setenv("GITHUB_REPOSITORY", "other/name")
+    assert dd_public.repository.__wrapped__(tmp_path) == "other/name"
+
+
+def test_the_site_of_a_repository(monkeypatch):
+    monkeypatch.delenv("DDLIB_SITE", raising=False)
+    assert dd_public.site("Someone/the-arm") == "https://someone.github.io/the-arm/"
+    assert dd_public.site("Someone/someone.github.io") == "https://someone.github.io/"
+    monkeypatch.setenv("DDLIB_SITE", "https://arm.example.org")
+    assert dd_public.site("Someone/the-arm") == "https://arm.example.org/"
+
+
+def test_buttons_lead_where_the_address_says():
+    found = dd_public.links("someone/the-arm", "book/feedback", "book/feedback.ipynb", True)
+    report, edit, colab = (url for _, _, url in found)
+    assert report.startswith("https://github.com/someone/the-arm/issues/new?title=")
+    assert "book/feedback" in report and "\n" not in report and " " not in report
+    assert edit == "https://github.com/someone/the-arm/edit/main/book/feedback.ipynb"
+    assert colab.endswith("/github/someone/the-arm/blob/notebooks/feedback.ipynb")
+    assert len(dd_public.links("someone/the-arm", "book/status", "book/status.md", False)) == 2
+
+
+def test_the_map_names_every_page():
+    text = dd_public.map_of(["book/b&c", "book/a"], "https://x.example/")
+    assert text.index("https://x.example/book/a.html") < text.index("book/b&amp;c.html</loc>")
+
+
+def test_only_what_is_absent_is_installed():
+    absent, other = missing.lacking(["numpy>=1", "no-such-package-at-all>=2", "pytest<1"])
+    assert list(map(Requirement, absent)) == [Requirement("no-such-package-at-all>=2")]
+    assert len(other) == 1 and other[0].startswith("pytest ") and "<1" in other[0]
+
+
+def test_the_first_cell_fetches_the_book(tmp_path):
+    """From a repository in place of the address; then a lesson's judge is found, and data."""
+    home = tmp_path / "repository"
+    for part in ("ddlib", "book/workshop", "book/_ext", "book/results", "book/data"):
+        shutil.copytree(ROOT / part, home / part, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "book/claims.yml", "book/cards.yml", "book/errata.yml"):
+        shutil.copyfile(ROOT / name, home / name)
+    me = ["git", "-C", home, "-c", "user.name=x", "-c", "user.email=x@example.org"]
+    for words in (["init", "-q"], ["add", "."], ["commit", "-qm", "x"]):
+        subprocess.run([*me, *words], check=True)
+    away = tmp_path / "elsewhere"
+    away.mkdir()
+    cell = dd_reader.SETUP.format(address=home.as_uri())
+    asked = "from workshop.chapters import feedback\nimport ddlib, os\n"
+    asked += "print(ddlib.__file__, os.path.isdir('data'))"
+    told = subprocess.run(
+        [sys.executable, "-P", "-c", f"{cell}\n{asked}"],
+        cwd=away,
+        env={"PATH": "/usr/bin:/bin", "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert told.returncode == 0, told.stderr
+    assert told.stdout.split()[-1] == "True"
+    alone = dd_reader.SETUP.format(address="")
+    told = subprocess.run(
+        [sys.executable, "-P", "-c", alone], cwd=away, env={}, capture_output=True, text=True
+    )
+    assert told.returncode and "make lab" in told.stderr
+
+
+@pytest.mark.built
+def test_all_notebooks_come_in_one_archive(built):
+    with zipfile.ZipFile(built / dd_reader.ARCHIVE) as archive:
+        names = archive.namelist()
+        assert archive.testzip() is None
+        notebook = nbformat.reads(archive.read("notebooks/feedback.ipynb"), as_version=4)
+    made = {f"notebooks/{path.name}" for path in (built / "_sources" / "book").glob("*.ipynb")}
+    assert made < set(names) and any(name.startswith("notebooks/data/") for name in names)
+    assert "the-book" in notebook.cells[2].source
+
+
+@pytest.fixture
+def tagged(tmp_path):
+    """A folder that could be released: what `release.disagreements` reads, committed and tagged."""
+    texts = {
+        "pyproject.toml": '[project]\nname = "x"\nversion = "1.2.0"\n',
+        "CITATION.cff": "version: 1.2.0\ndate-released: 2026-01-31\n",
+        "CHANGELOG.md": "# Changes\n\n## 1.2.0 (2026-01-31)\n\n## 1.1.0 (2025-01-31)\n",
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    me = ["git", "-C", tmp_path, "-c", "user.name=x", "-c", "user.email=x@example.org"]
+    for words in (["init", "-q"], ["add", "."], ["commit", "-qm", "x"], ["tag", "v1.2.0"]):
+        subprocess.run([*me, *words], check=True)
+    return tmp_path
+
+
+def test_a_release_needs_tag_citation_and_changelog_to_agree(tagged):
+    assert not release.disagreements(tagged)
+    (tagged / "CITATION.cff").write_text("version: 1.1.0\ndate-released: 2026-01-30\n")
+    told = " ".join(release.disagreements(tagged))
+    assert "CITATION.cff 1.1.0" in told and "2026-01-30" in told and "not committed" in told
+    (tagged / "CHANGELOG.md").write_text("# Changes\n\n## 1.3.0 (2026-02-01)\n")
+    assert "begins with 1.3.0" in " ".join(release.disagreements(tagged))
+    subprocess.run(["git", "-C", tagged, "tag", "-d", "v1.2.0"], check=True, capture_output=True)
+    assert "no tag v1.2.0" in " ".join(release.disagreements(tagged))
+
+
+def test_this_citation_and_changelog_agree():
+    told = release.disagreements(ROOT)
+    assert not [one for one in told if "tag" not in one and "committed" not in one]
+    json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+
+
+def test_an_incomplete_release_leaves_nothing(tagged):
+    with pytest.raises(FileNotFoundError, match=r"walk\.pdf"):
+        release.collect(tagged, tagged / "dist")
+    assert not list(tagged.glob("*dist"))
