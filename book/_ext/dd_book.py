@@ -23,7 +23,9 @@ KEPT_CACHES = 3
 SMALL = 1  # a batch has the root of so many times the pages that fall to a process
 
 # What a notebook's outcome depends on beside its own cells, and what the pages depend on.
-CELL_INPUTS = ("ddlib", "book/workshop", "book/results", "book/*.yml", "requirements.txt")
+# Questions for readers (quizzes.yml) are the pages' alone.
+READ = ("book/cards.yml", "book/claims.yml", "book/errata.yml", "book/questions.yml")
+CELL_INPUTS = ("ddlib", "book/workshop", "book/results", *READ, "requirements.txt")
 PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml")
 
 

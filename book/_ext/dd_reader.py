@@ -22,6 +22,7 @@ import nbformat
 from dd_failures import HYPHEN
 from dd_lessons import chapters
 from dd_public import address, repository
+from dd_quiz import with_markdown
 from pybtex.database import parse_file
 
 NOTE = (
@@ -186,7 +187,8 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
     plain, cells = Plain(page, known, glued), []
     for cell in notebook.cells:
         if cell.cell_type != "code":
-            cells.append(nbformat.v4.new_markdown_cell(plain.text(cell.source)))
+            told = plain.text(with_markdown(cell.source, known.root, page))
+            cells.append(nbformat.v4.new_markdown_cell(told))
             continue
         tags = cell.metadata.get("tags", [])
         if "hide-cell" in tags:

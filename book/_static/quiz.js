@@ -1,0 +1,98 @@
+// Questions one at a time, with an answer to choose and to check. Which of them were answered right
+// is kept in this browser, and nowhere else.
+(() => {
+  const KEY = "quiz";
+  const forms = [...document.querySelectorAll("form.quiz")];
+  if (!forms.length) return;
+  const make = (tag, set = {}, ...inside) => {
+    const made = Object.assign(document.createElement(tag), set);
+    made.append(...inside);
+    return made;
+  };
+
+  // A page opened from a folder, or with cookies off, may have no storage: then the page remembers.
+  let right = new Set();
+  const keep = (change) => {
+    change(right);
+    try {
+      const kept = new Set(JSON.parse(localStorage.getItem(KEY)));
+      change(kept);
+      localStorage.setItem(KEY, JSON.stringify([...kept]));
+      right = kept;
+    } catch {
+      // it is not kept
+    }
+  };
+  keep(() => {});
+
+  const told = make("p", { className: "quiz-told" });
+  told.setAttribute("role", "status");
+  const count = (first = "") => {
+    const done = forms.filter((form) => right.has(form.id)).length;
+    told.textContent = `${first}${done} of ${forms.length} answered right.`;
+    numbers.forEach((button, k) => {
+      const known = right.has(forms[k].id);
+      button.classList.toggle("done", known);
+      button.setAttribute("aria-label", `Question ${k + 1}${known ? ", answered right" : ""}`);
+    });
+  };
+
+  const questions = forms.map((form) => {
+    const whys = [...form.querySelectorAll(".why")];
+    const choices = [...form.querySelectorAll("label.choice")].map((label, k) => {
+      const input = make("input", { type: "radio", name: form.id, value: k });
+      label.prepend(input);
+      return input;
+    });
+    const missing = make("p", { className: "missing", textContent: "Choose an answer first." });
+    form.querySelector(".whys").append(missing);
+    form.querySelector(".whys").setAttribute("aria-live", "polite");
+    form.querySelector("details").open = true; // its summary is hidden, and so is each of its lines
+    form.querySelector("fieldset").append(make("button", { textContent: "Check" }));
+    const tell = (shown) => {
+      for (const line of [...whys, missing]) line.hidden = line !== shown;
+    };
+    const begin = () => {
+      const known = right.has(form.id);
+      choices.forEach((input, k) => {
+        input.checked = known && whys[k].classList.contains("right");
+      });
+      tell(known && whys.find((why) => why.classList.contains("right")));
+    };
+    form.addEventListener("change", () => tell(null));
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const why = whys[choices.findIndex((input) => input.checked)] ?? missing;
+      tell(why);
+      if (!why.classList.contains("right")) return;
+      keep((kept) => kept.add(form.id));
+      count();
+    });
+    begin();
+    return begin;
+  });
+
+  const numbers = forms.map((form, k) => make("button", { type: "button", textContent: k + 1 }));
+  const show = (at) => {
+    forms.forEach((form, k) => {
+      form.hidden = k !== at;
+      numbers[k].setAttribute("aria-pressed", String(k === at));
+    });
+  };
+  numbers.forEach((button, k) => button.addEventListener("click", () => show(k)));
+  const erase = make("button", { type: "button", textContent: "Erase my answers" });
+  erase.addEventListener("click", () => {
+    keep((kept) => forms.forEach((form) => kept.delete(form.id)));
+    for (const begin of questions) begin();
+    count("Erased. ");
+  });
+  const group = make("div", { className: "quiz-numbers" }, ...numbers);
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "Questions");
+  forms[0].before(group);
+  forms.at(-1).after(make("div", { className: "quiz-foot" }, told, erase));
+  document.documentElement.dataset.quiz = "";
+  const open = forms.findIndex((form) => !right.has(form.id));
+  show(Math.max(open, 0));
+  count();
+})();
