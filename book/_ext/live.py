@@ -1,0 +1,300 @@
+"""*Run this page*: `python book/_ext/live.py --mirror FOLDER_OR_ADDRESS`.
+
+Copies the built site and adds to its lessons what runs their open cells in the browser: Pyodide's
+core from npm, and from the mirror the wheels that its `pyodide-lock.json` names, each by its
+SHA-256. `ddlib`, the workshop and two pure packages come from here. The site that `make book`
+writes stays as it is; what a page loads, it loads on a click and from its own site.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import base64
+import hashlib
+import io
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import urllib.error
+import urllib.request
+import zipfile
+from importlib.metadata import distribution
+from pathlib import Path
+
+import nbformat
+from dd_lessons import chapters
+from dd_reader import FOLDED, has_script
+
+ROOT = Path(__file__).parents[2]
+PAGE = Path(__file__).with_name("live_page")  # what the page itself runs
+BUILD = ROOT / "_build"
+VERSION = "314.0.3"
+TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
+CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+LOCK = "pyodide-lock.json"
+WHEELS = ("numpy", "scipy", "sympy", "matplotlib")  # and what these depend on
+PURE = {"lazy-loader": [], "control": ["numpy", "scipy", "matplotlib"]}  # from this environment
+FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
+STILL = "ddlib/widgets"  # figures to handle stay as they were built
+DATA = re.compile(r"""["']data/([\w.-]+)["']""")
+
+
+class Refused(RuntimeError):
+    """Something is missing, or is not as its hash says."""
+
+
+def sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def needed(packages: dict, wanted=WHEELS) -> list[str]:
+    """Names of packages of a lock, with all that they depend on."""
+    found: list[str] = []
+    names = list(wanted)
+    while names:
+        name = names.pop()
+        if name not in found:
+            found.append(name)
+            names += packages[name]["depends"]
+    return sorted(found)
+
+
+def read(mirror: str, name: str) -> bytes | None:
+    """A file of the mirror, a folder or an address; None if it has none of that name."""
+    if not re.match(r"https?://", mirror):
+        path = Path(mirror).expanduser() / name
+        return path.read_bytes() if path.is_file() else None
+    try:
+        with urllib.request.urlopen(f"{mirror.rstrip('/')}/{name}", timeout=60) as opened:
+            return opened.read()
+    except urllib.error.HTTPError:
+        return None
+
+
+def take(entries: list[dict], mirror: str, kept: Path) -> None:
+    """Wheels of a lock into a folder: all of them, or none that is not as the lock says."""
+    problems, taken = [], {}
+    for entry in entries:
+        name, wanted = entry["file_name"], entry["sha256"]
+        if (kept / name).is_file() and sha256((kept / name).read_bytes()) == wanted:
+            continue
+        content = read(mirror, name) if mirror else None
+        if content is None:
+            problems.append(f"{name} is missing")
+        elif sha256(content) != wanted:
+            problems.append(f"{name} has SHA-256 {sha256(content)}, the lock wants {wanted}")
+        else:
+            taken[name] = content
+    if problems:
+        where = f"MIRROR={mirror}" if mirror else "no MIRROR is set"
+        wanted = f"a folder or an address with the packages of Pyodide {VERSION} is needed"
+        raise Refused("\n    ".join([f"{where}: {wanted}.", *problems]))
+    kept.mkdir(parents=True, exist_ok=True)
+    for name, content in taken.items():
+        part = kept / f"{name}.part"
+        part.write_bytes(content)
+        part.replace(kept / name)
+
+
+def core(kept: Path) -> None:
+    """Pyodide's core and its lock, by npm."""
+    if all((kept / name).is_file() for name in (*CORE, LOCK)):
+        return
+    npm = shutil.which("npm")
+    if npm is None:
+        raise Refused("npm is missing: Pyodide's core comes by it (https://nodejs.org)")
+    kept.mkdir(parents=True, exist_ok=True)
+    made = subprocess.run(
+        [npm, "pack", "--silent", f"pyodide@{VERSION}"], cwd=kept, capture_output=True, text=True
+    )
+    archive = kept / f"pyodide-{VERSION}.tgz"
+    if made.returncode or not archive.is_file():
+        raise Refused(f"npm pack pyodide@{VERSION}: {made.stderr.strip() or 'nothing came'}")
+    if base64.b64encode(hashlib.sha512(archive.read_bytes()).digest()).decode() != TARBALL:
+        archive.unlink()
+        raise Refused(f"pyodide {VERSION} of npm is not the archive with SHA-512 {TARBALL}")
+    with tarfile.open(archive) as packed:
+        for name in (*CORE, LOCK):
+            (kept / name).write_bytes(packed.extractfile(f"package/{name}").read())
+    archive.unlink()
+
+
+def zipped(files: dict[str, bytes]) -> bytes:
+    """A zip with the same bytes for the same files."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as archive:
+        for name in sorted(files):
+            archive.writestr(zipfile.ZipInfo(name), files[name], zipfile.ZIP_DEFLATED)
+    return made.getvalue()
+
+
+def sources(folder: Path, under: Path) -> dict[str, bytes]:
+    """Modules of a package and their stubs, by their paths."""
+    paths = [p for p in folder.rglob("*.py*") if p.suffix in {".py", ".pyi"}]
+    return {path.relative_to(under).as_posix(): path.read_bytes() for path in paths}
+
+
+def installed(name: str) -> tuple[str, dict[str, bytes]]:
+    """Version and modules of a package of this environment, as its own list of hashes has them."""
+    found = distribution(name)
+    files = {}
+    for path in found.files:
+        if path.suffix not in {".py", ".pyi"} or "tests" in path.parts or ".." in path.parts:
+            continue
+        content = path.locate().read_bytes()
+        told = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode()
+        if path.hash is None or told.rstrip("=") != path.hash.value:
+            raise Refused(f"{name}: {path} is not as it was installed")
+        files[path.as_posix()] = content
+    return found.version, files
+
+
+def wheel(name: str, version: str, files: dict[str, bytes], depends: list, out: Path) -> dict:
+    """Write a wheel; returns its entry for the lock."""
+    plain = name.replace("-", "_")
+    info = f"{plain}-{version}.dist-info"
+    told = {
+        f"{info}/METADATA": f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n",
+        f"{info}/WHEEL": "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+        f"{info}/RECORD": "",
+    }
+    content = zipped({**files, **{path: text.encode() for path, text in told.items()}})
+    file_name = f"{plain}-{version}-py3-none-any.whl"
+    (out / file_name).write_bytes(content)
+    return {
+        "name": name, "version": version, "file_name": file_name, "install_dir": "site",
+        "sha256": sha256(content), "package_type": "package", "imports": [plain],
+        "depends": depends, "unvendored_tests": False,
+    }  # fmt: skip
+
+
+def runtime(root: Path, mirror: str, kept: Path, out: Path) -> dict[str, int]:
+    """All that the worker loads, into a folder; returns megabytes, at first and in all."""
+    core(kept)
+    lock = json.loads((kept / LOCK).read_text(encoding="utf-8"))
+    names = needed(lock["packages"])
+    packages = {name: lock["packages"][name] for name in names}
+    take(list(packages.values()), mirror, kept)
+    pyodide = out / "pyodide"
+    pyodide.mkdir(parents=True)
+    for name in (*CORE, *(entry["file_name"] for entry in packages.values())):
+        shutil.copyfile(kept / name, pyodide / name)
+    for name, depends in PURE.items():
+        packages[name] = wheel(name, *installed(name), depends, pyodide)
+    ours = sources(root / "ddlib", root)
+    ours = {path: content for path, content in ours.items() if not path.startswith(STILL)}
+    depends = [name for name in FIRST if name != "ddlib"]
+    packages["ddlib"] = wheel("ddlib", distribution("ddlib").version, ours, depends, pyodide)
+    workshop = sources(root / "book" / "workshop", root / "book")
+    (out / "workshop.zip").write_bytes(zipped(workshop))
+    (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
+    for path in PAGE.iterdir():
+        if path.is_file():
+            shutil.copyfile(path, out / path.name)
+    at_first = [*CORE, LOCK, *(packages[name]["file_name"] for name in FIRST)]
+    size = {path: path.stat().st_size for path in out.rglob("*") if path.is_file()}
+    return {
+        "first": math.ceil(sum(size[pyodide / name] for name in at_first) / 1e6),
+        "all": math.ceil(sum(size.values()) / 1e6),
+    }
+
+
+def kind(cell) -> str:
+    """What a code cell is on a page that runs: "open", "answer", "check", or ""."""
+    answer = re.search(r"^mine = \.\.\.", cell.source, re.MULTILINE)
+    if not {*FOLDED, "hide-cell"} & set(cell.metadata.get("tags", [])):
+        return "answer" if answer else "open"
+    judges = "hide-input" in cell.metadata["tags"] and re.search(r"\bmine\b", cell.source)
+    return "check" if judges else ""
+
+
+def needs(source: str) -> str:
+    """What a cell imports by itself that no browser has."""
+    nodes = list(ast.walk(ast.parse(source)))
+    named = [alias.name for n in nodes if isinstance(n, ast.Import) for alias in n.names]
+    named += [n.module or "" for n in nodes if isinstance(n, ast.ImportFrom)]
+    return "torch" if "torch" in {name.partition(".")[0] for name in named} else ""
+
+
+def live_cells(notebook) -> list[dict]:
+    """The cells of a notebook that a reader of the page can run, in order."""
+    return [
+        {"id": cell.id, "kind": kind(cell), "source": cell.source, "needs": needs(cell.source)}
+        for cell in notebook.cells
+        if cell.cell_type == "code" and kind(cell)
+    ]
+
+
+def live_page(text: str, notebook, page: str, megabytes: list[int]) -> str:
+    """A built page with its cells marked, and with the script that makes them run."""
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    before, *parts = re.split(r'(?=<div class="cell )', text)
+    if len(parts) != len(code):
+        raise Refused(f"{page} has {len(parts)} cells, its notebook {len(code)}: make book first")
+    for k, cell in enumerate(code):
+        if kind(cell):
+            parts[k] = parts[k].replace("<div", f'<div data-live="{cell.id}"', 1)
+    cells = live_cells(notebook)
+    told = {
+        "cells": cells,
+        "data": sorted({name for cell in cells for name in DATA.findall(cell["source"])}),
+        "megabytes": megabytes,
+        "notebook": f"../_sources/{page}.ipynb",
+    }
+    island = json.dumps(told).replace("</", "<\\/")
+    added = (
+        '<link rel="stylesheet" href="../_static/live/live.css">'
+        '<script defer src="../_static/live/live.js"></script>'
+        f'<script type="application/json" id="live-page">{island}</script>'
+    )
+    return "".join([before, *parts]).replace("</body>", f"{added}\n</body>", 1)
+
+
+def write(root: Path, site: Path, mirror: str, kept: Path, out: Path) -> list[str]:
+    """The site with its lessons live, in a folder of its own: whole, or as it was before."""
+    if not (site / "index.html").is_file():
+        raise Refused(f"{site} has no pages: make book first")
+    part = out.with_name(f"{out.name}.part")
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        shutil.copytree(site, part)
+        folder = part / "_static" / "live"
+        sizes = runtime(root, mirror, kept, folder)
+        pages = []
+        for path in chapters(root):
+            page = path.relative_to(root).with_suffix("").as_posix()
+            notebook = nbformat.read(path, as_version=4)
+            target = part / f"{page}.html"
+            if not target.is_file() or not has_script(notebook):
+                continue
+            text = target.read_text(encoding="utf-8")
+            text = live_page(text, notebook, page, [sizes["first"], sizes["all"]])
+            target.write_text(text, encoding="utf-8")
+            pages.append(page)
+            for name in DATA.findall("\n".join(c.source for c in notebook.cells)):
+                (folder / "data").mkdir(exist_ok=True)
+                shutil.copyfile(root / "book" / "data" / name, folder / "data" / name)
+        shutil.rmtree(out, ignore_errors=True)
+        part.rename(out)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    return pages
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
+    parser.add_argument("--mirror", default="", help="folder or address with Pyodide's packages")
+    parser.add_argument("--html", default=BUILD / "html", type=Path, help="the site as built")
+    parser.add_argument("--out", default=BUILD / "live", type=Path, help="where the new one goes")
+    options = parser.parse_args()
+    try:
+        done = write(ROOT, options.html, options.mirror, BUILD / "pyodide" / VERSION, options.out)
+    except (Refused, OSError) as error:
+        sys.exit(f"==> FAILED: {error}")
+    print(f"==> {len(done)} pages run in the browser. Serve them, and open the first:")
+    print(f"    python -m http.server --directory {options.out}")

@@ -1,0 +1,221 @@
+"""*Run this page*: what stands in for PyTorch and for widgets, which the browser does not have.
+
+`train_ensemble` descends by the sums of its own module, in numpy. What else needs PyTorch says so
+when it is used; a widget takes everything and does nothing: the page's own stays as built.
+"""
+
+from __future__ import annotations
+
+import importlib.machinery
+import sys
+import types
+from contextlib import contextmanager
+
+import numpy as np
+
+OURS = ("ddlib", "workshop")
+ABSENT = ("torch", "yaml", "joblib", "sklearn", "traitlets", "IPython")
+"""What ours may import and then not use; only in a cell itself is it an error to import it."""
+
+INERT = ("ddlib.widgets", "tqdm")
+"""Modules in which every name is a class that takes anything and does nothing."""
+
+DESCENT = "ddlib.learning.descent"
+
+
+class _Absent(type):
+    """A name of a package that is not there: it can be inherited from, not called."""
+
+    def __getattr__(cls, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return _Absent(name, (), {"package": cls.package})
+
+    def __call__(cls, *args, **options):
+        raise ModuleNotFoundError(f"needs {cls.package}", name=cls.package)
+
+
+class _Inert(type):
+    def __iter__(cls):
+        return iter(())
+
+
+class Inert(metaclass=_Inert):
+    """A widget, or a progress bar: it stands for nothing and takes everything."""
+
+    def __init__(self, *args, **options):
+        pass
+
+    def __call__(self, *args, **options):
+        return self
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return False
+
+    def __add__(self, other):
+        return self
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return Inert()
+
+
+class _Stub(types.ModuleType):
+    """A module whose names are made when they are asked for."""
+
+    def __init__(self, name, make):
+        super().__init__(name)
+        self.__path__ = []
+        self._make = make
+
+    def __getattr__(self, name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self._make(name)
+
+
+def _absent(package: str) -> _Stub:
+    """A package that is not there; PyTorch answers what modules ask while they are imported."""
+    stub = _Stub(package, lambda name: _Absent(name, (), {"package": package}))
+    stub.get_ipython = lambda: None  # matplotlib asks for it where IPython is imported
+    if package == "torch":
+        stub.get_num_threads, stub.set_num_threads = lambda: 1, lambda count: None
+        stub.no_grad = stub.inference_mode = lambda *mode: lambda function: function
+        none = types.SimpleNamespace(is_available=lambda: False)
+        stub.backends = types.SimpleNamespace(mkldnn=none)
+    return stub
+
+
+class Finder:
+    """Imports modules of ours with stubs for what is absent, and inert modules."""
+
+    deep = 0
+
+    def find_spec(self, name, path=None, target=None):
+        if any(name == inert or name.startswith(f"{inert}.") for inert in INERT):
+            return importlib.machinery.ModuleSpec(name, self, is_package=True)
+        if name.partition(".")[0] not in OURS:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path, target)
+        if spec is not None and hasattr(spec.loader, "exec_module"):
+            usual = spec.loader.exec_module
+            spec.loader.exec_module = lambda module: self._ours(module, usual)
+        return spec
+
+    def create_module(self, spec):
+        return _Stub(spec.name, lambda name: _Inert(name, (Inert,), {}))
+
+    def exec_module(self, module):
+        pass
+
+    def _ours(self, module, usual):
+        with self.stubs():
+            usual(module)
+        if module.__name__ == DESCENT:
+            ours = {"Descent": Descent, "prepare": _prepare, "kernels": lambda: "numpy"}
+            vars(module).update(ours, ThreadPoolExecutor=_Serial)
+
+    @contextmanager
+    def stubs(self):
+        Finder.deep += 1
+        for name in ABSENT:
+            if name not in sys.modules:
+                sys.modules[name] = _absent(name)
+        try:
+            yield
+        finally:
+            Finder.deep -= 1
+            if not Finder.deep:
+                stubs = [n for n, module in sys.modules.items() if isinstance(module, _Stub)]
+                for name in stubs:
+                    if name.partition(".")[0] in ABSENT:
+                        del sys.modules[name]
+
+
+class _Serial:
+    """In place of a pool of threads: the page has one."""
+
+    def __init__(self, workers):
+        pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return False
+
+    map = staticmethod(map)
+
+
+def _prepare(x, y):
+    x = np.asarray(x, dtype=float).reshape(len(x), -1)
+    return np.vstack([x.T, np.ones(len(x))]), np.swapaxes(np.asarray(y, dtype=float), -1, -2)
+
+
+def _sigmoid(x):
+    with np.errstate(over="ignore"):
+        return 1.0 / (1.0 + np.exp(-x))
+
+
+class Descent:
+    """`ddlib.learning.Descent` by numpy, in double precision."""
+
+    def __init__(self, weights, x, y, eps, momentum):
+        from ddlib.learning.network import rows
+
+        n, self.hidden = weights.hidden_bias.shape
+        self.shape, self.members = weights.hidden_weights.shape[-2:], n
+        first = rows(weights)
+        self.rows = first.shape[1]
+        self.first = first.reshape(n * self.rows, -1).astype(float)
+        self.second = weights.output_weights.astype(float)
+        self.inputs, self.targets = _prepare(x, y)
+        self._back = np.ascontiguousarray(self.inputs.T)
+        eps, momentum = (np.broadcast_to(value, n) for value in (eps, momentum))
+        self.eps = np.repeat(eps, self.rows)[:, None], eps[:, None, None]
+        self.momentum = np.repeat(momentum, self.rows)[:, None], momentum[:, None, None]
+        self.steps = np.zeros_like(self.first), np.zeros_like(self.second)
+
+    def _activities(self, inputs):
+        net = (self.first @ inputs).reshape(self.members, self.rows, -1)
+        hidden = _sigmoid(net[:, : self.hidden])
+        return hidden, _sigmoid(net[:, self.hidden :] + self.second @ hidden)
+
+    def epoch(self, wanted=False, most=1.0):
+        hidden, output = self._activities(self.inputs)
+        delta = output - self.targets
+        errors = self._mean_square(delta) if wanted else None
+        delta *= output * (1 - output)
+        back = np.swapaxes(self.second, 1, 2) @ delta
+        back *= hidden * (1 - hidden)
+        net = np.concatenate([back, delta], axis=1).reshape(len(self.first), -1)
+        gradients = net @ self._back, delta @ np.swapaxes(hidden, 1, 2)
+        parts = self.steps, (self.first, self.second), gradients, self.eps, self.momentum
+        for step, weight, gradient, eps, alpha in zip(*parts):
+            step *= np.minimum(alpha, most)
+            step -= eps * gradient
+            weight += step
+        return errors
+
+    def mean_square(self, inputs, targets):
+        return self._mean_square(self._activities(inputs)[1] - targets)
+
+    def _mean_square(self, delta):
+        errors = np.square(delta).mean(-1)
+        fine = np.isfinite(self.first).all(1).reshape(-1, self.rows).all(1)
+        errors[~(fine & np.isfinite(self.second).all((1, 2)))] = np.nan
+        return errors
+
+    def weights(self):
+        from ddlib.learning.network import _from_rows
+
+        first = self.first.reshape(self.members, self.rows, -1).copy()
+        return _from_rows(first, self.second.copy(), self.shape)
+
+
+def start() -> None:
+    sys.meta_path.insert(0, Finder())
