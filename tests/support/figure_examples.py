@@ -202,7 +202,7 @@ EXAMPLES = {
         0.02, ("RMSS", "numbers"), "Two rivals.",
     ),
     "against": partial(
-        run_time.against,
+        run_time._against,
         {"RMSS": MEMBERS, "loop, mm": {"21": (np.ones(2) * 5, np.ones(2) * 6)}}, "error, mm",
         "Two predictors.", ("loop, mm",),
     ),

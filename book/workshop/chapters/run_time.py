@@ -1,4 +1,4 @@
-"""*Torques at run time*: what predicts the error of the hand (mm), and when loops turn."""
+"""*Torques at run time*: numbers, figures and checks; what predicts the hand's error (mm)."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
-from ddlib.setups import JOINT_DAMPING
-from ddlib.tables import significant
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.tables import quote, significant
+from workshop.beyond.figures import maps
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence import claims
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 
 _MARKERS = "osD^v"
 
 NETWORK = "network, window 21"  # the paper's best window
 
-PREDICTORS = ("RMSS", "through the loop", "planned")  # of a network's end-point error
+_SETUPS = (JOINT_DAMPING.name, STATE_FEEDBACK.name)
 
 # Rivals that see the same windows of 21
 _KINDS = (
@@ -33,7 +37,7 @@ _KINDS = (
 )  # fmt: skip
 
 
-def against(
+def _against(
     panels: dict[str, dict[str, tuple]], label: str, alt: str, equal: tuple[str, ...]
 ) -> Illustration:
     """A quantity over its predictors, both logarithmic: a panel each, a dot for each member.
@@ -169,3 +173,105 @@ def onset() -> Measured:
     pair = onsets()
     told = " and ".join(significant(float(np.median(x)), 2) for x in pair)
     return judged(lambda drawn: median(drawn[0] / drawn[1]), pair, text=f"shares {told}")
+
+
+# --- the lesson ---------------------------------------------------------------------------
+
+
+def _median(line: str, setup: str = JOINT_DAMPING.name, part: str = "whole") -> float:
+    return float(np.median(errors(line, setup, part)))
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    for tail, setup in zip(("", "-sf"), _SETUPS):
+        found, copies = _reading(setup), results.read("loop-conditions")["copies"][setup]
+        for line, name in (("none", "none"), (NETWORK, "network"), ("exact", "exact")):
+            quote(f"run-time-{name}{tail}", _median(line, setup))
+        quote(f"run-time-copy-slow{tail}", np.median(copies["0.1"]))
+        for line in ("exact", "network"):
+            at = found["corner"]["rounded"]["0.1"][line]
+            quote(f"run-time-rounded-{line}{tail}", np.median(at))
+        quote(f"run-time-late-pole{tail}", found["inside"]["network, 5"]["poles"][0][0])
+        one = results.read("run-time")["shares"].index(1.0)
+        stopped = np.array(found["inside"]["network, 5"]["stopped"])
+        quote(f"run-time-late-stopped{tail}", 100 * np.mean(stopped[:, one]))
+        quote(f"run-time-bound-share{tail}", 100 * np.max(found["bound"]["share"]))
+    quote("run-time-members", len(errors()))
+    quote("run-time-runs", results.read("run-time")["points"] ** 2)
+    for line in ("identified", "Lagrangian network"):
+        quote(f"run-time-{line.split()[0]}", _median(line))
+    for line in ("network", "none", "exact, window, knows"):
+        heavy = np.median(_reading()["changed"]["load"]["10"][line])
+        quote(f"run-time-load-{line.split()[-1]}", heavy)
+    quote("run-time-rank", predicts(width=21).value)
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+
+    def both(first: str, second: str, share: float):
+        pairs = [[resampled(errors(line, s)) for line in (first, second)] for s in _SETUPS]
+        return np.all([a < share * b for a, b in pairs], 0)
+
+    stated("run-time-helps", both(NETWORK, "none", 0.5))
+    stated("run-time-equations-do-not", both("none", "exact", 2.0))
+    stated("run-time-behind", both(NETWORK, "exact", 1.0))
+    known = [both(line, NETWORK, 1.0) for line in ("identified", "Lagrangian network")]
+    stated("run-time-structure-wins", np.all(known, 0))
+    names = ("run-time-copy", "run-time-copy-state-feedback")
+    stated("run-time-copy", all(claims.measured(n).replicates.max() < 1 for n in names))
+    turned = [_reading(s)["corner"]["rounded"]["0.1"] for s in _SETUPS]
+    pairs = [[resampled(x[line]) for line in ("exact", "network")] for x in turned]
+    stated("run-time-turned", np.all([a < 0.2 * b for a, b in pairs], 0))
+    heavy = [_reading(s)["changed"]["load"]["10"] for s in _SETUPS]
+    pairs = [[resampled(x[line]) for line in ("network", "none")] for x in heavy]
+    stated("run-time-heavy", np.all([a < b for a, b in pairs], 0))
+    stated("run-time-some", predicts(width=21).replicates > 0)
+    first, second = (_reading(s)["inside"]["network, 5"]["poles"][0][0] for s in _SETUPS)
+    stated("run-time-margins", first > 1 > second)
+    stated("run-time-bounded", max(np.max(_reading(s)["bound"]["share"]) for s in _SETUPS) < 1)
+
+
+def _square_figure() -> Illustration:
+    """The first figure: the end-point error over the square of extents, by four feedforwards."""
+    study = results.read("run-time")
+    lines = {"no feedforward": "none", "network, window 21": NETWORK,
+             "exact equations": "exact", "exact, through a window": "exact, window 21"}  # fmt: skip
+    shape = (study["points"],) * 2
+    square = _reading()["square"]
+    grids = {title: np.reshape(square[line]["map"], shape) for title, line in lines.items()}
+    told = ", ".join(f"{title}, median {_median(line):.1f} mm" for title, line in lines.items())
+    labels = ("extent of the shoulder, °", "extent of the elbow, °", "end-point error, mm")
+    edge = np.array(study["extents"])[: study["points"], 1]
+    return maps(edge, grids, labels, f"Maps over the extents of shoulder and elbow: {told}.")
+
+
+_SHOWN = {"square": _square_figure, "against": _against}
+
+
+def show(name: str, *what, **how) -> Illustration:
+    """A figure of the lesson or its evidence page."""
+    return _SHOWN[name](*what, **how)
+
+
+def check(number: int, mine, error=None) -> None:
+    """Judge an answer to an exercise; `error` gives the end-point error (mm) of an answer."""
+    if number == 1:
+        zeta = 5.3 / (2 * np.sqrt(750.0 * 6.5))
+        rho = np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
+        gain = (1 + rho) / (1 - rho) / 750
+        slips = [(1 / 750, "so far goes a torque that stays; one in step with the loop goes on."),
+                 ((1 + rho) / 750, "that is the first swing; all others follow.")]  # fmt: skip
+        judge(mine, gain, "most of it is ringing.", slips, "Add up all swings of a step's answer.")
+    elif number == 2:
+        slips = [(1, "then the torque would do nothing, and it pushes the wrong way.")]
+        otherwise = "what is missing is the torque needed minus the torque given."
+        judge(mine, error(-1) / error(0), "twice the torque is missing.", slips, otherwise, 0.15)
+    else:
+
+        def short(seconds):
+            return 0.01 < seconds <= 0.5 and error(seconds) < 0.5 < error(seconds / 2)
+
+        otherwise = "above 0.5 mm, or half of it would do as well. What do the motors give?"
+        judge(mine, short, "the motors can give what is asked.", [], otherwise)
