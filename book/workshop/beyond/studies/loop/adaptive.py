@@ -33,7 +33,7 @@ _BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
 _PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
-_CORNER = 0.1  # s over which the corners of a rounded plan are averaged, as in `_run_time`
+_CORNERS = (0.0, 0.1, 0.2)  # s over which a plan's corners are averaged, as in `_run_time`
 
 # What is added to the set-up's effects.
 _BED = {
@@ -81,20 +81,19 @@ def _taken_up(setup: Setup, laws, before, after, seed: int, **options) -> list:
     return found + batch._trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
 
 
-def _rounded(extents, t) -> Trajectory:
-    """The family's plan with rounded corners, at the samples `t`."""
-    first = round((t[0] + REST) / CONTROL_STEP)
-    return Trajectory(*(x[..., first : first + len(t), :] for x in rounded(extents, _CORNER)))
+def _again(setup: Setup, seconds: float, seed: int = 1) -> dict:
+    """Errors along the same motions before and after a load, corners averaged over so many seconds.
 
-
-def _again(setup: Setup, plan, seed: int = 1) -> dict:
-    """Errors along the same motions before and after a load, by the family's plan or `_rounded`.
-
-    A rounded plan is followed itself, without the model that smooths a jump.
+    A plan without a jump is followed itself, without the model that smooths one.
     """
+
+    def plan(extents, t):
+        first = round((t[0] + REST) / CONTROL_STEP)
+        return Trajectory(*(x[..., first : first + len(t), :] for x in rounded(extents, seconds)))
+
     start = np.broadcast_to(_BEGIN * batch.TRUTH, (_SEEDS, 3))
     laws = {**batch._fixed(setup), **{law: batch.make(law, setup, start) for law in _LAWS}}
-    if plan is _rounded:
+    if seconds:
         laws = {n: x.controller if isinstance(x, batch._Behind) else x for n, x in laws.items()}
     extents = batch._drawn(_SEEDS, TRIALS, seed)
     found = _taken_up(setup, laws, extents, extents, seed, plan=plan)
@@ -319,8 +318,8 @@ def _adaptive() -> dict:
     return {
         "course": {name: _course(s) for name, s in both.items()},
         "same motions": {
-            plan: {name: _again(s, made) for name, s in both.items()}
-            for plan, made in (("as it is", pick_and_place), ("rounded", _rounded))
+            f"{seconds:g}": {name: _again(s, seconds) for name, s in both.items()}
+            for seconds in _CORNERS
         },
         "loads": {
             JOINT_DAMPING.name: _loads(JOINT_DAMPING, _DELAYS),
