@@ -212,7 +212,7 @@ EXAMPLES = {
     ),
     "paths": partial(stirring.paths, WANTED, {"none": OFF, "exact": WANTED}, 10, "Two paths."),
     "two_families": partial(stirring.two_families, {"first": STATES, "second": -STATES}, "Clouds."),
-    "verdicts": partial(verdict.verdicts, {"section 2": {"reproduced": 3, "refuted": 1}}),
+    "verdicts": partial(verdict._sections, {"section 2": {"reproduced": 3, "refuted": 1}}),
     "maps": partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
 }  # fmt: skip
 

@@ -1,20 +1,27 @@
-"""*The verdict*: verdicts by section and by reading; how far they hang on it, an arm, a draw."""
+"""The lesson *Verdict of the book*, and its evidence: verdicts by section, reading, arm, draw."""
 
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from ddlib._check import one_of
 from ddlib.figures import COLOURS, INK, Illustration, illustrate, legend_above
-from ddlib.tables import Table, typeset
+from ddlib.setups import SETUPS, WINDOWS
+from ddlib.tables import Table, quote, typeset
+from workshop.beyond._measures import rivals
+from workshop.chapters import excitation
+from workshop.chapters.exercises import judge
+from workshop.report import results
+from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence import cards, claims
 from workshop.report.evidence.cards import of_kind, tally, worded
 from workshop.report.evidence.claims import SECTIONS, Claim, load
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 from workshop.report.evidence.wall import window
 
@@ -31,8 +38,140 @@ _DIGIT = 5.4  # Width of a digit in a bar, points
 
 _SHUFFLES = 10_000  # permutations that stand for chance
 
+# Cards of the first figure, one for each word while it has that word
+_EXAMPLES = ("table-general", "figure-4-1", "test-21", "tradeoff", "conventional-filters")
 
-def by_section() -> dict[str, dict[str, int]]:
+# Rows of the ledger that the verdict sums up, and the words that go with some of them
+_RIGHT = (
+    "unmodelled-error-real-arm",
+    "differencing",
+    "better-on-training-damping",
+    "training-falls-damping",
+    "table-degrades",
+    "vast-amount",
+    "generalised-well",
+    "parity-network",
+)
+_WRONG = (
+    "conventional-filters",
+    "conventional-filters-inertia-11",
+    "memorises",
+    "cancelling-null",
+    "tradeoff",
+    "network-against-identification",
+    "network-against-linear",
+    "hidden-units-contribute-test",
+)
+
+
+def _verdicts(*ids: str) -> list[str]:
+    known = {claim.id: claim.verdict for claim in load()}
+    return [known[name] for name in ids]
+
+
+def _orders() -> dict[str, float]:
+    """How often networks drawn one of each window have the printed order, by reading."""
+    cells, found = results.read("table-4-1")["setups"], {}
+    for name in SETUPS:
+        short, middle, long = (np.array(cells[name][str(w)]["errors"]["test"]) for w in WINDOWS)
+        above = [(other > middle[:, None]).mean(1) for other in (short, long)]
+        found[name] = float((above[0] * above[1]).mean())
+    return found
+
+
+def _velocity() -> tuple[np.ndarray, list[float]]:
+    """Shares of velocity filters in hidden units of window 21, and means under each null."""
+    row = trial.row(21)
+    nulls = [trial.share(x, "hidden", ["velocity"]).mean() for x in trial.matched(row).values()]
+    return trial.share(row["real"], "hidden", ["velocity"]), nulls
+
+
+def _quoted() -> None:
+    """Numbers of the lesson."""
+    sentences = of_kind("system", "methods")
+    quote("verdict-claims", len(sentences))
+    for name, total in tally(sentences).items():
+        quote(f"verdict-{name.replace(' ', '-')}", total)
+    without, friction = claims.measured("unmodelled-error-real-arm").text.split(", ")
+    quote("verdict-rigid", without.split()[0])
+    quote("verdict-friction", friction.split()[0])
+    real, nulls = _velocity()
+    quote("verdict-velocity", 100 * real.mean())
+    quote("verdict-velocity-least", 100 * min(nulls))
+    quote("verdict-velocity-most", 100 * max(nulls))
+    quote("verdict-inertia-off", 100 * trial.calibrated("inertia", 11).value)
+    lost = excitation.cell("state feedback", 1.0)
+    quote("verdict-lost", np.median(lost["descent"]["M11"][-1]))
+    quote("verdict-lost-arm", lost["arm"])
+    orders = _orders().values()
+    quote("verdict-order-least", 100 * min(orders))
+    quote("verdict-order-most", 100 * max(orders))
+    tuned = results.read("tuned")["rivals"]
+    for name in ("network of 1988", "linear filter", "identified"):
+        errors = tuned[name]["errors"]["trajectory 6"]
+        quote(f"verdict-six-{name.split()[0]}", np.median(errors))
+    fewer, all_of_them = rivals.better().text.split(":")[0].split(" of ")
+    quote("verdict-ahead", fewer)
+    quote("verdict-rivals", all_of_them)
+    groups = _by_reading(claims.of_the_paper())
+    quote("verdict-readings", len(groups))
+    changed = [len({claim.verdict for claim in group.values()}) > 1 for group in groups]
+    quote("verdict-readings-changed", sum(changed))
+
+
+def _said() -> None:
+    """What the lesson says in words about committed results."""
+    counts = tally(of_kind("system", "methods"))
+    outright = counts["reproduced"] + counts["qualitative"]
+    stated("verdict-arms", _verdicts("verdicts-on-the-real-arm") == ["reproduced"])
+    stated("verdict-under-half", outright < 0.5 * sum(counts.values()))
+    real, nulls = _velocity()
+    stated("verdict-shapes", resampled(real, np.mean) < min(nulls))
+    stated("verdict-inertia", _verdicts("conventional-filters-inertia-11") == ["reproduced"])
+    rigid = _verdicts("unmodelled-error-real-arm")
+    stated("verdict-friction", rigid == ["reproduced"])
+    stated("verdict-tables", _verdicts("table-degrades", "vast-amount") == 2 * ["reproduced"])
+    wider = _verdicts("training-falls", "training-falls-damping", "training-falls-position")
+    stated("verdict-wider", wider == [*2 * ["reproduced"], "not reproduced"])
+    stated(
+        "verdict-cube", _verdicts("entire-state-space", "generalised-well") == 2 * ["reproduced"]
+    )
+    stated("verdict-window", _verdicts("tradeoff") == ["not reproduced"])
+    stated("verdict-memory", _verdicts("memorises") == ["not reproduced"])
+    stated("verdict-asymptote", _verdicts("asymptote", "weights-stable") == 2 * ["not reproduced"])
+
+
+def _sentences() -> Illustration:
+    """The first figure: how many sentences have which word, and one of them each."""
+    found = of_kind("system", "methods")
+    counts = tally(found)
+    chosen = {}
+    for word in counts:
+        those = [card for card in found if card.verdict() == word]
+        first = [card for card in those if card.id in _EXAMPLES]
+        chosen[word] = typeset(([*first, *those] or [None])[0].says) if those else ""
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        places, most = range(len(counts)), max(counts.values())
+        for place, (word, number), look in zip(places, counts.items(), _LOOKS):
+            axis.barh(place, number, height=0.55, **look)
+            axis.text(number + 0.4, place, str(number), size=9, va="center", weight="bold")
+            says = axis.text(1.35 * most, place, chosen[word], size=8.5, va="center")
+            says.set_in_layout(False)
+        axis.set_yticks(places, list(counts))
+        axis.invert_yaxis()
+        axis.set_xlim(0, 5.4 * most)
+        axis.set_xticks([])
+        axis.spines[["left", "bottom"]].set_visible(False)
+        axis.tick_params(left=False)
+        axis.grid(False)
+
+    told = "; ".join(f"{n} {word}, like: {chosen[word]}" for word, n in counts.items())
+    return illustrate(draw, f"Sentences of the report by verdict. {told}.", 7.2, 1.9)
+
+
+def _by_section() -> dict[str, dict[str, int]]:
     """How many sentences of each section of the paper have which word."""
     groups: dict[str, list] = {}
     for card in sorted(of_kind("system", "methods"), key=lambda card: card.deciding[0].place()):
@@ -40,10 +179,10 @@ def by_section() -> dict[str, dict[str, int]]:
     return {section: tally(group) for section, group in groups.items()}
 
 
-def chosen(ids: Iterable[str]) -> Table:
+def _chosen(ids: Iterable[str]) -> Table:
     """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
     known, rows = {claim.id: claim for claim in load()}, []
-    for claim in (known[one_of("ids", name, tuple(known))] for name in ids):
+    for claim in (known[name] for name in ids):
         width, found = window(claim), claim.here()
         told = rf"(window|at) {width}\b|\b{width} samples"
         if width and not re.search(told, f"{claim.claim} {found}"):
@@ -54,7 +193,7 @@ def chosen(ids: Iterable[str]) -> Table:
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
 
-def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
+def _sections(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
     """Sentences by section: one bar each below its title, a part for every word.
 
     A part has its number in it, unless it is too narrow to hold that.
@@ -93,7 +232,7 @@ def verdicts(counts: Mapping[str, Mapping[str, int]]) -> Illustration:
     return illustrate(draw, f"Sentences by section of the paper. {rows}.", 7.0, height)
 
 
-def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
+def _readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) -> Table:
     """Verdicts of sentences by reading: a row for each, those that agree last."""
     readings, rows = tuple(readings), []
     for group in groups:
@@ -105,14 +244,14 @@ def readings_table(groups: Iterable[dict[str, Claim]], readings: Iterable[str]) 
     return Table(("sentence", *readings), [tuple(map(typeset, row)) for _, row in rows])
 
 
-def expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
+def _expected_changes(sentences: Iterable[Claim]) -> tuple[int, float]:
     """How many decided verdicts rest on draws, and how many of them another draw would change."""
     decided = [claim for claim in sentences if claim.verdict != "undecided"]
     agree = [c.shares().get(c.verdict, 0.0) for c in decided if c.shares()]
     return len(agree), float(len(agree) - sum(agree))
 
 
-def by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
+def _by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
     """Sentences judged under two or more readings of section 4: claims by the reading's name."""
     groups: dict[tuple, dict[str, Claim]] = {}
     for claim in sentences:
@@ -131,7 +270,7 @@ class _Agreement(NamedTuple):
     chance: float
 
 
-def agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
+def _agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
     """Whether pairs of verdicts agree more often than shuffled ones."""
     pairs = list(pairs)
     if len(pairs) < 2:
@@ -145,19 +284,19 @@ def agreement(pairs: Iterable[tuple[str, str]]) -> _Agreement:
 
 def changed_by_reading() -> Measured:
     """Share of the sentences judged under several readings whose verdict is not the same in all."""
-    groups = by_reading(claims.of_the_paper())
+    groups = _by_reading(claims.of_the_paper())
     changed = sum(len({claim.verdict for claim in group.values()}) > 1 for group in groups)
     return Measured(changed / len(groups), f"{changed} of {len(groups)} sentences")
 
 
 def carried_over(arm: str) -> Measured:
     """Chance that shuffled verdicts agree as often as those on two arms do."""
-    found = agreement(pairs_on(arm))
+    found = _agreement(_pairs_on(arm))
     text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
     return Measured(found.chance, text)
 
 
-def pairs_on(arm: str) -> list[tuple[str, str]]:
+def _pairs_on(arm: str) -> list[tuple[str, str]]:
     """Verdicts of sentences on the simulated arm and on another one, where both were tested."""
     pairs = [(first.verdict, again.verdict) for first, again in claims.judged_again(arm)]
     return [pair for pair in pairs if "not testable" not in pair]
@@ -168,3 +307,42 @@ def reproduced_share() -> Measured:
     found = cards.tally(cards.of_kind("system", "methods"))
     count, total = found["reproduced"], sum(found.values())
     return Measured(count / total, f"{count} of {total}")
+
+
+def show(name: str) -> Illustration | Table:
+    """A figure or table of the lesson or its evidence page."""
+    if name == "sentences":
+        return _sentences()
+    if name == "sections":
+        return _sections(_by_section())
+    if name == "readings":
+        return _readings_table(_by_reading(claims.of_the_paper()), SETUPS)
+    planned = [claim.id for claim in claims.of_the_paper() if claim.where == "section 7.1"]
+    return _chosen({"right": _RIGHT, "wrong": _WRONG, "planned": planned}[name])
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        slips = [(27, "the sum over s² is twice the inertia."), (8, "the arm moves, too.")]
+        judge(mine, 19, "three sums say it all.", slips, "Expand q(t + s); what is its third term?")
+    elif number == 2:
+
+        def roughest(name):
+            rough = {n: np.abs(np.diff(x, axis=-2)).mean() for n, x in given[0].items()}
+            return name == max(rough, key=rough.get)
+
+        told = "it has no more to do with the motion than noise has, and any smooth shape beats it."
+        judge(mine, roughest, told, [], "which of them could the motors not have made?")
+    else:
+
+        def parts(extents):
+            if np.shape(extents) != (2,) or np.abs(extents).max() > 45:
+                return False
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                left = given[0](tuple(extents))
+            return left["equations"] < 0.15 and left["network"] > 3 * left["equations"]
+
+        otherwise = "which combinations of shoulder and elbow did no motion show to the network?"
+        judge(mine, parts, "equations carry where a fit does not.", [], otherwise)
