@@ -116,6 +116,17 @@ live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: Pyodi
 	@$(BIN)/python book/_ext/build.py
 	@$(BIN)/python book/_ext/live.py --mirror "$(MIRROR)"
 
+pdf: book  ## the walk and the evidence as PDFs, in _build/pdf (needs Chromium)
+	@$(BIN)/python book/_ext/pdf.py
+
+epub: book  ## the walk as an EPUB, in _build/epub (needs Chromium)
+	@$(BIN)/python book/_ext/epub.py
+
+release: $(READY)  ## wheel, site, PDFs, EPUB and notebooks in dist/, if tag, citation and changelog agree
+	@$(BIN)/python book/_ext/release.py --check
+	@$(MAKE) --no-print-directory pdf epub
+	@$(BIN)/python book/_ext/release.py
+
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce
 
