@@ -24,7 +24,7 @@ export MALLOC_TRIM_THRESHOLD_ = 268435456
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live assignment reproduce bench check mutants strip clean
+.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live pdf epub release assignment reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
