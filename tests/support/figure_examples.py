@@ -91,12 +91,6 @@ INERTIA = np.array([[2.0, 0.5], [0.6, 1.0]])
 REAL = INERTIA + np.array([-0.1, 0.0, 0.1])[:, None, None]
 UNRELATED = np.linspace(-1.0, 1.0, 21)
 GAINS = np.array([[1.0, 0.9, 1.1, 1.2, 0.8, 1.0], [1.1, 1.0, 1.2, 1.3, 0.9, 1.1]])
-SPEED = np.linspace(-2.0, 1.0, 31)
-MIDDLES = np.array([-1.5, 0.5]), np.array([-2.0, 1.2])
-FRICTION = {
-    name: (SPEED, 0.5 * SPEED + jump * np.sign(SPEED), *MIDDLES, (0.5, jump))
-    for name, jump in (("joint 1", 0.2), ("joint 2", 0.4))
-}
 RATIOS = {
     "the same": {"one": np.array([0.1, 0.2, 0.9]), "two": np.array([1.0, 2.0, 3.0])},
     "faster": {"one": np.array([0.5, 0.6, 0.7]), "two": np.array([1.0, 4.0, 5.0])},
@@ -192,7 +186,6 @@ EXAMPLES = {
         change=(7.5, "a load"),
     ),
     "by_motion": partial(in_loop.by_motion, RATIOS, "error ratio", "Two motions."),
-    "friction_by_joint": partial(real_arm.friction_by_joint, FRICTION, LABELS, "Two joints."),
     "gains_by_joint": partial(
         real_arm.gains_by_joint, {"velocity": (GAINS, UNRELATED[:, None] / 2 * np.ones(6))}, "gain",
         "Two nets.",
@@ -303,10 +296,6 @@ SHOWN = {
             [(0.1, -0.065), (0.9, -0.065)], [(0.2, -0.065)], [(1, 0.065), (3, 0.065)],
             [(2, 0.065)], [(0.5, 0.935), (0.7, 0.935)], [(0.6, 0.935)], [(4, 1.065)],
         ]
-    ],
-    "friction_by_joint": [  # a jump at rest, a slope beyond
-        [[(0, -0.2), (-2, -1.2)], [(0, 0.2), (2, 1.2)], *xy(*MIDDLES)],
-        [[(0, 0.4), (2, 1.4)]],
     ],
     "gains_by_joint": [
         [

@@ -1,4 +1,4 @@
-"""*A real arm*: its configured friction; figures; what the result "real-arm" holds, beside nulls.
+"""*A real arm*: the lesson's numbers, figure and judges; what the result "real-arm" holds.
 
 Errors are mean squares over five blocks and six joints, in deviations of the whole recording.
 """
@@ -6,16 +6,16 @@ Errors are mean squares over five blocks and six joints, in deviations of the wh
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ddlib import paper
-from ddlib._check import integer
 from ddlib.analysis import CLASSES
-from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, dots_in_one, illustrate
+from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate
 from ddlib.learning import p_value
-from ddlib.tables import significant
+from ddlib.tables import quote, significant
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 
 # from the configuration of the TX40's source
@@ -30,41 +30,6 @@ _NAMED = ("velocity", "acceleration", "velocity + acceleration")  # filters that
 WORTH = {"inertia": ("acceleration", "inertia"), "friction": ("velocity", "slope")}
 
 _UNITS = {"inertia": "A s²/rad", "friction": "A s/rad"}
-
-
-def friction_by_joint(panels: dict[str, tuple], labels: tuple[str, str], alt: str) -> Illustration:
-    """Current that friction takes over the speed, one panel a joint: as found and as identified.
-
-    A panel has the speed and the current of all cases, both in the middle of groups of them, and
-    the slope and the jump at rest of the identified friction.
-    """
-
-    def draw(figure: Figure):
-        axes = figure.subplots(-(-len(panels) // 2), 2, squeeze=False).ravel()
-        for axis, (title, (speed, current, *middle, line)) in zip(axes, panels.items()):
-            _dots(axis, speed, current, 42, ec=FAINT, lw=1.6, alpha=0.5)
-            for side in (-1, 1):
-                end = side * np.abs(speed).max()
-                far = line[0] * end + side * line[1]
-                axis.plot([0, end], [side * line[1], far], color=COLOURS[1], ls="--", lw=1.8)
-            _dots(axis, *middle, 1000, ec=COLOURS[0], lw=3.6, zorder=3)
-            axis.set_title(title)
-        for axis in axes[len(panels) :]:
-            axis.remove()
-        figure.supxlabel(check_label(labels[0]))
-        figure.supylabel(check_label(labels[1]))
-
-    return illustrate(draw, alt, 5.4, 1.75 * -(-len(panels) // 2) + 0.3)
-
-
-def _dots(axis: Axes, x, y, cells: int, **look) -> None:
-    """Dots, of several in a cell of the plane one."""
-    place = np.column_stack([x, y])
-    step = np.ptp(place, axis=0) / cells
-    _, first = np.unique(np.round(place / np.where(step > 0, step, 1)), axis=0, return_index=True)
-    dots_in_one(axis, place[first], **look)
-    axis.update_datalim(place)
-    axis.autoscale_view()
 
 
 def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustration:
@@ -95,12 +60,6 @@ def gains_by_joint(panels: dict[str, tuple], label: str, alt: str) -> Illustrati
         figure.legend(*handles, loc="outside upper left", ncols=3)
 
     return illustrate(draw, alt, 5.4, 3.0)
-
-
-def binned(speed, current, bins: int = 40) -> tuple[np.ndarray, np.ndarray]:
-    """Medians of speed and current in groups of equally many cases of like speed."""
-    groups = np.array_split(np.argsort(speed), integer("bins", bins, 1, len(speed)))
-    return tuple(np.array([np.median(x[g]) for g in groups]) for x in (speed, current))
 
 
 def _cell(width: int, rate: int = _RATE) -> dict:
@@ -250,3 +209,119 @@ def compensate_friction(width: int = 21) -> Measured:
     chance = max(float(np.percentile(x, 95)) for x in nulls)
     text = f"R² {told} at joints 1 to 6; unrelated currents reach {chance:.2f} in one of twenty"
     return judged(median, curved, text=text)
+
+
+# --- the lesson -----------------------------------------------------------------------------
+
+_ALIKE = {
+    "network": "network, all windows",
+    "linear filter": "linear, all windows",
+    "network, by joint": "network, own window",
+    "linear filter, by joint": "linear, own window",
+    "equations": "equations",
+}
+
+
+def _alike() -> dict[str, np.ndarray]:
+    """Mean squared errors ``(blocks, networks)`` of the models that were tuned alike."""
+    models = results.read("real-arm-wired")["models"]
+    return {name: np.array(models[name]["test"]) for name in _ALIKE}
+
+
+def _closed() -> float:
+    """Share of the network's gap to the equations that the wiring closes."""
+    every, own, least = (rms(_alike()[n]) for n in ("network", "network, by joint", "equations"))
+    return float((every - own) / (every - least))
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    for name, each in _alike().items():
+        quote("real-alike-" + name.replace(", by joint", "-own").replace(" filter", ""), rms(each))
+    quote("real-alike-closed", 100 * _closed())
+    rest = results.read("real-arm-wired")["rest"]
+    quote("real-still", 100 * rest[-1])
+    quote("real-still-others", 100 * max(rest[:-1]))
+    for what, each in results.read("learnt-filters")["real"]["100, 5"].items():
+        if what in ("equations", "learnt"):
+            quote(f"real-front-{what}", np.sqrt(np.mean(each)))
+    friction = 100 * np.array(_row(11)["friction"])
+    quote("real-friction-least", friction.min())
+    quote("real-friction-most", friction.max())
+    for what in WORTH:
+        quote(f"real-{what}-joints", int(beyond_null(what).value))
+    true, real, _ = _gains("inertia", 11)
+    quote("real-inertia-off", 100 * _off(real, true))
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+    alike = {name: rms(each) for name, each in _alike().items()}
+    stated("real-wired", bool(0.6 < _closed() < 0.73))
+    own = alike["linear filter, by joint"], alike["network, by joint"]
+    stated("real-wired-linear", bool(own[0] < 1.05 * own[1]))
+    stated("real-friction-everywhere", bool(min(_row(11)["friction"]) > 0.5))
+    best = {
+        model: min(rms(squares(w, model)) for w in (5, 11, 21, 41, 81))
+        for model in ("network", "ridge", "identified")
+    }
+    stated("real-network-loses", bool(best["network"] > best["ridge"] > best["identified"]))
+    stated("real-fewer-names", excess(21).replicates < 0)
+    stated("real-tuned-turns", bool(alike["network"] < alike["linear filter"]))
+
+
+def _wired_figure() -> Illustration:
+    """Errors of models that were tuned alike, by block and together."""
+
+    def draw(figure: Figure):
+        axis = figure.subplots()
+        for k, each in enumerate(_alike().values()):
+            blocks = np.sqrt(each.mean(1))
+            axis.plot(blocks[:-1], [k] * 4, "o", ms=5, color=COLOURS[0])
+            axis.plot(blocks[-1], k, "o", ms=5, color=COLOURS[0], mfc="none")
+            axis.plot(rms(each), k, "|", ms=20, mew=2.4, color=INK)
+        axis.set(xscale="log", xlabel="error over the deviation")
+        axis.set_yticks(range(len(_ALIKE)), _ALIKE.values())
+        axis.set_xticks([0.1, 0.2, 0.5, 1], ["0.1", "0.2", "0.5", "1"])
+        axis.minorticks_off()
+        axis.invert_yaxis()
+
+    told = ", ".join(f"{_ALIKE[name]} {rms(each):.2f}" for name, each in _alike().items())
+    return illustrate(draw, f"Errors on blocks that were left out, pooled: {told}.", 7.0, 2.3)
+
+
+def show(name: str) -> Illustration:
+    """A figure of the lesson."""
+    return {"wired": _wired_figure}[name]()
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        right = (0.065, -0.02, 0.06, -0.06, -0.045)
+        slips = [((0.065, -0.02, 0.06, 0.06, -0.045), "2 sin a sin b is a difference of cosines."),
+                 ((0.13, -0.04, 0.12, -0.12, -0.09), "a sine squared is (1 − cos)/2.")]  # fmt: skip
+        judge(mine, right, "so the inertia has these four angles.", slips, "Expand the square.")
+    elif number == 2:
+        at_random, error, model = given
+        slips = [(lambda mine: abs(mine / error(model) - 1) < 0.4, "so large it is by blocks.")]
+        right = lambda mine: abs(mine / at_random(model) - 1) < 0.4  # noqa: E731
+        otherwise = "how much of a window do its neighbours share?"
+        judge(mine, right, "and it says little about other motions.", slips, otherwise)
+    elif number == 3:
+        fitted, error = given
+
+        def few(columns):
+            many = sum(columns(j).shape[1] for j in range(6))
+            return many <= 30 and error(fitted(columns)) <= 0.25
+
+        judge(mine, few, "no coupling, no centrifugal torque.", [], "Too many, or too far off.")
+    else:
+        linear, error = given
+        alone = {j: [j] for j in range(1, 7)}
+
+        def better(wires):
+            two = all(len(wires[j]) <= 2 for j in alone)
+            return two and error(linear(wires)) < 0.95 * error(linear(alone))
+
+        judge(mine, better, "these two share a load.", [], "Which two axes are parallel?")
