@@ -1,5 +1,5 @@
-// Questions one at a time, with an answer to choose and to check. Which of them were answered right
-// is kept in this browser, and nowhere else.
+// Questions one at a time, each behind its number, with an answer to choose and to check. Which of
+// them were answered right is kept in this browser, and nowhere else.
 (() => {
   const KEY = "quiz";
   const forms = [...document.querySelectorAll("form.quiz")];
@@ -48,7 +48,8 @@
     form.querySelector(".whys").append(missing);
     form.querySelector(".whys").setAttribute("aria-live", "polite");
     form.querySelector("details").open = true; // its summary is hidden, and so is each of its lines
-    form.querySelector("fieldset").append(make("button", { textContent: "Check" }));
+    const bar = make("div", { className: "quiz-bar" }, make("button", { textContent: "Check" }));
+    form.querySelector("fieldset").append(bar);
     const tell = (shown) => {
       for (const line of [...whys, missing]) line.hidden = line !== shown;
     };
@@ -76,23 +77,25 @@
   const show = (at) => {
     forms.forEach((form, k) => {
       form.hidden = k !== at;
-      numbers[k].setAttribute("aria-pressed", String(k === at));
+      numbers[k].setAttribute("aria-expanded", String(k === at));
+      numbers[k].setAttribute("aria-controls", form.id);
     });
+    forms[at]?.querySelector(".quiz-bar").append(erase);
   };
-  numbers.forEach((button, k) => button.addEventListener("click", () => show(k)));
+  numbers.forEach((button, k) =>
+    button.addEventListener("click", () => show(forms[k].hidden ? k : -1)),
+  );
   const erase = make("button", { type: "button", textContent: "Erase my answers" });
   erase.addEventListener("click", () => {
     keep((kept) => forms.forEach((form) => kept.delete(form.id)));
     for (const begin of questions) begin();
     count("Erased. ");
   });
-  const group = make("div", { className: "quiz-numbers" }, ...numbers);
+  const group = make("div", { className: "quiz-numbers" }, "Question", ...numbers);
   group.setAttribute("role", "group");
   group.setAttribute("aria-label", "Questions");
-  forms[0].before(group);
-  forms.at(-1).after(make("div", { className: "quiz-foot" }, told, erase));
+  forms[0].before(make("div", { className: "quiz-head" }, group, told));
   document.documentElement.dataset.quiz = "";
-  const open = forms.findIndex((form) => !right.has(form.id));
-  show(Math.max(open, 0));
+  show(-1);
   count();
 })();

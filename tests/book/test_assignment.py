@@ -15,6 +15,7 @@ sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import assignment
 
 LESSONS = [page.removeprefix("book/") for page in WALK]
+QUICK = ("dynamics", "window-size")
 # What a notebook does: its cells one after the other, and what each of them prints.
 RUN = """
 import contextlib, io, json, sys
@@ -47,50 +48,36 @@ def test_every_question_is_there_and_no_solution(handed_out):
     for name in LESSONS:
         made, found = read(handed_out, name), exercises(f"book/{name}")
         nbformat.validate(made)
-        code = [cell.source for cell in made.cells if cell.cell_type == "code"]
-        starters = [cell.source for cell in made.cells if is_starter(cell)]
-        assert starters == [exercise.starter for exercise in found]
+        starters = [each.starter for each in found]
+        assert starters == [cell.source for cell in made.cells if is_starter(cell)]
         assert sum(map(is_check, made.cells)) == len(found)
-        texts = [cell.source for cell in made.cells if cell.cell_type == "markdown"]
-        asked = [text for text in texts if re.match(r"\*\*\d+\. ", text)]
-        assert len(asked) == len(found), name
-        everything = "\n".join([*code, *texts, (handed_out / name / "judge.py").read_text("utf-8")])
+        texts = [cell.source for cell in made.cells]
+        assert sum(bool(re.match(r"\*\*\d+\. ", text)) for text in texts) == len(found), name
+        everything = "\n".join([*texts, (handed_out / name / "judge.py").read_text("utf-8")])
         for exercise in found:
             for line in exercise.solution.splitlines():
-                own = line.strip() and line not in exercise.starter and line not in code
-                assert not own or line.strip() not in everything, (name, line)
+                known = line in exercise.starter or not line.strip()
+                assert known or line.strip() not in everything, (name, line)
         assert not re.search(r"<details|Solution|workshop|\{[\w:-]+\}`", everything), name
 
 
-@pytest.mark.parametrize("name", ["dynamics", "window-size"])
-def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
-    """As handed out: "in place of the dots"; with a solution put in: "Right"."""
-    run(handed_out, name, tmp_path)
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    "name", [name for name in LESSONS if name not in {"dynamics", "window-size"}]
+    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n not in QUICK)) for n in LESSONS]
 )
-def test_all_others_do_so(handed_out, name, tmp_path):
-    run(handed_out, name, tmp_path)
+def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
+    """In a process that finds neither the book nor the repository's ddlib.
 
-
-def run(handed_out, name, tmp_path):
-    """In a process of its own that finds neither the book nor the repository's ddlib."""
+    As handed out a check says "in place of the dots"; with a solution put in, "Right".
+    """
     found, cells, answers = exercises(f"book/{name}"), [], []
     for cell in read(handed_out, name).cells:
-        if cell.cell_type != "code":
-            continue
-        cells.append(cell.source)
+        cells += [cell.source] * (cell.cell_type == "code")
         if is_check(cell):
             answers.append((len(cells) - 1, len(cells) + 1))
-            again = cell.source
-            cells += [found[len(answers) - 1].solution, again]
-    env = {"PATH": "", "HOME": str(tmp_path), "OMP_NUM_THREADS": "1"}
+            cells += [found[len(answers) - 1].solution, cell.source]
     done = subprocess.run(
-        [sys.executable, "-c", RUN], input=json.dumps(cells), env=env,
-        cwd=handed_out / name, capture_output=True, text=True, check=False,
+        [sys.executable, "-c", RUN], input=json.dumps(cells), capture_output=True, text=True,
+        cwd=handed_out / name, env={"PATH": "", "HOME": str(tmp_path), "OMP_NUM_THREADS": "1"},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     told, package, book = json.loads(done.stdout.splitlines()[-1])
