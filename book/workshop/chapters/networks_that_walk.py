@@ -93,23 +93,43 @@ def _rows(name: str) -> np.ndarray:
     return -np.array([row["gradient"] for row in results.read("walking")[name]])
 
 
-def moments_agree() -> Measured:
-    """Largest relative departure of a copy's stiffness or delay from the network's own."""
-    own = _moments(-np.array(results.read("walking")["network"]))[:2]
-    off = np.abs(_moments(_rows("copies"))[:, :2] / own - 1)
-    return Measured(off.max(), f"{100 * off.max():.1f} % at most, of {len(off)} copies")
+def _own(kind: str) -> np.ndarray:
+    study = results.read("walking")
+    return -np.array(study.get(f"network, {kind}", study["network"]))
+
+
+def _named(g) -> dict[str, np.ndarray]:
+    stiffness, late, damping = np.moveaxis(_moments(g), -1, 0)
+    net = damping - stiffness * late / 1e3
+    return {"stiffness": stiffness, "delay": late, "net damping": net}
+
+
+def moments_agree(kind: str = "copies", told: Sequence[str] = ("stiffness", "delay")) -> Measured:
+    """Largest relative departure of a copy's moments from the network's own."""
+    own, found = _named(_own(kind)), _named(_rows(kind))
+    off = np.abs([found[name] / own[name] - 1 for name in told])
+    text = f"{100 * off.max():.1f} % at most, of {off.shape[1]} copies"
+    return Measured(off.max(), text)
 
 
 def lags_differ() -> Measured:
     """Range over the copies of the share of the stiffness that the middle sample has."""
-    shares = _middle()
+    shares = _middle(_rows("copies"))
     text = f"{100 * shares.min():.0f} to {100 * shares.max():.0f} % of the stiffness"
     return Measured(np.ptp(shares), text)
 
 
-def _middle() -> np.ndarray:
-    position = _rows("copies")[:, :3]
-    return position[:, 1] / position.sum(1)
+def shape_off() -> Measured:
+    """Largest departure of that share from the network's, trained longer or on jumps."""
+    off = [np.abs(_middle(_rows(kind)) - _middle(_own(kind))) for kind in ("longer", "held")]
+    longer, held = (100 * part.max() for part in off)
+    text = f"{longer:.1f} % of the stiffness (longer) and {held:.1f} % (jumps) at most"
+    return Measured(np.max(off), text)
+
+
+def _middle(g) -> np.ndarray:
+    position = g[..., :3]
+    return position[..., 1] / position.sum(-1)
 
 
 def _quoted() -> None:

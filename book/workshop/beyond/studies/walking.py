@@ -14,7 +14,8 @@ STEP = 0.005
 """Seconds between two entries of an error's history."""
 
 _UNITS = 32
-_MEMBERS, _CASES, _EPOCHS, _RATE = 10, 1500, 1500, 0.01
+_MEMBERS, _CASES, _EPOCHS, _LONGER, _RATE = 10, 1500, 1500, 20_000, 0.01
+_HOLD = 4  # samples for which a target stays that jumps: of a policy of 50 Hz
 _SIZES, _FREQUENCIES = (0.0, 0.15), (0.5, 8.0)  # of a sine in a history: rad, Hz
 
 
@@ -43,29 +44,42 @@ def gradient(x, network) -> np.ndarray:
     return chain[..., 0, :]
 
 
-def _histories(cases: int, seed: int) -> np.ndarray:
-    """Histories of three sines in position and three in target, shape (cases, 6)."""
+def _histories(cases: int, seed: int, target: str = "smooth") -> np.ndarray:
+    """Histories of three sines in position and three in target, shape (cases, 6).
+
+    A "held" target has its sines' values of every 20 ms, a "fixed" one stays as it is.
+    """
     rng, t = np.random.default_rng(seed), -STEP * np.arange(3)
     error, velocity = np.zeros((2, cases, 3))
+    when = 0 * t if target == "fixed" else t
+    if target == "held":
+        since = np.arange(cases)[:, None] % _HOLD  # samples since the last jump
+        when = -STEP * (since + _HOLD * np.ceil((np.arange(3) - since) / _HOLD))
     for _ in range(3):
         moved, wanted = rng.uniform(*_SIZES, (2, cases, 1))
         w = 2 * np.pi * rng.uniform(*_FREQUENCIES, (cases, 1))
         first, second = rng.uniform(0, 2 * np.pi, (2, cases, 1))
-        error += moved * np.sin(w * t + first) - wanted * np.sin(w * t + second)
+        error += moved * np.sin(w * t + first) - wanted * np.sin(w * when + second)
         velocity += moved * w * np.cos(w * t + first)
     return np.concatenate([error, velocity], axis=1)
 
 
-def _trained(x, y, seed: int) -> tuple[list, float]:
-    """A network of the same sizes that learnt y from x, and its training RMSS."""
+def _trained(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
+    """A network of the same sizes that learnt y from x, and its training RMSS.
+
+    The longer training is annealed, and in single precision, which takes half the time.
+    """
     generator = torch.Generator().manual_seed(seed)
     sizes = (x.shape[1], _UNITS, _UNITS, 1)
+    kind = torch.float32 if longer else torch.float64
     start = [
-        ((2 * torch.rand(n, m + 1, generator=generator) - 1).double() / m**0.5).requires_grad_()
+        ((2 * torch.rand(n, m + 1, generator=generator) - 1).to(kind) / m**0.5).requires_grad_()
         for m, n in pairwise(sizes)
     ]
     middle, spread = x.mean(0), x.std(0)
-    z, goal = torch.tensor((x - middle) / spread), torch.tensor((y - y.mean()) / y.std())
+    z, goal = (
+        torch.tensor(a, dtype=kind) for a in ((x - middle) / spread, (y - y.mean()) / y.std())
+    )
 
     def output():
         h = z
@@ -75,12 +89,16 @@ def _trained(x, y, seed: int) -> tuple[list, float]:
         return h[:, 0]
 
     descent = torch.optim.Adam(start, _RATE)
-    for _ in range(_EPOCHS):
+    epochs = _LONGER if longer else _EPOCHS
+    slower = torch.optim.lr_scheduler.CosineAnnealingLR(descent, epochs)
+    for _ in range(epochs):
         descent.zero_grad()
         loss = ((output() - goal) ** 2).mean()
         loss.backward()
         descent.step()
-    arrays = [w.detach().numpy() for w in start]
+        if longer:
+            slower.step()
+    arrays = [w.detach().double().numpy() for w in start]
     made = [(w[:, :-1].copy(), w[:, -1].copy()) for w in arrays]
     made[0] = made[0][0] / spread, made[0][1] - made[0][0] / spread @ middle
     made[-1] = made[-1][0] * y.std(), made[-1][1] * y.std() + y.mean()
@@ -89,14 +107,21 @@ def _trained(x, y, seed: int) -> tuple[list, float]:
 
 @study
 def _walking() -> dict:
-    """Mean gradients of the network, of copies, of networks on shuffled pairs, of random ones."""
+    """Mean gradients of the network, of copies, of networks on shuffled pairs, of random ones.
+
+    Copies learn from smooth histories, for longer from the same, or from those of other targets.
+    """
     network, x = layers(), _histories(_CASES, seed=0)
-    y, rows = torque(x, network), {"copies": [], "shuffled": []}
+    y, rows = torque(x, network), {}
+    others = {target: _histories(_CASES, 0, target) for target in ("held", "fixed")}
     for seed in range(_MEMBERS):
         shuffled = np.random.default_rng(seed).permutation(y)
-        for name, goal in (("copies", y), ("shuffled", shuffled)):
-            copy, error = _trained(x, goal, seed)
-            rows[name].append({"error": error, "gradient": gradient(x, copy).mean(0)})
+        learnt = {"copies": (x, y), "shuffled": (x, shuffled), "longer": (x, y)}
+        learnt |= {target: (z, torque(z, network)) for target, z in others.items()}
+        for name, (z, goal) in learnt.items():
+            copy, error = _trained(z, goal, seed, name == "longer")
+            row = {"error": error, "gradient": gradient(z, copy).mean(0)}
+            rows.setdefault(name, []).append(row)
     drawn = []
     for seed in range(100):
         rng = np.random.default_rng(seed)
@@ -106,4 +131,5 @@ def _walking() -> dict:
         ]
         drawn.append(gradient(x, random).mean(0) * y.std() / torque(x, random).std())
     own = gradient(x, network).mean(0)
-    return {"step": STEP, "network": own, "random": np.array(drawn), **rows}
+    told = {f"network, {target}": gradient(z, network).mean(0) for target, z in others.items()}
+    return {"step": STEP, "network": own, **told, "random": np.array(drawn), **rows}
