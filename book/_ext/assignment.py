@@ -34,9 +34,8 @@ With Python 3.11 or newer, in this folder:
     python -m pip install -r requirements.txt
     python -m jupyterlab {}.ipynb
 
-Run the cells from the top. Put each answer in place of the dots; the cell below judges it, as
-often as you like. Say how you found it in a cell of your own: a person reads that. What judges
-answers is in judge.py, folded so that nobody reads a solution by accident.
+Run the cells from the top. Put each answer in place of the dots; the cell below judges it by
+judge.py, which is folded so that nobody reads a solution by accident. Say how you found it, too.
 """
 
 
@@ -45,35 +44,36 @@ def lessons(root: Path = ROOT) -> dict[str, Path]:
     return {p.stem: p for p in chapters(root) if " import check" in p.read_text("utf-8")}
 
 
-def names(node: ast.AST, use: type) -> set[str]:
-    inside = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, use)}
-    return {node.name} if hasattr(node, "name") and use is ast.Store else inside
+def names(node: ast.AST, use: str) -> set[str]:
+    """What a statement of a module stores, or loads from elsewhere."""
+    every = {"Load": set(), "Store": {a.arg for a in ast.walk(node) if isinstance(a, ast.arg)}}
+    for name in (n for n in ast.walk(node) if isinstance(n, ast.Name)):
+        every[type(name.ctx).__name__].add(name.id)
+    own = every["Load"] - every["Store"] if use == "Load" else every["Store"]
+    return {node.name} if hasattr(node, "name") and use == "Store" else own
 
 
 def judge(module: str, wanted: set[str], root: Path = ROOT) -> list[str]:
     """What some definitions of a module of the workshop need, and nothing else."""
     path = root / "book" / (module.replace(".", "/") + ".py")
-    body, known = ast.parse(path.read_text(encoding="utf-8")).body, 0
+    body, known, code = ast.parse(path.read_text(encoding="utf-8")).body, 0, []
     while known < len(wanted):
         known = len(wanted)
-        needed = (names(n, ast.Load) for n in body if wanted & names(n, ast.Store))
+        needed = (names(n, "Load") for n in body if wanted & names(n, "Store"))
         wanted = wanted.union(*needed)
-    code = []
     for node in body:
+        home, kept = getattr(node, "module", ""), wanted & names(node, "Store")
         if isinstance(node, (ast.Import, ast.ImportFrom)):
-            node.names = [a for a in node.names if (a.asname or a.name.split(".")[0]) in wanted]
-            home = getattr(node, "module", "")
-            if node.names and home.startswith("workshop"):
-                code += judge(home, {a.name for a in node.names}, root)
-            elif node.names and home != "__future__":
-                code.append(ast.unparse(node))
-        elif wanted & names(node, ast.Store):
+            kept = [a for a in node.names if (a.asname or a.name.split(".")[0]) in wanted]
+            node.names = kept
+        if kept and home.startswith("workshop"):
+            code += judge(home, {a.name for a in kept}, root)
+        elif kept:
             code.append(ast.unparse(node))
     return code
 
 
 def folded(code: str) -> str:
-    """A module that does the same and cannot be read at a glance."""
     text = base64.b85encode(zlib.compress(code.encode(), 9))
     return f"import base64, zlib  # folded\n\nexec(zlib.decompress(base64.b85decode({text})))\n"
 
