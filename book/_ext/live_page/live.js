@@ -303,6 +303,7 @@
       running = undefined;
       worker.terminate();
       worker = undefined; // the next run tries again
+      document.documentElement.dataset.live = "idle";
       say(`Python ${ready ? "broke off" : "did not start"}: ${message.failed}.`);
     } else if (message.done) finish(message);
     else if (running && message.run === running.name) {
@@ -329,7 +330,7 @@
     cell.el.classList.remove("live-running");
     if (cell.time) cell.time.textContent = `${seconds.toFixed(1)} s`;
     if (cell.error) waiting = [];
-    if (!waiting.length) say(cell.error ? `An error in ${cell.name}.` : `Done, ${cell.name} too.`);
+    if (!waiting.length) say(cell.error ? `An error in ${cell.name}.` : `${cell.name.replace("c", "C")} has run.`);
     document.documentElement.dataset.live = waiting.length ? "running" : "idle";
     next();
   }
@@ -369,7 +370,7 @@
     cells.forEach(open);
     begin.replaceWith(all, stop, reset);
     bar.classList.add("live-on");
-    bar.append(
+    bar.after(
       make(
         "p",
         { class: "live-keys", id: "live-keys" },
