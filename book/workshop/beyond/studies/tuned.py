@@ -1,7 +1,7 @@
 """Every rival tuned in the same way: by leaving out one training run at a time.
 
 A rival chooses its window, and one or two knobs of its own if it has any, among 2 to 27 settings;
-what trains for long has the fewest, and three recordings in place of eight.
+what trains for long has the fewest, and five recordings in place of eight.
 Settings that store more numbers than the network of 1988 are dropped first, if others are left.
 Networks have one start for each fit. Trajectory 6 and the square are asked once, after the choice.
 
@@ -43,7 +43,7 @@ from workshop.beyond.studies.lineup import (
 from workshop.beyond.studies.rivals import _BUDGET
 from workshop.report.code_hash import study
 
-_DAYS, _FEWER = 8, 3  # recordings of a rival, and of one that takes long to train
+_DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes long to train
 _RUNS, _WINDOWS = 5, (17, 21, 31)
 _DEGREE = {17: 3, 21: 3, 31: 5}  # of the polynomial that estimates states from a window
 _PENALTY = {"penalty": (1e-6, 1e-4, 1e-2)}
