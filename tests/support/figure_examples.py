@@ -19,7 +19,6 @@ from workshop.chapters import (
     feedback,
     feedforward,
     joints_three_and_four as more_joints,
-    learning_in_the_loop as in_loop,
     real_arm,
     rivals,
     run_time,
@@ -91,10 +90,6 @@ INERTIA = np.array([[2.0, 0.5], [0.6, 1.0]])
 REAL = INERTIA + np.array([-0.1, 0.0, 0.1])[:, None, None]
 UNRELATED = np.linspace(-1.0, 1.0, 21)
 GAINS = np.array([[1.0, 0.9, 1.1, 1.2, 0.8, 1.0], [1.1, 1.0, 1.2, 1.3, 0.9, 1.1]])
-RATIOS = {
-    "the same": {"one": np.array([0.1, 0.2, 0.9]), "two": np.array([1.0, 2.0, 3.0])},
-    "faster": {"one": np.array([0.5, 0.6, 0.7]), "two": np.array([1.0, 4.0, 5.0])},
-}
 MEMBERS = {"11": (np.array([1.0, 2.0]), np.array([3.0, 4.0])), "21": (np.ones(3), 7 * np.ones(3))}
 WANTED = np.stack([np.cos(2 * T), np.sin(2 * T)], -1)
 OFF = WANTED + np.array((0.01, -0.02))
@@ -158,12 +153,12 @@ EXAMPLES = {
     "torque_along": partial(states._torque_along, T, EXACT, NETWORKS),
 
     "courses": partial(
-        adaptive_control.courses,
+        adaptive_control._courses,
         {"A": {"one": ERRORS, "two": 2 * ERRORS}, "B": {"one": ERRORS, "two": ERRORS}},
         2, "a load", "error, mm", "Two.",
     ),
     "stops_map": partial(
-        adaptive_control.stops_map, [0.1, 1.0, 10.0], [0, 2],
+        adaptive_control._stops_map, [0.1, 1.0, 10.0], [0, 2],
         {"A": (np.where(STOPPED, np.inf, 1.0), STOPPED)}, ("rate", "delay, ms", "error, mm"),
         "A map with a cross.",
     ),
@@ -180,12 +175,6 @@ EXAMPLES = {
         more_joints.gains_by_torque, INERTIA, REAL, UNRELATED[:, None, None] * np.ones((2, 2)),
         "gain over the deviation", "Gains.",
     ),
-    "by_trial": partial(
-        in_loop.by_trial,
-        {"from nothing": {"none": (SIZE, ERRORS), "one": (SIZE, 2 * ERRORS)}}, LABELS, "Falls.",
-        change=(7.5, "a load"),
-    ),
-    "by_motion": partial(in_loop.by_motion, RATIOS, "error ratio", "Two motions."),
     "gains_by_joint": partial(
         real_arm.gains_by_joint, {"velocity": (GAINS, UNRELATED[:, None] / 2 * np.ones(6))}, "gain",
         "Two nets.",

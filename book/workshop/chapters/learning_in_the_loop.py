@@ -1,4 +1,4 @@
-"""*Learning in the loop*: its results seed by seed, in mm; figures trial by trial, by motion."""
+"""*Learning in the loop*: its results seed by seed, in mm; its numbers, figures, and checks."""
 
 from __future__ import annotations
 
@@ -8,17 +8,28 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from ddlib.dynamics import PUMA_560, count, newton_euler
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
-from ddlib.tables import spread
+from ddlib.tables import quote, spread
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 PLAIN = "no feedforward"  # the feedback alone, as the study calls it
 
 _MARKERS = "os^DvPX"
 _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
+_ONE_MOTION = ("exact terms", "generic terms", "linear filter", "network, last layer", "memory")
+_WHEN = ("before the load", "with the load", "at the end", "without the load again")
+_NOTHING = ("last layer", "linear filter", "replay", "one pass", "by feedback")
+_TRAINED = {
+    "left as it is": "off-line, as it is",
+    "last layer": "off-line, last layer",
+    "replay": "off-line, replay",
+    "by feedback": "off-line, by feedback",
+}  # networks of Table 4-1 that go on learning, as the figure calls them
 
 
-def by_trial(
+def _by_trial(
     panels: dict[str, dict[str, tuple]],
     labels: tuple[str, str],
     alt: str,
@@ -62,37 +73,97 @@ def by_trial(
             axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
         axes[-1].set_xlabel(check_label(labels[0]))
 
-    return illustrate(draw, alt, 6.4, 2.5 * len(panels) + 0.4)
+    return illustrate(draw, alt, 6.4, 2.0 * len(panels) + 0.4)
 
 
-def by_motion(motions: dict[str, dict[str, np.ndarray]], label: str, alt: str) -> Illustration:
-    """Errors of learners, over that of the feedback alone: a row for each motion.
-
-    Of ``{motion: {learner: (seeds,)}}`` a mark is the median, a bar reaches over all seeds.
-    """
+def _first_figure() -> Illustration:
+    """Errors while one motion is practised, and then on others over that of the feedback alone."""
+    motions = list(part("motion")["tests"])[1:]
 
     def draw(figure: Figure):
-        axis = figure.subplots()
-        learners = list(next(iter(motions.values())))
-        for row, ratios in enumerate(motions.values()):
-            for k, name in enumerate(learners):
-                colour, values = COLOURS[k % len(COLOURS)], ratios[name]
-                place = row + 0.13 * (k - len(learners) / 2 + 0.5)
-                ends = [np.min(values), np.max(values)]
-                axis.plot(ends, [place] * 2, color=colour, lw=1.2, alpha=0.6)
-                axis.plot(
-                    np.median(values), place, _MARKERS[k % len(_MARKERS)], color=colour, ms=4.5,
-                    label=None if row else name,
-                )  # fmt: skip
-        axis.axvline(1.0, color=INK, ls="--", lw=1.0)
-        axis.set(xscale="log", xlabel=check_label(label))
-        axis.xaxis.set_major_formatter(_PLAIN)
-        axis.set_yticks(range(len(motions)), motions)
-        axis.set_ylim(len(motions) - 0.5, -0.5)
-        axis.grid(visible=False, axis="y")
-        legend_above(figure, *axis.get_legend_handles_labels())
+        left, right = figure.subplots(1, 2, width_ratios=(1, 1.25))
+        alone = np.median(on("the same", PLAIN))
+        left.axhline(alone, color=INK, ls="--", lw=1.2, label="feedback alone")
+        right.axvline(1.0, color=INK, ls="--", lw=1.2)
+        for k, name in enumerate(_ONE_MOTION):
+            look = {"color": COLOURS[k], "marker": _MARKERS[k], "ms": 4}
+            course = np.median(part("motion")["practice"][name], axis=1)
+            left.plot(1 + np.arange(len(course)), course, lw=1.5, label=name, **look)
+            for row, motion in enumerate(motions):
+                ratio, place = on(motion, name) / on(motion, PLAIN), row + 0.14 * (k - 2)
+                right.plot([ratio.min(), ratio.max()], [place] * 2, color=COLOURS[k], lw=1.2)
+                right.plot(np.median(ratio), place, **look)
+        left.set(yscale="log", xlabel="trial of one motion", ylabel="end-point error, mm")
+        right.set(xscale="log", xlabel="then: error over that of the feedback alone")
+        left.yaxis.set_major_formatter(_PLAIN)
+        right.xaxis.set_major_formatter(_PLAIN)
+        left.xaxis.set_major_locator(MaxNLocator(integer=True))
+        right.set_yticks(range(len(motions)), motions)
+        right.set_ylim(len(motions) - 0.5, -0.5)
+        right.grid(visible=False, axis="y")
+        legend_above(figure, *left.get_legend_handles_labels())
 
-    return illustrate(draw, alt, 6.0, 0.75 * len(motions) + 1.1)
+    told = "; ".join(
+        f"{m}: " + ", ".join(f"{n} {np.median(on(m, n) / on(m, PLAIN)):.2g}" for n in _ONE_MOTION)
+        for m in motions
+    )
+    alt = f"Errors over ten trials of one motion; then medians over the feedback's alone, {told}."
+    return illustrate(draw, alt, 7.2, 3.1)
+
+
+def _course_figure() -> Illustration:
+    """Errors on fixed members of the family, trial by trial, with a load from half-way on."""
+    kept = results.read("learning-in-the-loop")
+    x, number = np.arange(2 * kept["trials"] + 1), kept["trials"]
+
+    def course(name):
+        return x, np.array([*part("family")["tests"][name], part("family")["at the end"][name]])
+
+    panels = {
+        title: {PLAIN: course(PLAIN)} | {short: course(name) for short, name in named.items()}
+        for title, named in (
+            ("from nothing", dict(zip(_NOTHING, _NOTHING))),
+            ("from networks trained off-line", _TRAINED),
+        )
+    }
+    told = ", ".join(f"{n} {np.median(family(n, _WHEN[0])):.1f}" for n in _NOTHING)
+    later = ", ".join(f"{n} {np.median(family(k, _WHEN[2])):.1f}" for n, k in _TRAINED.items())
+    alt = (
+        "Two panels of end-point error over trials on a logarithmic axis, with the load "
+        f"from half-way on. Medians after {number} trials from nothing, mm: {told}. At the "
+        f"end, from networks trained off-line: {later}."
+    )
+    labels = "trials practised", "end-point error, mm"
+    return _by_trial(panels, labels, alt, change=(number, f"{kept['load']:.0f} kg in the hand"))
+
+
+def _rates_figure() -> Illustration:
+    """Errors of feedback-error learning over its rate."""
+    rates = np.array(results.read("learning-in-the-loop")["rates"])
+    panels = {}
+    for setup in ("joint damping", "state feedback"):
+        alone, found = on("the same", PLAIN, setup), part("rates", setup)
+        panels[setup] = {PLAIN: (rates, np.tile(alone, (len(rates), 1)))} | {
+            name.partition(",")[0]: (rates, np.array(x["error"])) for name, x in found.items()
+        }
+    told = "; ".join(
+        f"{s}: " + ", ".join(f"{n} {np.median(y[-1]):.2g}" for n, (_, y) in p.items())
+        for s, p in panels.items()
+    )
+    alt = (
+        "Two panels of error over the rate, both logarithmic. Medians in mm at the largest "
+        f"rate, {told}."
+    )
+    labels = "multiple of the rate chosen", "end-point error, mm"
+    return _by_trial(panels, labels, alt, x_log=True)
+
+
+_SHOWN = {"motions": _first_figure, "course": _course_figure, "rates": _rates_figure}
+
+
+def show(name: str) -> Illustration:
+    """A figure of the lesson or its evidence page."""
+    return _SHOWN[name]()
 
 
 def part(name: str, setup: str = "joint damping") -> dict:
@@ -175,3 +246,64 @@ def affordable(learner: str) -> Measured:
     total = each["torque"] + (each[learner] if learner != "torque" else 0.0)
     could = count(newton_euler, PUMA_560, "arm").multiplications * 2.0 / 1.2
     return Measured(total / could, f"{total:,.0f} of {could:,.0f} in 2 ms")
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    quote("loop-load", results.read("learning-in-the-loop")["load"])
+    quote("loop-seeds", on("the same", PLAIN).size)
+    names = dict(exact="exact terms", generic="generic terms", layer="network, last layer")
+    names |= dict(linear="linear filter", memory="memory", none=PLAIN)
+    for short, name in names.items():
+        quote(f"loop-{short}-fast", np.median(on("in half the time", name)))
+        quote(f"loop-{short}-circle", np.median(on("circle", name)))
+    places = dict(plain=PLAIN, layer="last layer", linear="linear filter", feedback="by feedback")
+    places |= dict(kept="off-line, as it is", on="off-line, last layer")
+    for short, name in places.items():
+        for when, word in zip(_WHEN, ("before", "loaded", "end", "without")):
+            quote(f"loop-{short}-{word}", np.median(family(name, when)))
+        quote(f"loop-{short}-before-pd", np.median(family(name, _WHEN[0], "state feedback")))
+        quote(f"loop-{short}-shock", np.median(part("family")["practice"][name][0]))
+    practised = results.read("loop-conditions")["practised"]["joint damping"]
+    quote("loop-step", np.median(practised["out of step"]["circle"]["linear filter"]))
+    quote("loop-step-alone", np.median(practised["out of step"]["circle"]["none"]))
+    quote("loop-scaled", np.median(practised["in step"]["in half the time"]["memory, scaled"]))
+    quote("loop-layer-affordable", affordable("last layer").value)
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+
+    def over(motion, name):
+        return resampled(on(motion, name) / on(motion, PLAIN))
+
+    motions = list(part("motion")["tests"])
+    everywhere = np.max([over(m, "exact terms") for m in motions], axis=0)
+    stated("loop-exact-everywhere", everywhere < 0.5)
+    brisk = [over(m, "generic terms") for m in motions if "time" in m]
+    stated("loop-generic-faster", np.max(brisk, axis=0) < 0.5)
+    stated("loop-generic-circle", over("circle", "generic terms") > 0.75)
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        M, F, k, gamma = given
+        size = gamma * np.sqrt(k * M) / F
+        wrong = "G is imaginary there: what is the size of 1 - γ G?"
+        slips = [(1 - size, wrong), (1 + size, wrong), (1 + size**2, "that is the square.")]
+        told = "above 1, whatever the rate: the resonance grows from trial to trial."
+        judge(mine, np.sqrt(1 + size**2), told, slips, "Put ω² = k / M into G.")
+    elif number == 2:
+        (quick,) = given
+
+        def right(rate):
+            return all(third < alone / 30 for alone, third in quick(float(rate)))
+
+        told = "all three motions are learnt in two trials."
+        judge(mine, right, told, [], "some motion has more than a thirtieth left. Try another.")
+    else:
+        (found,) = given
+        slips = [(1, "it plays something."), (0, "it plays the old torque, with the old sign.")]
+        told = f"found {found:.2f}. What was missing is missing twice."
+        judge(mine, found, told, slips, "What is missing, and what is played?", 0.15)
