@@ -1,0 +1,176 @@
+"""*Run this page*: what is taken by which hash, which cells run, and how they do in a browser."""
+
+import asyncio
+import hashlib
+import html
+import json
+import os
+import re
+import sys
+
+import chromium
+import numpy as np
+import pytest
+from axe import violations
+from book_pages import ROOT, WALK
+from chapter_rules import is_check, is_starter, visible
+from open_cells import imports, lesson
+
+from ddlib.learning import Descent, TrainingSet, Weights
+from ddlib.setups import STATE_FEEDBACK
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+sys.path.insert(0, str(ROOT / "book" / "_ext" / "live_page"))
+import absent
+import kernel
+import live
+
+MIRROR = os.environ.get("DDLIB_LIVE_MIRROR", "")
+THROUGH = [page for page in WALK if "torch" not in imports(page)]
+POLICY = f"{chromium.POLICY}; script-src 'self' 'unsafe-inline' blob: 'wasm-unsafe-eval'"
+IDLE, FOCUSED = "html[data-live=idle]", "(el) => el === document.activeElement"
+
+
+def entry(name: str) -> dict:
+    return {"file_name": name, "sha256": hashlib.sha256(name.encode()).hexdigest(), "depends": []}
+
+
+def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_path):
+    site, kept, out = (tmp_path / name for name in ("html", "kept", "live"))
+    for folder in (site, kept, out):
+        folder.mkdir()
+        (folder / "index.html").write_text(f"in {folder.name}")
+    for name in (*live.CORE, live.LOCK):
+        (kept / name).write_text(json.dumps({"packages": {n: entry(n) for n in live.WHEELS}}))
+    before = sorted(kept.iterdir())
+    (tmp_path / "numpy").write_text("numpy")
+    (tmp_path / "scipy").write_text("tampered")
+    with pytest.raises(live.Refused, match=r"(?s)matplotlib is missing.* scipy has SHA-256"):
+        live.write(ROOT, site, str(tmp_path), kept, out)
+    assert sorted(kept.iterdir()) == before  # not even the right one
+    assert [path.read_text() for path in tmp_path.glob("live*/*")] == ["in live"]
+    live.take([entry("numpy")], str(tmp_path), kept)
+    (kept / "numpy").write_text("changed since")
+    with pytest.raises(live.Refused, match=r"no MIRROR is set(?s:.*)numpy is missing"):
+        live.take([entry("numpy")], "", kept)
+
+
+def plain(page: str) -> str:
+    """A page with the cells of a notebook, and nothing else."""
+    code = [html.escape(c.source) for c in lesson(page).cells if c.cell_type == "code"]
+    cells = [
+        f'<div class="cell x"><div class="cell_input"><pre>{c}</pre></div></div>' for c in code
+    ]
+    main = f"<main><section><h1>x</h1>{''.join(cells)}</section></main>"
+    return f'<!doctype html><html lang="en"><title>x</title><body>{main}</body></html>'
+
+
+@pytest.mark.parametrize("page", WALK)
+def test_open_cells_and_checks_become_live(page):
+    notebook = lesson(page)
+    shown, found = visible(notebook), live.live_cells(notebook)
+    wanted = [cell for cell in notebook.cells if cell in shown or is_check(cell)]
+    told = [(cell.id, cell.source) for cell in wanted]
+    assert [(cell["id"], cell["source"]) for cell in found] == told
+    assert [c["kind"] == "answer" for c in found] == [is_starter(c) for c in wanted]
+    torch = [bool(re.search(r"^\s*(import|from) torch", c.source, re.M)) for c in wanted]
+    assert [bool(c["needs"]) for c in found] == torch
+    marked = live.live_page(plain(page), notebook, page, [1, 2])
+    pairs = re.findall(r'data-live="([^"]+)".*?<pre>(.*?)</pre>', marked, re.S)
+    assert [(name, html.unescape(code)) for name, code in pairs] == told
+    with pytest.raises(live.Refused, match="make book first"):
+        live.live_page(plain(page)[:-900], notebook, page, [1, 2])
+    own = {path.name for path in live.PAGE.iterdir()}  # the normal site has none of it
+    assert not own & {path.name for path in (ROOT / "book" / "_static").iterdir()}
+
+
+def test_descent_in_the_page_is_that_of_the_package():
+    rng = np.random.default_rng(0)
+    data = TrainingSet.from_arrays(rng.normal(size=(80, 2, 5)), rng.normal(size=(80, 2)))
+    start = Weights.random(3, 5, hidden=4)
+    both = [made(start, data.x, data.y, 0.02, 0.9) for made in (Descent, absent.Descent)]
+    for _ in range(200):
+        errors = [each.epoch(True, 0.5) for each in both]
+    np.testing.assert_allclose(*errors, rtol=1e-5)
+    np.testing.assert_allclose(*(each.weights().hidden_weights for each in both), atol=1e-5)
+
+
+def test_cells_say_what_they_cannot(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.setattr(kernel, "space", {})
+    (tmp_path / "late_comer.py").write_text("value = 7")
+
+    async def fetch(package):
+        monkeypatch.syspath_prepend(tmp_path)
+        return package == "late_comer"
+
+    def run(source):
+        told = []
+        asyncio.run(kernel.run(source, "cell", lambda *said: told.append(said), fetch))
+        return told
+
+    assert run("import torch\nimport math\nnet = 1") == [("torch", "")]
+    assert run("print(math.pi > 3)\nnet") == [("text", "True\n"), ("above", "net")]
+    late = "import late_comer\nnet = 2\nprint(net)\nlate_comer.value"
+    assert run(late) == [("text", "2\n"), ("text", "7\n")]
+    assert 'File "cell", line 2' in run("x = 1\nx / 0")[0][1]
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """Pages with cells alone, live, on a server of their own."""
+    if not MIRROR:
+        pytest.skip("set DDLIB_LIVE_MIRROR to a folder or an address with Pyodide's packages")
+    folder = tmp_path_factory.mktemp("site")
+    (folder / "html" / "book").mkdir(parents=True)
+    for page in THROUGH:
+        (folder / "html" / f"{page}.html").write_text(plain(page), encoding="utf-8")
+    (folder / "html" / "index.html").touch()
+    live.write(ROOT, folder / "html", MIRROR, live.BUILD / "pyodide" / live.VERSION, folder / "out")
+    with pytest.MonkeyPatch.context() as patch, chromium.serve(folder / "out") as address:
+        patch.setattr(chromium, "POLICY", POLICY)
+        yield address
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+def test_a_reader_changes_a_cell_and_goes_back(browser, site):
+    tab, asked = browser.new_page(viewport={"width": 390, "height": 800}), []
+    tab.on("dialog", lambda dialog: dialog.accept())
+    tab.context.on("request", lambda request: asked.append(request.url))
+    tab.goto(f"{site}/book/feedback.html")
+    assert len(asked) < 6  # the page, its script and style; no Python before the click
+    tab.get_by_role("button", name="Run this page").click()
+    tab.get_by_role("button", name="Stop").click()
+    field = tab.get_by_role("textbox").first
+    built = field.input_value()
+    told = "print(r.q.tobytes().hex()[-320:], abs(r.tau).sum())"
+    field.fill(f"from ddlib.setups import STATE_FEEDBACK\nr = STATE_FEEDBACK.record()\n{told}")
+    field.press("Control+Enter")
+    tab.locator(IDLE).wait_for(timeout=900_000)
+    bits, size = tab.locator(".live-output").first.inner_text().split()
+    record = STATE_FEEDBACK.record()
+    assert bits == record.q.tobytes().hex()[-320:]
+    assert float(size) == pytest.approx(np.abs(record.tau).sum(), rel=1e-12)
+    assert not violations(tab)
+    tab.reload()
+    tab.get_by_role("button", name="Run this page").click()
+    assert "STATE_FEEDBACK" in field.input_value()  # it was kept
+    tab.get_by_role("button", name="Reset").click()
+    assert field.input_value() == built
+    field.press("Tab")  # passed through, a field lets go
+    assert tab.get_by_role("button", name="Run: cell 1", exact=True).evaluate(FOCUSED)
+    assert all(url.startswith((f"{site}/", f"blob:{site}/")) for url in asked)
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.parametrize("page", THROUGH)
+def test_open_cells_run_through_in_the_page(browser, site, page):
+    tab = browser.new_page()
+    tab.goto(f"{site}/{page}.html")
+    tab.get_by_role("button", name="Run this page").click()
+    tab.locator(IDLE).wait_for(timeout=900_000)
+    assert all(times := tab.locator(".live-time").all_inner_texts())
+    assert len(times) == len(live.live_cells(lesson(page)))
+    assert not tab.locator(".live-error, .live-warning, .live-note:has(a)").all_inner_texts()
