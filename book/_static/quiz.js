@@ -29,7 +29,7 @@
   told.setAttribute("role", "status");
   const count = (first = "") => {
     const done = forms.filter((form) => right.has(form.id)).length;
-    told.textContent = `${first}${done} of ${forms.length} answered right.`;
+    told.textContent = `${first}${done} of ${forms.length} right`;
     numbers.forEach((button, k) => {
       const known = right.has(forms[k].id);
       button.classList.toggle("done", known);
@@ -80,7 +80,7 @@
       numbers[k].setAttribute("aria-expanded", String(k === at));
       numbers[k].setAttribute("aria-controls", form.id);
     });
-    forms[at]?.querySelector(".quiz-bar").append(erase);
+    forms[at]?.querySelector(".quiz-bar").append(told, erase);
   };
   numbers.forEach((button, k) =>
     button.addEventListener("click", () => show(forms[k].hidden ? k : -1)),
@@ -91,10 +91,10 @@
     for (const begin of questions) begin();
     count("Erased. ");
   });
-  const group = make("div", { className: "quiz-numbers" }, "Question", ...numbers);
+  const group = make("div", { className: "quiz-numbers" }, ...numbers);
   group.setAttribute("role", "group");
   group.setAttribute("aria-label", "Questions");
-  forms[0].before(make("div", { className: "quiz-head" }, group, told));
+  forms[0].before(group);
   document.documentElement.dataset.quiz = "";
   show(-1);
   count();
