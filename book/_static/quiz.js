@@ -44,7 +44,7 @@
       label.prepend(input);
       return input;
     });
-    const missing = make("p", { className: "missing", textContent: "Choose an answer first." });
+    const missing = make("div", { className: "missing", textContent: "Choose an answer first." });
     form.querySelector(".whys").append(missing);
     form.querySelector(".whys").setAttribute("aria-live", "polite");
     form.querySelector("details").open = true; // its summary is hidden, and so is each of its lines
