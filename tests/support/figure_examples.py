@@ -167,10 +167,6 @@ EXAMPLES = {
         {"network": {"two joints": (SIZE, ERRORS)}, "linear": {"two joints": (SIZE, 2 * ERRORS)}},
         LABELS, "Errors.", level=0.2,
     ),
-    "growth": partial(
-        more_joints.growth_law, [2, 4, 7], [4, 9, 15], [[3, 8, 12], [5, 10, 20]], [4, 8, 14],
-        LABELS, ("found", "a law"), "Growth.",
-    ),
     "couplings": partial(
         more_joints.gains_by_torque, INERTIA, REAL, UNRELATED[:, None, None] * np.ones((2, 2)),
         "gain over the deviation", "Gains.",
@@ -264,12 +260,6 @@ SHOWN = {
     "ladders": [
         [*xy(SIZE, MIDDLE), *spans(SIZE, ERRORS), [(0, 0.2), (1, 0.2)]],
         [*xy(SIZE, 2 * MIDDLE), *spans(SIZE, 2 * ERRORS)],
-    ],
-    "growth": [
-        [
-            [(2, 4), (4, 9), (7, 15)], [(2, 4), (4, 8), (7, 14)],
-            [(2, 3), (2, 5)], [(4, 8), (4, 10)], [(7, 12), (7, 20)],
-        ]
     ],
     "couplings": [
         [

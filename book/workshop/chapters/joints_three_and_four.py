@@ -1,4 +1,4 @@
-"""*Three and four joints*: figures; errors, growth and filters, from the result "joints"."""
+"""*Joints three and four*: the lesson's numbers, figure, judges; errors, growth and filters."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ddlib.dynamics import DD_ARM_II_IN_SPACE, locked, regressor
 from ddlib.figures import (
     COLOURS,
     DASHES,
@@ -19,8 +20,10 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
-from ddlib.tables import significant
+from ddlib.tables import quote, significant
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
 
 _MARKERS = "os^Dv*"
@@ -63,27 +66,6 @@ def _look(k: int) -> dict:
     return {
         "color": COLOURS[place], "ls": DASHES[place], "marker": _MARKERS[place], "ms": 4, "lw": 1.8
     }  # fmt: skip
-
-
-def growth_law(
-    joints, middle, ends, line, labels: tuple[str, str], names: tuple[str, str], alt: str
-) -> Illustration:
-    """What is needed by number of joints, with the ends of intervals, and a law through it."""
-
-    def draw(figure: Figure):
-        axis = figure.subplots()
-        axis.set(xscale="log", yscale="log")
-        axis.plot(joints, line, color=FAINT, ls="--", lw=1.4, label=names[1])
-        axis.vlines(joints, *ends, color=COLOURS[0], lw=2.2, alpha=0.6)
-        axis.plot(joints, middle, "o", color=COLOURS[0], ms=6, label=names[0])
-        axis.set_xticks(joints, [f"{n:g}" for n in joints])
-        axis.minorticks_off()
-        plain_ticks(axis.yaxis)
-        axis.set_xlabel(check_label(labels[0]))
-        axis.set_ylabel(check_label(labels[1]))
-        axis.legend(loc="upper left")
-
-    return illustrate(draw, alt, 4.6, 2.9)
 
 
 def gains_by_torque(inertia, real, unrelated, label: str, alt: str) -> Illustration:
@@ -143,7 +125,7 @@ def errors(joints: int, motions: int, what: str = "test", reading: str = _DAMPED
     return np.array(_row(reading, joints=joints, motions=motions)[what])
 
 
-def ladder(joints: int, what: str = "test") -> tuple[np.ndarray, list[np.ndarray]]:
+def _ladder(joints: int, what: str = "test") -> tuple[np.ndarray, list[np.ndarray]]:
     """Numbers of motions that were tried with so many joints, and the `errors` of each."""
     rows = [r for r in _read(_DAMPED) if r["joints"] == joints]
     return np.array([r["motions"] for r in rows]), [np.array(r[what]) for r in rows]
@@ -159,7 +141,7 @@ def _numbers() -> list[int]:
 
 def _needed(joints: int, level: float) -> tuple[float, np.ndarray]:
     """Training motions from which on the median RMSS is below a level, and in each draw."""
-    motions, cells = ladder(joints)
+    motions, cells = _ladder(joints)
     crossing = _crossing(motions, level)
     # a seed's motions are among those of its longer draws: seeds are drawn for a whole ladder
     replicates = bootstrap(lambda drawn: crossing(*drawn), tuple(cells), seed=joints)
@@ -229,3 +211,123 @@ def couplings(kind: str = "real") -> Measured:
 
 def _spread(x) -> str:
     return f"{significant(float(np.median(x)), 2)} ({min(x):.2g} to {max(x):.2g})"
+
+
+# --- the lesson -----------------------------------------------------------------------------
+
+
+def _further(each) -> float:
+    """Error of joints 3 and 4 together, in the median of the draws of errors by joint."""
+    return float(np.median(np.sqrt(np.square(each)[:, 2:].mean(1))))
+
+
+def _draws() -> dict[str, np.ndarray]:
+    """Errors of four joints in the draws: by how a network was trained, and of rivals."""
+    return {
+        "as in the report": errors(4, 5),
+        "linear filter": errors(4, 5, "linear"),
+        "training chosen": np.array(results.read("joints-chosen")["test"]),
+        "equations": np.array(_row("known structure", joints=4, motions=5)["test"]),
+        "twenty motions": errors(4, 20),
+    }
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    quote("joints-owed-joint-4", 100 * _read("interactions")["4"][3])
+    for n in (2, 4):
+        draw = np.random.default_rng(1).uniform(-3, 3, (3, 60, n))
+        matrix = regressor(locked(DD_ARM_II_IN_SPACE, n), *draw)
+        quote(f"joints-rank-{n}", int(np.linalg.matrix_rank(matrix.reshape(-1, 10 * n))))
+    quote("joints-seeds", _read("seeds"))
+    for what in ("training", "test", "linear"):
+        quote(f"joints-{what}-4-5", np.median(errors(4, 5, what)))
+    for n, m in ((7, 5), (7, 80), (2, 80)):
+        quote(f"joints-test-{n}-{m}", np.median(errors(n, m)))
+    chosen = results.read("joints-chosen")
+    for name, statistic in (("", np.median), ("-least", min), ("-most", max)):
+        quote(f"joints-again{name}", statistic(chosen["test"]))
+    quote("joints-again-ahead", int((chosen["test"] < errors(4, 5, "linear")).sum()))
+    quote("joints-again-further", _further(chosen["by joint"]))
+    for m in (5, 20):
+        row = _row(_DAMPED, joints=4, motions=m)
+        quote(f"joints-further-{m}", _further(row["by joint"]))
+    others = results.read("loop-conditions")["windows"]
+    quote("joints-plain", np.median(others["as it is"]))
+    quote("joints-chosen", np.median(others["chosen"]))
+    quote("joints-known-4-5", np.median(_draws()["equations"]))
+    quote("joints-tied", couplings().value)
+    costs = _read("costs")[-1]
+    quote("joints-cost-network", costs["network"])
+    quote("joints-cost-general", costs["Newton-Euler, general"])
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+    draws = _draws()
+    plain, chosen = draws["as in the report"], draws["training chosen"]
+    others = results.read("loop-conditions")["windows"]
+    halves = [np.median(chosen) / np.median(plain)]
+    halves += [np.median(others["chosen"]) / np.median(others["as it is"])]
+    stated("joints-again-halves", bool(max(halves) < 0.5))
+    stated("joints-again-helps", resampled(chosen / plain) < 0.8)
+    by_joint = results.read("joints-chosen")["by joint"]
+    twenty = _row(_DAMPED, joints=4, motions=20)["by joint"]
+    stated("joints-again-short", bool(_further(by_joint) > 0.22 > _further(twenty)))
+    stated("joints-linear-first", resampled(plain / draws["linear filter"]) > 1)
+    stated("joints-breaks-at-seven", errors(7, 5) > 1)
+    stated("joints-known-less", bool(np.median(draws["equations"]) < np.median(chosen)))
+
+
+def _answer_figure() -> Illustration:
+    """The first figure: errors by arm over motions, and of four joints in every draw."""
+
+    def draw(figure: Figure):
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(3, 2))
+        for k, n in enumerate(_numbers()):
+            motions, cells = _ladder(n)
+            name = f"{n} joint" if n == 1 else f"{n} joints"
+            left.plot(motions, np.median(cells, 1), label=name, **_look(k))
+        left.set(xscale="log", yscale="log", xlabel="training motions", ylabel="RMSS in the test")
+        for k, each in enumerate(_draws().values()):
+            place = k + 0.05 * (np.arange(len(each)) - 4.5)
+            right.plot(place, each, "o", color=COLOURS[_numbers().index(4)], ms=3, mew=0)
+            right.plot([k - 0.3, k + 0.3], 2 * [np.median(each)], color=INK, lw=1.8)
+        names = [name.replace(" ", "\n") for name in _draws()]
+        names[0] = "as in\nreport"
+        right.set_xticks(range(len(names)), names, fontsize=7.5)
+        right.set_title("four joints")
+        plain_ticks(left.xaxis)
+        plain_ticks(left.yaxis)
+        legend_above(figure, *left.get_legend_handles_labels())
+
+    told = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
+    alt = f"Errors of networks fall with the number of motions. Four joints, medians: {told}."
+    return illustrate(draw, alt, 7.2, 2.8)
+
+
+def show(name: str) -> Illustration:
+    """A figure of the lesson."""
+    return {"answer": _answer_figure}[name]()
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        slips = [((7, 28), "the constant is missing in the linear one."),
+                 ((8, 57), "each product counts once: of 1 and 2, and of 2 and 1.")]  # fmt: skip
+        judge(mine, (8, 36), "and five equations are few.", slips, "Count products.", 0.001)
+    elif number == 2:
+        held = DD_ARM_II_IN_SPACE.inverse_dynamics(*np.zeros((3, 7)))
+        right = 1 + np.abs(held).argmax(), (np.abs(held) < 1e-9).sum()
+        judge(mine, right, "axes that lie level.", [], "About which axes does gravity turn?", 0.001)
+    else:
+        tried, drawn = given
+
+        def good(extents):
+            extents = np.asarray(extents, float)
+            if extents.shape != drawn(5, 0).shape or extents.min() < 0 or extents.max() > 45:
+                return False
+            return sum(tried(extents) < tried(drawn(5, seed)) for seed in range(1, 11)) >= 9
+
+        judge(mine, good, "five corners span the cube.", [], "Too many random draws do better.")
