@@ -1,4 +1,4 @@
-"""The window network is a convolution; convolutions and recurrent units against plain sums."""
+"""Convolutions and recurrent units against plain sums."""
 
 import numpy as np
 import pytest
@@ -6,23 +6,8 @@ import torch
 from scipy.special import expit
 from torch.utils.flop_counter import FlopCounterMode
 
-from ddlib.learning import Weights, sliding_windows
 from workshop.beyond.rivals.networks import _Convolution, _Recurrent
 from workshop.beyond.rivals.protocol import Cases
-from workshop.chapters.rivals import as_convolution
-
-
-def test_the_window_network_is_a_convolution():
-    """Slid along two recordings it gives what the network gives for each window."""
-    weights = Weights.random(1, 21, hidden=10, initial=2.0, seed=4)[0]
-    q = np.random.default_rng(0).uniform(0, 1, (2, 200, 2))
-    wanted = np.stack([weights.activity(run)[1] for run in sliding_windows(q, 21)])
-    with torch.no_grad():
-        found = as_convolution(weights)(torch.tensor(q).transpose(1, 2)).transpose(1, 2).numpy()
-    assert found.shape == (2, 180, 2)
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
-    with pytest.raises(ValueError, match="weights must be of one network"):
-        as_convolution(Weights.random(2, 5))
 
 
 def windows(n=300, width=11, seed=0):

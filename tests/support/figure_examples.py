@@ -22,7 +22,6 @@ from workshop.chapters import (
     real_arm,
     rivals,
     run_time,
-    stirring,
     trajectories_and_recording as recording,
     verdict,
     what_lagrange_euler_leaves_out as left_out,
@@ -91,9 +90,6 @@ REAL = INERTIA + np.array([-0.1, 0.0, 0.1])[:, None, None]
 UNRELATED = np.linspace(-1.0, 1.0, 21)
 GAINS = np.array([[1.0, 0.9, 1.1, 1.2, 0.8, 1.0], [1.1, 1.0, 1.2, 1.3, 0.9, 1.1]])
 MEMBERS = {"11": (np.array([1.0, 2.0]), np.array([3.0, 4.0])), "21": (np.ones(3), 7 * np.ones(3))}
-WANTED = np.stack([np.cos(2 * T), np.sin(2 * T)], -1)
-OFF = WANTED + np.array((0.01, -0.02))
-STATES = np.arange(24.0).reshape(4, 6)
 EDGE = np.array([10.0, 20.0, 30.0])
 SQUARES = {"one": np.arange(1.0, 10.0).reshape(3, 3), "two": np.full((3, 3), 0.5)}
 SQUARES["three"] = 2 * SQUARES["two"]
@@ -176,7 +172,7 @@ EXAMPLES = {
         "Two nets.",
     ),
     "dots": partial(
-        rivals.dots, {"worse": ([0.2, 0.4, 0.3], "7"), "better": ([0.1, 0.2], "90")}, "better",
+        rivals._dots, {"worse": ([0.2, 0.4, 0.3], "7"), "better": ([0.1, 0.2], "90")}, "better",
         0.02, ("RMSS", "numbers"), "Two rivals.",
     ),
     "against": partial(
@@ -184,12 +180,6 @@ EXAMPLES = {
         {"RMSS": MEMBERS, "loop, mm": {"21": (np.ones(2) * 5, np.ones(2) * 6)}}, "error, mm",
         "Two predictors.", ("loop, mm",),
     ),
-    "traded": partial(
-        stirring.traded, {"one": ([1.0, 2.0], [30.0, 20.0]), "other": ([3.0], [4.0])}, (10.0, 15.0),
-        LABELS, "Dots.",
-    ),
-    "paths": partial(stirring.paths, WANTED, {"none": OFF, "exact": WANTED}, 10, "Two paths."),
-    "two_families": partial(stirring.two_families, {"first": STATES, "second": -STATES}, "Clouds."),
     "verdicts": partial(verdict._sections, {"section 2": {"reproduced": 3, "refuted": 1}}),
     "maps": partial(maps, EDGE, SQUARES, ("x, °", "y, °", "error"), "Maps.", mark=(20.0, 30.0)),
 }  # fmt: skip
@@ -269,13 +259,6 @@ SHOWN = {
         ],
         [*xy([0.8, 1.8], REAL[0, 1])],
     ],
-    "by_trial": [[*xy(SIZE, MIDDLE, 2 * MIDDLE), [(7.5, 0), (7.5, 1)]]],
-    "by_motion": [
-        [
-            [(0.1, -0.065), (0.9, -0.065)], [(0.2, -0.065)], [(1, 0.065), (3, 0.065)],
-            [(2, 0.065)], [(0.5, 0.935), (0.7, 0.935)], [(0.6, 0.935)], [(4, 1.065)],
-        ]
-    ],
     "gains_by_joint": [
         [
             *([(k - 0.275, -0.45), (k + 0.275, 0.45)] for k in JOINTS),
@@ -284,9 +267,6 @@ SHOWN = {
     ],
     "dots": [[[(0.1, 0), (0.2, 0)], [(0.2, 1), (0.4, 1)], [(0.3, 1)]]],  # the least on top
     "against": [[*xy([1, 2], [3, 4]), *xy([1] * 3, [7] * 3)], [[(5, 6)] * 2, [(5, 5), (6, 6)]]],
-    "traded": [[[(1, 30), (2, 20)], [(3, 4)], [(10, 0), (10, 1)], [(0, 15), (1, 15)]]],
-    "paths": [[WANTED, WANTED + np.array((0.1, -0.2))], [WANTED]],  # errors are exaggerated
-    "two_families": [[STATES[:, [k, k + 3]], -STATES[:, [k, k + 3]]] for k in range(3)],
     "maps": [[[(20, 30)]]] * 3,
 }  # fmt: skip
 """What each of a figure's axes must show: points, ``(x, y)``; bars from corner to corner."""

@@ -78,12 +78,12 @@
     cell.name = `cell ${number + 1}`;
     cell.built = [...cell.el.querySelectorAll(".cell_output .output")];
     cell.away = [];
+    const caption = cell.el.querySelector(".cell_output figcaption");
     cell.told = make("div", {
-      class: "live-output",
+      class: `live-output ${caption ? "" : "cell_output"}`,
       role: "group",
       "aria-label": `Output of ${cell.name}`,
     });
-    const caption = cell.el.querySelector(".cell_output figcaption");
     if (caption) caption.before(cell.told);
     else cell.el.append(cell.told);
     if (cell.needs) {
@@ -217,7 +217,7 @@
     const cellsOf = (row, tag) =>
       make("tr", {}, ...parts(row).map((t) => make(tag, {}, formulas(t.trim()))));
     return make(
-      "div",
+      "section", // as on the book's pages: a div that scrolls has no role
       { class: "pst-scrollable-table-container" },
       make(
         "table",
@@ -258,6 +258,7 @@
 
   // --- the worker, and what is to be run ---
   let worker, ready, running, waiting, expected, loaded;
+  let kept = ""; // what is said while Python starts afresh and nobody waits for it
 
   function boot() {
     worker = new Worker(new URL("worker.mjs", home), { type: "module" });
@@ -282,7 +283,7 @@
     progress.firstChild.style.inlineSize = `${share}%`;
     const told = `${(loaded / 1e6).toFixed(0)} MB`;
     progress.setAttribute("aria-valuetext", told);
-    if (!ready) say(share < 100 ? "Loading Python …" : "Starting Python …");
+    if (!ready) say(kept || (share < 100 ? "Loading Python …" : "Starting Python …"));
     else say(`Running ${running?.name}: loading what it imports …`);
   }
 
@@ -294,7 +295,7 @@
       ready = true;
       progress.hidden = true;
       expected = megabytes[1] * 1e6;
-      say("Python is ready.");
+      say(kept || "Python is ready.");
       next();
     } else if (message.failed) {
       progress.hidden = true;
@@ -337,6 +338,7 @@
 
   function enqueue(more) {
     document.documentElement.dataset.live = "running";
+    kept = "";
     waiting = [...(waiting ?? []), ...more];
     if (!worker) boot();
     next();
@@ -349,8 +351,8 @@
     if (running?.time) running.time.textContent = "stopped";
     running = undefined;
     waiting = [];
+    kept = told;
     boot();
-    say(told);
     document.documentElement.dataset.live = "idle";
   }
 

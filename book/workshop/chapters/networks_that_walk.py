@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 
 from ddlib import figures
-from ddlib.analysis import decompose
 from ddlib.tables import quote
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
@@ -22,13 +21,20 @@ from workshop.report.evidence.verdicts import Measured
 _REACH = 41  # samples of the memory that are read
 _SMALL = 0.05, 2.0  # rad, Hz: histories of the first figure
 _SIZES = 0.02, 0.1, 0.3, 0.8  # of the widget's jump, rad
+_KINDS = {
+    "copies": "copies, 1,500 epochs",
+    "longer": "copies, 20,000 epochs",
+    "held": "copies, jumping targets",
+    "fixed": "copies, fixed targets",
+    "shuffled": "shuffled",
+}
 _JUMPS = 24  # samples that a jump of the widget may be old
 
 
-def _sines(size, frequency, samples, cases=300):
+def _sines(size, frequency, samples, cases=300, speed=0.0):
     t, w = -STEP * np.arange(samples), 2 * np.pi * frequency
     phase = np.random.default_rng(0).uniform(0, 2 * np.pi, (cases, 1))
-    return size * np.sin(w * t + phase), size * w * np.cos(w * t + phase)
+    return size * np.sin(w * t + phase), speed + size * w * np.cos(w * t + phase)
 
 
 def _squashed(s):
@@ -56,9 +62,9 @@ def _remembered(x) -> np.ndarray:
     return np.stack(told, axis=1) * kept["out_scale"][0]
 
 
-def _answers(size, frequency, cases=100) -> np.ndarray:
+def _answers(size, frequency, speed=0.0, cases=100) -> np.ndarray:
     """Gradient of the last torque by age of error and velocity, shape (cases, 2, samples)."""
-    error, velocity = _sines(size, frequency, 2 * _REACH, cases)
+    error, velocity = _sines(size, frequency, 2 * _REACH, cases, speed)
     history, push = np.stack([error, velocity], -1)[:, ::-1], 1e-5
     nudges = np.zeros((2, _REACH, 1, *history.shape[1:]))
     for lag in range(_REACH):
@@ -80,13 +86,13 @@ def _moments(g) -> np.ndarray:
     return np.stack([stiffness, late, velocity.sum(-1)], axis=-1)
 
 
-def _of_go1(size, frequency) -> np.ndarray:
-    x = np.concatenate(_sines(size, frequency, 3), axis=1)
+def _of_go1(size, frequency, speed=0.0) -> np.ndarray:
+    x = np.concatenate(_sines(size, frequency, 3, speed=speed), axis=1)
     return -gradient(x, layers())
 
 
-def _of_memory(size, frequency) -> np.ndarray:
-    return (_answers(size, frequency) * [[1], [-1]]).reshape(100, -1)
+def _of_memory(size, frequency, speed=0.0) -> np.ndarray:
+    return (_answers(size, frequency, speed) * [[1], [-1]]).reshape(100, -1)
 
 
 def _rows(name: str) -> np.ndarray:
@@ -135,8 +141,16 @@ def _middle(g) -> np.ndarray:
 def _quoted() -> None:
     """The numbers of the lesson's prose."""
     quote("walk-copy-off", 100 * moments_agree().value)
-    quote("walk-copy-least", 100 * _middle().min())
-    quote("walk-copy-most", 100 * _middle().max())
+    middle, late = _middle(_rows("copies")), _named(_rows("fixed"))["delay"]
+    quote("walk-copy-least", 100 * middle.min())
+    quote("walk-copy-most", 100 * middle.max())
+    for kind in ("longer", "held"):
+        quote(f"walk-{kind}-off", 100 * np.abs(_middle(_rows(kind)) - _middle(_own(kind))).max())
+    quote("walk-fixed-least", late.min())
+    quote("walk-fixed-most", late.max())
+    quote("walk-fixed-off", 100 * moments_agree("fixed", ["stiffness", "net damping"]).value)
+    for name, of, speed in (("go1", _of_go1, -15.0), ("anymal", _of_memory, 8.0)):
+        quote(f"walk-quick-{name}", _moments(of(0.02, 2.0, speed).mean(0))[0])
     shuffled = _rows("shuffled")[:, :3]
     quote("walk-null-bar", np.abs(shuffled).max())
     quote("walk-null-stiffness", np.abs(shuffled.sum(1)).max())
@@ -144,14 +158,21 @@ def _quoted() -> None:
 
 def by_lag() -> figures.Illustration:
     """The first figure: answers to the error by its age, of both networks."""
-    own, memory = _of_go1(*_SMALL).mean(0), _of_memory(*_SMALL).mean(0)
-    copies, age = _rows("copies")[:, :3], 1e3 * STEP * np.arange(_REACH)
+    own, memory = _own("copies"), _of_memory(*_SMALL).mean(0)
+    age = 1e3 * STEP * np.arange(_REACH)
+    lines = {
+        "brief copies": _rows("copies"),
+        "longer, or jumps": np.concatenate([_rows("longer"), _rows("held")]),
+    }
     (go1, late, _), (anymal, later, _) = _moments(own), _moments(memory)
 
     def draw(figure):
         left, right = figure.subplots(1, 2, width_ratios=(1, 2))
         left.bar(age[:3], own[:3], 3.5, color=figures.COLOURS[0])
-        left.plot(age[:3], copies.T, color=figures.COLOURS[1], lw=0.8)
+        for k, (name, found) in enumerate(lines.items(), 1):
+            drawn = left.plot(age[:3], found[:, :3].T, color=figures.COLOURS[k], lw=0.8)
+            drawn[0].set_label(name)
+        figures.legend_above(figure, *left.get_legend_handles_labels())
         left.set(title=f"Go1: {go1:.0f} N m/rad, {late:.0f} ms late", xticks=age[:3])
         right.bar(age, memory[:_REACH], 3.5, color=figures.COLOURS[0])
         right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {later:.0f} ms late")
@@ -161,8 +182,8 @@ def by_lag() -> figures.Illustration:
 
     alt = (
         f"Answers to the position error by its age. Go1: nearly all of {go1:.0f} N m/rad at 5 ms, "
-        "copies spread over 0 to 10 ms. ANYmal: a hump over 70 ms with the sum "
-        f"{anymal:.0f} N m/rad and the mean {later:.0f} ms."
+        "as in copies trained for longer or on jumps; brief ones spread it over 0 to 10 ms. "
+        f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean {later:.0f} ms."
     )
     return figures.illustrate(draw, alt, 7.2, 2.7)
 
@@ -182,39 +203,29 @@ def over_sizes() -> tuple[Sequence[str], list]:
 
 
 def copies() -> tuple[Sequence[str], list]:
-    """Table of the network, ten copies, and the ranges of the nulls."""
+    """Table of the network, and of the ranges of its copies and of the nulls."""
     study = results.read("walking")
-    own = -np.array(study["network"])
-    rows = [("network", "0", *(f"{b:.1f}" for b in own[:3]), *_cells(own))]
-    for kind in ("copies", "shuffled"):
-        for k, row in enumerate(study[kind]):
-            g = -np.array(row["gradient"])
-            bars = (f"{b:.1f}" for b in g[:3])
-            rows.append((f"{kind}, {k}", f"{row['error']:.3f}", *bars, *_cells(g)))
+    rows = [("network", "0", *_ranges(_own("copies")[None]))]
+    for kind, name in _KINDS.items():
+        errors = [row["error"] for row in study[kind]]
+        told = f"{min(errors):.3f} to {max(errors):.3f}"
+        rows.append((name, told, *_ranges(_rows(kind), kind != "shuffled")))
     random = -np.array(study["random"])
-    ends = np.percentile(np.column_stack([random[:, :3], random[:, :3].sum(1)]), (5, 95), axis=0)
+    ends = np.percentile([random[:, 1], random[:, :3].sum(1)], (5, 95), axis=1)
     told = [f"{a:.1f} to {b:.1f}" for a, b in ends.T]
-    rows.append(("random, nine tenths of 100", "", *told, "", ""))
+    rows.append(("random, nine tenths of 100", "", *told, "", "", ""))
     rows = [tuple(cell.replace("-", "−") for cell in row) for row in rows]
-    heads = ("who", "error, RMSS", "now", "5 ms ago", "10 ms ago", "sum, N m/rad")
-    return (*heads, "delay, ms", "damping, N m s/rad"), rows
+    heads = ("who", "error, RMSS", "middle bar", "K, N m/rad", "d, ms")
+    return (*heads, "B, N m s/rad", "B − Kd"), rows
 
 
-def _cells(g) -> list[str]:
-    stiffness, late, damping = _moments(g)
-    sure = abs(stiffness) > 5
-    return [f"{stiffness:.1f}", f"{late:.1f}" if sure else "", f"{damping:.2f}"]
-
-
-def parts() -> tuple[Sequence[str], list]:
-    """Table of the energies of the constant, even and odd parts of the memory's answers."""
-    rows = []
-    for size in (0.01, 0.1, 0.4):
-        f = _of_memory(size, 2.0).mean(0)[:_REACH]
-        energy = np.array([(part**2).sum() for part in decompose(f)])
-        shares = 100 * energy / energy.sum()
-        rows.append((f"{size:g} rad", *(f"{share:.0f} %" for share in shares)))
-    return ("size", "constant", "even", "odd"), rows
+def _ranges(g, sure: bool = True) -> list[str]:
+    told = []
+    for k, values in enumerate((g[:, 1], *_named(g).values(), _moments(g)[:, 2])):
+        least, most = (f"{v:.{2 if k > 2 else 1}f}" for v in (values.min(), values.max()))
+        told.append(least if least == most else f"{least} to {most}")
+    middle, stiffness, late, net, damping = told
+    return [middle, stiffness, late if sure else "", damping, net if sure else ""]
 
 
 def check(number: int, mine, left: float | None = None) -> None:

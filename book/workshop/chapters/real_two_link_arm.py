@@ -19,9 +19,9 @@ _MODELS = {
     "linear filter": "linear filter",
     "11": "window 11",
     "21": "window 21",
-    "solved": "window 21, solver",
+    "solved": "21, solver",
     "41": "window 41",
-    "network": "network, tuned",
+    "network": "tuned",
     "equations with filters": "equations, filters",
     "equations": "equations",
 }
@@ -119,20 +119,22 @@ def _quoted() -> None:
     quote("two-solved-most", 100 * max(_solved("solved", 11)))
     quote("two-known-least", 100 * min(_solved("solved, known", 11)))
     quote("two-solver-off", 100 * max(abs(share - 1) for share in _solved("solved", 41)))
-    again = [row for row in _designs()["C1"]["predicted"] if row["test"][:6] == "C1_154"]
-    quote("two-repeated", max(row["by window"]["41"] for row in again))  # one motion, twice
-    free = np.concatenate([np.array(x["together"])[:, 1:].ravel() for x in _designs().values()])
-    quote("two-together-least", free.min())
-    quote("two-together-most", free.max())
-    quote("two-rigid", max(_rigid(design) for design in _designs()))
+    single = [x[:, 0, 0, 2] / true[0, 0, 2] for x, true in _each_solved("solved", 41)]
+    quote("two-single-off", 100 * max(abs(x - 1).max() for x in single))
+    longer = results.read("two-link-longer")
+    quote("two-apart", longer["apart"][1])
+    needed = [x["needed"][1][0] for x in longer["shaken"].values()]
+    quote("two-needs-least", min(needed))
+    quote("two-needs-most", max(needed))
+    quote("two-longer-least", 100 * min(_longer("81", np.median)))
+    quote("two-longer-most", 100 * max(_longer("81", np.median)))
 
 
-def _rigid(design: str) -> float:
-    """Correlation of accelerations by unrelated torques, elbow at 90°; less if it is straighter."""
-    a, _, d, _, _, r = _published(design)[:6]
-    inverse = np.linalg.inv([[a, d], [d, d + r]])
-    both = inverse @ inverse.T
-    return float(both[0, 1] / np.sqrt(both[0, 0] * both[1, 1]))
+def _longer(width: str, of) -> list[float]:
+    """Shoulder's inertia over the published one in networks of a longer window, by design."""
+    solved = results.read("two-link-longer")["solved"]
+    true = {design: _read(design, 41, "published")[0, 0, 2] for design in solved}
+    return [of(np.array(x[width])[:, 0, 0, 2]) / true[design] for design, x in solved.items()]
 
 
 def _said() -> None:
@@ -144,6 +146,13 @@ def _said() -> None:
     stated("two-beats-linear", less[0] > 0.6 and less[2] > 0.6 and less[1] < 0.6)
     lost = [1 - _gravity(d, kind)[0, 0] for kind in ("measured", "wiggles") for d in _designs()]
     stated("two-wiggles-cost", bool((np.array(lost[3:]) > 0.6 * np.array(lost[:3])).all()))
+    fast = list(results.read("two-link-longer")["shaken"].values())
+    stated("two-not-rigid", min(x["needed"][1][0] / x["has"][1][0] for x in fast) > 7)
+    error = results.read("two-link-longer")["turns"].index(12)
+    stated("two-encoder", min(x["share"][error] for x in fast[:7]) > 0.2)
+    stated("two-apart-more", results.read("two-link-longer")["apart"][1] > 0.15)
+    shorter, longer = _longer("41", np.min), _longer("81", np.max)
+    stated("two-longer-less", bool((np.array(longer) < shorter).all()))
     null = max(np.abs(_nulls(d)[:, 0, 0, 2]).max() / _inertia()[d][:, 0].min() for d in _designs())
     stated("two-beyond-nulls", null < 1)
     linear = [_read(d, 41, "linear")[0, 0, 2] / np.median(_inertia()[d][:, 0]) for d in _designs()]
@@ -152,9 +161,14 @@ def _said() -> None:
     stated("two-window-matters", bool((np.array(gains)[:, 0] < 0.3 * np.array(gains)[:, 2]).all()))
 
 
+def _each_solved(who: str, width: int) -> list[tuple]:
+    """Moments by the solver, and the published ones, of each design."""
+    return [(_read(d, width, who), _read(d, width, "published")) for d in _designs()]
+
+
 def _solved(who: str, width: int) -> list[float]:
     """Shoulder's inertia over the published one, by the solver, of each design."""
-    pairs = [(_read(d, width, who), _read(d, width, "published")) for d in _designs()]
+    pairs = _each_solved(who, width)
     return [np.median(found[:, 0, 0, 2]) / true[0, 0, 2] for found, true in pairs]
 
 

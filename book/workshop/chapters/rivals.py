@@ -1,21 +1,32 @@
-"""*Rivals*: errors by seed and day, the window network as a convolution, a figure of errors."""
+"""The lesson *Rivals then and now*: its figure, numbers and checks; errors by seed and day."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 import numpy as np
-import torch
 from matplotlib.figure import Figure
-from torch import nn
 
 from ddlib.figures import COLOURS, FAINT, Illustration, check_label, illustrate
 from ddlib.figures.style import NARROW
-from ddlib.learning import Weights
+from ddlib.tables import quote
+from workshop.beyond._measures.rivals import better, row
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence.statements import stated
+
+_TOLD = {
+    "identified": "equations, identified",
+    "filters and equations": "equations, learnt filters",
+    "structure and process": "equations and Gaussian process",
+    "second-order steps": "network, second-order steps",
+    "on states": "network on states",
+    "convolutions": "network of convolutions",
+    "recurrent": "recurrent network",
+}
 
 
-def dots(
+def _dots(
     rivals: Mapping[str, tuple], marked: str, floor: float, labels: tuple, alt: str
 ) -> Illustration:
     """Errors of rivals on a logarithmic axis, the least on top: the median, and least to largest.
@@ -24,14 +35,12 @@ def dots(
     ``labels[1:]``; a narrow page leaves them out.
     """
     order = sorted(rivals, key=lambda name: np.median(rivals[name][0]))
-    if marked not in order:
-        raise ValueError(f"marked must be one of {', '.join(order)}, got {marked!r}")
     places = np.arange(len(order))
 
     def draw(figure: Figure):
         wide = figure.get_figwidth() > NARROW
         axis, *beside = np.atleast_1d(
-            figure.subplots(1, 1 + wide, sharey=True, width_ratios=(3.5, 1)[: 1 + wide])
+            figure.subplots(1, 1 + wide, sharey=True, width_ratios=(2.9, 1)[: 1 + wide])
         )
         axis.set(xscale="log", ylim=(len(order) - 0.4, -0.6), xlabel=check_label(labels[0]))
         axis.axvline(floor, color=FAINT, ls=":", lw=1.4)
@@ -52,7 +61,82 @@ def dots(
                 for k, name in enumerate(order):
                     words.text(x, k, rivals[name][column], ha="right", va="center")
 
-    return illustrate(draw, alt, 7.0, 0.23 * len(order) + 0.7)
+    return illustrate(draw, alt, 7.0, 0.2 * len(order) + 0.7)
+
+
+def _tuned() -> dict:
+    return results.read("tuned")["rivals"]
+
+
+def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
+    return np.array(_tuned()[name]["errors"][part])
+
+
+def show(_name: str = "errors") -> Illustration:
+    """Error on trajectory 6 and stored numbers of every rival, tuned alike."""
+    marked = results.read("tuned")["reference"]
+    shown = {}
+    for name, one in _tuned().items():
+        errors, count = _errors(name), np.median(one["count"])
+        shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{count:,.0f}"
+    order = sorted(shown, key=lambda name: np.median(shown[name][0]))
+    told = "; ".join(f"{name} {shown[name][1]}, {shown[name][2]} numbers" for name in order)
+    floor = results.read("rivals")["floor"]["positions"]["trajectory 6"]
+    labels = "error on trajectory 6, RMSS", "error", "numbers"
+    return _dots(shown, marked, floor, labels, f"Rivals by their median error: {told}.")
+
+
+def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988") -> np.ndarray:
+    """A rival's error over another's, day by day."""
+    a, b = _errors(name, part), _errors(against, part)
+    days = min(len(a), len(b))
+    return a[:days] / b[:days]
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    study, untuned = results.read("tuned"), row("network of 1988", size=10)
+    named = {"network": study["reference"], "linear": "linear filter", "filters": study["own"]}
+    for short, name in {**named, "identified": "identified", "recurrent": "recurrent"}.items():
+        quote(f"rivals-{short}", np.median(_errors(name)))
+    for end, value in (("least", np.min), ("most", np.max)):
+        quote(f"rivals-network-{end}", value(_errors(study["reference"])))
+        quote(f"rivals-linear-{end}", value(_over("linear filter")))
+    won = _over("Lagrangian network") < 1
+    quote("rivals-lagrangian-won", int(won.sum()))
+    quote("rivals-lagrangian-days", len(won))
+    quote("rivals-recurrent-training", np.median(_errors("recurrent", "training")))
+    quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
+    for short, name in (("identified", "identified"), ("nearest", "nearest case")):
+        quote(f"rivals-ratio-{short}", np.median(_over(name)))
+    quote("rivals-times-nearest", np.median(_tuned()["nearest case"]["count"]) / study["budget"])
+    for part in ("inside", "outside"):
+        quote(f"rivals-{part}", np.median(_over("linear filter", part)))
+    for part in ("trajectory 6", "inside", "outside"):
+        fewer, all_of_them = better(part).text.split(":")[0].split(" of ")
+        quote(f"rivals-better-{part}" if part != "trajectory 6" else "rivals-better", int(fewer))
+    quote("rivals-within", int(all_of_them))
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+    study = results.read("tuned")
+    stated("rivals-equations-ahead", _over("identified").max() < 0.8)
+    draw = _over("linear filter")
+    stated("rivals-linear-draws", draw.min() < 1 < draw.max())
+    hull = [_over("linear filter", part).max() for part in ("inside", "outside")]
+    stated("rivals-linear-hull", max(hull) < 1)
+    stated("rivals-memory-behind", _over("nearest case").min() > 1)
+    within = [n for n, one in _tuned().items() if one["within"] and n != study["own"]]
+    clear = {name for name in within if _over(name).max() < 1}
+    stated("rivals-clearly", clear == {"identified", "table of configurations"})
+    cells = [setting[1] for setting in _tuned()["table of configurations"]["setting"]]
+    stated("rivals-one-cell", set(cells) == {1})
+    stated("rivals-recurrent-behind", _over("recurrent").min() > 1)
+    turned = [better(part).value > better().value for part in ("inside", "outside")]
+    stated("rivals-square-turns", all(turned))
+    others = [name for name in within if name != study["reference"] and name not in clear]
+    stated("rivals-others-not", all(_over(name).max() > 1 for name in others))
 
 
 def tested(rival: str, part: str = "torque", split: str = "loader") -> np.ndarray:
@@ -67,35 +151,24 @@ def asked(process: str, part: str = "trajectory 6", what: str = "covered") -> np
     return np.array([row[what] for row in rows])
 
 
-def as_convolution(weights: Weights) -> nn.Module:
-    """The window network as a convolutional one, in double precision.
+def check(number: int, mine, *asked) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        slips = [(0.2, "that is the share that is lost."),
+                 (0.25, "that is the penalty over the variance.")]  # fmt: skip
+        judge(mine, 0.8, "small inputs lose most.", slips, "Set the slope in w' to zero.")
+    elif number == 2:
 
-    It takes scaled positions ``(recordings, joint, time)`` to output activities ``(recordings,
-    output, time - width + 1)``: no window is cut, and none is computed twice.
-    """
-    if weights.hidden_bias.ndim != 1:
-        raise ValueError(f"weights must be of one network, got {weights!r}")
-    return _Slid(weights)
+        def near(pair):
+            return all(0.5 <= guess / right <= 2 for guess, right in zip(pair, asked, strict=True))
 
+        told = "form carries over what free weights cannot know."
+        judge(mine, near, told, [], "one of them hardly minds, the other is lost.")
+    else:
+        (with_these,) = asked
 
-class _Slid(nn.Module):
-    """Two convolutions of the window's width, and one of width 1 from hidden to output units."""
+        def few(kept):
+            return len(set(kept)) == 5 and with_these(kept) <= 1.5
 
-    def __init__(self, weights: Weights):
-        super().__init__()
-        (hidden, joints, width), outputs = weights.hidden_weights.shape, weights.output_bias.size
-        self.hidden = nn.Conv1d(joints, hidden, width)
-        self.direct = nn.Conv1d(joints, outputs, width)
-        self.output = nn.Conv1d(hidden, outputs, 1, bias=False)
-        given = {
-            self.hidden.weight: weights.hidden_weights,
-            self.hidden.bias: weights.hidden_bias,
-            self.direct.weight: weights.direct_weights,
-            self.direct.bias: weights.output_bias,
-            self.output.weight: weights.output_weights[..., None],
-        }
-        for parameter, values in given.items():
-            parameter.data = torch.tensor(values, dtype=torch.float64)
-
-    def forward(self, x):
-        return torch.sigmoid(self.direct(x) + self.output(torch.sigmoid(self.hidden(x))))
+        otherwise = "without which columns does nothing accelerate rightly?"
+        judge(mine, few, "one friction term a joint is nearly enough.", [], otherwise)

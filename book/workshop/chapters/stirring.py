@@ -1,98 +1,66 @@
-"""*Stirring*: figures of states, errors traded and paths; the study's errors, day by day."""
+"""*Stirring*: the study's errors, day by day; the lesson's numbers, figure, and checks."""
 
 from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from ddlib.figures import (
-    COLOURS,
-    FAINT,
-    INK,
-    Illustration,
-    check_label,
-    dots_in_one,
-    illustrate,
-    legend_above,
-    plain_ticks,
-)
+from ddlib.dynamics import reach
+from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
+from ddlib.tables import quote
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from workshop.beyond.studies.loop.run_time_parts import exact
+from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence import claims
+from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
-_MARKERS = "os^Dv"
-_PLANES = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²"}
+_FAMILIES = ("pick and place", "circles")
+_DOTS = {
+    "network, pick and place": "network: pick-and-place",
+    "network, circles": "network: circles",
+    "network, both": "network: both",
+    "identified, pick and place": "equations: pick-and-place",
+}
 
 
-def traded(
-    points: dict[str, tuple], nothing: tuple[float, float], labels: tuple[str, str], alt: str
-) -> Illustration:
-    """Errors on one family against errors on another, both logarithmic: a dot for each network.
-
-    `nothing` are both errors without any of them: two lines, beyond which they do harm.
-    """
+def _traded() -> Illustration:
+    """The hand's errors on one family against those on the other: a dot for each network."""
+    points = {told: [hand(name, m) for m in _FAMILIES] for name, told in _DOTS.items()}
+    nothing = [hand("none", m)[0] for m in _FAMILIES]
 
     def draw(figure: Figure):
         axis = figure.subplots()
         axis.set(xscale="log", yscale="log")
         axis.axvline(nothing[0], color=FAINT, ls="--", lw=1)
         axis.axhline(nothing[1], color=FAINT, ls="--", lw=1)
-        for k, (name, pair) in enumerate(points.items()):
-            look = {"color": COLOURS[k % len(COLOURS)], "ls": "", "ms": 6, "mew": 0, "alpha": 0.85}
-            axis.plot(*pair, _MARKERS[k % len(_MARKERS)], label=name, **look)
-        axis.set(xlabel=check_label(labels[0]), ylabel=check_label(labels[1]))
-        low = min(np.min(pair) for pair in points.values()) / 1.3
-        high = max(max(np.max(p) for p in points.values()), *nothing) * 1.4
-        axis.set(xlim=(low, high), ylim=(low, high), aspect="equal")
-        axis.text(nothing[0] * 1.05, low * 1.1, "none", color=FAINT, fontsize=8)
-        axis.text(low * 1.05, nothing[1] * 1.05, "none", color=FAINT, fontsize=8)
+        for (name, pair), colour, marker in zip(points.items(), COLOURS, "os^D"):
+            look = {"color": colour, "ls": "", "ms": 6, "mew": 0, "alpha": 0.85}
+            axis.plot(*pair, marker, label=name, **look)
+        axis.set(xlabel="error of the hand on pick-and-place, mm", ylabel="on circles, mm")
+        axis.text(nothing[0] * 0.97, 1.0, "none", color=FAINT, fontsize=8, ha="right")
+        axis.text(0.95, nothing[1] * 1.04, "none", color=FAINT, fontsize=8)
+        axis.set(xlim=(0.9, None), ylim=(0.9, None))
         plain_ticks(axis.xaxis)
         plain_ticks(axis.yaxis)
         legend_above(figure, *axis.get_legend_handles_labels())
 
-    return illustrate(draw, alt, 5.2, 5.2)
+    told = "; ".join(
+        f"{name} {np.median(circles):.1f} and {np.median(pick):.1f} mm"
+        for name, (pick, circles) in points.items()
+    )
+    alt = (
+        "Errors of the hand on circles over errors on pick-and-place, logarithmic. Without "
+        f"feedforward {nothing[1]:.1f} and {nothing[0]:.1f} mm. Medians: {told}."
+    )
+    return illustrate(draw, alt, 6.2, 3.4)
 
 
-def paths(wanted, panels: dict[str, np.ndarray], factor: float, alt: str) -> Illustration:
-    """Paths of the hand ``(time, 2)``, errors exaggerated, each over the path that was wanted."""
-    rows = -(-len(panels) // 3)
-
-    def draw(figure: Figure):
-        axes = figure.subplots(rows, 3, sharex=True, sharey=True, squeeze=False)
-        for axis, (title, path) in zip(axes.ravel(), panels.items()):
-            path = wanted + factor * (path - wanted)
-            axis.plot(*wanted.T, color=INK, lw=0.9, label="wanted")
-            axis.plot(*path.T, color=COLOURS[1], lw=1.8, label=f"error × {factor:g}")
-            axis.plot(*path[0], "o", color=COLOURS[1], ms=4)
-            axis.set_title(title)
-            axis.set_aspect("equal")
-        for axis in axes.ravel()[len(panels) :]:
-            axis.remove()
-        figure.supxlabel("x, m")
-        figure.supylabel("y, m")
-        legend_above(figure, *axes[0, 0].get_legend_handles_labels())
-
-    return illustrate(draw, alt, 6.6, 1.7 * rows + 0.7)
-
-
-def two_families(states: dict[str, np.ndarray], alt: str) -> Illustration:
-    """States ``(n, 6)`` of families of motions, shoulder against elbow."""
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, 3)
-        for k, (axis, (title, unit)) in enumerate(zip(axes, _PLANES.items())):
-            for x, colour in zip(states.values(), COLOURS):
-                dots_in_one(axis, x[:, [k, k + 3]], ec=colour, lw=1.8, alpha=0.8)
-            axis.autoscale_view()
-            axis.set(title=title, xlabel=f"shoulder, {unit}", ylabel=f"elbow, {unit}")
-        look = {"marker": "o", "ls": "", "ms": 4.8, "mew": 0}
-        handles = [Line2D([], [], color=c, label=name, **look) for name, c in zip(states, COLOURS)]
-        figure.legend(handles=handles, loc="outside upper left", ncols=3)
-
-    return illustrate(draw, alt, 7.0, 2.9)
+def show(name: str) -> Illustration:
+    """The lesson's first figure, "traded"."""
+    return {"traded": _traded}[name]()
 
 
 def error(
@@ -129,3 +97,104 @@ def turns() -> Measured:
     where = t[back.argmax(1)[moving]]
     once = bool((count == 1).all() and np.abs(where - MOTION_SECONDS / 2).max() < 0.002)
     return Measured(once, f"{count.max()} turn a joint, after {where.mean():.2f} s")
+
+
+def _median(learnt: str, asked: str, rival: str = "network") -> float:
+    return float(np.median(error(rival, learnt, asked)))
+
+
+def _quoted() -> None:
+    """The numbers of the prose."""
+    for key, name in zip(("pick", "circles", "both", "known"), _DOTS):
+        for short, motion in zip(("pick", "circles"), _FAMILIES):
+            quote(f"stir-hand-{key}-{short}", np.median(hand(name, motion)))
+    nothing = [float(hand("none", motion)[0]) for motion in _FAMILIES]
+    quote("stir-hand-none-pick", nothing[0])
+    quote("stir-hand-none-circles", nothing[1])
+    worse = hand("network, pick and place", "circles") > nothing[1]
+    quote("stir-worse-count", int(worse.sum()))
+    quote("stir-worse-of", len(worse))
+    covered = _row()["coverage"]
+    for key, family in zip(("pick", "circles"), _FAMILIES):
+        for part in ("all", "velocities"):
+            for kind, short in (("other family", "share"), ("same family", "same")):
+                share = covered[part][family][kind]["shared"]
+                quote(f"stir-{short}-{key}-{part}", 100 * share)
+    for rival in ("network", "identified"):
+        for key, (learnt, asked) in {"": _FAMILIES, "-back": _FAMILIES[::-1]}.items():
+            ratio = _median(learnt, asked, rival) / _median(asked, asked, rival)
+            quote(f"stir-ratio-{rival}{key}", ratio)
+    quote("stir-ratio-both", _median("both", "circles") / _median(*_FAMILIES[1:] * 2))
+    quote("stir-ratio-both-back", _median("both", "pick and place") / _median(*_FAMILIES[:1] * 2))
+    quote("stir-network-circles", _median(*_FAMILIES))
+    quote("stir-network-small", _median("pick and place", "small circles"))
+    quote("stir-both-small", _median("both", "small circles"))
+    hands = results.read("loop-conditions")["stopped"]["joint damping"]["hands"]
+    for key, model in (("chosen", "chosen"), ("sixty", "60")):
+        for short, motion in zip(("pick", "circles"), _FAMILIES):
+            quote(f"stir-{key}-{short}", np.median(hands[motion][model]))
+    quote("stir-stop-none", np.median(hands["circles"]["none"]))
+    quote("stir-twenty", np.median(hands["circles"]["twenty circles"]))
+    quote("stir-twenty-known", np.median(hands["circles"]["identified"]))
+    quote("stir-reach-low", reach(JOINT_DAMPING.arm)[0])
+    quote("stir-reach-high", reach(JOINT_DAMPING.arm)[1])
+
+
+def _said() -> None:
+    """What stands behind words of the prose."""
+
+    def draws(learnt, asked, rival="network"):
+        return resampled(error(rival, learnt, asked))
+
+    pick, circles = _FAMILIES
+    of_pick = resampled(hand("network, pick and place"))
+    stated("stir-worse-than-none", of_pick > hand("none")[0])
+    known, own = hand("identified, pick and place"), hand("network, circles")
+    stated("stir-carries", resampled(known) < resampled(own))
+    stopped = claims.measured("stirring-hand-worse-stopped").replicates
+    stated("stir-stopped-helps", stopped < 1)
+    stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))
+    both = [draws("both", family) < 1.25 * draws(family, family) for family in _FAMILIES]
+    stated("stir-both-costs-nothing", both[0] & both[1])
+    small = draws(pick, "small circles")
+    stated("stir-small-known", small < 0.3 * draws(pick, circles))
+    stated("stir-small-worse", small > 1.5 * draws("both", "small circles"))
+    covered = _row()["coverage"]
+    shared = {
+        (part, family): [
+            covered[part][family][k]["shared"] for k in ("other family", "same family")
+        ]
+        for part in ("all", "velocities")
+        for family in _FAMILIES
+    }
+    stated("stir-apart", all(shared["all", f][0] < 0.1 * shared["all", f][1] for f in _FAMILIES))
+    new, old = (shared["velocities", family] for family in (circles, pick))
+    stated("stir-velocities-new", new[0] < 0.6 * new[1])
+    stated("stir-velocities-back", old[0] > 0.8 * old[1])
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer to an exercise of the lesson."""
+    if number == 1:
+        d = np.cos(np.deg2rad([2.5, 45.0]))  # both links are of one length
+        right = d[0] / np.sin(np.deg2rad(5)) / d[1]
+        slips = [(1 / np.sin(np.deg2rad(5)), "the hand's distance d is another one, too."),
+                 (1 / right, "the other way round.")]  # fmt: skip
+        told = "it is one over the determinant of the Jacobian that grows."
+        judge(mine, right, told, slips, "Differentiate the law of cosines.")
+    elif number == 2:
+        slips = [((-1, 1, -1), "a film that runs backwards has the same accelerations."),
+                 ((1, -1, -1), "these torques are products of two velocities."),
+                 ((1, 1, 1), "friction opposes the velocity.")]  # fmt: skip
+        judge(mine, (1, 1, -1), "all that differs is friction.", slips, "What changes sign?")
+    else:
+        (asked,) = given
+
+        def right(place):
+            radius, period, distance, bearing = map(float, place)
+            return period >= 1 and asked(radius, period, distance, bearing) < 0.1
+
+        otherwise = (
+            "out of reach, too fast, or 0.1 or more is left. What must change for b to show?"
+        )
+        judge(mine, right, "one circle was enough.", [], otherwise)

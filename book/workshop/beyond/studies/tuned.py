@@ -31,7 +31,7 @@ from workshop.beyond.rivals.identified import Linear
 from workshop.beyond.rivals.networks import _Convolution, _Recurrent
 from workshop.beyond.rivals.protocol import Cases, Estimating
 from workshop.beyond.rivals.tables import CellTable, GridTable, _Nearest
-from workshop.beyond.studies.learnt_filters import _NAMES, _recorded
+from workshop.beyond.studies.checks.learnt_filters import _NAMES, _recorded
 from workshop.beyond.studies.lineup import (
     _REFERENCE,
     _SEARCH,
