@@ -266,6 +266,9 @@ def _said() -> None:
         for model in ("network", "ridge", "identified")
     }
     stated("real-network-loses", bool(best["network"] > best["ridge"] > best["identified"]))
+    stated("real-decay", bool(rms(variant("decay 0.0001")) < rms(variant("decay 0"))))
+    rest = min(rms(variant(f"on the rest, decay {decay}")) for decay in ("0.001", "0.01"))
+    stated("real-nothing-learnt", bool(rest > 0.9 * rms(squares(21, "identified"))))
     stated("real-fewer-names", excess(21).replicates < 0)
     stated("real-tuned-turns", bool(alike["network"] < alike["linear filter"]))
 
