@@ -67,8 +67,8 @@ def test_cells_are_open_folded_or_a_folded_solution():
     cells[-1].metadata["mystnb"] = {"figure": {"name": "fig", "caption": "{term}`Curves`.\n"}}
     source = new.new_notebook(cells=[new.new_markdown_cell("# Title"), *cells])
     made = reader_notebook(source, "page", Known(), {})
-    title, note, opened, folded, solved, drawn, caption = made.cells
-    assert title.source == "# Title" and "Your copy" in note.source
+    title, note, setup, opened, folded, solved, drawn, caption = made.cells
+    assert title.source == "# Title" and "Your copy" in note.source and "the-book" in setup.source
     assert opened.source == "open" and not opened.metadata
     assert folded.metadata["jupyter"] == drawn.metadata["jupyter"] == {"source_hidden": True}
     assert solved.cell_type == "markdown" and "<details>" in solved.source

@@ -16,12 +16,10 @@ from workshop.report import results
 from workshop.report.evidence.statements import stated
 
 _TOLD = {
-    "identified": "equations, identified",
-    "filters and equations": "equations, learnt filters",
-    "structure and process": "equations and Gaussian process",
-    "second-order steps": "network, second-order steps",
+    "identified": "equations",
+    "filters and equations": "learnt filters",
+    "structure and process": "equations and process",
     "on states": "network on states",
-    "convolutions": "network of convolutions",
     "recurrent": "recurrent network",
 }
 
