@@ -73,7 +73,7 @@ def _by_trial(
             axes[-1].xaxis.set_major_locator(MaxNLocator(integer=True))
         axes[-1].set_xlabel(check_label(labels[0]))
 
-    return illustrate(draw, alt, 6.4, 2.0 * len(panels) + 0.4)
+    return illustrate(draw, alt, 6.4, 1.8 * len(panels) + 0.4)
 
 
 def _first_figure() -> Illustration:
