@@ -116,8 +116,9 @@ class Finder:
         with self.stubs():
             usual(module)
         if module.__name__ == DESCENT:
-            ours = {"Descent": Descent, "prepare": _prepare, "kernels": lambda: "numpy"}
-            vars(module).update(ours, ThreadPoolExecutor=_Serial)
+            vars(module).update(Descent=Descent, prepare=_prepare, kernels=lambda: "numpy")
+        if hasattr(module, "ThreadPoolExecutor"):
+            module.ThreadPoolExecutor = _Serial
 
     @contextmanager
     def stubs(self):
@@ -147,6 +148,9 @@ class _Serial:
 
     def __exit__(self, *error):
         return False
+
+    def shutdown(self, **options):
+        pass
 
     map = staticmethod(map)
 

@@ -160,7 +160,9 @@ def _tell(error, tree, name: str, emit) -> None:
             inside = inside.tb_next
         lines = traceback.format_exception(type(error), error, inside)
         emit("error", "".join(lines))
-        if isinstance(error, NameError):
+        if blocked:  # what a cell above did not do may be missed in many ways
+            emit("after", "")
+        elif isinstance(error, NameError):
             emit("hint", error.name or "")
         return
     for step in _imports_of(tree):  # what it imports beside, cells below may need

@@ -194,6 +194,7 @@
     const said = {
       torch: ["This cell needs PyTorch, not available in the page: ", link, "."],
       above: [`This cell needs “${text}” of a cell above that needs PyTorch: `, link, "."],
+      after: ["A cell above needs PyTorch and did not run; this may follow: ", link, "."],
       widget: ["The figure to handle is the book's: it does not follow your changes here."],
       hint: [`Is “${text}” made in a cell above? “Run to here” runs them all.`],
     }[kind];
@@ -309,6 +310,7 @@
     } else if (message.done) finish(message);
     else if (running && message.run === running.name) {
       if (message.kind === "error") running.error = true;
+      if (message.kind === "after") running.error = false; // cells below may do without
       show(running, message.kind, message.text);
     }
   }
