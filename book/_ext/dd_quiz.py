@@ -61,8 +61,8 @@ def with_markdown(source: str, root: Path, page: str) -> str:
     parts = [HEADING] if asked else []
     for k, one in enumerate(asked, 1):
         choices, whys = (
-            "\n".join(f"- **{answer[first]}** {answer[then]}" for answer in one["answers"])
-            for first, then in (("letter", "text"), ("verdict", "why"))
+            "\n".join(f"- **{answer[first]}{dot}** {answer[then]}" for answer in one["answers"])
+            for first, dot, then in (("letter", ".", "text"), ("verdict", "", "why"))
         )
         fold = f"<details>\n<summary>Answers</summary>\n\n{whys}\n\n</details>"
         parts += [f"**{k}.** {one['question']}", choices, fold]
@@ -92,7 +92,7 @@ class CheckYourself(SphinxDirective):
 
     def made(self, one: dict) -> Tag:
         choices = [
-            self.words("label", answer["text"], answer["letter"], ["choice"])
+            self.words("label", answer["text"], f"{answer['letter']}.", ["choice"])
             for answer in one["answers"]
         ]
         whys = [

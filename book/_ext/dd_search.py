@@ -17,11 +17,11 @@ from sphinx import addnodes
 
 FILE = "search-texts.js"
 SENTENCE = re.compile(r"(?<=[.?!:;]) ")
-FIRST = 2  # sentences of a section that are kept in any case
+FIRST = 2  # sentences of a section that are kept in any case; of evidence, one
 WORD = re.compile(r"[^\W\d_]{8,}")
 STEM = 7  # letters by which words are told apart
 
-OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block)
+OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block, nodes.citation)
 """What is found by itself, or is no prose."""
 
 
@@ -37,12 +37,12 @@ def prose(node: nodes.Node) -> str:
     return inner if isinstance(node, nodes.Inline) else f"{inner} "
 
 
-def shortened(text: str, known: set[str]) -> str:
+def shortened(text: str, known: set[str], first: int = FIRST) -> str:
     """Text on one line: its first sentences, and those with a long word that is not known yet."""
     kept = []
     for k, sentence in enumerate(SENTENCE.split(" ".join(text.split()))):
         stems = {word[:STEM] for word in WORD.findall(sentence.lower())}
-        if k < FIRST or stems - known:
+        if k < first or stems - known:
             kept.append(sentence)
             known |= stems
         elif kept[-1] != "…":
@@ -50,13 +50,13 @@ def shortened(text: str, known: set[str]) -> str:
     return " ".join(kept)
 
 
-def texts_of(doctree: nodes.document) -> dict[str, str]:
+def texts_of(doctree: nodes.document, first: int = FIRST) -> dict[str, str]:
     """Text by anchor: of sections, and of what a glossary explains."""
     found = {}
     known = set()
     for section in doctree.findall(nodes.section):
         inside = "".join(prose(child) for child in section.children)
-        found[section["ids"][0]] = shortened(inside, known)
+        found[section["ids"][0]] = shortened(inside, known, first)
     for item in doctree.findall(nodes.definition_list_item):
         for name in (anchor for term in item.findall(nodes.term) for anchor in term["ids"]):
             found[name] = shortened("".join(map(prose, item.findall(nodes.definition))), known)
@@ -67,7 +67,8 @@ def texts_of(doctree: nodes.document) -> dict[str, str]:
 
 def gather(app, doctree, page):
     """Keep a page's texts; pages are resolved in this process, whoever writes them."""
-    app.env.dd_search_texts = {**getattr(app.env, "dd_search_texts", {}), page: texts_of(doctree)}
+    texts = texts_of(doctree, 1 if page.startswith("book/evidence-") else FIRST)
+    app.env.dd_search_texts = {**getattr(app.env, "dd_search_texts", {}), page: texts}
 
 
 def write(app, exception):

@@ -47,7 +47,7 @@
     const missing = make("div", { className: "missing", textContent: "Choose an answer first." });
     form.querySelector(".whys").append(missing);
     form.querySelector(".whys").setAttribute("aria-live", "polite");
-    form.querySelector("details").open = true; // its summary is hidden, and so is each of its lines
+    form.querySelector("details").replaceWith(form.querySelector(".whys")); // a line at a time
     const bar = make("div", { className: "quiz-bar" }, make("button", { textContent: "Check" }));
     form.querySelector("fieldset").append(bar);
     const tell = (shown) => {
