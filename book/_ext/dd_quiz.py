@@ -26,7 +26,7 @@ class Tag(nodes.General, nodes.TextElement):
 
 
 class Unsearched(nodes.comment):
-    """Answers, wrong ones too: to the search they are what a comment is."""
+    """Questions, with answers that are wrong, too: to the search they are what a comment is."""
 
 
 def questions(root: Path, page: str) -> list[dict]:
@@ -100,14 +100,13 @@ class CheckYourself(SphinxDirective):
             for a in one["answers"]
         ]
         legend = self.words("legend", one["question"])
-        fields = Tag("", "", legend, Unsearched("", "", *choices), tag="fieldset")
+        fields = Tag("", "", legend, *choices, tag="fieldset")
         summary = Tag("", "", nodes.Text("Answers"), tag="summary")
         told = Tag("", "", *whys, tag="div", classes=["whys"])
         fold = Tag("", "", summary, told, tag="details", classes=["answer"])
         name = f"quiz-{one['key']}"
-        return Tag(
-            "", "", fields, Unsearched("", "", fold), tag="form", classes=["quiz"], ids=[name]
-        )
+        inside = Unsearched("", "", fields, fold)
+        return Tag("", "", inside, tag="form", classes=["quiz"], ids=[name])
 
     def words(self, tag: str, text: str, begin: str = "", classes=()) -> Tag:
         """An element with a line of markdown in it."""

@@ -5,13 +5,13 @@ import sys
 import prose
 import pytest
 from axe import violations_in
-from book_pages import LESSONS, ROOT
+from book_pages import ROOT, WALK
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_quiz
 
-ASKED = {page: dd_quiz.questions(ROOT, page) for page in LESSONS}
-PAGE = LESSONS[1]
+ASKED = {page: dd_quiz.questions(ROOT, page) for page in WALK}
+PAGE = WALK[1]
 DENIED = "Object.defineProperty(window, 'localStorage', {get() { throw new Error('denied'); }})"
 
 
