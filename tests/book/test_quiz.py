@@ -9,6 +9,7 @@ from book_pages import ROOT, WALK
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_quiz
+import dd_search
 
 ASKED = {page: dd_quiz.questions(ROOT, page) for page in WALK}
 PAGE = WALK[1]
@@ -37,8 +38,10 @@ def test_a_readers_notebook_asks_with_folded_answers():
 
 
 @pytest.mark.built
-def test_pages_ask_before_the_exercises(parsed):
-    """With answers in folds, for whoever has no script."""
+def test_pages_ask_before_the_exercises(parsed, built):
+    """With answers in folds, for whoever has no script; the search does not find them."""
+    texts = (built / "_static" / dd_search.FILE).read_text("utf-8")
+    assert '"check-yourself":' not in texts
     for page, asked in ASKED.items():
         section = parsed(page).select_one("#check-yourself")
         assert section.find_next_sibling("section")["id"] == "on-your-own"
