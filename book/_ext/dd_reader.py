@@ -44,6 +44,7 @@ if importlib.util.find_spec("workshop") is None:
     os.chdir("the-book/book")
     if "google.colab" in sys.modules:
         sys.modules["google.colab"].output.enable_custom_widget_manager()"""
+QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
 ARCHIVE = "notebooks.zip"  # beside the first page
 FOLDED = ("remove-cell", "remove-input", "hide-input")
 CHANGE_THIS = "change-this"
@@ -194,7 +195,7 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
         if "hide-cell" in tags:
             cells.append(nbformat.v4.new_markdown_cell(_solution(cell.source)))
             continue
-        made = nbformat.v4.new_code_cell(cell.source)
+        made = nbformat.v4.new_code_cell(QUOTED.sub("", cell.source).rstrip())
         if set(FOLDED) & set(tags):
             made.metadata["jupyter"] = {"source_hidden": True}
         cells.append(made)

@@ -25,6 +25,7 @@ HERE = Path(__file__).with_name("pdf_pages")  # what runs in a page, and how a v
 AHEAD = ("book/index",)
 BEHIND = ("book/use-it-on-your-arm", "book/notation", "book/glossary", "book/bibliography")
 LEDGER = ("book/ledger", "book/provenance", "book/status", "book/glossary", "book/bibliography")
+UNANNOUNCED = ("Before you start", "At hand")  # parts without a page of their own name
 TITLE = "Learning the Dynamics of a Direct-Drive Arm"
 VOLUMES = {"walk": "The walk", "evidence": "The evidence"}
 WORDS = ("acceleration filter", "velocity filter", "position filter", "jerk filter", "null",
@@ -39,8 +40,8 @@ def contents(root: Path, volume: str) -> list[tuple[str, list[str]]]:
     parts = [(p["caption"], [page["file"] for page in p["chapters"]]) for p in toc]
     lessons = [(name, pages) for name, pages in parts if name != "Evidence"][:4]
     if volume == "walk":
-        return [("Before you start", [*AHEAD]), *lessons, ("At hand", [*BEHIND])]
-    return [("Evidence", dict(parts)["Evidence"]), ("At hand", [*LEDGER])]
+        return [(UNANNOUNCED[0], [*AHEAD]), *lessons, (UNANNOUNCED[1], [*BEHIND])]
+    return [("Evidence", dict(parts)["Evidence"]), (UNANNOUNCED[1], [*LEDGER])]
 
 
 def words(root: Path) -> list[str]:
@@ -87,7 +88,8 @@ def joined(volume: str, found: list[dict]) -> str:
     for k, one in enumerate(found):
         if one["part"] != part:
             part = one["part"]
-            body.append(f'<section class="part"><h1>{html.escape(part)}</h1></section>')
+            if part not in UNANNOUNCED:
+                body.append(f'<section class="part"><h1>{html.escape(part)}</h1></section>')
             listed.append(f'<li class="part">{html.escape(part)}</li>')
         rules.append(f"@page c{k} {{ @top-left {{ content: {_quoted(one['title'])}; }} }}")
         anchor, title = one["anchor"], html.escape(one["title"])

@@ -25,6 +25,7 @@ _KINDS = {
     "copies": "copies, 1,500 epochs",
     "longer": "copies, 20,000 epochs",
     "held": "copies, jumping targets",
+    "slow": "copies, 20,000 epochs, slow targets",
     "fixed": "copies, fixed targets",
     "shuffled": "shuffled",
 }
@@ -95,12 +96,17 @@ def _of_memory(size, frequency, speed=0.0) -> np.ndarray:
     return (_answers(size, frequency, speed) * [[1], [-1]]).reshape(100, -1)
 
 
+def _study() -> dict:
+    slow = results.read("walking-slow")
+    return {**results.read("walking"), "slow": slow["slow"], "network, slow": slow["network"]}
+
+
 def _rows(name: str) -> np.ndarray:
-    return -np.array([row["gradient"] for row in results.read("walking")[name]])
+    return -np.array([row["gradient"] for row in _study()[name]])
 
 
 def _own(kind: str) -> np.ndarray:
-    study = results.read("walking")
+    study = _study()
     return -np.array(study.get(f"network, {kind}", study["network"]))
 
 
@@ -146,6 +152,9 @@ def _quoted() -> None:
     quote("walk-copy-most", 100 * middle.max())
     for kind in ("longer", "held"):
         quote(f"walk-{kind}-off", 100 * np.abs(_middle(_rows(kind)) - _middle(_own(kind))).max())
+    slow = _middle(_rows("slow"))
+    quote("walk-slow-least", 100 * slow.min())
+    quote("walk-slow-most", 100 * slow.max())
     quote("walk-fixed-least", late.min())
     quote("walk-fixed-most", late.max())
     quote("walk-fixed-off", 100 * moments_agree("fixed", ["stiffness", "net damping"]).value)
@@ -204,7 +213,7 @@ def over_sizes() -> tuple[Sequence[str], list]:
 
 def copies() -> tuple[Sequence[str], list]:
     """Table of the network, and of the ranges of its copies and of the nulls."""
-    study = results.read("walking")
+    study = _study()
     rows = [("network", "0", *_ranges(_own("copies")[None]))]
     for kind, name in _KINDS.items():
         errors = [row["error"] for row in study[kind]]
@@ -281,7 +290,8 @@ class LateSpring(CurveWidget):
                 "title": "A spring that is late",
                 "alt": "The error's history, the torque since it jumped, and the share of each "
                 "sample in the answer.",
-                "note": "Positive torque turns the joint towards its target. The joint is held.",
+                "note": "Positive torque turns the joint towards its target. The joint is held. "
+                "What comes after the jump's age is not known yet: the line is level there.",
                 **options,
             },
         )
@@ -290,18 +300,18 @@ class LateSpring(CurveWidget):
 def _jumped(robot: str, old: int, size: float) -> dict[str, np.ndarray]:
     """The error by age, the torque since the jump, and the gradient by age."""
     reach = _JUMPS + 1
-    error = np.where(np.arange(reach) < old, size, 0.0)
+    error = np.where(np.arange(reach) <= old, size, 0.0)
     steps = np.concatenate([np.zeros(reach + 16), np.full(reach, size)])
     if robot == "Go1":
         seen = np.stack([steps[2 - k : len(steps) - k] for k in range(3)], -1)
-        told = -torque(np.column_stack([seen, np.zeros_like(seen)]), layers())[-reach:]
-        told = told - told[0]
+        told = -torque(np.column_stack([seen, np.zeros_like(seen)]), layers())
+        told = (told - told[-reach - 1])[-reach:]
         now = np.concatenate([error[:3], np.zeros(3)])
         answer = np.zeros(reach)
         answer[:3] = -gradient(now[None], layers())[0, :3]
     else:
-        told = _remembered(np.stack([steps, np.zeros_like(steps)], -1)[None])[0, -reach:]
-        told = told - told[0]
+        told = _remembered(np.stack([steps, np.zeros_like(steps)], -1)[None])[0]
+        told = (told - told[-reach - 1])[-reach:]
         now = np.concatenate([np.zeros(40), error[::-1]])
         push = 1e-5 * np.eye(len(now))[::-1][:reach]
         ends = [

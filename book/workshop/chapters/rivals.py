@@ -15,6 +15,7 @@ from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence.statements import stated
 
+_RUBBING, _PARTS = "linear filter with friction", ("trajectory 6", "inside", "outside")
 _TOLD = {
     "identified": "equations",
     "filters and equations": "learnt filters",
@@ -94,8 +95,10 @@ def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988
 def _quoted() -> None:
     """The numbers of the prose."""
     study, untuned = results.read("tuned"), row("network of 1988", size=10)
-    named = {"network": study["reference"], "linear": "linear filter", "filters": study["own"]}
-    for short, name in {**named, "identified": "identified", "recurrent": "recurrent"}.items():
+    named = {"network": study["reference"], "linear": "linear filter", "filters": study["own"],
+             "rubbing": _RUBBING, "planes": "local planes",
+             "identified": "identified", "recurrent": "recurrent"}  # fmt: skip
+    for short, name in named.items():
         quote(f"rivals-{short}", np.median(_errors(name)))
     for end, value in (("least", np.min), ("most", np.max)):
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
@@ -110,7 +113,7 @@ def _quoted() -> None:
     quote("rivals-times-nearest", np.median(_tuned()["nearest case"]["count"]) / study["budget"])
     for part in ("inside", "outside"):
         quote(f"rivals-{part}", np.median(_over("linear filter", part)))
-    for part in ("trajectory 6", "inside", "outside"):
+    for part in _PARTS:
         fewer, all_of_them = better(part).text.split(":")[0].split(" of ")
         quote(f"rivals-better-{part}" if part != "trajectory 6" else "rivals-better", int(fewer))
     quote("rivals-within", int(all_of_them))
@@ -127,7 +130,14 @@ def _said() -> None:
     stated("rivals-memory-behind", _over("nearest case").min() > 1)
     within = [n for n, one in _tuned().items() if one["within"] and n != study["own"]]
     clear = {name for name in within if _over(name).max() < 1}
-    stated("rivals-clearly", clear == {"identified", "table of configurations"})
+    stated("rivals-clearly", clear == {"identified", "table of configurations", _RUBBING})
+    stated("rivals-rubbing-ahead", max(_over(_RUBBING, part).max() for part in _PARTS) < 0.9)
+    stated("rivals-planes-ahead", _over("local planes").max() < 1)
+    networks = {name for name in within if np.median(_over(name)) < 1} & {
+        "on states",
+        "second-order steps",
+    }
+    stated("rivals-networks-among", len(networks) == 2)
     cells = [setting[1] for setting in _tuned()["table of configurations"]["setting"]]
     stated("rivals-one-cell", set(cells) == {1})
     stated("rivals-recurrent-behind", _over("recurrent").min() > 1)

@@ -180,7 +180,7 @@ def check(number: int, mine, *given) -> None:
         right = d[0] / np.sin(np.deg2rad(5)) / d[1]
         slips = [(1 / np.sin(np.deg2rad(5)), "the hand's distance d is another one, too."),
                  (1 / right, "the other way round.")]  # fmt: skip
-        told = "it is one over the determinant of the Jacobian that grows."
+        told = "d over the determinant of the Jacobian grows."
         judge(mine, right, told, slips, "Differentiate the law of cosines.")
     elif number == 2:
         slips = [((-1, 1, -1), "a film that runs backwards has the same accelerations."),

@@ -107,9 +107,9 @@ def _quoted() -> None:
     quote("verdict-order-least", 100 * min(orders))
     quote("verdict-order-most", 100 * max(orders))
     tuned = results.read("tuned")["rivals"]
-    for name in ("network of 1988", "linear filter", "identified"):
-        errors = tuned[name]["errors"]["trajectory 6"]
-        quote(f"verdict-six-{name.split()[0]}", np.median(errors))
+    named = {"network": "network of 1988", "linear": "linear filter", "identified": "identified"}
+    for short, name in {**named, "rubbing": "linear filter with friction"}.items():
+        quote(f"verdict-six-{short}", np.median(tuned[name]["errors"]["trajectory 6"]))
     fewer, all_of_them = rivals.better().text.split(":")[0].split(" of ")
     quote("verdict-ahead", fewer)
     quote("verdict-rivals", all_of_them)

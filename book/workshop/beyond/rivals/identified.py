@@ -13,7 +13,7 @@ from ddlib._check import integer, number, one_of
 from ddlib.dynamics import Operations, Tape
 from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
 from ddlib.learning import check_width
-from workshop.beyond.rivals.protocol import _KINDS, Rival
+from workshop.beyond.rivals.protocol import _KINDS, Rival, _derivative_filters
 
 _RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 
@@ -131,6 +131,21 @@ class Linear(Rival):
     def operations(self):
         """Arithmetic: a product and a sum for each weight."""
         return Operations(self.matrix.size, self.matrix.size)
+
+
+class _Rubbing(Linear):
+    """The linear filter, with a saturated velocity of each joint beside it; no inertia is known."""
+
+    def __init__(self, saturates: float, ridge: float, degree: int):
+        super().__init__(ridge=ridge)
+        self.saturates, self.degree = saturates, degree  # rad/s; of the polynomial
+
+    def _rows(self, x):
+        speed = x @ _derivative_filters(x.shape[-1], self.step, self.degree)[1]
+        return np.concatenate([super()._rows(x), np.tanh(speed / self.saturates)], 1)
+
+    def count(self):
+        return super().count() + self._used.stop  # and the filter for velocity
 
 
 def _ridge(x, y, penalties) -> tuple[np.ndarray, np.ndarray]:

@@ -143,6 +143,26 @@ class _Nearest(_Bounded):
         return Operations(axes + cases * axes, cases * (2 * axes - 1))
 
 
+class _LocalPlanes(_Nearest):
+    """All training cases are kept; a plane through the nearest ones gives the torque.
+
+    Atkeson, Moore & Schaal (1997), with neighbours in place of a kernel.
+    """
+
+    def __init__(self, neighbours: int = 60, beyond: str = "refuse"):
+        super().__init__(beyond=beyond)
+        self.neighbours = integer("neighbours", neighbours, 2)
+
+    def _torque(self, x):
+        asked = (x / self.deviation).reshape(len(x), -1)
+        near = self._tree.query(asked, self.neighbours)[1]
+        away = self._tree.data[near] - asked[:, None]
+        rows = np.concatenate([np.ones_like(away[..., :1]), away], -1)
+        square = np.swapaxes(rows, 1, 2) @ rows
+        square += 1e-6 * self.neighbours * np.eye(square.shape[-1])
+        return np.linalg.solve(square, np.swapaxes(rows, 1, 2) @ self._torques[near])[:, 0]
+
+
 class CellTable(_Bounded):
     """Cells over states, motions or configurations; the torque is linear in what remains.
 
