@@ -24,7 +24,7 @@ export MALLOC_TRIM_THRESHOLD_ = 268435456
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live pdf epub release assignment reproduce bench check mutants strip clean
+.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -126,6 +126,16 @@ release: $(READY)  ## wheel, site, PDFs, EPUB and notebooks in dist/, if tag, ci
 	@$(BIN)/python book/_ext/release.py --check
 	@$(MAKE) --no-print-directory pdf epub
 	@$(BIN)/python book/_ext/release.py
+
+COLAB = _build/colab
+colab: book  ## readers' notebooks beside Colab's pins, out of the repository (PYTHON=python3.13)
+	test -x $(COLAB)/bin/python || $(PYTHON) -m venv $(COLAB)
+	$(COLAB)/bin/python -m pip install --quiet --disable-pip-version-check \
+	  -r tests/support/colab.txt
+	OMP_NUM_THREADS=1 $(BIN)/python tests/support/colab.py $(COLAB)/bin/python $(LESSON)
+
+firefox: $(READY)  ## the page tests in Firefox, on the pages as they were built
+	BROWSER=firefox $(PYTEST) -n $(JOBS) --dist worksteal -m browser $(PAGE_TESTS)
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce

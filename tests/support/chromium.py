@@ -1,4 +1,4 @@
-"""A headless Chromium and a loopback server for the built pages."""
+"""A headless Chromium (with BROWSER=firefox a Firefox) and a loopback server for the pages."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
+import firefox
+
+FIREFOX = os.environ.get("BROWSER") == "firefox"
 ROOT = Path(__file__).resolve().parents[2]
 HTML = ROOT / "_build" / "html"
 
@@ -28,6 +31,8 @@ FLAGS = [
 
 def find() -> str | None:
     """Path of a Chromium: $CHROMIUM, else the first known name on the PATH."""
+    if FIREFOX:
+        return firefox.find()
     wanted = os.environ.get("CHROMIUM")
     if wanted:
         return shutil.which(wanted)
@@ -39,6 +44,10 @@ def launch():
     """A running browser; raises FileNotFoundError when there is none."""
     from playwright.sync_api import sync_playwright
 
+    if FIREFOX:
+        with sync_playwright() as playwright, firefox.launched(playwright) as browser:
+            yield browser
+        return
     path = find()
     if path is None:
         raise FileNotFoundError(HOW_TO_GET_ONE)

@@ -16,6 +16,8 @@
   const shown = all("*", live).map((el) => getComputedStyle(el).display !== "none");
   all("*").forEach((el, k) => { if (!shown[k] && !el.closest("svg, mjx-container, details")) el.dataset.gone = ""; });
   for (const el of all("[data-gone], script, .headerlink, .copybtn, .toggle-details, noscript, details.hide > summary, .tag_hide-input > details.hide, svg rect:not([width]), .ddlib-widget :is(button, select, input, .remark, .footer)")) el.remove();
+  for (const told of all(".cell_output"))  // of a check that nobody has answered yet
+    if (told.textContent.trim().startsWith("Put your answer in place of the dots")) told.remove();
   for (const fold of all("details:not(.claim)")) fold.open = true;
   for (const fold of all("details.hide")) fold.replaceWith(...fold.childNodes);
   for (const claim of all("details.claim")) claim.replaceChildren(claim.querySelector("summary"));
