@@ -135,7 +135,7 @@ colab: book  ## readers' notebooks beside Colab's pins, out of the repository (P
 	OMP_NUM_THREADS=1 $(BIN)/python tests/support/colab.py $(COLAB)/bin/python $(LESSON)
 
 firefox: $(READY)  ## the page tests in Firefox, on the pages as they were built
-	BROWSER=firefox $(PYTEST) -n $(JOBS) --dist worksteal -m browser $(PAGE_TESTS)
+	BROWSER=firefox $(PYTEST) -n $(JOBS) --dist worksteal -m "browser and not chromium" $(PAGE_TESTS)
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
 	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce

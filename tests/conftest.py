@@ -102,7 +102,7 @@ class Visit:
 
     def _failed(self, request, leaving: bool):
         """A page that sends its reader on may be left before its icon has come."""
-        if not (leaving and request.failure == "net::ERR_ABORTED"):
+        if not (leaving and request.failure in {"net::ERR_ABORTED", "NS_BINDING_ABORTED"}):
             self.problems.append(f"failed: {request.url[:200]} ({request.failure})")
 
     def _response(self, response):

@@ -6,6 +6,7 @@ import re
 import time
 
 import pytest
+from widget_pages import write
 
 pytestmark = pytest.mark.browser
 
@@ -18,7 +19,7 @@ def test_other_trajectories_are_recorded_learnt_and_weighed(site, visit, width):
     page = here.page
     trainer = page.locator(".ddlib-trainer")
     for joint, trajectory, extent in (("shoulder", 1, "30"), ("elbow", 4, "20")):
-        trainer.get_by_label(f"{joint} in trajectory {trajectory}").fill(extent)
+        write(trainer.get_by_label(f"{joint} in trajectory {trajectory}"), extent)
     assert "not recorded" in trainer.locator(".recorded").inner_text()
     trainer.locator(".guess button").first.click()
     trainer.get_by_role("button", name="Record and train").click()

@@ -90,6 +90,7 @@ def test_code_leads_to_the_lines_that_measure(ledger, visit):
         assert f"def {name}" in visit(where).page.locator(f'[id="{name}"]').inner_text()
 
 
+@pytest.mark.chromium
 def test_rows_can_be_read_without_a_script(site, browser):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()

@@ -7,7 +7,7 @@ import re
 import pytest
 from book_pages import CHAPTERS, PAGES
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.chromium]
 
 PAPER = 718  # px: A4 between margins of 1 cm
 

@@ -42,6 +42,7 @@ def test_the_result_begins_on_the_first_screen(name, site, visit):
 
 
 @browser_test
+@pytest.mark.chromium
 @pytest.mark.parametrize("name", WALK)
 def test_a_lesson_has_at_most_fifteen_screens(name, site, visit):
     page = visit(f"{site}/{name}.html").page
@@ -108,6 +109,7 @@ def test_without_storage_the_switch_works_and_a_phone_has_room_for_it(site, brow
 
 
 @browser_test
+@pytest.mark.chromium
 def test_paper_has_the_code_that_teaches(site, visit):
     """With its folds open, as `print.js` leaves them: no plumbing, unless all code is shown."""
     page = visit(f"{site}/{FULL}.html").page

@@ -35,6 +35,7 @@ def test_the_index_leaves_out_what_is_everywhere():
 
 
 @pytest.mark.browser
+@pytest.mark.chromium
 def test_printed_places_have_their_pages(browser, tmp_path):
     path = tmp_path / "two.html"
     path.write_text(

@@ -29,6 +29,7 @@ WORD = r"^[^\s,(]{2,}$"
 NUMBER = r"^[≤≥]?\s?[\d.]+\s(s|ms|µs|×|GiB)$"
 
 
+@pytest.mark.chromium
 @pytest.mark.parametrize(
     ("name", "width", "selector", "ends"),
     [

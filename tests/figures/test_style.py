@@ -109,6 +109,7 @@ CLASHES = """
 
 
 @pytest.mark.browser
+@pytest.mark.chromium
 def test_texts_fit_in_other_fonts_and_are_read_aloud(browser):
     page = browser.new_page()
     for make in (draw, formulas):

@@ -93,7 +93,7 @@ def violations_in(page, *schemes: str) -> list[str]:
     """
     found = []
     for k, scheme in enumerate(schemes):
-        page.emulate_media(color_scheme=scheme)
+        chromium.coloured(page, scheme)
         unfold(page)
         page.evaluate(LOOK)
         some = [["everywhere", COLOURS], ["changed", None]] if k else [["everywhere", None]]

@@ -83,6 +83,15 @@ def serve(folder: Path):
             thread.join()
 
 
+def coloured(page, scheme: str) -> None:
+    """Show the page in the colours of "light" or "dark"."""
+    if FIREFOX:  # as the theme's own switch does
+        told = "(s) => Object.assign(document.documentElement.dataset, {theme: s, mode: s})"
+        page.evaluate(told, scheme)
+    else:
+        page.emulate_media(color_scheme=scheme)
+
+
 SETTLED = """
 async () => {
   const until = async (what, done) => {

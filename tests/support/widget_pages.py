@@ -95,6 +95,12 @@ def opened(tmp_path, visit, widget, query="", **options):
     return here
 
 
+def write(field, text: str) -> None:
+    """As a hand would: Playwright's `fill` adds to what Firefox has in a field for numbers."""
+    field.press("ControlOrMeta+a")
+    field.press_sequentially(text)
+
+
 def flat(weights) -> np.ndarray:
     """A network's weights in the page's order."""
     return np.concatenate([np.ravel(getattr(weights, name)) for name in plain._FIELDS])

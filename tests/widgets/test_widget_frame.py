@@ -115,6 +115,7 @@ def test_hover_and_keys_read_values(tmp_path, visit, widget):
 
 
 @browser_test
+@pytest.mark.chromium
 def test_fingers_drag_scroll_and_tap(tmp_path, browser, widget):
     url = page_of(tmp_path / "page.html", widget, extra="<div style='height:900px'></div>")
     with phone(browser, url) as page:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from widget_pages import code_of, copied, drag, flat, functions, opened
+from widget_pages import code_of, copied, drag, flat, functions, opened, write
 
 from ddlib.analysis import CLASSES, classify, gains, mean_gradient
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
@@ -232,7 +232,7 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     page = here.page
     recorded = page.locator(".recorded")
     assert "Appendix I" in recorded.inner_text()
-    page.get_by_label("shoulder in trajectory 1").fill("30.5")
+    write(page.get_by_label("shoulder in trajectory 1"), "30.5")
     drag(page, page.locator(".pad .frame").bounding_box(), (20.9 / 45, 1), (0.5, 0.5))
     assert page.get_by_label("elbow in trajectory 4").input_value() == "22.5"
     assert "not recorded" in recorded.inner_text()
@@ -250,10 +250,10 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
     again.wait_for_function(REACHED % 400)
     assert again.locator(".weighed b").all_inner_texts() == told
-    page.get_by_label("elbow in trajectory 2").fill("50")
+    write(page.get_by_label("elbow in trajectory 2"), "50")
     page.get_by_label("elbow in trajectory 2").press("Tab")
     assert page.get_by_label("elbow in trajectory 2").input_value() == "32.2"
-    again.get_by_label("elbow in trajectory 1").fill("0")
+    write(again.get_by_label("elbow in trajectory 1"), "0")
     again.get_by_role("button", name="1 to 5 alike").click()
     assert "must move" in again.locator(".recorded").inner_text()
     assert again.get_by_role("button", name="Record and train").is_disabled()
