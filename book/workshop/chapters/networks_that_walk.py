@@ -194,7 +194,7 @@ def by_lag() -> figures.Illustration:
         "as in copies trained for longer or on jumps; brief ones spread it over 0 to 10 ms. "
         f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean {later:.0f} ms."
     )
-    return figures.illustrate(draw, alt, 7.2, 2.7)
+    return figures.illustrate(draw, alt, 7.2, 2.4)
 
 
 def over_sizes() -> tuple[Sequence[str], list]:

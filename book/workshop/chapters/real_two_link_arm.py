@@ -126,8 +126,6 @@ def _quoted() -> None:
     needed = [x["needed"][1][0] for x in longer["shaken"].values()]
     quote("two-needs-least", min(needed))
     quote("two-needs-most", max(needed))
-    quote("two-longer-least", 100 * min(_longer("81", np.median)))
-    quote("two-longer-most", 100 * max(_longer("81", np.median)))
 
 
 def _longer(width: str, of) -> list[float]:
@@ -208,7 +206,7 @@ def _window_figure() -> figures.Illustration:
         "The shoulder's gravity over that of the builders, by window. Least squares at 50, 210 and "
         f"450 ms: {told}. Networks rise from 110 to 410 ms; unrelated torques scatter about 0."
     )
-    return figures.illustrate(draw, alt, 7.2, 2.6)
+    return figures.illustrate(draw, alt, 7.2, 2.4)
 
 
 def _elbow_figure() -> figures.Illustration:
@@ -239,7 +237,7 @@ def _elbow_figure() -> figures.Illustration:
         f"Elbow's inertia in networks: {told} kg m², builders {true}; "
         "unrelated torques scatter about 0."
     )
-    return figures.illustrate(draw, alt, 6.0, 2.2)
+    return figures.illustrate(draw, alt, 6.0, 1.9)
 
 
 def _spread(x) -> str:
