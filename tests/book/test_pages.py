@@ -98,6 +98,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.chromium
 def test_what_a_reader_would_see_is_seen(tmp_path, visit):
     page = tmp_path / "page.html"
     html = "<!doctype html><html data-theme='light' data-widgets='1'><meta charset='utf-8'>"

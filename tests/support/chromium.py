@@ -107,7 +107,9 @@ async () => {
     !document.querySelector(widgets) || document.documentElement.dataset.widgets);
   await document.fonts.ready;
   for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);  // what starts, starts
-  const running = (animation) => animation.playState === "running";
+  const unseen = ({ target }) => !target?.checkVisibility({ opacityProperty: true });
+  const running = (animation) => animation.playState === "running" &&
+    !(animation.currentTime === 0 && unseen(animation.effect));  // Firefox lets these wait
   await until("animations", () => !document.getAnimations().some(running));
 }
 """

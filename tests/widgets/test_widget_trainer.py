@@ -250,9 +250,11 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
     again.wait_for_function(REACHED % 400)
     assert again.locator(".weighed b").all_inner_texts() == told
+    page.bring_to_front()
     write(page.get_by_label("elbow in trajectory 2"), "50")
     page.get_by_label("elbow in trajectory 2").press("Tab")
     assert page.get_by_label("elbow in trajectory 2").input_value() == "32.2"
+    again.bring_to_front()
     write(again.get_by_label("elbow in trajectory 1"), "0")
     again.get_by_role("button", name="1 to 5 alike").click()
     assert "must move" in again.locator(".recorded").inner_text()

@@ -195,7 +195,7 @@ def _window_figure() -> figures.Illustration:
                     right.plot(place, found[:, 0, 0, 0] / true, look, color=colour, ms=4)
         for axis, title in ((left, "Least squares"), (right, "Networks of 1988")):
             axis.axhline(1, color=figures.INK, lw=0.7, ls="--")
-            axis.set(title=title, xlabel="window, ms", ylabel="gravity, found/builders'")
+            axis.set(title=title, xlabel="window, ms", ylabel="gravity, share")
         figures.legend_above(figure, *left.get_legend_handles_labels())
 
     told = "; ".join(
@@ -237,7 +237,7 @@ def _elbow_figure() -> figures.Illustration:
         f"Elbow's inertia in networks: {told} kg m², builders {true}; "
         "unrelated torques scatter about 0."
     )
-    return figures.illustrate(draw, alt, 6.0, 1.9)
+    return figures.illustrate(draw, alt, 6.0, 1.7)
 
 
 def _spread(x) -> str:

@@ -157,7 +157,7 @@ def _sentences() -> Illustration:
         for place, (word, number), look in zip(places, counts.items(), _LOOKS):
             axis.barh(place, number, height=0.55, **look)
             axis.text(number + 0.4, place, str(number), size=9, va="center", weight="bold")
-            says = axis.text(1.35 * most, place, chosen[word], size=8.5, va="center")
+            says = axis.text(1.3 * most, place, chosen[word], size=8, va="center")
             says.set_in_layout(False)
         axis.set_yticks(places, list(counts))
         axis.invert_yaxis()

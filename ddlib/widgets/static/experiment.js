@@ -88,7 +88,13 @@ function picksOf({ extents: known, home, most, runs }, changed) {
         const value = field.valueAsNumber;
         if (value >= 0 && value <= most) enter(run, j, value);
       });
-      field.addEventListener("change", show);
+      let kept;
+      field.addEventListener("focus", () => (kept = extents[run][j]));
+      field.addEventListener("change", () => {
+        const value = field.valueAsNumber;
+        if (!(value >= 0 && value <= most)) enter(run, j, kept); // its first digits may have fitted
+        show();
+      });
       return field;
     }),
   );
