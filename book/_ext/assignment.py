@@ -31,8 +31,11 @@ READ_ME = """# {}: an assignment
 
 With Python 3.11 or newer, in this folder:
 
-    python -m pip install -r requirements.txt
-    python -m jupyterlab {}.ipynb
+    python -m venv .venv
+    .venv/bin/python -m pip install -r requirements.txt
+    .venv/bin/python -m jupyterlab {}.ipynb
+
+(On Windows `.venv\\Scripts\\python` in place of `.venv/bin/python`.)
 
 Run the cells from the top. Put each answer in place of the dots; the cell below judges it by
 judge.py, which is folded so that nobody reads a solution by accident. Say how you found it, too.

@@ -13,7 +13,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pdf
-from pdf import ROOT, TITLE, chromium, contents, taken
+from pdf import ROOT, TITLE, chromium, contents, offered, taken
 from tqdm import tqdm
 
 STAMP = (1988, 8, 1, 0, 0, 0)  # the same bytes from the same pages
@@ -136,6 +136,7 @@ def main() -> None:
     with chromium.launch() as browser, tqdm(total=sum(len(p) for _, p in parts)) as progress:
         found = taken(browser, built, parts, progress, book=True)
     make(found, folder / "book.epub")
+    offered(built, folder / "book.epub", "make epub")
     size = (folder / "book.epub").stat().st_size / 1e6
     print(f"==> {(folder / 'book.epub').relative_to(ROOT)}, {size:.1f} MB")
 

@@ -10,7 +10,9 @@ from __future__ import annotations
 import html
 import io
 import re
+import shutil
 import sys
+from collections import Counter
 from pathlib import Path
 
 import yaml
@@ -155,18 +157,47 @@ def numbers(pdf: bytes) -> dict[str, int]:
 
 
 def once_a_page(text: str, at: dict[str, int]) -> str:
-    """An index whose entries name each page once."""
+    """An index whose entries name each page once, and no place that was not printed."""
 
     def thinned(found: re.Match) -> str:
-        seen: set[int] = set()
+        seen = {0}
         return re.sub(
             r'<a class="at"[^>]* data-page="([^"]+)"[^>]*>[^<]*</a> ?',
-            lambda m: "" if at.get(m[1]) in seen or seen.add(at.get(m[1])) else m[0],
+            lambda m: "" if at.get(m[1], 0) in seen or seen.add(at[m[1]]) else m[0],
             found[0],
         )
 
     before, mark, after = text.partition('<ul class="index">')
     return before + mark + re.sub(r"<li>.*?</li>", thinned, after, flags=re.S)
+
+
+def titled(entry, headings: list[str]) -> None:
+    """Give an outline the titles of its headings: Chromium doubles some at the top of a page."""
+    from pypdf.generic import NameObject, TextStringObject
+
+    while entry is not None:
+        entry = entry.get_object()
+        told = Counter("".join(entry["/Title"].split()))
+        for k, heading in enumerate(headings):
+            once = Counter("".join(heading.split()))
+            if once <= told <= once + once:
+                entry[NameObject("/Title")] = TextStringObject(heading)
+                del headings[: k + 1]
+                break
+        titled(entry.get("/First"), headings)
+        entry = entry.get("/Next")
+
+
+def offered(built: Path, made: Path, words: str) -> None:
+    """Put a volume beside the pages, and a link on the first one, where it says how to make it."""
+    shutil.copyfile(made, built / made.name)
+    first = built / f"{AHEAD[0]}.html"
+    text = first.read_text(encoding="utf-8")
+    told = "".join(f'<span class="pre">{word}</span> ' for word in words.split()).rstrip()
+    code = f'<code class="docutils literal notranslate">{told}</code>'
+    link = f' (<a href="../{made.name}" download>{made.name}</a>)'
+    if link not in text:
+        first.write_text(text.replace(code, code + link, 1), encoding="utf-8")
 
 
 def printed(browser, path: Path) -> bytes:
@@ -192,6 +223,9 @@ def make(built: Path, folder: Path, volume: str, browser) -> Path:
         progress.update()
         draft.write_text(filled(once_a_page(text, at), at), encoding="utf-8")
         writer = PdfWriter(clone_from=io.BytesIO(printed(browser, draft)))
+        headings = re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.S)
+        plain = [" ".join(html.unescape(re.sub("<[^>]+>", "", h)).split()) for h in headings]
+        titled(writer.root_object["/Outlines"].get_object().get("/First"), plain)
         writer.add_metadata({"/Title": f"{TITLE}: {VOLUMES[volume].lower()}",
                              "/Author": "The ddlib authors"})  # fmt: skip
         new, path = folder / f".{volume}.pdf", folder / f"{volume}.pdf"
@@ -211,6 +245,7 @@ def main(wanted: list[str]) -> None:
     with chromium.launch() as browser:
         for volume in wanted or VOLUMES:
             path = make(built, folder, volume, browser)
+            offered(built, path, "make pdf")
             print(f"==> {path.relative_to(ROOT)}, {path.stat().st_size / 1e6:.1f} MB")
 
 

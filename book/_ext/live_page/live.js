@@ -60,7 +60,8 @@
   const changes = Object.keys(recall()).length;
   status.textContent =
     `Change the code of this page and run it, here in the browser. A click loads Python from ` +
-    `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import.` +
+    `this site: ${megabytes[0]} MB, up to ${megabytes[1]} MB with all that cells import. The first ` +
+    `run takes half a minute more than the page says.` +
     (changes ? " What you changed last time is kept." : "");
   bar.append(begin, status, progress);
   // Beside the sections of the page, not in one: so it stays in view down to the last cell.
@@ -285,12 +286,12 @@
     const told = `${(loaded / 1e6).toFixed(0)} MB`;
     progress.setAttribute("aria-valuetext", told);
     if (!ready) say(kept || (share < 100 ? "Loading Python …" : "Starting Python …"));
-    else say(`Running ${running?.name}: loading what it imports …`);
+    else if (running) say(`Running ${running.name}: loading what it imports …`);
   }
 
   function heard(message) {
     if (message.bytes) {
-      progress.hidden = false;
+      progress.hidden = ready && !running;
       advance(message.bytes);
     } else if (message.ready) {
       ready = true;
@@ -333,7 +334,11 @@
     cell.el.classList.remove("live-running");
     if (cell.time) cell.time.textContent = `${seconds.toFixed(1)} s`;
     if (cell.error) waiting = [];
-    if (!waiting.length) say(cell.error ? `An error in ${cell.name}.` : `${cell.name.replace("c", "C")} has run.`);
+    const isOpen = (c) => c.kind === "open";
+    const rest = isOpen(cell) && cells.slice(cells.indexOf(cell) + 1).some(isOpen);
+    const below = rest ? " Cells below show what they showed before: “Run all”." : "";
+    if (!waiting.length)
+      say(cell.error ? `An error in ${cell.name}.` : `${cell.name.replace("c", "C")} has run.${below}`);
     document.documentElement.dataset.live = waiting.length ? "running" : "idle";
     next();
   }
