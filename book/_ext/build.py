@@ -33,6 +33,7 @@ import yaml
 from ahead import execute
 from dd_book import PAGE_INPUTS, cache_path, digest
 from dd_failures import FAILURES, last_line, where
+from dd_public import repository, site
 from jupyter_cache import get_cache
 from sphinx.util.console import strip_colors
 
@@ -171,7 +172,8 @@ def report(root: Path, found: list[str], strict: bool) -> None:
 def main(root: Path, strict: bool) -> int:
     html = root / "_build" / "html"
     stamp = html / ".built-from"
-    sources = digest(root, PAGE_INPUTS)
+    public = repository(root)  # buttons, cards and the site's map hang on it
+    sources = f"{digest(root, PAGE_INPUTS)} {public and site(public)} {public}".strip()
     failed = False
     if stamp.is_file() and stamp.read_text() == sources:
         print("==> Nothing changed since the last build")

@@ -108,8 +108,9 @@ async () => {
   await document.fonts.ready;
   for (let k = 0; k < 2; k++) await new Promise(requestAnimationFrame);  // what starts, starts
   const unseen = ({ target }) => !target?.checkVisibility({ opacityProperty: true });
-  const running = (animation) => animation.playState === "running" &&
-    !(animation.currentTime === 0 && unseen(animation.effect));  // Firefox lets these wait
+  const waits = (animation) => navigator.userAgent.includes("Firefox") &&
+    animation.currentTime === 0 && unseen(animation.effect);
+  const running = (animation) => animation.playState === "running" && !waits(animation);
   await until("animations", () => !document.getAnimations().some(running));
 }
 """
