@@ -88,11 +88,12 @@ function picksOf({ extents: known, home, most, runs }, changed) {
         const value = field.valueAsNumber;
         if (value >= 0 && value <= most) enter(run, j, value);
       });
-      let kept;
+      let kept = pair[j];
       field.addEventListener("focus", () => (kept = extents[run][j]));
       field.addEventListener("change", () => {
         const value = field.valueAsNumber;
         if (!(value >= 0 && value <= most)) enter(run, j, kept); // its first digits may have fitted
+        kept = extents[run][j];
         show();
       });
       return field;

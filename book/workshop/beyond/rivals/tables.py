@@ -146,11 +146,12 @@ class _Nearest(_Bounded):
 class _LocalPlanes(_Nearest):
     """All training cases are kept; a plane through the nearest ones gives the torque.
 
-    Atkeson, Moore & Schaal (1997), with neighbours in place of a kernel.
+    Atkeson, Moore & Schaal (1997), with neighbours in place of a kernel. Beyond the recorded
+    states the plane goes on.
     """
 
-    def __init__(self, neighbours: int = 60, beyond: str = "refuse"):
-        super().__init__(beyond=beyond)
+    def __init__(self, neighbours: int = 60):
+        super().__init__()
         self.neighbours = integer("neighbours", neighbours, 2)
 
     def _torque(self, x):

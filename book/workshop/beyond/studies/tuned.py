@@ -88,7 +88,7 @@ def _cells(over):
 _RIVALS: dict[str, _Tuned] = {
     "nearest case": _Tuned(_seen(lambda _: _Nearest(beyond="edge")), {}),
     "local planes": _Tuned(
-        _seen(lambda n, _: _LocalPlanes(n, beyond="edge")), {"neighbours": (60, 120, 240, 480, 960)}
+        _seen(lambda n, _: _LocalPlanes(n)), {"neighbours": (60, 120, 240, 480, 960)}
     ),
     "table of states": _Tuned(_cells("states"), {"cells": (3, 10, 40)}),
     "table of configurations": _Tuned(_cells("configurations"), {"cells": (1, 2, 3)}),
