@@ -78,3 +78,15 @@ def _probe(features, target, held_out, ridge):
     x, new = (features - centre) / size, (held_out - centre) / size
     square = x.T @ x + ridge * len(x) * np.eye(x.shape[1])
     return target.mean(0) + new @ np.linalg.solve(square, x.T @ (target - target.mean(0)))
+
+
+def zero_crossings(filters, shift: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+    """Which filters have two zero crossings, and whose middle then is off the centre."""
+    two, off = (np.zeros(filters.shape[:-1], bool) for _ in range(2))
+    for at in np.ndindex(two.shape):
+        f = filters[at]
+        k = np.flatnonzero(np.diff(np.sign(f)))
+        if k.size == 2:
+            crossings = k + f[k] / (f[k] - f[k + 1]) - f.size // 2
+            two[at], off[at] = True, abs(crossings.mean()) >= shift
+    return two, off

@@ -21,6 +21,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, predict, true_states
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed
+from workshop.report._probes import zero_crossings
 from workshop.report.evidence.verdicts import Measured, _largest_median, judged, mean, median
 
 
@@ -71,21 +72,11 @@ def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
     return judged(median, trained, text=f"{now:.1f} % of the energy, {then:.1f} % before training")
 
 
-def _crossings(filters, shift: float) -> tuple[np.ndarray, np.ndarray]:
-    """Which filters have two zero crossings, and whose middle then is off the centre."""
-    two, off = (np.zeros(filters.shape[:-1], bool) for _ in range(2))
-    for at in np.ndindex(two.shape):
-        f = filters[at]
-        k = np.flatnonzero(np.diff(np.sign(f)))
-        if k.size == 2:
-            crossings = k + f[k] / (f[k] - f[k + 1]) - f.size // 2
-            two[at], off[at] = True, abs(crossings.mean()) >= shift
-    return two, off
-
-
 def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
     """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
-    (two, off), (before, _) = (_crossings(f, shift) for f in committed._filters(width, "direct"))
+    (two, off), (before, _) = (
+        zero_crossings(f, shift) for f in committed._filters(width, "direct")
+    )
 
     def share(pair):
         return mean(pair[0]) / np.maximum(mean(pair[1]), 1 / two.size)
