@@ -20,7 +20,7 @@ from ddlib.effects import (
     Quantisation,
     ViscousFriction,
 )
-from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, sliding_windows
+from ddlib.learning import INITIAL, TorqueModel, TrainingSet, Weights, cases, sliding_windows
 from ddlib.metrics import rmss
 from ddlib.simulation import Recording, record
 from ddlib.trajectories import APPENDIX_I
@@ -48,9 +48,6 @@ Without them a few networks in a hundred saturate early and never recover."""
 
 COURSE = (*sorted({0, *(round(10 ** (k / 14)) for k in range(61))}), paper.EPOCHS)
 """Epochs after which the weights of the first networks are kept: 14 in each decade."""
-
-INITIAL = 0.3
-"""Initial weights are uniform in plus or minus this (Rumelhart, Hinton & Williams 1986)."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +114,7 @@ JOINT_DAMPING_BITS = 12.5
 """Encoder of `JOINT_DAMPING`, bits: the 16 that are remembered cannot make the training error at
 window 11. Tuned to Table 4-1."""
 
-JOINT_DAMPING_STEPS = 60
+JOINT_DAMPING_STEPS = 120
 """Levenberg-Marquardt steps of `JOINT_DAMPING`, with white inputs (`ddlib.learning.solve`): it is
 stopped there, not converged. Method and number are tuned."""
 

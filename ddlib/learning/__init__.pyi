@@ -14,6 +14,7 @@ from .levenberg_marquardt import (
     solve as solve,
 )
 from .network import (
+    INITIAL as INITIAL,
     TorqueModel as TorqueModel,
     Weights as Weights,
     rows as rows,

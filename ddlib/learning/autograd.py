@@ -8,7 +8,7 @@ from torch import nn
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array
-from ddlib.learning.network import _FIELDS, Weights
+from ddlib.learning.network import _FIELDS, INITIAL, Weights
 from ddlib.learning.training import (
     History,
     TrainingDiverged,
@@ -21,7 +21,7 @@ from ddlib.learning.training import (
 class WindowNetwork(nn.Module):
     """One window network as a PyTorch module (Figure 3-1), drawn as by `Weights.random`."""
 
-    def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=0.3, seed=0):
+    def __init__(self, width, hidden=10, joints=2, outputs=2, *, initial=INITIAL, seed=0):
         super().__init__()
         draw = Weights.random(1, width, hidden, joints, outputs, initial, seed)[0]
         for name in _FIELDS:

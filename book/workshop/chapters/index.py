@@ -16,7 +16,7 @@ _STATIONS = "arm equations loop recording window network weights filters".split(
 
 def stations(width: int = 21) -> figures.Illustration:
     """Eight small pictures, from the arm to the filters in a network that is trained for them."""
-    setup, start = JOINT_DAMPING, Weights.random(1, width, initial=0.3)
+    setup, start = JOINT_DAMPING, Weights.random(1, width)
     recording = setup.record()
     data = TrainingSet.from_recording(split(recording)[0], width, scaling=(-1, 1))
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}

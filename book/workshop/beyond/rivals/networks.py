@@ -13,6 +13,7 @@ from torch import nn
 from ddlib._check import integer, number, one_of
 from ddlib.dynamics import Operations
 from ddlib.learning import (
+    INITIAL,
     NotConverged,
     TorqueModel,
     TrainingDiverged,
@@ -30,7 +31,7 @@ class _Network(Rival):
     """A network with sigmoid hidden units and direct weights; how it is trained is left open."""
 
     def __init__(
-        self, hidden=HIDDEN_UNITS, kind="windows", *, initial=0.3, scaling=(0.0, 1.0), seed=0
+        self, hidden=HIDDEN_UNITS, kind="windows", *, initial=INITIAL, scaling=(0.0, 1.0), seed=0
     ):
         self.kind, self.hidden = one_of("kind", kind, _KINDS), integer("hidden", hidden, 1)
         self.initial = number("initial", initial, 0.0, open_low=True)

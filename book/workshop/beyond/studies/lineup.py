@@ -36,17 +36,15 @@ _PENALTY = 1e-4  # the one that leaving out trajectories chooses in `rivals_1988
 def _descent(hidden, seed, **options):
     """As `STATE_FEEDBACK` is trained: the book's reading of 1988."""
     here = STATE_FEEDBACK
-    options = {"epochs": here.epochs, "rate": here.rate / 21, **options}
-    return _ByDescent(
-        hidden, momentum=here.momentum, warm_up=here.warm_up, initial=INITIAL, seed=seed, **options
-    )
+    options = {"epochs": here.epochs, "rate": here.rate / 21, "initial": INITIAL, **options}
+    return _ByDescent(hidden, momentum=here.momentum, warm_up=here.warm_up, seed=seed, **options)
 
 
 def _solver(hidden, seed, **options):
     """As `JOINT_DAMPING` is trained: what reaches Table 4-1."""
     here = JOINT_DAMPING
-    options = {"steps": here.steps, "decay": here.decay, **options}
-    return BySolver(hidden, initial=INITIAL, seed=seed, **options)
+    options = {"steps": here.steps, "decay": here.decay, "initial": INITIAL, **options}
+    return BySolver(hidden, seed=seed, **options)
 
 
 def _identified(count, _seed):

@@ -262,12 +262,10 @@ def direction_purity(count: int = 9) -> Measured:
 
 def noise_left(width: int = 41) -> Measured:
     """Correlation of trained with initial weights in directions predicted not to be learnt."""
-    learnt = int(np.median(_learning(width, 0)["predicted"]["learnt"]))
-    along = Directions.of(TrainingSet.from_recording(committed.training(), width))
-    models = committed.networks(width), committed._untrained(width)
-    ends = [along.along(model.weights)[..., learnt:] for model in models]
-    found = np.array([np.corrcoef(a.ravel(), b.ravel())[0, 1] for a, b in zip(*ends)])
-    text = f"{spread(found)} in {along.values.size - learnt} of {along.values.size} directions"
+    cell = _learning(width, 0)
+    learnt, every = int(np.median(cell["predicted"]["learnt"])), len(cell["variance"])
+    found = np.array(cell["start kept"])
+    text = f"{spread(found)} in {every - learnt} of {every} directions"
     return judged(median, found, text=text)
 
 

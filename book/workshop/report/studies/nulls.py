@@ -48,17 +48,14 @@ _EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
 
 _LONGER = 50_000  # Epochs of the row that asks what the rest of the training adds
 
-# How the trial descends, with centred inputs, which gets far in few epochs
-_DESCENT = {
-    "scaling": (-1.0, 1.0), "rate": 66.0, "momentum": 0.995, "warm_up": 1000, "steps": 0,
-    "decay": 0.0, "epochs": _EPOCHS,
-}  # fmt: skip
+# How the trial descends: as the lessons do, on inputs from 0 to 1
+_DESCENT = {"warm_up": 500, "steps": 0, "decay": 0.0, "epochs": _EPOCHS}
 
 # Penalty of the probes: of 1e-8 to 0.1 the one with which networks trained on the real torques do
 # best, so that the comparison favours them
 _RIDGE = 1e-2
 
-# The recording of the third set-up, with this descent in place of its solver
+# The walk's network: the recording of the third set-up, with descent in place of its solver
 TRIAL = replace(JOINT_DAMPING, **_DESCENT)
 
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one

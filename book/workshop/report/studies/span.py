@@ -15,14 +15,29 @@ from workshop.report.code_hash import study
 # Epochs of the learning curves: 4 in each decade
 _COURSE = (0, *sorted({round(10 ** (k / 4)) for k in range(18)}), EPOCHS)
 
+LAZY = 0.3
+"""Range of initial weights from which networks stay near their tangent: ten times the book's."""
+
+_RANGES = (0.03, 0.1, LAZY, 1.0)  # from which networks are compared with their tangents
+
+_PRINTED = replace(STATE_FEEDBACK, initial=LAZY)
+
 # State feedback with inputs around zero, against the printed "0.0 to 1.0"
-_CENTRED = replace(STATE_FEEDBACK, scaling=(-1.0, 1.0))
+_CENTRED = replace(_PRINTED, scaling=(-1.0, 1.0))
 
 # The arm with damped joints, learnt by descent: inputs around zero, twice the step and four times
 # the memory of `STATE_FEEDBACK`. Tuned so that descent comes near the printed training errors.
-_DAMPED = replace(JOINT_DAMPING, steps=0, decay=0.0, scaling=(-1.0, 1.0), momentum=0.995, rate=66.0)
+_DAMPED = replace(
+    JOINT_DAMPING,
+    initial=LAZY,
+    steps=0,
+    decay=0.0,
+    scaling=(-1.0, 1.0),
+    momentum=0.995,
+    rate=66.0,
+)
 
-READINGS = (STATE_FEEDBACK, _CENTRED, _DAMPED)
+READINGS = (_PRINTED, _CENTRED, _DAMPED)
 
 _SHOWN = 12  # Directions whose curves are kept, the steepest first
 
@@ -38,6 +53,10 @@ def _rough(hidden_weights) -> np.ndarray:
 
 def _correlation(a, b) -> float:
     return float(np.corrcoef(np.log(a), np.log(b))[0, 1])
+
+
+def _alike(a, b) -> float:
+    return float(np.corrcoef(a, b)[0, 1])
 
 
 def _seen(along, weights, error, y) -> dict:
@@ -96,6 +115,9 @@ def _cell(setup, recording, width, members) -> dict:
             "moved": np.median(courses["moved"], 0),
             **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
         }
+    learnt = int(np.median(found["predicted"]["learnt"]))
+    ends = [along.along(w)[..., learnt:].reshape(members, -1) for w in (kept[0], kept[EPOCHS])]
+    found["start kept"] = [_alike(*pair) for pair in zip(*ends)]
     ratio = every["measured"]["change"] / every["predicted"]["change"]
     apart = np.exp(np.abs(np.log(ratio[:, 1:, :_SHOWN])) / 2)
     return {**found, "factor": np.median(apart, -1)}
@@ -141,10 +163,20 @@ def _span(members=5) -> dict:
     """Learning curves of `members` networks along the directions of their windows.
 
     By state feedback with both scalings of the inputs, and on the arm with damped joints; three
-    windows each.
+    windows each, all from the range `LAZY`. Then window 21 by state feedback from each of
+    `_RANGES`: how far networks go from their tangents.
     """
     cells = []
     for setup in READINGS:
         recording = setup.record()
         cells += [_cell(setup, recording, width, members) for width in WINDOWS]
-    return {"members": members, "epochs": _COURSE, "cells": cells}
+    recording = STATE_FEEDBACK.record()
+    by_range = [_cell(replace(_PRINTED, initial=r), recording, 21, members) for r in _RANGES]
+    kept = ("correlation", "measured", "predicted", "factor", "start kept")
+    return {
+        "members": members,
+        "epochs": _COURSE,
+        "cells": cells,
+        "ranges": _RANGES,
+        "by range": [{name: cell[name] for name in kept} for cell in by_range],
+    }

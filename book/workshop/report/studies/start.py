@@ -34,7 +34,7 @@ from ddlib.analysis import (
     shares,
 )
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, surrogates
-from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, Setup, errors, split, train_windows
+from ddlib.setups import SETUPS, WINDOWS, Setup, errors, split, train_windows
 from ddlib.simulation import LOG_STEP
 from workshop.report._probes import cancellation, zero_crossings
 from workshop.report.code_hash import code_hash, study
@@ -53,8 +53,10 @@ NETWORKS = 3
 """Networks of each recording: twelve in a cell."""
 
 _SOLVERS = {"solver": False, "solver, white inputs": True}
+_STEPS, _DECAY = 60, 1e-6  # of Levenberg-Marquardt
+_SOLVED = (11, 21)  # windows of these cells
 
-_NULL_EPOCHS = 10_000
+_NULL_EPOCHS = 5000
 _NULL_RANGES = (0.03, 0.1, 0.3)
 _NULL_DRAWS = 200  # of each kind, a network for each: p-values down to 1/201
 _NULL_NETWORKS = 10  # of the real torques of each recording
@@ -199,7 +201,7 @@ def _pooled(found: list):
 def _cell(reading: str, scaling: str, initial: float, width: int, method: str) -> dict:
     setup = _reading(reading, scaling, initial)
     if method != "descent":
-        setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
+        setup = replace(setup, steps=_STEPS, decay=_DECAY)
     found = []
     for day in DAYS:
         recording = setup.repeated(day).record()
@@ -244,9 +246,9 @@ def _start() -> dict:
 def _start_solver() -> dict:
     """The same by sixty steps of Levenberg-Marquardt with and without white inputs.
 
-    Thin: inputs from 0 to 1 alone.
+    Thin: inputs from 0 to 1 and windows of 11 and 21 samples alone.
     """
-    return _grid(_SOLVERS, "start-solver", ("0 to 1",))
+    return _grid(_SOLVERS, "start-solver", ("0 to 1",), _SOLVED)
 
 
 # --- beside unrelated torques -----------------------------------------------------------------
@@ -286,7 +288,7 @@ def _against(reading: str, initial: float) -> dict:
 def _start_nulls() -> dict:
     """Names of filters beside 200 shifted and 200 phase-randomised torques, inputs from 0 to 1.
 
-    Thin: window 21, three of the ranges, half of the epochs.
+    Thin: window 21, three of the ranges, a quarter of the epochs.
     """
     settings = [{"reading": r, "initial": size} for r in SETUPS for size in _NULL_RANGES]
     rows = _sweep(
