@@ -10,11 +10,11 @@ import numpy as np
 from ddlib import figures
 from ddlib.analysis import classify, decompose
 from ddlib.learning import Weights, p_value
-from ddlib.setups import INITIAL, SETUPS, STATE_FEEDBACK, WINDOWS, train_windows
+from ddlib.setups import SETUPS, STATE_FEEDBACK, train_windows
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
-from workshop.report.studies.start import RANGES, SCALINGS, agreement, chosen
+from workshop.report.studies.start import RANGES, agreement, chosen
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
@@ -117,14 +117,11 @@ def by_range() -> figures.Illustration:
         axes = figure.subplots(1, len(_PANELS))
         for axis, (title, measure) in zip(axes, _PANELS.items()):
             for k, reading in enumerate(SETUPS):
-                every = np.array(
-                    [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
-                )
-                colour, dash = figures.COLOURS[k], figures.DASHES[k]
-                axis.fill_between(RANGES, every[:, 0], every[:, 2], color=colour, alpha=0.15, lw=0)
-                axis.plot(
-                    RANGES, every[:, 1], color=colour, ls=dash, marker="o", ms=3, label=reading
-                )
+                each = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
+                low, middle, high = np.transpose(each)
+                look = {"color": figures.COLOURS[k], "label": reading, "marker": "o", "ms": 3}
+                axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
+                axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
             axis.set(title=title, xlabel="start, ±", xscale="log")
             if title.startswith(("roughness", "test")):
                 axis.set_yscale("log")
