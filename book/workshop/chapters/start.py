@@ -320,6 +320,13 @@ def _quoted() -> None:
                 f"start-{what}-{name}",
                 float(np.median(values(STATE_FEEDBACK.name, size, 21, what))),
             )
+    for name, size in (("small", best), ("large", 0.3)):
+        shares = [named(r, size, scaling="-1 to 1").mean() for r in SETUPS]
+        quote(f"start-centred-{name}", 100 * float(np.mean(shares)))
+    walk = results.read("filter-trial")["windows"]["21"]
+    unnamed = np.mean(walk["real"]["hidden"]["classes"]["not analysable"])
+    quote("start-walk-named", 100 * (1 - unnamed))
+    quote("start-walk-test", float(np.median(np.array(walk["real, errors"])[:, 1])))
     nulls = results.read("start-nulls")
     quote("start-draws", nulls["draws"])
     places = [(r, s) for r in SETUPS for s in nulls["ranges"]]
