@@ -133,61 +133,6 @@ def by_range() -> figures.Illustration:
             axis.minorticks_off()
         figures.legend_above(figure, *axes[0].get_legend_handles_labels())
 
-    told = "; ".join(f"±{size:g}: {classify(after)}" for size, (_, after) in rows.items())
-    alt = (
-        "Weights of one hidden unit over its window of 21 samples, before and after training, in "
-        f"four panels from the largest to the smallest start, with their names: {told}."
-    )
-    return figures.illustrate(draw, alt, 7.0, 2.5)
-
-
-# --- which start agrees with the report -------------------------------------------------------
-
-
-def agreement_table() -> Table:
-    """Share of networks in which each remark of the report comes out, by range."""
-    found = {
-        size: [agreement(cells()[reading][str(size)]) for reading in SETUPS] for size in RANGES
-    }
-    rows = []
-    for remark in found[RANGES[0]][0]:
-        each = (100 * np.mean([cell[remark] for cell in found[size]]) for size in RANGES)
-        rows.append((remark, *(f"{share:.0f} %" for share in each)))
-    scores = chosen(cells())[1]
-    rows.append(("remarks met, of 7", *(f"{scores[size]:.1f}" for size in RANGES)))
-    for k, reading in enumerate(SETUPS):
-        each = (sum(found[size][k].values()) for size in RANGES)
-        rows.append((f"{reading} alone", *(f"{score:.1f}" for score in each)))
-    return Table(("remark of the report", *(f"±{size:g}" for size in RANGES)), rows)
-
-
-# --- what a large start hides -----------------------------------------------------------------
-
-_PANELS = {
-    "filters with a name, %": lambda r, s, **w: 100 * named(r, s, **w),
-    "roughness": lambda r, s, **w: values(r, s, 21, "hidden", "roughness", **w),
-    "turn of hidden rows": lambda r, s, **w: values(r, s, 21, "turn", **w),
-    "test error, RMSS": lambda r, s, **w: values(r, s, 21, "test", **w),
-}
-
-
-def by_range() -> figures.Illustration:
-    """Names, roughness, turn of hidden rows and test error at window 21, by range and reading."""
-
-    def draw(figure):
-        axes = figure.subplots(1, len(_PANELS))
-        for axis, (title, measure) in zip(axes, _PANELS.items()):
-            for k, reading in enumerate(SETUPS):
-                each = [np.quantile(measure(reading, s), (0.25, 0.5, 0.75)) for s in RANGES]
-                low, middle, high = np.transpose(each)
-                look = {"color": figures.COLOURS[k], "label": reading, "marker": "o", "ms": 3}
-                axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
-                axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
-            axis.set(title=title, xlabel="start, ±", xscale="log")
-            if title.startswith(("roughness", "test")):
-                axis.set_yscale("log")
-        figures.legend_above(figure, *axes[0].get_legend_handles_labels())
-
     ends = {
         title: "; ".join(
             f"{reading} {significant(np.median(measure(reading, RANGES[0])))} to "
