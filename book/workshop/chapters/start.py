@@ -148,6 +148,9 @@ def by_range() -> figures.Illustration:
 # --- beside unrelated torques -----------------------------------------------------------------
 
 
+_KINDS = {"real": "the arm's torques", "shifted": "shifted", "phases": "random phases"}
+
+
 def null_row(reading: str, size: float) -> dict:
     """Networks of the real torques and of unrelated ones, of one reading and range."""
     return results.read("start-nulls")["rows"][reading][str(size)]
@@ -173,13 +176,12 @@ def p_more(reading: str, size: float, name: str, layer: str = "hidden") -> float
 def beside_unrelated() -> figures.Illustration:
     """Shares of acceleration and of velocity filters, real torques beside unrelated ones."""
     sizes = results.read("start-nulls")["ranges"]
-    kinds = {"real": "the arm's torques", "shifted": "shifted", "phases": "random phases"}
 
     def draw(figure):
         axes = figure.subplots(2, len(SETUPS), sharex=True, sharey=True)
         for row, name in zip(axes, ("acceleration", "velocity")):
             for axis, reading in zip(row, SETUPS):
-                for k, (kind, label) in enumerate(kinds.items()):
+                for k, (kind, label) in enumerate(_KINDS.items()):
                     for i, size in enumerate(sizes):
                         share = 100 * shares_beside(reading, size, name)[kind]
                         low, middle, high = np.quantile(share, (0.05, 0.5, 0.95))
@@ -199,7 +201,7 @@ def beside_unrelated() -> figures.Illustration:
     for reading in SETUPS:
         for size in sizes:
             found = shares_beside(reading, size, "acceleration")
-            each = ", ".join(f"{kinds[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
+            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
             told.append(f"{reading}, ±{size:g}: {each}")
     alt = (
         "Shares of hidden filters named acceleration and velocity at window 21, medians and the "
@@ -345,7 +347,15 @@ def _quoted() -> None:
         f"{told} fewer than one in twenty of the unrelated networks have as many acceleration "
         "filters as the real ones have on average.",
     )
-    for kind in ("real", "shifted", "phases"):
+    direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
+    unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
+    quote("start-direct-unrelated", 100 * unrelated.mean())
+    inertia = {kind: [null_row(*place)[kind]["M11"] for place in places] for kind in _KINDS}
+    quote("start-inertia-real", np.median(np.concatenate(inertia["real"])))
+    null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
+    quote("start-inertia-null", float(np.median(null)))
+    quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])
+    for kind in _KINDS:
         shares = [shares_beside(*place, "velocity")[kind].mean() for place in places]
         quote(f"start-velocity-{kind}", 100 * float(np.mean(shares)))
 
