@@ -53,10 +53,11 @@ CORE  = $(wildcard tests/test_*.py) $(addprefix tests/,dynamics effects control 
 FACTS = $(addprefix tests/book/test_,prose.py notebooks.py lessons.py)
 FRESH = $(addprefix tests/report/test_,code_hash.py results.py judging.py)
 
-check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results
+check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results; sizes
 	@echo "==> Core tests, house rules, facts, fresh results"
 	$(PYTEST) -n $(JOBS) --dist worksteal -m "not slow and not built and not browser" \
 	  $(CORE) tests/house $(FACTS) $(FRESH)
+	@$(BIN)/python tests/support/sizes.py
 
 unmeasured:
 	@rm -rf _build/measured
