@@ -108,6 +108,45 @@ def check(number: int, mine, x) -> None:
               f"it needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip
 
 
+_TORQUES = {
+    "real": "the arm's own", "shifted": "shifted in time", "other run": "another run's",
+    "phases": "random phases",
+}  # fmt: skip
+
+
+def beside_unrelated(width: int = 21) -> Illustration:
+    """Names and inertia of networks of the arm's torques, beside those of unrelated torques."""
+    row, arm = trial.row(width), trial.arm_gains()[0, 0, 2]
+    sets = {"real": row["real"], **trial.matched(row)}
+    panels = {
+        f"{name} filters, %": {
+            kind: 100 * trial.share(found, "hidden", [name]) for kind, found in sets.items()
+        }
+        for name in ("velocity", "acceleration")
+    }
+    inertia = {kind: np.array(found["gains"])[:, 0, 0, 2] for kind, found in sets.items()}
+    panels["inertia, kg m²"] = inertia
+
+    def draw(figure: Figure):
+        axes = figure.subplots(1, len(panels), sharey=True)
+        for axis, (label, shown) in zip(axes, panels.items()):
+            for k, (kind, values) in enumerate(shown.items()):
+                _dots(axis, values, k, 0, kind, colour=COLOURS[min(k, 1)])
+                axis.plot([np.mean(values)] * 2, [k - 0.3, k + 0.3], color=INK, lw=2)
+            axis.grid(visible=False, axis="y")
+            axis.set(xlabel=label, ylim=(len(sets) - 0.5, -0.6))
+        axes[-1].axvline(arm, color=INK, ls="--", lw=1.0)
+        axes[-1].annotate(" the arm", (arm, -0.55), ha="right", va="top")
+        axes[0].set_yticks(range(len(sets)), [_TORQUES[kind] for kind in sets])
+
+    told = "; ".join(
+        f"{label}: " + ", ".join(f"{_TORQUES[k]} {np.mean(x):.0f}" for k, x in shown.items())
+        for label, shown in panels.items()
+    )
+    alt = f"Means of networks, by the torques that they were trained on. {told}; the arm {arm:.1f}."
+    return illustrate(draw, alt, 7.0, 2.3)
+
+
 def against_nulls(
     panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str
 ) -> Illustration:
@@ -149,13 +188,14 @@ def against_nulls(
     return illustrate(draw, alt, 7.0, 0.6 + rows * (0.5 + 0.36 * len(classes)))
 
 
-def _dots(axis: Axes, values, height: float, k: int, name: str):
+def _dots(axis: Axes, values, height: float, k: int, name: str, colour: str = ""):
     """One mark for each value, all in one path, since hundreds of markers are heavy."""
     at = np.unique(np.asarray(values, dtype=float))
     long = 0.09 if k % 3 == 2 else 1e-3  # discs, squares and strokes
     x, y = np.repeat(at, 3), np.tile([height - long, height + long, np.nan], at.size)
     cap = ("round", "projecting", "butt")[k % 3]
-    axis.plot(x, y, color=COLOURS[k % len(COLOURS)], lw=1.5 if k % 3 == 2 else 3.4, alpha=0.7,
+    axis.plot(x, y, color=colour or COLOURS[k % len(COLOURS)], alpha=0.7,
+              lw=1.5 if k % 3 == 2 else 3.4,
               solid_capstyle=cap, label=name)  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from ddlib.widgets.parts.parameters import Choice
 from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
-from workshop.report.studies.span import READINGS
+from workshop.report.studies.span import LAZY, READINGS
 
 _WHO = ("measured", "predicted")
 _FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
@@ -100,7 +100,7 @@ def _said() -> None:
     velocity, acceleration = _halves().values()
     stated("smooth-velocity-first", resampled(acceleration - velocity) > 0)
     data, _, axes = _windows()
-    start = Weights.random(8, 21)
+    start = Weights.random(8, 21, initial=LAZY)
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
     trained = train_ensemble(start, data, **how)[0].weights
     pair = (w.direct_weights.reshape(8, 2, -1) @ axes.T for w in (start, trained))
