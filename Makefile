@@ -1,4 +1,6 @@
 # Everything runs in .venv, which the first target makes. `make help` lists the targets.
+# Where the folder lies never matters: make's own functions split paths at spaces, so recipes keep to
+# relative paths, and leave it to the shell to say, in quotes, where they are.
 #   make book PYTHON=python3.12    another interpreter
 #   make test JOBS=4               more worker processes
 
@@ -8,13 +10,15 @@ JOBS   ?= 2
 
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
-STRIP  := $(BIN)/nbstripout --keep-id --extra-keys "metadata.language_info.version \
+STRIP  := $(BIN)/python -m nbstripout --keep-id --extra-keys "metadata.language_info.version \
 	metadata.language_info.codemirror_mode metadata.language_info.file_extension \
 	metadata.language_info.mimetype metadata.language_info.nbconvert_exporter \
 	metadata.language_info.pygments_lexer"
 NOTEBOOKS = book/*.ipynb
 # Small matrices: a second thread would only wait, and so would the other process.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
+# Python that finds the workshop, wherever it goes from here.
+WORKSHOP := PYTHONPATH="$$PWD/book$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python
 
 # Matrices of some megabytes come and go by the thousand. glibc gives their memory back to the
 # system each time, unless told to keep it: a fifth of the time of Levenberg-Marquardt went there.
@@ -27,7 +31,7 @@ export MALLOC_TRIM_THRESHOLD_ = 268435456
 .PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment reproduce bench check mutants strip clean
 
 help:  ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
 
 env: $(READY)  ## the Python environment alone, in .venv
 
@@ -53,10 +57,11 @@ CORE  = $(wildcard tests/test_*.py) $(addprefix tests/,dynamics effects control 
 FACTS = $(addprefix tests/book/test_,prose.py notebooks.py lessons.py)
 FRESH = $(addprefix tests/report/test_,code_hash.py results.py judging.py)
 
-check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results
+check: lint stripped  ## for every day: style, core tests, house rules, facts, fresh results; sizes
 	@echo "==> Core tests, house rules, facts, fresh results"
 	$(PYTEST) -n $(JOBS) --dist worksteal -m "not slow and not built and not browser" \
 	  $(CORE) tests/house $(FACTS) $(FRESH)
+	@$(BIN)/python tests/support/sizes.py
 
 unmeasured:
 	@rm -rf _build/measured
@@ -97,12 +102,12 @@ pages: $(READY)
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
 SOURCES ?=
-LAB = PYTHONPATH=$(CURDIR)/book $(abspath $(BIN))/python -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root)
+LAB = $(WORKSHOP) -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root)
 lab: $(READY)  ## JupyterLab on the readers' notebooks; SOURCES=1: on the book's own
 ifeq ($(SOURCES),)
 	@$(BIN)/python book/_ext/build.py
 	@$(BIN)/python book/_ext/lab.py
-	cd _build/lab && $(LAB) --LabApp.default_url=/lab/tree/index.ipynb
+	$(LAB) --ServerApp.root_dir=_build/lab --LabApp.default_url=/lab/tree/index.ipynb
 else
 	$(LAB) --LabApp.default_url=/lab/tree/book
 endif
@@ -138,7 +143,7 @@ firefox: $(READY)  ## the page tests in Firefox, on the pages as they were built
 	BROWSER=firefox $(PYTEST) -n $(JOBS) --dist worksteal -m "browser and not chromium" $(PAGE_TESTS)
 
 reproduce: $(READY)  ## measure the paper's claims anew (slow), into book/results/
-	cd book && $(abspath $(BIN))/python -m workshop.report.reproduce
+	$(WORKSHOP) -m workshop.report.reproduce
 
 ONLY ?= ddlib.dynamics.*
 mutants: $(READY)  ## which mistakes would the tests notice? ONLY=ddlib.control.* names modules

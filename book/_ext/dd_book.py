@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import glob
 import shutil
+import sqlite3
 import sys
 from functools import cache, partial, wraps
 from importlib.metadata import files
 from pathlib import Path
 
 import joblib
+from jupyter_cache.cache import db
 from pybtex import plugin
 from slim import slim
 from sphinx import addnodes, builders
@@ -36,13 +39,27 @@ def digest(root: Path, patterns: tuple[str, ...]) -> str:
     """
     tops = [top for pattern in patterns for top in root.glob(pattern)]
     found = {path for top in tops for path in (top, *top.rglob("*")) if path.is_file()}
-    read = {p.relative_to(root).as_posix(): p.read_bytes() for p in found if not SKIP & {*p.parts}}
+    named = {path.relative_to(root): path for path in found}
+    read = {n.as_posix(): p.read_bytes() for n, p in named.items() if not SKIP & {*n.parts}}
     return joblib.hash((sys.version_info[:2], read), hash_name="sha1")[:16]
 
 
 def cache_path(root: Path, build: Path) -> Path:
     """Where executed notebooks are kept: keyed by the code and data they import and read."""
     return build / ".jupyter_cache" / digest(root, CELL_INPUTS)
+
+
+_open = db.create_engine
+
+
+def open_by_path(address: str):
+    """The cache's database by its path: in an address, "?" and "%" would not be the folder's."""
+    path = address.removeprefix("sqlite:///")
+    connect = partial(sqlite3.connect, path, check_same_thread=False)
+    return _open("sqlite:///by-its-path", creator=connect)
+
+
+db.create_engine = open_by_path
 
 
 def set_cache_path(app, config):
@@ -55,6 +72,21 @@ def set_cache_path(app, config):
     for old in by_age[:-KEPT_CACHES]:
         shutil.rmtree(old)
     config.nb_execution_cache_path = str(cache)
+
+
+def leave_out_unlisted(app, config):
+    """Leave out what the table of contents does not name, where the folder's path has brackets.
+
+    Elsewhere `sphinx_external_toc` has done so: by a pattern that begins with that path.
+    """
+    if glob.escape(str(app.srcdir)) == str(app.srcdir):
+        return
+    listed = set(config.external_site_map)
+    for suffix in config.source_suffix:
+        for path in glob.glob(f"**/*{suffix}", root_dir=app.srcdir, recursive=True):
+            name = Path(path).as_posix()
+            if not {name, name.removesuffix(suffix)} & listed:
+                config.exclude_patterns = [*config.exclude_patterns, name]
 
 
 def copy_mathjax(app):
@@ -121,6 +153,7 @@ def slim_pages(app, exception):
 
 def setup(app):
     app.connect("config-inited", set_cache_path)
+    app.connect("config-inited", leave_out_unlisted, priority=910)  # the table has been read
     app.connect("builder-inited", copy_mathjax)
     app.connect("builder-inited", copy_titles_alone)
     app.connect("builder-inited", look_up_plugins_once)

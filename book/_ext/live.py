@@ -16,6 +16,7 @@ import io
 import json
 import math
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -297,4 +298,4 @@ if __name__ == "__main__":
     except (Refused, OSError) as error:
         sys.exit(f"==> FAILED: {error}")
     print(f"==> {len(done)} pages run in the browser. Serve them, and open the first:")
-    print(f"    python -m http.server --directory {options.out}")
+    print(f"    python -m http.server --directory {shlex.quote(str(options.out))}")

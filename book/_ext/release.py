@@ -68,8 +68,8 @@ def collect(root: Path, folder: Path) -> list[Path]:
     new = folder.with_name(f".{folder.name}")  # whole or not at all
     shutil.rmtree(new, ignore_errors=True)
     new.mkdir(parents=True)
-    wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new, root]
-    subprocess.run(wheel, check=True)
+    wheel = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "-w", new.resolve(), "."]
+    subprocess.run(wheel, check=True, cwd=root)  # brackets in a path would be extras to pip
     shutil.make_archive(str(new / f"site-{version}"), "zip", built / "html")
     for name, path in MADE.items():
         stem, dot, ending = name.rpartition(".")

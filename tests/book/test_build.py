@@ -90,6 +90,35 @@ def test_digest_sees_what_matters(tiny):
     assert digest(tiny, CELL_INPUTS) != before
 
 
+def test_digest_does_not_see_where_the_folder_lies(tiny, tmp_path_factory):
+    away = tmp_path_factory.mktemp("away") / "__pycache__" / "b [1]"
+    shutil.copytree(tiny, away)
+    assert digest(away, PAGE_INPUTS) == digest(tiny, PAGE_INPUTS)
+
+
+DRAWN = "import matplotlib.pyplot as plt\n\nplt.plot([1, 2])\nplt.show()"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", ["book", "Übung (1) [2]?/50%41"])
+def test_a_strict_build_holds_wherever_the_folder_lies(folder, tiny, tmp_path_factory):
+    """With a picture, a page that leads to another, and a file that is no page."""
+    write_page(tiny, "# Title\n\n{doc}`chapter`", DRAWN)
+    add_page(tiny, "# Chapter", "1 + 1")
+    (tiny / "README.md").write_text("# No page")
+    root = shutil.copytree(tiny, tmp_path_factory.mktemp("away") / folder)
+    outcome = build(root, "--strict")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert (root / "_build" / "html" / "index.html").as_uri() in outcome.stdout
+    assert [path.name for path in root.parent.iterdir()] == [root.name]  # nothing beside it
+    page = root / "_build" / "html" / "book" / "index.html"
+    found = BeautifulSoup(page.read_text(encoding="utf-8"), "html.parser")
+    (picture,) = found.select("article .cell_output img")
+    assert (page.parent / picture["src"]).is_file()
+    assert found.select_one('article a[href="chapter.html"]')
+    assert "Nothing changed" in build(root, "--strict").stdout
+
+
 @pytest.mark.slow
 def test_notebooks_run_again_only_when_needed(tiny):
     first = build(tiny)

@@ -7,6 +7,7 @@ import pytest
 import yaml
 from book_pages import CHAPTERS
 
+from workshop.report import results
 from workshop.report.evidence import claims, wall
 from workshop.report.evidence.claims import _LEDGER, SECTIONS, Claim, _MeasureError
 from workshop.report.evidence.verdicts import Measured
@@ -31,7 +32,8 @@ def make(**changes) -> Claim:
 
 @pytest.fixture
 def finds(monkeypatch):
-    """``finds(value, draws)``: what every claim measures from then on."""
+    """``finds(value, draws)``: what every claim measures from then on, of results made anew."""
+    monkeypatch.setattr(results, "_committed", lambda: False)
 
     def plant(value, draws=None):
         found = Measured(value, "text", None if draws is None else np.asarray(draws))
@@ -122,6 +124,7 @@ def test_bands(finds):
         ({"from": 1.0, "to": 2.0}, {}, 2.5, "not reproduced"),
         ({"is": True}, {}, True, "reproduced"),
         ({"is": True}, {}, False, "not reproduced"),
+        ({"is": True}, {}, 0.3, "not reproduced"),
         ({"from": 1.0}, {}, float("nan"), "not reproduced"),
     ):
         finds(value)
@@ -130,7 +133,7 @@ def test_bands(finds):
     assert claim.edges() == [1.0, 1.6, 2.5, 4.0] and make(band={"is": True}).edges() == []
 
 
-def test_replicates_decide(finds):
+def test_replicates_decide(finds, monkeypatch):
     for good, fresh, sure in (
         (100, "reproduced", "reproduced, more than 95 % of draws"),
         (95, "reproduced", "reproduced, 95 % of draws"),
@@ -153,6 +156,10 @@ def test_replicates_decide(finds):
             finds(2.0, draws)
             assert make(verdict=planted).judge() == "reproduced"
     assert make().shares() == {} and make().sure() == "reproduced"
+    finds(2.0, np.repeat([2.0, 9.0], [90, 10]))
+    assert make().judge() == "reproduced"
+    monkeypatch.setattr(results, "_committed", lambda: True)  # nothing stands that is not fresh
+    assert make().judge() == "undecided"
 
 
 def test_by_construction_is_measured_all_the_same(finds):

@@ -1,8 +1,10 @@
-"""Fresh and written verdicts: what is kept agrees, and follows from the committed results."""
+"""What claims give on the committed results: it is what is kept of them, and what is written."""
 
-import os
+import subprocess
 
+import numpy as np
 import pytest
+from conftest import CI
 
 from workshop.report import results
 from workshop.report.evidence import claims, judging
@@ -10,21 +12,45 @@ from workshop.report.evidence.claims import Claim
 from workshop.report.evidence.verdicts import Measured
 
 AGAIN = "run `python -m workshop.report.evidence.judging --write` and look at what it lists"
-BANDED = [claim for claim in claims.load() if claim.band]
+MEASURED = [claim for claim in claims.load() if claim.is_measured]
 
 
 @pytest.fixture(scope="module")
 def kept():
-    return results.read(judging._NAME)
+    return results.read(judging._NAME)["claims"]
 
 
-def test_written_verdicts_are_the_fresh_ones(kept):
-    assert {claim.id: claim.verdict for claim in BANDED} == kept["fresh"], AGAIN
+def in_git() -> bool:
+    """Whether git keeps all results as they are here."""
+    asked = ["git", "-C", results.FOLDER, "status", "--porcelain", "--", "."]
+    told = subprocess.run(asked, capture_output=True, text=True, check=False)
+    return told.returncode == 0 and not told.stdout
 
 
-@pytest.mark.skipif(not os.environ.get("CI"), reason="results made here are another draw")
-def test_fresh_verdicts_are_of_the_committed_results(kept):
-    assert kept["of results"] == judging._digest(), AGAIN
+def test_the_file_is_of_the_committed_results():
+    """Who makes results anew has others until they are committed."""
+    if not results._committed() and not (CI or in_git()):
+        pytest.skip("results made here are another draw")
+    assert results._committed(), AGAIN
+
+
+def test_written_verdicts_are_those_that_are_kept(kept):
+    assert {c.id: c.verdict for c in MEASURED} == {k: judging._parts(e)[0] for k, e in kept.items()}
+
+
+def test_values_are_those_that_are_kept(kept):
+    """And fresh verdicts, measured now, hence the written ones."""
+    if not results._committed():
+        pytest.skip("results made here are another draw")
+    changes = judging._changes(MEASURED, kept)
+    assert not changes, "\n".join([AGAIN, *changes])
+
+
+def test_what_is_only_rounding_is_far_within_its_band(kept):
+    by_id = {claim.id: claim for claim in MEASURED}
+    for name, most in judging._ROUNDING.items():
+        (value,) = judging._parts(kept[name])[1]
+        assert abs(value) < most <= min(map(abs, by_id[name].edges())) / 10
 
 
 @pytest.fixture
@@ -36,34 +62,63 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+def digest() -> str:
+    return results._digest.__wrapped__(results.FOLDER)
+
+
 def test_the_digest_sees_numbers_and_networks_alone(folder):
-    before = judging._digest()
+    before = digest()
     results.write_json(folder / "a.json", {"made by": {"code": "2", "seconds": 9}, "x": [1, 2]})
     results.write_json(folder / "b.json", {"made by": {"seconds": 2}, "x": 4})
-    assert judging._digest() == before
+    assert digest() == before
     results.write_json(folder / "a.json", {"made by": {"code": "2", "seconds": 9}, "x": [1, 3]})
-    other = judging._digest()
+    other = digest()
     (folder / "n.npz").write_bytes(b"other weights")
-    assert len({before, other, judging._digest()}) == 3
+    assert len({before, other, digest()}) == 3
 
 
-def planted(verdict, value=1.0, replicates=None):
+def planted(verdict, value=1.0, replicates=None, name="a"):
     claim = Claim(
-        id="a", where="section 1", chapter="dynamics", claim="x", printed="p", why="y",
+        id=name, where="section 1", chapter="dynamics", claim="x", printed="p", why="y",
         refuted="z", verdict=verdict, measure="m.f", band={"from": 0.8}, loose={"from": 0.5},
     )  # fmt: skip
     object.__setattr__(claim, "measured", lambda: Measured(value, "text", replicates))
     return claim
 
 
-def test_contradicted_and_standing_verdicts_are_told(monkeypatch, capsys):
-    import numpy as np
+HALF = np.repeat([1.0, 0.6], 1000)
+MOST = np.repeat([1.0, 0.6], [1200, 800])
 
-    half = np.repeat([1.0, 0.6], 1000)
+
+def test_contradicted_and_standing_verdicts_are_told(folder, monkeypatch, capsys):
     monkeypatch.setattr(judging, "load", lambda: [planted("qualitative")])
     assert judging._main([]) == 1
     assert "| CONTRADICTED\ncontradicted: a" in capsys.readouterr().out
-    monkeypatch.setattr(judging, "load", lambda: [planted("qualitative", replicates=half)])
+    monkeypatch.setattr(judging, "load", lambda: [planted("qualitative", replicates=HALF)])
     assert judging._main([]) == 0
     assert "50.0 % qualitative" in (out := capsys.readouterr().out)
     assert "| undecided | qualitative | stands" in out
+
+
+def test_what_changed_is_told_when_it_is_kept(folder, monkeypatch, capsys):
+    """Then the results are the committed ones: a verdict that would stand on others is wrong."""
+    for claim, wrong, told in (
+        (planted("qualitative", replicates=MOST), True, ["a: - -> undecided: 1 0.84 0.6 1"]),
+        (planted("undecided", replicates=MOST), False, []),
+        (
+            planted("undecided", 1.5, MOST),
+            False,
+            ["a: undecided: 1 0.84 0.6 1 -> undecided: 1.5 0.84 0.6 1"],
+        ),
+        (planted("reproduced", 1.5), False, ["a: undecided: 1.5 0.84 0.6 1 -> reproduced: 1.5"]),
+        (planted("reproduced", 1.5 + 1e-8), False, []),
+        (
+            planted("reproduced", name="b"),
+            False,
+            ["b: - -> reproduced: 1", "a: reproduced: 1.50000001 -> -"],
+        ),
+    ):
+        monkeypatch.setattr(judging, "load", lambda claim=claim: [claim])
+        assert judging._main(["--write"]) == wrong and results._committed()
+        head, *lines, _ = capsys.readouterr().out.splitlines()[1:]
+        assert head.startswith("changed against what was kept") and lines == told

@@ -70,6 +70,7 @@ def faults(python: str, name: str, text: str) -> tuple[list[str], int]:
 
 
 def main(python: str, names: list[str]) -> int:
+    python = os.path.abspath(python)  # its kernels start in other folders
     if versions(python) != pinned():
         print(f"PYTHON must have {pinned()}, has {versions(python)}")
         return 2

@@ -12,6 +12,7 @@ import asyncio
 import json
 import os
 import re
+import shlex
 import shutil
 import sys
 import tempfile
@@ -67,7 +68,7 @@ def launched(playwright):
         raise FileNotFoundError("no Firefox found: apt-get install firefox-esr, or set FIREFOX")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "firefox"
-        path.write_text(f'#!/bin/sh\nexec "{sys.executable}" "{__file__}" "$@"\n')
+        path.write_text(f'#!/bin/sh\nexec {shlex.join([sys.executable, __file__])} "$@"\n', "utf-8")
         path.chmod(0o755)
         browser = playwright.firefox.launch(executable_path=path, channel="moz-firefox")
         try:

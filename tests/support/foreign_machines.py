@@ -2,7 +2,8 @@
 
 Rounding differs between processors, libraries and numbers of threads, and thousands of epochs
 make another network of it. Under each of `SETTINGS` every notebook must run, with its checks,
-and no verdict of ``book/claims.yml`` may be contradicted.
+no verdict of ``book/claims.yml`` may be contradicted, and of the committed results every claim must
+measure what is kept of it.
 """
 
 from __future__ import annotations
@@ -54,7 +55,8 @@ def commands(jobs: int, root: Path) -> dict[str, list]:
     """What is checked, and how."""
     pages = sorted((root / "book").glob("*.ipynb"))
     runner = root / "tests" / "support" / "forked_notebooks.py"
-    claims = ["-m", "pytest", "-q", "-n", jobs, "tests/report/test_claims.py", "-k", "verdicts_are"]
+    files = [f"tests/report/test_{name}.py" for name in ("claims", "judging")]
+    claims = ["-m", "pytest", "-q", "-n", jobs, *files, "-k", "verdicts_are or values_are"]
     return {"claims": claims, "notebooks": [runner, "--jobs", jobs, *pages]}
 
 
@@ -88,7 +90,7 @@ def reproduce(name: str, jobs: int) -> list[str]:
         make = ["-m", "workshop.report.reproduce", "--force", "--jobs", str(jobs)]
         if subprocess.run([sys.executable, *make], env=env, cwd=copy).returncode:
             return [f"{name}: reproduce"]
-        names = ("report/test_results", "report/test_ledger", "book/test_prose")
+        names = ("report/test_results", "chapters/test_ledger", "book/test_prose")
         files = [f"tests/{name}.py" for name in names]
         command = [sys.executable, "-m", "pytest", "-q", "-n", str(jobs), *files]
         told = subprocess.run(command, env=env, cwd=copy).returncode

@@ -114,7 +114,7 @@
     ? [...el.childNodes].map((node) => new XMLSerializer().serializeToString(node)).join("")
     : el.innerHTML;
   const styles = all("link[rel=stylesheet], style", document).map((el) =>
-    el.tagName === "LINK" ? `<link rel="stylesheet" href="${el.href}">` : el.outerHTML);
+    el.tagName === "LINK" ? `<link rel="stylesheet" href="${el.href.replaceAll("&", "&amp;")}">` : el.outerHTML);
   return { title: heading.textContent.trim(), anchor: start, body: text(article),
     solutions: text(solutions), terms, styles };
 }

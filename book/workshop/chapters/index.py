@@ -18,8 +18,8 @@ def stations(width: int = 21) -> figures.Illustration:
     """Eight small pictures, from the arm to the filters in a network that is trained for them."""
     setup, start = JOINT_DAMPING, Weights.random(1, width)
     recording = setup.record()
-    data = TrainingSet.from_recording(split(recording)[0], width, scaling=(-1, 1))
-    how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
+    data = TrainingSet.from_recording(split(recording)[0], width)
+    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
     network, run = train_ensemble(start, data, **how)[0][0], recording[5]
     motion, time = run.motion, run.t[run.motion] - run.t[run.motion][0]
     q = np.rad2deg(run.q_true[motion])

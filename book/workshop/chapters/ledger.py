@@ -90,7 +90,7 @@ def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:
     """Sentences with these words that all readings are judged by; how many each reproduces."""
     cells = [card.rows for card in of_kind("system") if words in f"{card.where}: {card.says}"]
     cells = [rows for rows in cells if set(SETUPS) <= set(rows)]
-    held = {name: sum(r[name][0].verdict == "reproduced" for r in cells) for name in SETUPS}
+    held = {name: sum(r[name][0].judge() == "reproduced" for r in cells) for name in SETUPS}
     return len(cells), held
 
 
@@ -306,7 +306,7 @@ def nearest_the_edge(claims: Iterable[Claim], count: int = 10) -> Table:
     rows = [
         (
             f"{claim.claim} ({{doc}}`{claim.chapter}`)",
-            worded(claim, claim.verdict),
+            worded(claim, claim.judge()),
             worded(claim, ", ".join(f"{share_told(x)} {name}" for name, x in shares.items())),
         )
         for claim, shares in near[:count]

@@ -10,10 +10,11 @@ import numpy as np
 from ddlib import figures
 from ddlib.analysis import classify, decompose
 from ddlib.learning import Weights, p_value
-from ddlib.setups import SETUPS, STATE_FEEDBACK, train_windows
+from ddlib.setups import INITIAL, SETUPS, STATE_FEEDBACK, WINDOWS, train_windows
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.studies.start import RANGES, agreement, chosen
 
 PRINTED = "0 to 1"
@@ -103,11 +104,13 @@ def agreement_table() -> Table:
 # --- what a large start hides -----------------------------------------------------------------
 
 _PANELS = {
-    "hidden filters with a name, %": lambda r, s, **w: 100 * named(r, s, **w),
+    "filters with a name, %": lambda r, s, **w: 100 * named(r, s, **w),
     "roughness": lambda r, s, **w: values(r, s, 21, "hidden", "roughness", **w),
     "turn of hidden rows": lambda r, s, **w: values(r, s, 21, "turn", **w),
     "test error, RMSS": lambda r, s, **w: values(r, s, 21, "test", **w),
 }
+
+_LOGARITHMIC = {"roughness": (0.001, 0.01, 0.1, 1.0), "test error, RMSS": (0.03, 0.1, 0.3)}
 
 
 def by_range() -> figures.Illustration:
@@ -123,9 +126,12 @@ def by_range() -> figures.Illustration:
                 axis.fill_between(RANGES, low, high, color=look["color"], alpha=0.15, lw=0)
                 axis.plot(RANGES, middle, ls=figures.DASHES[k], **look)
             axis.set(title=title, xlabel="start, ±", xscale="log")
-            if title.startswith(("roughness", "test")):
+            axis.set_xticks((0.01, 0.1, 1.0), ("0.01", "0.1", "1"))
+            if title in _LOGARITHMIC:
                 axis.set_yscale("log")
-        figures.legend_above(figure, *axes[0].get_legend_handles_labels(), ncols=3)
+                axis.set_yticks(_LOGARITHMIC[title], map("{:g}".format, _LOGARITHMIC[title]))
+            axis.minorticks_off()
+        figures.legend_above(figure, *axes[0].get_legend_handles_labels())
 
     ends = {
         title: "; ".join(
@@ -140,6 +146,9 @@ def by_range() -> figures.Illustration:
 
 
 # --- beside unrelated torques -----------------------------------------------------------------
+
+
+_KINDS = {"real": "the arm's torques", "shifted": "shifted", "phases": "random phases"}
 
 
 def null_row(reading: str, size: float) -> dict:
@@ -167,13 +176,12 @@ def p_more(reading: str, size: float, name: str, layer: str = "hidden") -> float
 def beside_unrelated() -> figures.Illustration:
     """Shares of acceleration and of velocity filters, real torques beside unrelated ones."""
     sizes = results.read("start-nulls")["ranges"]
-    kinds = {"real": "the arm's torques", "shifted": "shifted", "phases": "random phases"}
 
     def draw(figure):
         axes = figure.subplots(2, len(SETUPS), sharex=True, sharey=True)
         for row, name in zip(axes, ("acceleration", "velocity")):
             for axis, reading in zip(row, SETUPS):
-                for k, (kind, label) in enumerate(kinds.items()):
+                for k, (kind, label) in enumerate(_KINDS.items()):
                     for i, size in enumerate(sizes):
                         share = 100 * shares_beside(reading, size, name)[kind]
                         low, middle, high = np.quantile(share, (0.05, 0.5, 0.95))
@@ -187,16 +195,195 @@ def beside_unrelated() -> figures.Illustration:
                 if name == "acceleration":
                     axis.set_title(reading)
             row[0].set_ylabel(f"{name} filters, %")
-        figures.legend_above(figure, *axes[0, 0].get_legend_handles_labels(), ncols=3)
+        figures.legend_above(figure, *axes[0, 0].get_legend_handles_labels())
 
     told = []
     for reading in SETUPS:
         for size in sizes:
             found = shares_beside(reading, size, "acceleration")
-            each = ", ".join(f"{kinds[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
+            each = ", ".join(f"{_KINDS[k]} {100 * np.median(x):.0f} %" for k, x in found.items())
             told.append(f"{reading}, ±{size:g}: {each}")
     alt = (
         "Shares of hidden filters named acceleration and velocity at window 21, medians and the "
         f"middle 90 % of networks. Acceleration: {'; '.join(told)}."
     )
     return figures.illustrate(draw, alt, 7.0, 4.0)
+
+
+# --- what a small start costs -----------------------------------------------------------------
+
+
+def errors_table() -> Table:
+    """Errors in training and on trajectory 6 by reading and range, and how long training waits."""
+    rows = []
+    for reading in SETUPS:
+        for size in RANGES:
+            each = [
+                f"{np.median(values(reading, size, w, 'training')):.3f} / "
+                f"{np.median(values(reading, size, w, 'test')):.3f}"
+                for w in WINDOWS
+            ]
+            wait = np.median(values(reading, size, 21, "until half"))
+            rows.append((reading, f"±{size:g}", *each, f"{wait:,.0f}"))
+    heads = (f"window {w}, training / test" for w in WINDOWS)
+    return Table(("reading", "start", *heads, "epochs until 0.5"), rows)
+
+
+def solver_table() -> Table:
+    """Names of hidden filters and test error by the solver, with white inputs and without."""
+    rows = []
+    for reading in SETUPS:
+        for size in RANGES:
+            row = [reading, f"±{size:g}"]
+            for method in ("solver", "solver, white inputs"):
+                for width in (11, 21):
+                    share = 100 * named(reading, size, width, method=method).mean()
+                    error = np.median(values(reading, size, width, "test", method=method))
+                    row.append(f"{share:.0f} %, {error:.2f}")
+            rows.append(row)
+    heads = (f"{kind}, window {w}" for kind in ("plain", "white") for w in (11, 21))
+    return Table(("reading", "start", *heads), rows)
+
+
+# --- what the page says and claims ------------------------------------------------------------
+
+
+def more_names(small: float = 0.03, large: float = 0.3) -> Measured:
+    """Share of hidden filters with a name from a small start less that from a large one.
+
+    At window 21, in the reading where the difference is least.
+    """
+    pairs = [tuple(named(r, s) for s in (small, large)) for r in SETUPS]
+    told = (f"{100 * a.mean():.0f} % against {100 * b.mean():.0f} %" for a, b in pairs)
+
+    def least(*drawn):
+        return np.min([mean(a) - mean(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
+
+    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+
+
+def turned(small: float = 0.03, large: float = 1.0) -> Measured:
+    """Turn of hidden rows from a small start less that from a large one, the least of readings."""
+    return _difference("turn", small, large)
+
+
+def kernel_moved(small: float = 0.03, large: float = 1.0) -> Measured:
+    """Change of the tangent kernel from a small start less that from a large one, the least."""
+    return _difference("kernel", small, large)
+
+
+def _difference(what: str, small: float, large: float) -> Measured:
+    pairs = [tuple(values(r, s, 21, what) for s in (small, large)) for r in SETUPS]
+    told = (f"{np.median(a):.2f} against {np.median(b):.2f}" for a, b in pairs)
+
+    def least(*drawn):
+        return np.min([median(a) - median(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
+
+    return judged(least, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+
+
+def better_tests(small: float = 0.03, large: float = 0.3) -> Measured:
+    """Test error at window 21 from a small start over that from a large one, the worst reading."""
+    pairs = [tuple(values(r, s, 21, "test") for s in (small, large)) for r in SETUPS]
+    told = (f"{np.median(a):.3f} against {np.median(b):.3f}" for a, b in pairs)
+
+    def worst(*drawn):
+        return np.max([median(a) / median(b) for a, b in zip(drawn[::2], drawn[1::2])], axis=0)
+
+    return judged(worst, *(cell for pair in pairs for cell in pair), text=_by_reading(told))
+
+
+def beyond_unrelated() -> Measured:
+    """The largest p-value, over readings and ranges, of acceleration filters of real torques."""
+    sizes = results.read("start-nulls")["ranges"]
+    found = {(r, s): p_more(r, s, "acceleration") for r in SETUPS for s in sizes}
+    (reading, size), most = max(found.items(), key=lambda item: item[1])
+    text = f"p at most {most:.3f} ({reading}, ±{size:g}), at least {min(found.values()):.3f}"
+    return Measured(most, text)
+
+
+def velocity_beyond_unrelated() -> Measured:
+    """The smallest p-value, over readings and ranges, of velocity filters of the real torques."""
+    sizes = results.read("start-nulls")["ranges"]
+    found = {(r, s): p_more(r, s, "velocity") for r in SETUPS for s in sizes}
+    (reading, size), least = min(found.items(), key=lambda item: item[1])
+    return Measured(least, f"p at least {least:.3f} ({reading}, ±{size:g})")
+
+
+def _by_reading(told) -> str:
+    return "; ".join(f"{reading} {one}" for reading, one in zip(SETUPS, told))
+
+
+def _quoted() -> None:
+    """The numbers of the page's prose."""
+    best, scores = chosen(cells())
+    quote("start-chosen", f"{best:g}")
+    quote("start-initial", f"{INITIAL:g}")
+    quote("start-score", scores[best])
+    quote("start-score-old", scores[0.3])
+    for what in ("turn", "kernel"):
+        for name, size in (("small", best), ("large", 1.0)):
+            quote(
+                f"start-{what}-{name}",
+                float(np.median(values(STATE_FEEDBACK.name, size, 21, what))),
+            )
+    for name, size in (("small", best), ("large", 0.3)):
+        shares = [named(r, size, scaling="-1 to 1").mean() for r in SETUPS]
+        quote(f"start-centred-{name}", 100 * float(np.mean(shares)))
+    walk = results.read("filter-trial")["windows"]["21"]
+    unnamed = np.mean(walk["real"]["hidden"]["classes"]["not analysable"])
+    quote("start-walk-named", 100 * (1 - unnamed))
+    quote("start-walk-test", float(np.median(np.array(walk["real, errors"])[:, 1])))
+    nulls = results.read("start-nulls")
+    quote("start-draws", nulls["draws"])
+    places = [(r, s) for r in SETUPS for s in nulls["ranges"]]
+    p = {place: p_more(*place, "acceleration") for place in places}
+    clear = [place for place in places if p[place] < 0.05]
+    told = f"In {len(clear)} of {len(places)} cases"
+    if len(clear) == len(places):
+        told = f"In all {len(places)} cases"
+    quote(
+        "start-nulls-told",
+        f"{told} fewer than one in twenty of the unrelated networks have as many acceleration "
+        "filters as the real ones have on average.",
+    )
+    direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
+    unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
+    quote("start-direct-unrelated", 100 * unrelated.mean())
+    inertia = {kind: [null_row(*place)[kind]["M11"] for place in places] for kind in _KINDS}
+    quote("start-inertia-real", np.median(np.concatenate(inertia["real"])))
+    null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
+    quote("start-inertia-null", float(np.median(null)))
+    quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])
+    for kind in _KINDS:
+        shares = [shares_beside(*place, "velocity")[kind].mean() for place in places]
+        quote(f"start-velocity-{kind}", 100 * float(np.mean(shares)))
+
+
+def _said() -> None:
+    """What the page says in words, by the names that `bound_words.yml` gives it."""
+    best, scores = chosen(cells())
+    stated("start-is-the-books", best == INITIAL)
+    stated("start-old-worse", scores[0.3] < scores[best] - 1)
+    never = [agreement(cells()[r][str(s)])["saturated at 21"] < 0.5 for r in SETUPS for s in RANGES]
+    stated("start-never-saturated", all(never))
+    alone = [agreement(cells()[r]["0.03"])["largest weights"] for r in SETUPS]
+    stated(
+        "start-largest-alone",
+        [share > 0.5 for share in alone] == [r == STATE_FEEDBACK.name for r in SETUPS],
+    )
+    stated("start-names", more_names().replicates > 0)
+    stated("start-turns", turned().replicates > 0)
+    stated("start-kernel", kernel_moved().replicates < 0)
+    stated("start-tests", better_tests().replicates < 1)
+    rough = [
+        resampled(values(r, 0.3, 21, "hidden", "roughness"))
+        > resampled(values(r, INITIAL, 21, "hidden", "roughness"), seed=1)
+        for r in SETUPS
+    ]
+    stated("start-rougher", np.all(rough, 0))
+    waits = [
+        values(r, INITIAL, 11, "until half").mean() >= values(r, 0.3, 11, "until half").mean()
+        for r in SETUPS
+    ]
+    stated("start-waits", sum(waits) >= 2)

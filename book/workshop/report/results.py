@@ -12,10 +12,11 @@ What is kept from one run to the next is used again under two conditions, and no
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import platform
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -110,3 +111,22 @@ def read(name: str) -> dict:
         return _parsed(text)
     except ValueError as error:
         raise ValueError(f"result {name!r} in {FOLDER} is damaged: {error}") from error
+
+
+@cache
+def _digest(folder: Path) -> str:
+    """Hash of all numbers and networks of the studies in a folder, whoever made them and when."""
+    total = hashlib.sha256()
+    for path in sorted(folder.glob("*.json")):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if "code" in content.pop("made by", {}):
+            total.update(f"{path.stem} {json.dumps(content, sort_keys=True)}\n".encode())
+    for path in sorted(folder.glob("*.npz")):
+        total.update(f"{path.stem} {hashlib.sha256(path.read_bytes()).hexdigest()}\n".encode())
+    return total.hexdigest()[:16]
+
+
+def _committed() -> bool:
+    """Whether these are the committed results, for which ``verdicts.json`` was written."""
+    kept = (FOLDER / "verdicts.json").is_file()
+    return kept and read("verdicts")["of results"] == _digest(FOLDER)

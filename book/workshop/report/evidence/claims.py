@@ -25,7 +25,7 @@ An entry has these fields:
     (of the printed number), ``{from: 0.9}``, ``{to: 2}``, both, or ``{is: true}``. Without
     ``loose`` a claim that misses its band is "not reproduced".
 ``verdict``
-    What the band gives, written down so that a change of verdict is seen. Two are chosen by hand:
+    What the band gives, written down so that a change is seen (`judging`). Two are chosen by hand:
     "by construction" if the band could hardly be missed; then it has no ``loose``, and a miss is
     "not reproduced". And "not testable"; then without bands, and a ``measure`` only tells from
     which value of an assumed parameter on the claim would turn.
@@ -62,6 +62,7 @@ import yaml
 from ddlib._check import one_of
 from ddlib.setups import STATE_FEEDBACK
 from workshop import BOOK
+from workshop.report import results
 from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import (
     _VERDICTS,
@@ -211,14 +212,13 @@ class Claim:
             ) from error
 
     def judge(self) -> str:
-        """The verdict: the written one while it stands, else what the measurement gives.
+        """The verdict: of the committed results `fresh`; of others the written one while it stands.
 
         Whether it stands: see `verdicts`. Without replicates it has to be `fresh`.
         """
-        if not self.band:
-            return "not testable"
         found = self.shares()
-        return self.verdict if found and _stands(self.verdict, found) else self.fresh()
+        stands = found and not results._committed() and _stands(self.verdict, found)
+        return self.verdict if stands else self.fresh()
 
     def fresh(self) -> str:
         """The verdict of the bands for the measured value alone, whatever is written."""
@@ -275,7 +275,7 @@ class Claim:
 
     def _within(self, bounds, values: np.ndarray) -> np.ndarray:
         if "is" in bounds:
-            return values.astype(bool) == bounds["is"]
+            return values == bounds["is"]
         if "factor" in bounds:
             ratios = values / self.printed
             return (1 / bounds["factor"] <= ratios) & (ratios <= bounds["factor"])

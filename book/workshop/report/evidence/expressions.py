@@ -123,31 +123,38 @@ class _Expression:
         self.parts: list[Callable] | None = None  # what the outermost form compares
         self.leasts: list[dict] = []  # what each least with `for` compares, by label
         self.statistic = self._compiled(rest, arguments, "")
+        self.drawn = {key: tuple(cells) for key, cells in self.groups.items() if cells}
+        self.nested &= any(cell.ndim > 1 for cells in self.drawn.values() for cell in cells)
+        if self.nested:
+            self.drawn = {key: _as_many_each(cells) for key, cells in self.drawn.items()}
+        self.once = {key: tuple(c[None] for c in cells) for key, cells in self.drawn.items()}
+
+    def value(self) -> float | bool:
+        """The value of all members, each once."""
+        value = self.statistic(self.once)[0]
+        return bool(value) if value.dtype == bool else float(value)
 
     def measured(self) -> Measured:
-        groups = {key: tuple(cells) for key, cells in self.groups.items() if cells}
-        nested = self.nested and any(cell.ndim > 1 for cells in groups.values() for cell in cells)
-        if nested:
-            groups = {key: _as_many_each(cells) for key, cells in groups.items()}
-        once = {key: tuple(cell[None] for cell in cells) for key, cells in groups.items()}
-        value, replicates = self.statistic(once)[0], None
-        if groups:
+        """The value with its text and, where members are drawn, its replicates."""
+        value, replicates = self.value(), None
+        if self.drawn:
             replicates = bootstrap(
-                lambda *drawn: self.statistic(dict(zip(groups, drawn))),
-                *groups.values(),
-                nested=nested,
+                lambda *drawn: self.statistic(dict(zip(self.drawn, drawn))),
+                *self.drawn.values(),
+                nested=self.nested,
             )
-        value = bool(value) if value.dtype == bool else float(value)
-        return Measured(value, self._words(value, replicates, once), replicates)
+        return Measured(value, self._words(value, replicates), replicates)
 
-    def _words(self, value, replicates, once) -> str:
+    def _words(self, value, replicates) -> str:
         first = next(iter(self.told.values()))
         words = {
             name: _Words(self._cell(c, self.arguments), first) for name, c in self.names.items()
         }
         words["value"], words["draws"] = _Words(value), _Words(replicates)
-        words["each"] = _Several(_Words(part(once)[0]) for part in self.parts or [])
-        leasts = [min((part(once)[0], at) for at, part in some.items()) for some in self.leasts]
+        words["each"] = _Several(_Words(part(self.once)[0]) for part in self.parts or [])
+        leasts = [
+            min((part(self.once)[0], at) for at, part in some.items()) for some in self.leasts
+        ]
         words["least"] = [_Words(least) for least, _ in leasts]
         words["at"] = [at for _, at in leasts]
         cells = (_Words(cell, first) for cell in self.told.values())

@@ -6,10 +6,10 @@ its value, from a bootstrap over the networks, and its verdict is what most repl
 
 - The *fresh* verdict is the one that at least `DECIDED` of the replicates get, and "undecided"
   if none has so many.
-- The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results
-  (`judging`). Results made anew on another machine are another draw; there it
+- The *written* verdict, in ``book/claims.yml``, is the fresh one of the committed results, and is
+  wrong if it is not (`judging`). Results made anew on another machine are another draw; there it
   *stands* until the replicates contradict it: a decided one while at least `STANDS` of them agree,
-  "undecided" while no verdict has `_CONTRADICTS`.
+  "undecided" while no verdict has `_CONTRADICTS`. `claims.Claim.judge` knows which of both it is.
 
 Measures without replicates, of exact mathematics or a deterministic simulation, have one value
 and one verdict, and a written one that differs is wrong.

@@ -58,6 +58,8 @@ _RIDGE = 1e-2
 # The walk's network: the recording of the third set-up, with descent in place of its solver
 TRIAL = replace(JOINT_DAMPING, **_DESCENT)
 
+_WAITS = {11: 12_000}  # epochs of a window that rests on a plateau for about 3,500 of them
+
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
@@ -263,8 +265,16 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
 def _filter_trial(members: int = 25, draws: int = 20, each: int = 4) -> dict:
     """Filters of networks trained on real torques beside those trained on surrogates."""
     recording = TRIAL.record()
-    windows = {str(w): _row(TRIAL, recording, w, members, draws, each, more=True) for w in WINDOWS}
-    return {"members": members, "draws": draws, "each": each, "epochs": _EPOCHS, "windows": windows}
+    windows = {
+        str(w): _row(_as_long_as(w), recording, w, members, draws, each, more=True) for w in WINDOWS
+    }
+    epochs = {str(w): _as_long_as(w).epochs for w in WINDOWS}
+    return {"members": members, "draws": draws, "each": each, "epochs": epochs, "windows": windows}
+
+
+def _as_long_as(width: int) -> Setup:
+    """The trial's set-up with as many epochs as a window needs."""
+    return replace(TRIAL, epochs=_WAITS.get(width, _EPOCHS))
 
 
 @study
@@ -327,7 +337,7 @@ def _filter_responses(members: int = 15) -> dict:
             torque = TRIAL.arm.inverse_dynamics(*np.moveaxis(states[k], -1, 0))[:, 0]
             found[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
     for width in WINDOWS:
-        trial = _Trial(TRIAL, recording, width)
+        trial = _Trial(_as_long_as(width), recording, width)
         weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
         model = trial.model(weights)
         filters = mean_gradient(model, trial.windows)[:, 0]

@@ -33,7 +33,7 @@ from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 
 _CASES = 750  # windows of a training set: what five motions have, every 20 ms
-_STEPS, _DECAY = 30, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 60 and this decay
+_STEPS, _DECAY = 60, 1e-6  # of Levenberg-Marquardt; `JOINT_DAMPING` has 120 and this decay
 
 # Training motions by number of joints.
 _MOTIONS_OF = {

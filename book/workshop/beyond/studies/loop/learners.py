@@ -11,7 +11,7 @@ from ddlib.dynamics import follow_hand
 from ddlib.effects import EncoderZero
 from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import TorqueModel, Weights
-from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, time_grid
 from workshop.beyond.control.adaptive import Watched
@@ -32,6 +32,10 @@ from workshop.report import results
 _SEEDS = 10
 _TRIALS = 10  # of one motion, or with one load
 _WIDTH = 21
+
+# Range of the weights of hidden units that most learners never train: from the book's range of
+# initial weights they would hardly bend
+_FEATURES = 0.3
 NAMES = ("a", "b", "d", "F_v1", "F_v2", "F_c1", "F_c2")  # of the exact terms: arm and friction
 _RATE = 1.0  # of terms: 1/(s N m), over each term's mean square and their number
 _PENALTY, FORGETTING = 1e-3, 0.999  # of recursive least squares: half after 7 s
@@ -78,7 +82,7 @@ class Draw:
 def _untrained(like: TorqueModel, first: int) -> TorqueModel:
     """Networks that give no torque yet: only the weights of hidden units are drawn."""
     _, seeds, hidden = like.weights.hidden_bias.shape
-    w = Weights.random(seeds, _WIDTH, hidden, initial=INITIAL, seed=first)
+    w = Weights.random(seeds, _WIDTH, hidden, initial=_FEATURES, seed=first)
     nothing = like.outputs.scale(np.zeros(2))
     bias = np.log(nothing / (1 - nothing)) + np.zeros((seeds, 2))
     none = {n: np.zeros_like(getattr(w, n)) for n in ("output_weights", "direct_weights")}

@@ -35,7 +35,7 @@ from workshop.beyond.studies.loop.chain import _Sample, chain, extents, recorded
 from workshop.report.code_hash import study
 
 _COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given
-_STEPS = (5, 15, 60)  # of the solver, to choose from; 60 made Table 4-1
+_STEPS = (5, 15, 60)  # of the solver, to choose from
 _DECAYS = (1e-6, 1e-3, 1e-2)  # to choose from, with four joints
 _LATER, _MEMBERS, _TEST = 500, 12, 4711  # first day; test motions, and their seed
 
