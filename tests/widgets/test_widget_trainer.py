@@ -206,7 +206,7 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
 
 @pytest.mark.browser
 def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
-    query = "?trainer=seed:2,inputs:printed,momentum:0.9,guess:2,epoch:40"
+    query = "?trainer=seed:2,inputs:centred,momentum:0.9,guess:2,epoch:40"
     page = opened(tmp_path, visit, widget, query).page
     page.wait_for_function(REACHED % 40)
     page.get_by_role("button", name="Step").click()
@@ -215,10 +215,10 @@ def test_a_link_restores_settings_and_epoch(tmp_path, visit, widget):
     again = opened(tmp_path, visit, widget, page.evaluate("location.search")).page
     again.wait_for_function(REACHED % 41)
     assert again.evaluate(STATE) == wanted
-    assert again.get_by_label("Inputs").input_value() == "printed"
+    assert again.get_by_label("Inputs").input_value() == "centred"
     rate = f"{trainer.default_rate(21):.12g}"
     known = ", ".join(f"({a:g}, {b:g})" for a, b in APPENDIX_I)
-    assert copied(again) == f"[{known}] (0, 1) None 2 {rate} 0.9 41"
+    assert copied(again) == f"[{known}] (-1, 1) None 2 {rate} 0.9 41"
     again.get_by_role("button", name="Reset").click()
     first = trainer.first_weights(1).hidden_weights[0, 0, 0, 0]
     assert again.evaluate(STATE) == {"epoch": 0, "weight": first, "events": [None] * 3}

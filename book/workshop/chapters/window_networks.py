@@ -81,20 +81,22 @@ def _factors() -> dict:
 
 
 def _events(row: str) -> dict[str, np.ndarray]:
-    """Epochs at which the page's networks come to error and direct shape; infinite if never."""
+    """Epochs at which the page's networks come to its three events; infinite if never."""
     found = results.read("page-training")["rows"][f"{row}, real"]
-    return {key: np.array(found[key], dtype=float) for key in ("error", "direct")}
+    keys = "error", "direct", "hidden"
+    return {key: np.nan_to_num(np.array(found[key], float), nan=np.inf) for key in keys}
 
 
 def _quoted() -> None:
     """Numbers of the lesson's prose."""
-    live, seen, off = results.read("page-training"), _events("centred"), _factors()
+    live, seen, off = results.read("page-training"), _events("as printed"), _factors()
     quote("window-live-networks", live["members"])
     quote("window-live-first", int((seen["direct"] < seen["error"]).sum()))
+    quote("window-live-hidden", int((seen["hidden"] < seen["error"]).sum()))
     quote("window-live-level", live["level"])
     quote("window-live-direct", np.median(seen["direct"]))
-    quote("window-live-error", np.median(seen["error"]))
-    quote("window-live-shifted", np.median(live["rows"]["centred, shifted"]["test"]))
+    quote("window-live-shifted", np.median(live["rows"]["as printed, shifted"]["test"]))
+    quote("window-steps", JOINT_DAMPING.steps)
     quote("window-worst", off[JOINT_DAMPING.name].max())
     quote("window-worst-state", off["state feedback"].max())
 
@@ -110,11 +112,12 @@ def _said() -> None:
     drawn = np.abs(np.log([found.replicates / printed for found, printed in measured])).max(0)
     others = min(off[name].max() for name in SETUPS if name != JOINT_DAMPING.name)
     stated("window-only-damping", np.exp(drawn) < others)
-    stated("window-live-ahead", (live["centred"]["direct"] < live["centred"]["error"]).mean() > 0.9)
+    seen = live["as printed"]
+    stated("window-live-ahead", (seen["direct"] < seen["error"]).mean() > 0.9)
     stated("window-live-longer", live["as printed"]["error"].min() > live["centred"]["error"].max())
     rows = results.read("page-training")["rows"]
     shifted, real = (
-        resampled(rows[f"centred, {x}"]["named"], np.mean, k)
+        resampled(rows[f"as printed, {x}"]["named"], np.mean, k)
         for k, x in enumerate(("shifted", "real"))
     )
     stated("window-live-named", shifted > real)

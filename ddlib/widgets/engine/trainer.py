@@ -221,7 +221,7 @@ def _charts(epochs, time, torque, last: int) -> tuple[list[Panel], dict]:
 
 def _still(panels, training, test, extents, width, hidden) -> tuple[str, str]:
     """The trajectories, the torques to be learnt, and what an untrained network makes of them."""
-    data = TrainingSet.from_recording(training, width, scaling=_SCALINGS["centred"])
+    data = TrainingSet.from_recording(training, width, scaling=_SCALINGS["printed"])
     windows, torque = cases(test, width)
     model = TorqueModel(first_weights(1, width, hidden)[0], data.inputs, data.outputs)
     told = model.torque(windows)

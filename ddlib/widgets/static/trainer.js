@@ -201,7 +201,7 @@ function build({ model, el }) {
   const noise = numbersOf(model.get("noise"), "Float32");
   dress(el, spec.title, "ddlib-trainer");
 
-  const start = { seed: 1, torques: "real", inputs: "centred", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
+  const start = { seed: 1, torques: "real", inputs: "printed", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
   const state = { ...start };
   const shift = () => (state.torques === "real" ? null : state.seed % spec.shifts.length);
   let school;
@@ -294,7 +294,7 @@ function build({ model, el }) {
   const times = (x) => (x === 1 ? "the book's" : `${x} times the book's`);
   const settings = [
     menu("torques", "Torques", [["real", "the arm's"], ["shifted", "shifted in time"]]),
-    menu("inputs", "Inputs", [["centred", "−1 to 1"], ["printed", "0 to 1, as printed"]]),
+    menu("inputs", "Inputs", [["printed", "0 to 1, as printed"], ["centred", "−1 to 1"]]),
     menu("step", "Step size", spec.steps.map((x) => [String(x), times(x)])),
     menu("momentum", "Momentum", spec.momenta.map((x) => [String(x), String(x)])),
     menu("speed", "Speed", Object.entries(SPEEDS).map(([key, [, text]]) => [key, text])),
