@@ -84,8 +84,14 @@ def _quoted() -> None:
     """When errors along directions are halved, and how far the tangent is off, in the study."""
     for name, half in _halves().items():
         quote(f"smooth-{name}", round(float(np.exp(np.median(half))), -1))
-    factors = results.read("span")["cells"][WINDOWS.index(21)]["factor"]
+    study = results.read("span")
+    factors = study["cells"][WINDOWS.index(21)]["factor"]
     quote("smooth-factor", float(np.median(factors, 0)[-1]))
+    for size, cell in zip(study["ranges"], study["by range"]):
+        way = [cell[who]["moved"][-1] for who in _WHO]
+        name = {0.03: "rich", LAZY: "lazy"}.get(size)
+        if name:
+            quote(f"smooth-{name}", way[0] / way[1])
 
 
 def _halves() -> dict[str, np.ndarray]:
@@ -99,6 +105,16 @@ def _said() -> None:
     """What the lesson says of networks: of the book's, and of eight that are trained as in it."""
     velocity, acceleration = _halves().values()
     stated("smooth-velocity-first", resampled(acceleration - velocity) > 0)
+    ways = results.read("whitening")["directions"]
+    directions = len(ways["plain"]["change over start"])
+    learnt = {way: resampled(found["learnt"]) / directions for way, found in ways.items()}
+    solvers = np.min([learnt["whitened"], learnt["plain"]], 0)
+    stated("smooth-solvers-all", (solvers > 0.9) & (learnt["descent"] < 0.5))
+    ways = [
+        np.divide(*(cell[who]["moved"][-1] for who in _WHO))
+        for cell in results.read("span")["by range"]
+    ]
+    stated("smooth-rich-beyond", ways[0] > 4 * ways[2])
     data, _, axes = _windows()
     start = Weights.random(8, 21, initial=LAZY)
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
