@@ -93,7 +93,7 @@ def test_a_card_shows_each_row_once_and_its_grid_leads_to_them():
 
 def test_a_card_of_unknown_rows_is_refused(tmp_path):
     path = tmp_path / "cards.yml"
-    entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["period", "nowhere"]}
+    entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["differencing", "nowhere"]}
     path.write_text(yaml.safe_dump({"system": [entry]}))
     with pytest.raises(ValueError, match=r"rows of card 'a' must be ids of claims.*'nowhere'"):
         cards._cards(path)

@@ -17,8 +17,9 @@ from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, KD, KP, SETUPS, WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, significant, typeset
-from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 from workshop import BOOK
+from workshop.chapters.trajectories_and_recording import random_draws
 from workshop.report import results
 from workshop.report._measures.filters import parts_sum_up
 from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, worded
@@ -175,7 +176,6 @@ def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> lis
 def _computed() -> dict[str, str]:
     """What the errata name and code can tell, from the paper's formulas and tables."""
     reference = pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP))
-    extents = np.array(APPENDIX_I)
     cases = len(paper.TRAINING_TRAJECTORIES) * paper.SAMPLES_PER_TRAJECTORY
     products = (f"{Weights.random(1, w)[0].count() * cases:,} at {w}" for w in WINDOWS)
     units = (
@@ -195,8 +195,7 @@ def _computed() -> dict[str, str]:
         "halves": ", ".join(f"{w // 2} for {w}" for w in WINDOWS),
         "samples": str(paper.SAMPLES_PER_TRAJECTORY),
         "lowest": f"{np.rad2deg(reference.q.min()):.0f}",
-        "limits": str(np.isin(extents, (0.0, MAX_EXTENT_DEG)).sum()),
-        "extents": str(extents.size),
+        "draws": random_draws().text,
         "products": "; ".join(products),
     }
 
