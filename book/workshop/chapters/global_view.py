@@ -12,7 +12,7 @@ from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated,
 from ddlib.figures.style import Illustration
 from ddlib.learning import MATCHED, cases
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, errors
+from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, errors
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
@@ -24,12 +24,12 @@ from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 
 
-def in_transition(width: int) -> Measured:
+def in_transition(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Median share of cases in which a hidden unit is in its transition region, 0.1 to 0.9."""
-    windows, _ = cases(committed.training(), width)
+    windows, _ = cases(committed.training(setup), width)
 
     def often(models):
-        net = net_inputs(models(width), windows)
+        net = net_inputs(models(width, setup), windows)
         return 1 - saturated(1 / (1 + np.exp(-net))), transition_width(net)
 
     (share, region), (before, _) = committed.both(often)
