@@ -22,7 +22,16 @@ from workshop import BOOK
 from workshop.chapters.trajectories_and_recording import random_draws
 from workshop.report import results
 from workshop.report._measures.filters import parts_sum_up
-from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, worded
+from workshop.report.evidence.cards import (
+    LISTS,
+    OWN,
+    WORDS,
+    Card,
+    by_reading,
+    of_kind,
+    tally,
+    worded,
+)
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
 from workshop.report.evidence.wall import Tiles, mark, window
@@ -87,6 +96,17 @@ def legend() -> _Markdown:
     return _Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
 
 
+def counts() -> Table:
+    """How many cards on the paper have which word: whatever the reading is, and under each."""
+    system, methods = of_kind("system"), of_kind("methods")
+    rows = {"own system, whatever the reading": tally(system, Claim.judge)}
+    for reading, found in by_reading(system, Claim.judge).items():
+        rows[f"own system, {reading}"] = found
+    rows["methods of others"] = tally(methods, Claim.judge)
+    cells = [(name, sum(found.values()), *found.values()) for name, found in rows.items()]
+    return Table(("cards", "all", *WORDS), cells)
+
+
 def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:
     """Sentences with these words that all readings are judged by; how many each reproduces."""
     cells = [card.rows for card in of_kind("system") if words in f"{card.where}: {card.says}"]
@@ -105,9 +125,15 @@ def _card(card: Card) -> str:
     sign = card.sign(Claim.judge)
     signs = "".join(mark(claim.judge()) for claim in card.deciding)
     strip = f" <i>{signs}</i>" if len(card.deciding) > 1 else ""
-    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{card.where}</small>"
+    spread, where = card.spread(Claim.judge), card.where
+    best = card.under(next(iter(spread), ""))
+    if best.verdict(Claim.judge) != card.verdict(Claim.judge):
+        named = f'<span class="visually-hidden">{best.word(Claim.judge)}</span>'
+        where = f"best {named}{mark(best.sign(Claim.judge))} · {where}"
+    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{where}</small>"
     rows = [claim for row in card.rows.values() for claim in row]
-    inside = [_grid(card), _tiles(rows)]
+    told = ", ".join(f"{found} with {reading}" for reading, found in spread.items())
+    inside = [told and f"By reading, the best first: {told}.", _grid(card), _tiles(rows)]
     if card.beside:
         inside += ["Beside it, not decisive:", _tiles(card.beside)]
     return _fold(card.id, sign, head, filter(None, inside))
