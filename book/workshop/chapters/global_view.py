@@ -17,7 +17,7 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
 from workshop.chapters.window_networks import intervals
-from workshop.report import committed
+from workshop.report import committed, results
 from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -134,6 +134,12 @@ def _said() -> None:
     """Check what the lesson says in words of the book's networks."""
     gap = [resampled(whole[:, 1] / alone[1]) > 1.1 for alone, whole in beside_linear().values()]
     stated("global-linear-better", np.all(gap, 0))
+    tuned = results.read("tuned")["rivals"]
+    network, linear = (
+        np.array(tuned[name]["errors"]["trajectory 6"])
+        for name in ("network of 1988", "linear filter")
+    )
+    stated("global-tuned-alike", bool((network < linear).any() and (network > linear).any()))
     row = filter_trial.row(21)
     least = min(np.min(row["nulls"][kind]["saturated"]) for kind in MATCHED)
     stated("global-nulls-saturate-more", resampled(row["real"]["saturated"]) < least)
