@@ -66,6 +66,36 @@ def test_the_word_follows_from_the_rows_that_decide():
     assert planted == "reproduced" and card(good, bad, kind="own").sign() == unsure
 
 
+def sorted_card(**rows) -> cards.Card:
+    named = {name.replace("_", " "): tuple(map(row, v)) for name, v in rows.items()}
+    return cards.Card("a", "system", "section 4", "says", named)
+
+
+def test_a_card_under_one_reading_has_its_rows_and_those_of_none():
+    good, bad, unsure = "reproduced", "not reproduced", "undecided"
+    mixed = sorted_card(joint_damping=[good], state_feedback=[bad, good], simulated=[good])
+    assert mixed.word() == "in part (3 of 4)"
+    assert mixed.readings == ["state feedback", "joint damping"]
+    assert mixed.spread() == {"joint damping": good, "state feedback": "in part (2 of 3)"}
+    assert mixed.under("position feedback") is mixed  # was not tried on it
+    further = cards.Card("a", "system", "section 4", "says", {"joint damping, 5 days": (row(bad),)})
+    assert further.readings == ["joint damping"]
+    plain = sorted_card(simulated=[bad])
+    found = cards.by_reading([mixed, plain, sorted_card(position_feedback=[unsure])])
+    assert list(found) == ["joint damping", "position feedback", "state feedback"]
+    assert found["joint damping"][good] == 1 and found["position feedback"][good] == 0
+    assert {name: each[bad] for name, each in found.items()} == dict.fromkeys(cards.READINGS, 1)
+
+
+def test_what_holds_under_all_readings_holds_under_each():
+    for kind in cards.KINDS:
+        found = cards.of_kind(kind)
+        all_of_them = cards.tally(found)["reproduced"]
+        assert all(each["reproduced"] >= all_of_them for each in cards.by_reading(found).values())
+    for one in cards.of_kind("system"):
+        assert not one.readings or set(one.readings) == set(cards.READINGS), one.id
+
+
 def test_own_findings_are_never_called_reproduced():
     told = ledger.cards("own")._repr_markdown_()
     words = re.findall(r"<b>(.*?)</b>", told)
@@ -93,7 +123,7 @@ def test_a_card_shows_each_row_once_and_its_grid_leads_to_them():
 
 def test_a_card_of_unknown_rows_is_refused(tmp_path):
     path = tmp_path / "cards.yml"
-    entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["period", "nowhere"]}
+    entry = {"id": "a", "where": "section 1", "says": "x", "rows": ["differencing", "nowhere"]}
     path.write_text(yaml.safe_dump({"system": [entry]}))
     with pytest.raises(ValueError, match=r"rows of card 'a' must be ids of claims.*'nowhere'"):
         cards._cards(path)

@@ -12,24 +12,24 @@ from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated,
 from ddlib.figures.style import Illustration
 from ddlib.learning import MATCHED, cases
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, errors
+from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, errors
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
 from workshop.chapters.window_networks import intervals
-from workshop.report import committed
+from workshop.report import committed, results
 from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median, rank_correlation
 
 
-def in_transition(width: int) -> Measured:
+def in_transition(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Median share of cases in which a hidden unit is in its transition region, 0.1 to 0.9."""
-    windows, _ = cases(committed.training(), width)
+    windows, _ = cases(committed.training(setup), width)
 
     def often(models):
-        net = net_inputs(models(width), windows)
+        net = net_inputs(models(width, setup), windows)
         return 1 - saturated(1 / (1 + np.exp(-net))), transition_width(net)
 
     (share, region), (before, _) = committed.both(often)
@@ -134,6 +134,12 @@ def _said() -> None:
     """Check what the lesson says in words of the book's networks."""
     gap = [resampled(whole[:, 1] / alone[1]) > 1.1 for alone, whole in beside_linear().values()]
     stated("global-linear-better", np.all(gap, 0))
+    tuned = results.read("tuned")["rivals"]
+    network, linear = (
+        np.array(tuned[name]["errors"]["trajectory 6"])
+        for name in ("network of 1988", "linear filter")
+    )
+    stated("global-tuned-alike", bool((network < linear).any() and (network > linear).any()))
     row = filter_trial.row(21)
     least = min(np.min(row["nulls"][kind]["saturated"]) for kind in MATCHED)
     stated("global-nulls-saturate-more", resampled(row["real"]["saturated"]) < least)

@@ -17,11 +17,21 @@ from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, KD, KP, SETUPS, WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, significant, typeset
-from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, pick_and_place, time_grid
 from workshop import BOOK
+from workshop.chapters.trajectories_and_recording import random_draws
 from workshop.report import results
 from workshop.report._measures.filters import parts_sum_up
-from workshop.report.evidence.cards import LISTS, OWN, WORDS, Card, of_kind, worded
+from workshop.report.evidence.cards import (
+    LISTS,
+    OWN,
+    WORDS,
+    Card,
+    by_reading,
+    of_kind,
+    tally,
+    worded,
+)
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
 from workshop.report.evidence.wall import Tiles, mark, window
@@ -86,6 +96,17 @@ def legend() -> _Markdown:
     return _Markdown(f'<p class="claim-legend">{" ".join(signs)}</p>')
 
 
+def counts() -> Table:
+    """How many cards on the paper have which word: whatever the reading is, and under each."""
+    system, methods = of_kind("system"), of_kind("methods")
+    rows = {"own system, whatever the reading": tally(system, Claim.judge)}
+    for reading, found in by_reading(system, Claim.judge).items():
+        rows[f"own system, {reading}"] = found
+    rows["methods of others"] = tally(methods, Claim.judge)
+    cells = [(name, sum(found.values()), *found.values()) for name, found in rows.items()]
+    return Table(("cards", "all", *WORDS), cells)
+
+
 def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:
     """Sentences with these words that all readings are judged by; how many each reproduces."""
     cells = [card.rows for card in of_kind("system") if words in f"{card.where}: {card.says}"]
@@ -104,9 +125,15 @@ def _card(card: Card) -> str:
     sign = card.sign(Claim.judge)
     signs = "".join(mark(claim.judge()) for claim in card.deciding)
     strip = f" <i>{signs}</i>" if len(card.deciding) > 1 else ""
-    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{card.where}</small>"
+    spread, where = card.spread(Claim.judge), card.where
+    best = card.under(next(iter(spread), ""))
+    if best.verdict(Claim.judge) != card.verdict(Claim.judge):
+        named = f'<span class="visually-hidden">{best.word(Claim.judge)}</span>'
+        where = f"best {named}{mark(best.sign(Claim.judge))} · {where}"
+    head = f"{mark(sign)} <b>{word}</b> <span>{says}{strip}</span> <small>{where}</small>"
     rows = [claim for row in card.rows.values() for claim in row]
-    inside = [_grid(card), _tiles(rows)]
+    told = ", ".join(f"{found} with {reading}" for reading, found in spread.items())
+    inside = [told and f"By reading, the best first: {told}.", _grid(card), _tiles(rows)]
     if card.beside:
         inside += ["Beside it, not decisive:", _tiles(card.beside)]
     return _fold(card.id, sign, head, filter(None, inside))
@@ -175,7 +202,6 @@ def _filled(kind: str, fields: tuple, path: Path, values: dict[str, str]) -> lis
 def _computed() -> dict[str, str]:
     """What the errata name and code can tell, from the paper's formulas and tables."""
     reference = pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP))
-    extents = np.array(APPENDIX_I)
     cases = len(paper.TRAINING_TRAJECTORIES) * paper.SAMPLES_PER_TRAJECTORY
     products = (f"{Weights.random(1, w)[0].count() * cases:,} at {w}" for w in WINDOWS)
     units = (
@@ -195,8 +221,7 @@ def _computed() -> dict[str, str]:
         "halves": ", ".join(f"{w // 2} for {w}" for w in WINDOWS),
         "samples": str(paper.SAMPLES_PER_TRAJECTORY),
         "lowest": f"{np.rad2deg(reference.q.min()):.0f}",
-        "limits": str(np.isin(extents, (0.0, MAX_EXTENT_DEG)).sum()),
-        "extents": str(extents.size),
+        "draws": random_draws().text,
         "products": "; ".join(products),
     }
 

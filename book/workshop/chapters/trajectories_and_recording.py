@@ -27,7 +27,6 @@ from ddlib.trajectories import (
     MOTION_SECONDS,
     pick_and_place,
     random_extents,
-    time_grid,
 )
 from workshop.chapters.exercises import judge
 from workshop.report import committed
@@ -240,21 +239,6 @@ def cases() -> Measured:
     inside = [sliding_windows(q[:, motion], w)[..., 0, 0].size for w in WINDOWS]
     text = f"{count:,} with the rests; windows within the motions give "
     return Measured(count, text + ", ".join(f"{n:,}" for n in inside))
-
-
-def period() -> Measured:
-    """Period of the sine in Appendix I, s, from the zero crossings of its formula."""
-    reference = pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP))
-    rate = np.sqrt(-np.polyfit(reference.q[:, 0], reference.qdd[:, 0], 1)[0])
-    seconds = float(2 * np.pi / rate)
-    return Measured(seconds, f"{seconds:.1f} s; the motion lasts half of it")
-
-
-def start() -> Measured:
-    """Speed of the reference at its first sample over its largest speed."""
-    speed = np.abs(pick_and_place([MAX_EXTENT_DEG] * 2, time_grid(LOG_STEP)).qd[:, 0])
-    text = f"starts at {speed[0]:.2f} rad/s for an extent of {MAX_EXTENT_DEG:g}°, its largest speed"
-    return Measured(float(speed[0] / speed.max()), text)
 
 
 def _missed(recording: Recording) -> float:

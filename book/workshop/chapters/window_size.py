@@ -2,22 +2,55 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from scipy.stats import spearmanr
 
 from ddlib import figures, paper
+from ddlib.analysis import refitted
 from ddlib.figures.style import Illustration
-from ddlib.tables import quote
+from ddlib.learning import cases
+from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
-from workshop.report import results
+from workshop.report import committed, results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.evidence.verdicts import Measured, judged, median
 
 
 def _medians(name: str) -> tuple[np.ndarray, np.ndarray]:
     """The ten windows, and the medians of a quantity over the networks of each."""
     rows = results.read("window-sizes")["rows"]
     return np.array([row["width"] for row in rows]), np.array([np.median(r[name]) for r in rows])
+
+
+@cache
+def least_squares_by_size() -> np.ndarray:
+    """Training and test errors of least squares, state feedback, shape (10 windows, 2)."""
+    found, runs = [], (committed.training(), committed.recording()[5])
+    for width in _medians("test")[0]:
+        (x, y), (new, answer) = (cases(run, width) for run in runs)
+        found.append(refitted(x.reshape(len(x), -1), y, new.reshape(len(new), -1), answer))
+    return np.array(found)
+
+
+def behind_least_squares() -> np.ndarray:
+    """At which of the ten windows networks have more error in training than least squares."""
+    return _medians("training")[1] > least_squares_by_size()[:, 0]
+
+
+def least_error() -> Measured:
+    """Which of ten windows has the least median test error, by state feedback."""
+    rows = results.read("window-sizes")["rows"]
+    (sizes, test), behind = _medians("test"), behind_least_squares()
+    text = f"{sizes[test.argmin()]} samples ({significant(test.min(), 2)}); at {behind.sum()} of "
+    text += f"{len(sizes)} sizes least squares has less error in training than the networks"
+
+    def least(*cells):
+        return sizes[np.argmin([median(cell) for cell in cells], axis=0)]
+
+    return judged(least, *(np.array(row["test"]) for row in rows), text=text)
 
 
 def errors_by_size() -> Illustration:
@@ -29,10 +62,11 @@ def errors_by_size() -> Illustration:
         "training": training,
         "test, after 20,000 epochs": test,
         "test, best on the way": best,
+        "test, least squares": least_squares_by_size()[:, 1],
         "printed, training": (printed, told[:, 0]),
         "printed, test": (printed, told[:, 1]),
     }
-    alt = "Five curves over window sizes on logarithmic axes. From the shortest window to the "
+    alt = "Six curves over window sizes on logarithmic axes. From the shortest window to the "
     alt += f"longest the training error goes from {training[0]:.2f} to {training[-1]:.2f}, the "
     alt += f"test error from {test[0]:.1f} to {test[-1]:.1f}."
     how = {"x_log": True, "y_log": True, "height": 3.2}
@@ -43,11 +77,16 @@ def _quoted() -> None:
     """Put the book's numbers into the lesson."""
     for width, error in zip(*_medians("test")):
         quote(f"size-test-{width}", error)
+    sizes, test = _medians("test")
+    quote("size-linear-most", least_squares_by_size()[sizes >= 11, 1].max())
+    quote("size-networks-least", test[sizes >= 11].min())
+    quote("size-behind", behind_least_squares().sum())
     cell = next(c for c in results.read("span")["cells"] if c["width"] == 41)
     quote("size-learnt", np.median(cell["measured"]["learnt"]))
     quote("size-directions", len(cell["variance"]))
     quote("size-encoder", claims.measured("short-window").value)
     quote("size-another-day", claims.measured("memorises").value)
+    quote("size-another-day-damped", claims.measured("memorises-damping").value)
     shuffled = results.read("memory")["rows"][-1]
     quote("size-memory-descent", np.median(shuffled["training"]))
     quote("size-memory-solver", np.median(shuffled["solver"]["training"]))
@@ -64,6 +103,7 @@ def _said() -> None:
     stated("size-training-falls", trend("training") < -0.9)
     stated("size-test-falls", trend("test") < -0.5)
     stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
+    stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
 
 def check(number: int, mine, floor=None) -> None:

@@ -35,10 +35,34 @@ def _made(
 def of_class(
     width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
 ) -> Measured:
-    """Share of a layer's filters that `ddlib.analysis.classify` gives a name, less untrained."""
-    (trained,), (before,) = _made(lambda f: classify(f) == name, layer, [width], setup)
+    """Share of filters that `ddlib.analysis.classify` gives a name, less untrained ones.
+
+    `name` and `layer` may be several, with "|" between them.
+    """
+    trained, before = _named(width, name, layer, setup)
     text = f"{trained.sum()} of {trained.size} filters, {before.sum()} before training"
     return judged(lambda pair: mean(pair[0]) - mean(pair[1]), (trained, before), text=text)
+
+
+def with_unit(
+    width: int, name: str, layer: str = "hidden", setup: str = STATE_FEEDBACK.name
+) -> Measured:
+    """Share of the networks in which one filter or more has a name."""
+    trained, before = _named(width, name, layer, setup)
+    having = trained.any(-1)
+    text = f"{having.sum()} of {having.size} networks, {trained.sum()} of {trained.size} filters; "
+    text += f"before training {before.any(-1).sum()} networks"
+    return judged(mean, having, text=text)
+
+
+def _named(width: int, name: str, layer: str, setup: str) -> tuple[np.ndarray, np.ndarray]:
+    """Which filters of each network have one of some names, and which had before training."""
+
+    def has(f):
+        return np.isin(classify(f), name.split("|"))
+
+    cells = [_made(has, one, [width], setup) for one in layer.split("|")]
+    return tuple(np.concatenate([cell[k][0] for cell in cells], -1) for k in (0, 1))
 
 
 def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
@@ -57,25 +81,27 @@ def untrained(width: int = 41) -> Measured:
     return Measured(float(rough.mean()), f"{rough.sum()} of {rough.size} random functions")
 
 
-def explained(layer: str = "direct") -> Measured:
+def explained(layer: str = "direct", setup: str = STATE_FEEDBACK.name) -> Measured:
     """Median share of position, velocity and acceleration in filters; the least of 3 windows."""
-    cells, before = _made(lambda f: shares(f)[..., :3].sum(-1), layer)
+    cells, before = _made(lambda f: shares(f)[..., :3].sum(-1), layer, setup=setup)
     text = ", ".join(f"{100 * np.median(c):.0f} % at {w}" for c, w in zip(cells, WINDOWS))
     text += f" of the energy; before training at most {100 * max(map(np.median, before)):.0f} %"
     return judged(lambda *cells: np.min(list(map(median, cells)), axis=0), *cells, text=text)
 
 
-def constant_share(layer: str = "hidden", width: int = 21) -> Measured:
+def constant_share(
+    layer: str = "hidden", width: int = 21, setup: str = STATE_FEEDBACK.name
+) -> Measured:
     """Median share of the constant term in the energy of the filters."""
-    (trained,), (before,) = _made(lambda f: shares(f)[..., 0], layer, [width])
+    (trained,), (before,) = _made(lambda f: shares(f)[..., 0], layer, [width], setup)
     now, then = (100 * np.median(x) for x in (trained, before))
     return judged(median, trained, text=f"{now:.1f} % of the energy, {then:.1f} % before training")
 
 
-def asymmetric(width: int = 21, shift: float = 0.5) -> Measured:
+def asymmetric(width: int = 21, shift: float = 0.5, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Share of direct filters with two zero crossings whose middle is `shift` samples off."""
     (two, off), (before, _) = (
-        zero_crossings(f, shift) for f in committed._filters(width, "direct")
+        zero_crossings(f, shift) for f in committed._filters(width, "direct", setup)
     )
 
     def share(pair):
@@ -96,25 +122,25 @@ def follow(width: int = 21, name: str = "acceleration", layer: str = "direct") -
     return judged(mean, each, text=f"best correlated with {counts} of {strongest.size}")
 
 
-def rougher(wide: int = 41, narrow: int = 21) -> Measured:
+def rougher(wide: int = 41, narrow: int = 21, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Ratio of the median roughness of hidden filters at two window sizes."""
-    cells, before = _made(roughness, "hidden", (wide, narrow))
+    cells, before = _made(roughness, "hidden", (wide, narrow), setup)
     now, then = ([significant(np.median(x), 2) for x in each] for each in (cells, before))
     text = f"roughness {now[0]} at {wide}, {now[1]} at {narrow}; "
     text += f"before training {then[0]} and {then[1]}"
     return judged(lambda a, b: median(a) / median(b), *cells, text=text)
 
 
-def direct_smoothness() -> Measured:
+def direct_smoothness(setup: str = STATE_FEEDBACK.name) -> Measured:
     """Largest median roughness of the direct weights over the windows (white noise: 1)."""
-    cells, before = _made(roughness, "direct")
+    cells, before = _made(roughness, "direct", setup=setup)
     now, then = (", ".join(significant(np.median(x), 2) for x in xs) for xs in (cells, before))
     return judged(_largest_median, *cells, text=f"roughness {now}; before training {then}")
 
 
-def changed_roughness(width: int = 41) -> Measured:
+def changed_roughness(width: int = 41, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Roughness of what training adds to the initial weights of the hidden units."""
-    trained, before = committed._filters(width, "hidden")
+    trained, before = committed._filters(width, "hidden", setup)
     change = roughness(trained - before)
     text = f"{spread(change)}; the filters have {spread(roughness(trained))}"
     return judged(median, change, text=text)
@@ -143,9 +169,9 @@ def saturation(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     return judged(median, share, text=f"{now:.0f} % of the time, {then:.0f} % before training")
 
 
-def shoulder_profile(width: int) -> Measured:
+def shoulder_profile(width: int, setup: str = STATE_FEEDBACK.name) -> Measured:
     """Error of the shoulder's torque alone on trajectory 6 (Figure 4-1), median of networks."""
-    test = committed.recording()[5]
-    predicted = predict(committed.networks(width), test)
+    test = committed.recording(setup)[5]
+    predicted = predict(committed.networks(width, setup), test)
     wrong = rmss(predicted, test.tau[test.motion], pooled=False)[..., 0]
     return judged(median, wrong, text=spread(wrong))

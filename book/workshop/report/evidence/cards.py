@@ -10,19 +10,24 @@ its rows that decide:
 Rows on the real arm decide only where no others do; those ``beside`` never do. Rows that hold by
 construction or cannot be tested leave their card for one of two lists, as do cards of nothing else.
 This book's own findings are "held", "failed" or "open" in place of that.
+
+Rows may be sorted by the *reading* of section 4 under which they were measured, one of `READINGS`.
+Of all readings together the word says what holds whatever the reading is; `Card.under` gives the
+card of one of them. The authors ran one experiment, so both are counted: `tally`, `by_reading`.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
 
 import yaml
 
+from ddlib.setups import SETUPS
 from workshop import BOOK
 from workshop.report.evidence.claims import _OWN, Claim, load
 
@@ -30,9 +35,13 @@ _FILE = BOOK / "cards.yml"  # Where the cards are kept
 
 KINDS = ("system", "methods", "own")  # The paper's own system, methods of others, own findings
 
+READINGS = tuple(SETUPS)  # What may have damped the arm of "a proportional controller"
+
 WORDS = ("reproduced", "qualitative", "in part", "not reproduced", "undecided")
 
 LISTS = ("by construction", "not testable")  # Verdicts whose rows make a list each
+
+_BEST_FIRST = ("reproduced", "qualitative", "in part", "undecided", "not reproduced")
 
 # The same words of an own finding. "Open" are those whose rows disagree, too.
 OWN = {
@@ -66,6 +75,21 @@ class Card:
         rows = [claim for row in self.rows.values() for claim in row]
         return [claim for claim in rows if not claim.arm] or rows
 
+    @property
+    def readings(self) -> list[str]:
+        """The readings under which it has rows of its own."""
+        return [reading for reading in READINGS if reading in map(_reading, self.rows)]
+
+    def under(self, reading: str) -> Card:
+        """The card with the rows of one reading, and those that are of none.
+
+        A card without rows of this reading stays as it is.
+        """
+        if reading not in self.readings:
+            return self
+        kept = {k: row for k, row in self.rows.items() if _reading(k) in (reading, "")}
+        return replace(self, rows=kept)
+
     def verdict(self, of: Callable = attrgetter("verdict")) -> str:
         """The card's word, of `WORDS`, by the written verdicts or by another function of a row."""
         return _overall(map(of, self.deciding))
@@ -84,6 +108,18 @@ class Card:
         verdicts = [of(claim) for claim in self.deciding]
         held = sum(v in ("reproduced", "qualitative") for v in verdicts)
         return f"{told} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
+
+    def spread(self, of: Callable = attrgetter("verdict")) -> dict[str, str]:
+        """Its word under each of its readings, the best first."""
+        found = {reading: self.under(reading) for reading in self.readings}
+        order = sorted(found, key=lambda name: _BEST_FIRST.index(found[name].verdict(of)))
+        return {name: found[name].word(of) for name in order}
+
+
+def _reading(rows: str) -> str:
+    """The reading in the name of some rows, before a comma; empty if there is none."""
+    name = rows.partition(",")[0]
+    return name if name in READINGS else ""
 
 
 def _overall(verdicts: Iterable[str]) -> str:
@@ -134,6 +170,22 @@ def tally(some: Iterable[Card], of: Callable = attrgetter("verdict")) -> dict[st
     """How many cards have which word of `WORDS`."""
     found = [card.verdict(of) for card in some]
     return {word: found.count(word) for word in WORDS}
+
+
+def by_reading(
+    some: Iterable[Card], of: Callable = attrgetter("verdict")
+) -> dict[str, dict[str, int]]:
+    """The tally if one reading is the right one, for each of `READINGS`, the best-fitting first.
+
+    That is the one with most cards that are reproduced, then with most that hold in kind.
+    """
+    some = list(some)
+    found = {name: tally([card.under(name) for card in some], of) for name in READINGS}
+
+    def fits(name):
+        return found[name]["reproduced"], found[name]["qualitative"]
+
+    return {name: found[name] for name in sorted(READINGS, key=fits, reverse=True)}
 
 
 def worded(claim: Claim, text: str) -> str:
