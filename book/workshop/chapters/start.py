@@ -15,7 +15,7 @@ from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
-from workshop.report.studies.start import RANGES, agreement, chosen
+from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
@@ -233,15 +233,14 @@ def solver_table() -> Table:
     """Names of hidden filters and test error by the solver, with white inputs and without."""
     rows = []
     for reading in SETUPS:
-        for size in RANGES:
+        for size in SOLVED:
             row = [reading, f"±{size:g}"]
             for method in ("solver", "solver, white inputs"):
-                for width in (11, 21):
-                    share = 100 * named(reading, size, width, method=method).mean()
-                    error = np.median(values(reading, size, width, "test", method=method))
-                    row.append(f"{share:.0f} %, {error:.2f}")
+                share = 100 * named(reading, size, method=method).mean()
+                error = np.median(values(reading, size, 21, "test", method=method))
+                row += [f"{share:.0f} %", f"{error:.3f}"]
             rows.append(row)
-    heads = (f"{kind}, window {w}" for kind in ("plain", "white") for w in (11, 21))
+    heads = ("plain: named", "test error", "white inputs: named", "test error")
     return Table(("reading", "start", *heads), rows)
 
 

@@ -54,7 +54,8 @@ NETWORKS = 3
 
 _SOLVERS = {"solver": False, "solver, white inputs": True}
 _STEPS, _DECAY = 60, 1e-6  # of Levenberg-Marquardt
-_SOLVED = (11, 21)  # windows of these cells
+SOLVED = (0.03, 0.3)
+"""Ranges from which networks are trained by the solver."""
 
 _NULL_EPOCHS = 5000
 _NULL_RANGES = (0.03, 0.1, 0.3)
@@ -217,14 +218,14 @@ def _cell(reading: str, scaling: str, initial: float, width: int, method: str) -
     return _pooled(found)
 
 
-def _grid(methods, name: str, scalings=tuple(SCALINGS), widths=WINDOWS) -> dict:
+def _grid(methods, name: str, scalings=tuple(SCALINGS), widths=WINDOWS, ranges=RANGES) -> dict:
     """Cells by method, scaling, reading, range and window."""
     settings = [
         {"reading": reading, "scaling": scaling, "initial": size, "width": width, "method": method}
         for method in methods
         for scaling in scalings
         for reading in SETUPS
-        for size in RANGES
+        for size in ranges
         for width in widths
     ]
     cells = _sweep(_cell, settings, code=code_hash(name), backend="sequential", label=name)
@@ -233,7 +234,7 @@ def _grid(methods, name: str, scalings=tuple(SCALINGS), widths=WINDOWS) -> dict:
         place = found.setdefault(setting["method"], {}).setdefault(setting["scaling"], {})
         place = place.setdefault(setting["reading"], {}).setdefault(str(setting["initial"]), {})
         place[str(setting["width"])] = cell
-    return {"ranges": RANGES, "days": DAYS, "networks": NETWORKS, "cells": found}
+    return {"ranges": ranges, "days": DAYS, "networks": NETWORKS, "cells": found}
 
 
 @study
@@ -246,9 +247,9 @@ def _start() -> dict:
 def _start_solver() -> dict:
     """The same by sixty steps of Levenberg-Marquardt with and without white inputs.
 
-    Thin: inputs from 0 to 1 and windows of 11 and 21 samples alone.
+    Thin: two of the ranges, inputs from 0 to 1 and windows of 21 samples alone.
     """
-    return _grid(_SOLVERS, "start-solver", ("0 to 1",), _SOLVED)
+    return _grid(_SOLVERS, "start-solver", ("0 to 1",), (21,), SOLVED)
 
 
 # --- beside unrelated torques -----------------------------------------------------------------
