@@ -21,6 +21,7 @@ from ddlib.figures.style import (
     illustrate,
     legend_above,
 )
+from ddlib.learning import p_value
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
@@ -38,10 +39,11 @@ def trained_unit() -> np.ndarray:
     return upright(purest(every, "acceleration"))
 
 
-def _velocity() -> tuple[np.ndarray, list[float]]:
+def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
     row = trial.row(21)
-    nulls = [trial.share(x, "hidden", ["velocity"]).mean() for x in trial.matched(row).values()]
-    return trial.share(row["real"], "hidden", ["velocity"]), nulls
+    nulls = {k: trial.share(x, "hidden", [name]) for k, x in trial.matched(row).items()}
+    return trial.share(row["real"], "hidden", [name]), nulls
 
 
 def _quoted() -> None:
@@ -50,10 +52,18 @@ def _quoted() -> None:
     quote("filters-encoder", 1e3 * builder.readings()[2])
     for width in (5, 11, 21):
         quote(f"filters-own-{width}", builder.score(builder.starts()[f"Savitzky–Golay, {width}"]))
-    real, nulls = _velocity()
-    quote("filters-velocity", 100 * real.mean())
-    quote("filters-velocity-least", 100 * min(nulls))
-    quote("filters-velocity-most", 100 * max(nulls))
+    for name in ("velocity", "acceleration"):
+        real, nulls = _named(name)
+        means = {kind: 100 * each.mean() for kind, each in nulls.items()}
+        quote(f"filters-{name}", 100 * real.mean())
+        if name == "velocity":
+            quote("filters-velocity-least", min(means.values()))
+            quote("filters-velocity-most", max(means.values()))
+        else:
+            quote("filters-acceleration-most", max(means["shifted"], means["phases"]))
+            quote("filters-acceleration-run", means["other run"])
+    quote("filters-m11", np.median(np.array(trial.row(21)["real"]["gains"])[:, 0, 0, 2]))
+    quote("filters-m11-arm", trial.arm_gains()[0, 0, 2])
     quote("filters-inertia-off", 100 * trial.calibrated("inertia", 21).value)
     quote("filters-off-by", excitation.half_foretold().value)
 
@@ -69,10 +79,24 @@ def _said() -> None:
     reached = [np.isfinite(excitation.half_measured(each)).all() for each in every]
     stated("filters-half-but-one", sum(reached) == len(every) - 1)
     stated("filters-swing-lost", resampled(lost) < resampled(back, seed=1) / 4)
-    real, nulls = _velocity()
-    stated("filters-fewer-velocity", resampled(real, np.mean) < min(nulls))
+    real, nulls = _named("velocity")
+    stated("filters-velocity-no-more", resampled(real, np.mean) < min(map(np.mean, nulls.values())))
+    real, nulls = _named("acceleration")
+    chances = [p_value(real.mean(), nulls[kind], "more") for kind in ("shifted", "phases")]
+    stated("filters-acceleration-more", max(chances) < 0.06)
+    row = trial.row(21)
+    inertia = [
+        np.array(x["gains"])[:, 0, 0, 2] for x in (row["real"], *trial.matched(row).values())
+    ]
+    stated("filters-number-apart", min(inertia[0]) > max(map(max, inertia[1:])))
+    study = results.read("targets")
+    unnamed = {
+        size: resampled(found["not analysable"], np.mean)
+        for size, found in zip(study["initial"], study["by initial"]["real torques"])
+    }
+    stated("filters-start-hides", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
     stated("filters-own-difference", builder.score(builder.starts()["Second difference"]) > 0.9)
-    row, places = trial.row(21), list(trial.ENTRIES["inertia"].values())
+    places = list(trial.ENTRIES["inertia"].values())
     kinds = row["real"], row["nulls"]["shifted"], row["nulls"]["phases"]
     gains = (np.moveaxis(np.array(x["gains"]), 0, -1) for x in kinds)
     real, *nulls = (np.transpose([each[at] for at in places]) for each in gains)
