@@ -135,6 +135,13 @@ def _longer(width: str, of) -> list[float]:
     return [of(np.array(x[width])[:, 0, 0, 2]) / true[design] for design, x in solved.items()]
 
 
+def _by_epochs() -> list[np.ndarray]:
+    """Shoulder's inertia over the published one, medians by the number of epochs, by design."""
+    found = results.read("two-link-longer")["descended"]
+    true = {design: _read(design, 41, "published")[0, 0, 2] for design in found}
+    return [np.median(np.array(x)[..., 0, 0, 2], 1) / true[d] for d, x in found.items()]
+
+
 def _said() -> None:
     """What stands behind words of the prose."""
     ours = {m: [_errors(d, m) for d in _designs()] for m in ("network", "equations")}
@@ -149,8 +156,10 @@ def _said() -> None:
     error = results.read("two-link-longer")["turns"].index(12)
     stated("two-encoder", min(x["share"][error] for x in fast[:7]) > 0.2)
     stated("two-apart-more", results.read("two-link-longer")["apart"][1] > 0.15)
-    shorter, longer = _longer("41", np.min), _longer("81", np.max)
+    shorter, longer = _longer("41", np.min), _longer("81", np.median)
     stated("two-longer-less", bool((np.array(longer) < shorter).all()))
+    nearer = [waits[-1] - waits[0] > 0.4 for waits in _by_epochs()]
+    stated("two-plateau", all(nearer))
     null = [
         max(np.abs(_nulls(d)[:, k, k, 2]).max() / _inertia()[d][:, k].min() for d in _designs())
         for k in (0, 1)
