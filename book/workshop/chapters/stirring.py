@@ -133,6 +133,7 @@ def _quoted() -> None:
     for key, model in (("chosen", "chosen"), ("sixty", "60")):
         for short, motion in zip(("pick", "circles"), _FAMILIES):
             quote(f"stir-{key}-{short}", np.median(hands[motion][model]))
+    quote("stir-steps", JOINT_DAMPING.steps)
     quote("stir-stop-none", np.median(hands["circles"]["none"]))
     quote("stir-twenty", np.median(hands["circles"]["twenty circles"]))
     quote("stir-twenty-known", np.median(hands["circles"]["identified"]))
@@ -153,11 +154,17 @@ def _said() -> None:
     stated("stir-carries", resampled(known) < resampled(own))
     stopped = claims.measured("stirring-hand-worse-stopped").replicates
     stated("stir-stopped-helps", stopped < 1)
+    kept = results.read("loop-conditions")["stopped"]["joint damping"]
+    stated("stir-never-sixty", 60 not in kept["steps"])
+    early, late = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
+    stated("stir-stopped-loses-nothing", early < 1.1 * late)
+    sixty = resampled(kept["hands"][circles]["60"]) < kept["hands"][circles]["none"][0]
+    stated("stir-harm-later", sixty & (of_pick > hand("none")[0]))
     stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))
     both = [draws("both", family) < 1.25 * draws(family, family) for family in _FAMILIES]
     stated("stir-both-costs-nothing", both[0] & both[1])
     small = draws(pick, "small circles")
-    stated("stir-small-known", small < 0.3 * draws(pick, circles))
+    stated("stir-small-known", 2 * small < draws(pick, circles))
     stated("stir-small-worse", small > 1.5 * draws("both", "small circles"))
     covered = _row()["coverage"]
     shared = {
