@@ -9,12 +9,22 @@ import numpy as np
 
 from ddlib import figures
 from ddlib.analysis import classify, decompose
-from ddlib.learning import Weights, p_value
-from ddlib.setups import INITIAL, SETUPS, STATE_FEEDBACK, WINDOWS, train_windows
+from ddlib.dynamics import IMI_ARM
+from ddlib.learning import TARGET_RANGE, TrainingSet, Weights, p_value, train_ensemble
+from ddlib.setups import (
+    INITIAL,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    split,
+    train_windows,
+    true_states,
+)
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
+from workshop.report.studies.nulls import TRIAL
 from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
 
 PRINTED = "0 to 1"
@@ -98,6 +108,11 @@ def agreement_table() -> Table:
     for k, reading in enumerate(SETUPS):
         each = (sum(found[size][k].values()) for size in RANGES)
         rows.append((f"{reading} alone", *(f"{score:.1f}" for score in each)))
+    each = (
+        np.mean([sum(agreement(cells()[r][str(size)], "direct").values()) for r in SETUPS])
+        for size in RANGES
+    )
+    rows.append(("read of the direct weights", *(f"{score:.1f}" for score in each)))
     return Table(("remark of the report", *(f"±{size:g}" for size in RANGES)), rows)
 
 
@@ -208,6 +223,38 @@ def beside_unrelated() -> figures.Illustration:
         f"middle 90 % of networks. Acceleration: {'; '.join(told)}."
     )
     return figures.illustrate(draw, alt, 7.0, 4.0)
+
+
+def other_torques(members: int = 8) -> dict[str, float]:
+    """Share of hidden acceleration filters in the walk's network, by the torques it learns.
+
+    The arm's own, those that another arm would need along the same motion, and the arm's with
+    shoulder and elbow exchanged. Trained as the page is made.
+    """
+    recording = TRIAL.record()
+    training = split(recording)[0]
+    data = TrainingSet.from_recording(training, 21, scaling=TRIAL.scaling)
+    states = np.moveaxis(true_states(training, TRIAL), -1, 0)
+    wanted = {
+        "own": training.tau[:, training.motion],
+        "another arm": IMI_ARM.inverse_dynamics(*states),
+        "exchanged": training.tau[:, training.motion, ::-1],
+    }
+    found = {}
+    for name, torque in wanted.items():
+        given = replace(data, y=_to_targets(torque.reshape(-1, 2)))
+        model, *_ = train_ensemble(
+            Weights.random(members, 21, initial=INITIAL), given, rate=TRIAL.rate / 21,
+            momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
+        )  # fmt: skip
+        found[name] = float((classify(model.weights.hidden_weights) == "acceleration").mean())
+    return found
+
+
+def _to_targets(torque) -> np.ndarray:
+    """Torques scaled to the range of the output units."""
+    low, high = TARGET_RANGE
+    return low + (high - low) * (torque - torque.min(0)) / np.ptp(torque, axis=0)
 
 
 # --- what a small start costs -----------------------------------------------------------------
@@ -346,6 +393,9 @@ def _quoted() -> None:
         f"{told} fewer than one in twenty of the unrelated networks have as many acceleration "
         "filters as the real ones have on average.",
     )
+    other = other_torques()
+    for name, key in (("own", "own"), ("another arm", "arm"), ("exchanged", "exchanged")):
+        quote(f"start-torques-{key}", 100 * other[name])
     direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
     unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
     quote("start-direct-unrelated", 100 * unrelated.mean())

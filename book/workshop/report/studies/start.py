@@ -69,11 +69,12 @@ _SMOOTH = 0.05
 """Median roughness up to which filters count as "extremely smooth": a random one has about 1."""
 
 
-def agreement(cell: Mapping) -> dict[str, float]:
+def agreement(cell: Mapping, layer: str = "hidden") -> dict[str, float]:
     """In which share of the networks each of seven remarks of the report comes out.
 
     Of one reading and range, networks by descent: `cell` has for each window what `described`
-    tells, each of shape ``(networks,)`` or more.
+    tells, each of shape ``(networks,)`` or more. The rule reads the remarks on filters of the
+    hidden units; with `layer` "direct" they are read of the weights past them.
 
     - *smooth at 21*: "extremely smooth. This is generally the case in the network with window size
       21". The median roughness of hidden filters is at most `_SMOOTH`.
@@ -92,7 +93,7 @@ def agreement(cell: Mapping) -> dict[str, float]:
       in the median at most 5 % of a hidden filter's energy.
     """
     at = {width: cell[str(width)] for width in WINDOWS}
-    hidden = {width: at[width]["hidden"] for width in WINDOWS}
+    hidden = {width: at[width][layer] for width in WINDOWS}
     names = {name: np.asarray(share) for name, share in hidden[21]["names"].items()}
     unnamed = np.asarray(hidden[41]["names"]["not analysable"])
     rough = {width: np.asarray(hidden[width]["roughness"]) for width in (21, 41)}
