@@ -396,7 +396,7 @@ def check(number: int, mine, *given) -> None:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 left = given[0](tuple(extents))
-            return left["equations"] < 0.15 and left["network"] > 3 * left["equations"]
+            return left["equations"] < 0.15 and left["network"] > 1.5 * left["equations"]
 
         otherwise = "which combinations of shoulder and elbow did no motion show to the network?"
         judge(mine, parts, "equations carry where a fit does not.", [], otherwise)
