@@ -28,7 +28,7 @@ def _solved(runs, width) -> np.ndarray:
 
 
 def _descended(runs, width=41) -> list[np.ndarray]:
-    x, start = arm._all(runs, width), Weights.random(_DESCENTS, width, 10)
+    x, start = arm._all(runs, width), Weights.random(_DESCENTS, width, 10, initial=arm.START)
     data = TrainingSet.from_arrays(x, arm._all(runs, "torque"), scaling=(-1, 1))
     how = {"rate": 66 / width, "momentum": 0.98, "warm_up": 500, "epochs": _EPOCHS[-1]}
     *_, kept = train_ensemble(start, data, snapshots=_EPOCHS, progress=False, **how)
