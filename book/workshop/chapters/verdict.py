@@ -156,7 +156,7 @@ def _quoted() -> None:
 
 def _said() -> None:
     """What the lesson says in words about committed results."""
-    stated("verdict-arms", _verdicts("verdicts-on-the-real-arm") == ["reproduced"])
+    stated("verdict-arms", _verdicts("verdicts-on-the-real-arm") == ["not reproduced"])
     real, nulls = _acceleration()
     stated("verdict-acceleration", resampled(real, np.mean) > max(nulls))
     stated("verdict-acceleration-other", nulls[1] == max(nulls))
