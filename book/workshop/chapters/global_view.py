@@ -10,12 +10,20 @@ from scipy.linalg import orth
 
 from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated, transition_width
 from ddlib.figures.style import Illustration
-from ddlib.learning import MATCHED, cases
+from ddlib.learning import cases
 from ddlib.metrics import rmss
-from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, errors
+from ddlib.setups import (
+    JOINT_DAMPING,
+    POSITION_FEEDBACK,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    errors,
+)
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
+from workshop.chapters.start import values
 from workshop.chapters.window_networks import intervals
 from workshop.report import committed, results
 from workshop.report._measures import filter_trial
@@ -119,9 +127,13 @@ def _quoted() -> None:
     row, hidden = filter_trial.row(21), _features(21, JOINT_DAMPING.name)[0][1]
     quote("global-saturated-21", 100 * np.median(saturated(hidden)))
     quote("global-friction", claims.measured("compensate-friction").value)
+    for w in (11, 21):
+        often = filter_trial.row(w)["real"]["saturated"]
+        quote(f"global-trial-saturated-{w}", 100 * np.median(often))
     for key in ("real", "untrained"):
         quote(f"global-cancel-{key}", 100 * np.median(row[key]["cancelled"]))
         quote(f"global-read-{key}", np.median(np.array(row[key]["probe"])[:, [0, 2]]))
+        quote(f"global-read-acceleration-{key}", np.median(_read(row[key], "acceleration")))
     whole, pure, rest = (
         np.array(row["interventions"][name]["at once"])[:, 0]
         for name in ("as trained", "pure parts", "without pure parts")
@@ -130,19 +142,49 @@ def _quoted() -> None:
     quote("global-without-pure", np.median(rest / whole))
 
 
+def _read(found: dict, what: str) -> np.ndarray:
+    """R² with which a probe reads the velocity or the acceleration from each network's units."""
+    columns = {"velocity": [0, 2], "acceleration": [1, 3]}[what]
+    return np.array(found["probe"])[:, columns].mean(-1)
+
+
+def stated_beside_linear() -> None:
+    """The filter has less error on trajectory 6 than every median but one."""
+    gap = {key: resampled(each[:, 1] / a[1]) for key, (a, each) in beside_linear().items()}
+    ahead = gap.pop((POSITION_FEEDBACK.name, 21))
+    stated("global-linear-better", np.all([each > 1.1 for each in gap.values()], 0))
+    stated("global-one-ahead", ahead < 0.9)
+
+
+def stated_of_units() -> None:
+    """What the trial says of hidden units that saturate, cancel, and hold the acceleration."""
+    rows = {w: filter_trial.row(w) for w in WINDOWS}
+    often = {
+        w: [resampled(row["real"]["saturated"])]
+        + [np.array(each["saturated"]) for each in filter_trial.matched(row).values()]
+        for w, row in rows.items()
+    }
+    stated("global-short-saturate", np.concatenate([x > 0.5 for x in often[11]]))
+    stated("global-long-do-not", np.concatenate([x < 0.1 for w in (21, 41) for x in often[w]]))
+    real, untrained = (resampled(rows[21][key]["cancelled"]) for key in ("real", "untrained"))
+    stated("global-agree", real < 0.5 * np.median(untrained))
+    large = values(JOINT_DAMPING.name, 0.3, 21, "cancelled")
+    small = values(JOINT_DAMPING.name, JOINT_DAMPING.initial, 21, "cancelled")
+    stated("global-large-start-cancels", resampled(large) > np.maximum(0.6, resampled(small) + 0.2))
+    loud = {key: _read(rows[21][key], "acceleration") for key in ("real", "untrained")}
+    stated("global-loud", resampled(loud["real"]) > np.median(loud["untrained"]) + 0.3)
+
+
 def _said() -> None:
     """Check what the lesson says in words of the book's networks."""
-    gap = [resampled(whole[:, 1] / alone[1]) > 1.1 for alone, whole in beside_linear().values()]
-    stated("global-linear-better", np.all(gap, 0))
+    stated_beside_linear()
     tuned = results.read("tuned")["rivals"]
     network, linear = (
         np.array(tuned[name]["errors"]["trajectory 6"])
         for name in ("network of 1988", "linear filter")
     )
     stated("global-tuned-alike", bool((network < linear).any() and (network > linear).any()))
-    row = filter_trial.row(21)
-    least = min(np.min(row["nulls"][kind]["saturated"]) for kind in MATCHED)
-    stated("global-nulls-saturate-more", resampled(row["real"]["saturated"]) < least)
+    stated_of_units()
 
 
 def check(number: int, mine, *given) -> None:

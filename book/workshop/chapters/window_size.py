@@ -100,7 +100,8 @@ def _said() -> None:
         drawn = np.array([resampled(row[name], seed=row["width"]) for row in rows])[:, :500]
         return np.array([spearmanr(sizes, medians)[0] for medians in drawn.T])
 
-    stated("size-training-falls", trend("training") < -0.9)
+    stated("size-training-falls", trend("training") < -0.8)
+    stated("size-training-uneven", bool((np.diff(_medians("training")[1]) > 0).any()))
     stated("size-test-falls", trend("test") < -0.5)
     stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
     stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
