@@ -246,10 +246,7 @@ def _start() -> dict:
 
 @study
 def _start_solver() -> dict:
-    """The same by sixty steps of Levenberg-Marquardt with and without white inputs.
-
-    Thin: two of the ranges, inputs from 0 to 1 and windows of 21 samples alone.
-    """
+    """The same by Levenberg-Marquardt, thinner: two ranges, inputs from 0 to 1, window 21."""
     return _grid(_SOLVERS, "start-solver", ("0 to 1",), (21,), SOLVED)
 
 
