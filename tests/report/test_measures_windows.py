@@ -58,7 +58,7 @@ def test_derivatives_from_windows(monkeypatch, order):
 @pytest.mark.parametrize(("known", "wanted"), [(1.0, 1.0), (0.5, 2.0)])
 def test_what_is_memorised_does_not_help_on_another_day(monkeypatch, known, wanted):
     """Planted: networks that miss by as much everywhere, and less on the day they have seen."""
-    seen = committed.training()
+    seen = committed.training(STATE_FEEDBACK.name)
 
     def torque(run):
         size = known if run is seen else 1.0
