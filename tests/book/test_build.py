@@ -101,8 +101,9 @@ DRAWN = "import matplotlib.pyplot as plt\n\nplt.plot([1, 2])\nplt.show()"
 
 @pytest.mark.slow
 @pytest.mark.parametrize("folder", ["book", "Übung (1) [2]?/50%41"])
-def test_a_strict_build_holds_wherever_the_folder_lies(folder, tiny, tmp_path_factory):
-    """With a picture, a page that leads to another, and a file that is no page."""
+def test_a_strict_build_holds_wherever_the_folder_lies(folder, tiny, tmp_path_factory, monkeypatch):
+    """With a picture, a page that leads to another, a file that is no page, and another backend."""
+    monkeypatch.setenv("MPLBACKEND", "Agg")
     write_page(tiny, "# Title\n\n{doc}`chapter`", DRAWN)
     add_page(tiny, "# Chapter", "1 + 1")
     (tiny / "README.md").write_text("# No page")
