@@ -14,7 +14,7 @@ STRIP  := $(BIN)/python -m nbstripout --keep-id --extra-keys "metadata.language_
 	metadata.language_info.codemirror_mode metadata.language_info.file_extension \
 	metadata.language_info.mimetype metadata.language_info.nbconvert_exporter \
 	metadata.language_info.pygments_lexer"
-NOTEBOOKS = book/*.ipynb
+NOTEBOOKS = book/*.ipynb book/evidence/*.ipynb
 # Small matrices: a second thread would only wait, and so would the other process.
 PYTEST := OMP_NUM_THREADS=1 $(BIN)/python -m pytest
 # Python that finds the workshop, wherever it goes from here.
@@ -81,7 +81,7 @@ unit: $(READY)
 
 notebooks: $(READY)  ## every notebook in a fresh process, warnings are errors
 	@echo "==> Every notebook in a fresh process, warnings are errors"
-	PYTHONWARNINGS="error:::__main__" \
+	PYTHONPATH="$$PWD/book" PYTHONWARNINGS="error:::__main__" \
 	  $(PYTEST) -n $(JOBS) --nbmake --nbmake-timeout=600 $(NOTEBOOKS)
 
 FOREIGN ?=

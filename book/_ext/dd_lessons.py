@@ -45,7 +45,8 @@ def exercises(path: Path) -> list[Exercise]:
     """All exercises of a notebook, in its order."""
     _, _, own = "\n".join(prose(path)).partition(f"## {HEADING}\n")
     found = TITLE.findall(own)
-    return [Exercise(path.stem, int(number), title, kind) for number, title, kind in found]
+    page = path.stem if path.parent.name == "book" else f"{path.parent.name}/{path.stem}"
+    return [Exercise(page, int(number), title, kind) for number, title, kind in found]
 
 
 def chapters(root: Path) -> list[Path]:
@@ -60,7 +61,7 @@ class Section(SphinxRole):
 
     def run(self):
         page, _, heading = self.text.partition(": ")
-        path = Path(self.env.doc2path(self.env.docname)).with_name(f"{page}.ipynb")
+        path = Path(self.env.doc2path(self.env.docname)).parent / f"{page}.ipynb"
         if not path.is_file() or heading not in headings(path):
             told = self.inliner.reporter.error(f"no such section: {self.text}", line=self.lineno)
             return [self.inliner.problematic(self.rawtext, self.rawtext, told)], [told]

@@ -63,7 +63,7 @@ def links(name: str, page: str, source: str, lesson: bool) -> list[tuple[str, st
         ("fas fa-pencil-alt", "Suggest an edit", f"{address(name)}/edit/main/{source}"),
     ]
     if lesson:
-        notebook = f"{page.rpartition('/')[2]}.ipynb"
+        notebook = f"{page.removeprefix('book/')}.ipynb"
         to = f"{COLAB}/{name}/blob/{HANDED_OUT}/{notebook}"
         found.append(("fas fa-play", "Run in Colab", to))
     return found

@@ -12,6 +12,7 @@ from __future__ import annotations
 import ast
 import codecs
 import json
+import posixpath
 import re
 import textwrap
 import zipfile
@@ -41,7 +42,7 @@ if importlib.util.find_spec("workshop") is None:
         subprocess.run(["git", "clone", "--quiet", "--depth", "1", source, "the-book"], check=True)
     subprocess.run([sys.executable, "the-book/book/_ext/missing.py"], check=True)
     sys.path[:0] = [os.path.abspath("the-book/book"), os.path.abspath("the-book")]
-    os.chdir("the-book/book")
+    os.chdir("the-book/{folder}")
     if "google.colab" in sys.modules:
         sys.modules["google.colab"].output.enable_custom_widget_manager()"""
 QUOTED = re.compile(r"(?m)^quoted\(.*\)$")  # the numbers stand in the text already
@@ -116,6 +117,16 @@ class Plain:
     def __init__(self, page: str, known: Known, glued: dict):
         self.page, self.known, self.glued = page, known, glued
 
+    def path(self, target: str) -> str:
+        """The book's name of a page that this one names: from its folder, or from the top."""
+        return posixpath.normpath(posixpath.join("/", posixpath.dirname(self.page), target))[1:]
+
+    def link(self, page: str, told: str) -> str:
+        """A link to a page's notebook, from this one's; its title alone if it has none."""
+        if not (self.known.root / f"{page}.ipynb").is_file():
+            return f"*{told}*"
+        return f"[{told}]({posixpath.relpath(page, posixpath.dirname(self.page))}.ipynb)"
+
     def text(self, source: str) -> str:
         """A cell's markdown."""
         source = ANCHOR.sub("", source)
@@ -143,13 +154,12 @@ class Plain:
             case "glue:text":
                 return self._number(inside)
             case "doc":
-                title = known.env.titles.get(f"book/{target}")
-                told = shown or (title.astext() if title else target)
-                notebook = (known.root / "book" / f"{target}.ipynb").is_file()
-                return f"[{told}]({target}.ipynb)" if notebook else f"*{told}*"
+                page = self.path(target)
+                title = known.env.titles.get(page)
+                return self.link(page, shown or (title.astext() if title else target))
             case "section":
                 page, _, heading = target.partition(": ")
-                return f"[{heading}]({page}.ipynb)"
+                return self.link(self.path(page), heading)
             case "numref":
                 return known.figure(target)
             case "eq":
@@ -203,7 +213,9 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
         if figure:
             told = f"**{known.figure(figure['name'])}.** {plain.text(figure['caption'].strip())}"
             cells.append(nbformat.v4.new_markdown_cell(told))
-    setup = nbformat.v4.new_code_cell(SETUP.format(address=address(repository())))
+    setup = nbformat.v4.new_code_cell(
+        SETUP.format(address=address(repository()), folder=posixpath.dirname(page))
+    )
     setup.metadata = {"jupyter": {"source_hidden": True}, "cellView": "form"}
     cells[1:1] = [nbformat.v4.new_markdown_cell(NOTE), setup]
     made = nbformat.v4.new_notebook(cells=cells, metadata=notebook.metadata)
@@ -295,7 +307,8 @@ def write(app, exception):
 
 def pack(site: Path, data: Path) -> None:
     """All readers' notebooks and the data that they read, in one archive."""
-    paths = {path.name: path for path in (site / "_sources" / "book").glob("*.ipynb")}
+    made = site / "_sources" / "book"
+    paths = {path.relative_to(made).as_posix(): path for path in made.rglob("*.ipynb")}
     paths |= {f"data/{path.relative_to(data)}": path for path in data.rglob("*") if path.is_file()}
     with zipfile.ZipFile(site / ARCHIVE, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, path in sorted(paths.items()):

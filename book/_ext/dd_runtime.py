@@ -119,7 +119,7 @@ def words(path: Path) -> int:
 def reading(name, rawtext, text, lineno, inliner, options=None, content=None):
     """``{reading}`page page```, pages beside the one that asks."""
     env = inliner.document.settings.env
-    paths = [Path(env.doc2path(env.docname)).with_name(f"{page}.ipynb") for page in text.split()]
+    paths = [Path(env.doc2path(env.docname)).parent / f"{page}.ipynb" for page in text.split()]
     for path in paths:
         env.note_dependency(str(path))
     return [nodes.inline(text=minutes(paths))], []

@@ -67,7 +67,7 @@ def texts_of(doctree: nodes.document, first: int = FIRST) -> dict[str, str]:
 
 def gather(app, doctree, page):
     """Keep a page's texts; pages are resolved in this process, whoever writes them."""
-    texts = texts_of(doctree, 1 if page.startswith("book/evidence-") else FIRST)
+    texts = texts_of(doctree, 1 if page.startswith("book/evidence/") else FIRST)
     app.env.dd_search_texts = {**getattr(app.env, "dd_search_texts", {}), page: texts}
 
 

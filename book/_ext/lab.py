@@ -18,11 +18,14 @@ def lay_out(made: Path, lab: Path) -> list[str]:
     """
     handed, kept = lab / ".handed-out", []
     handed.mkdir(parents=True, exist_ok=True)
-    for path in sorted(made.glob("*.ipynb")):
-        own, before = lab / path.name, handed / path.name
+    for path in sorted(made.rglob("*.ipynb")):
+        name = path.relative_to(made)
+        own, before = lab / name, handed / name
         if own.is_file() and before.is_file() and own.read_bytes() != before.read_bytes():
-            kept.append(path.name)
+            kept.append(name.as_posix())
             continue
+        for folder in (own.parent, before.parent):
+            folder.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(path, own)
         shutil.copyfile(path, before)
     shutil.copytree(DATA, lab / "data", dirs_exist_ok=True)

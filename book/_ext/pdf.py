@@ -39,11 +39,13 @@ MOST_PLACES = 9  # a word that is everywhere needs no index
 def contents(root: Path, volume: str) -> list[tuple[str, list[str]]]:
     """Parts of a volume, with the pages of each, as the table of contents orders them."""
     toc = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))["parts"]
-    parts = [(p["caption"], [page["file"] for page in p["chapters"]]) for p in toc]
-    lessons = [(name, pages) for name, pages in parts if name != "Evidence"][:4]
+    numbered = [part for part in toc if part.get("numbered")]
     if volume == "walk":
+        lessons = [(p["caption"], [page["file"] for page in p["chapters"]]) for p in numbered]
         return [(UNANNOUNCED[0], [*AHEAD]), *lessons, (UNANNOUNCED[1], [*BEHIND])]
-    return [("Evidence", dict(parts)["Evidence"]), (UNANNOUNCED[1], [*LEDGER])]
+    chapters = [page for part in numbered for page in part["chapters"]]
+    behind = [below["file"] for page in chapters for below in page.get("sections", ())]
+    return [("Evidence", behind), (UNANNOUNCED[1], [*LEDGER])]
 
 
 def words(root: Path) -> list[str]:

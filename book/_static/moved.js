@@ -1,8 +1,13 @@
-// An old address of a section that is no longer in a lesson leads to the lesson's evidence page.
+// An old address of a section that stands on another page now leads there.
 (() => {
-  const page = location.pathname.split("/").pop();
-  const evidence = document.querySelector(`article a[href^="evidence-${page}"]`);
+  const MOVED = {}; // page: {page now: sections}, filled in by book/_ext/dd_moved.py
+  const root = new URL(document.documentElement.dataset.content_root ?? "./", location);
+  const page = location.pathname.slice(root.pathname.length).replace(/\.html$/, "");
   const name = decodeURIComponent(location.hash.slice(1));
-  if (!evidence || !name || document.getElementById(name)) return;
-  location.replace(`evidence-${page}#${encodeURIComponent(name)}`);
+  if (!name || document.getElementById(name)) return;
+  for (const [now, names] of Object.entries(MOVED[page] ?? {})) {
+    if (names.includes(name)) {
+      location.replace(new URL(`${now}.html#${encodeURIComponent(name)}`, root));
+    }
+  }
 })();

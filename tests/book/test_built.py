@@ -14,13 +14,11 @@ import pytest
 import yaml
 from book_pages import (
     CHAPTERS,
-    LESSONS,
+    EVIDENCE,
     PAGES,
     ROOT,
-    WALK,
     WITH_WIDGETS,
     code_cells,
-    evidence_of,
     source,
 )
 from bookkeeping import lines_of_bookkeeping
@@ -28,6 +26,7 @@ from bs4 import BeautifulSoup, Comment
 from chapter_rules import FROM_SCRATCH
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_moved
 import dd_search
 
 built_test = pytest.mark.built
@@ -148,16 +147,25 @@ def test_no_answer_stands_in_the_open(parsed):
 
 
 @built_test
-def test_old_addresses_within_lessons_lead_somewhere(parsed):
-    """On the lesson's page, or on its evidence page, to which `moved.js` leads."""
-    old = yaml.safe_load((ROOT / "tests" / "support" / "old_anchors.yml").read_text("utf-8"))
-    lost = {}
-    for page in set(WALK) & set(LESSONS):
-        places = parsed(page), parsed(evidence_of(page))
-        names = old[page.removeprefix("book/")]
-        lost[page] = [n for n in names if not any(place.find(id=n) for place in places)]
-        assert parsed(page).select_one(f'article a[href^="{evidence_of(page)[5:]}.html"]')
-    assert not {page: names for page, names in lost.items() if names}
+def test_old_addresses_lead_somewhere(built, parsed):
+    """Sections on their page, or on the one that `moved.js` knows; pages by what they left."""
+    text = (built / "_static" / "moved.js").read_text(encoding="utf-8")
+    moved = json.loads(re.search(r"const MOVED = (\{.*\});", text)[1])
+    lost = []
+    for name, anchors_then in yaml.safe_load(dd_moved.OLD.read_text("utf-8")).items():
+        page = f"book/{name}"
+        for anchor in anchors_then:
+            now = [p for p, names in moved.get(page, {}).items() if anchor in names] or [page]
+            lost += [] if parsed(now[0]).find(id=anchor) else [(name, anchor)]
+    assert moved and not lost
+    left = dd_moved.pages(set(PAGES))
+    assert set(left.values()) >= {*EVIDENCE}
+    for old, new in left.items():
+        assert (built / f"{old}.html").resolve().is_file()
+        (link,) = parsed(old).select("a[href]")
+        assert (built / old).parent.joinpath(
+            link["href"]
+        ).resolve() == built.resolve() / f"{new}.html"
 
 
 # --- weight -------------------------------------------------------------------------------

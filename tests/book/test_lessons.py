@@ -11,18 +11,22 @@ sys.path.insert(0, str(ROOT / "book" / "_ext"))
 import dd_lessons
 
 
+def name(path):
+    return path.relative_to(ROOT / "book").with_suffix("").as_posix()
+
+
 def test_chapters_ask_for_a_derivation_a_design_and_a_prediction():
-    asked = {path.stem: dd_lessons.exercises(path) for path in dd_lessons.chapters(ROOT)}
-    asked = {name: exercises for name, exercises in asked.items() if exercises}
+    asked = {name(path): dd_lessons.exercises(path) for path in dd_lessons.chapters(ROOT)}
+    asked = {page: exercises for page, exercises in asked.items() if exercises}
     assert len(asked) >= 20
     wrong = {}
-    for name, exercises in asked.items():
+    for page, exercises in asked.items():
         kinds = {each.kind for each in exercises}
         in_order = [each.number for each in exercises] == list(range(1, 1 + len(exercises)))
         if not in_order or not {"derivation", "design", "prediction"} <= kinds:
-            wrong[name] = exercises
+            wrong[page] = exercises
         elif not kinds <= set(dd_lessons.KINDS):
-            wrong[name] = kinds
+            wrong[page] = kinds
     assert not wrong
 
 
@@ -40,7 +44,7 @@ def test_every_widget_has_its_place_in_the_lessons():
             if cell["cell_type"] == "markdown":
                 place = (re.findall(r"^#+ (.+)$", text, re.MULTILINE) or [place])[-1]
             else:
-                for name in made.findall(text):
-                    found[name].add(f"{path.stem}: {place}")
+                for kind in made.findall(text):
+                    found[kind].add(f"{name(path)}: {place}")
     assert len(found) >= 10
     assert not {name: places for name, places in found.items() if not places & asked}

@@ -10,7 +10,7 @@ import nbformat
 import prose
 import pytest
 import yaml
-from book_pages import API, PAGES, ROOT, WALK, source
+from book_pages import API, EVIDENCE_OF, PAGES, ROOT, WALK, source
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
@@ -110,9 +110,9 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
             if not any(piece in one.bare for one in read(name)):
                 wrong.append((name, "no such sentence", entry["text"]))
     for name, known in known_of.items():  # an evidence page may call checks of its lesson's module
-        lesson, evidence = name.removeprefix("evidence-"), f"evidence-{name}"
-        there = {*known, *known_of.get(lesson, ())}
-        used = bound[name] | bound.get(evidence, set())
+        lessons = [own for own, below in EVIDENCE_OF.items() if NAMES[name] in below]
+        there = {*known, *(check for own in lessons for check in known_of[own[5:]])}
+        used = bound[name].union(*(bound[below[5:]] for below in EVIDENCE_OF.get(NAMES[name], ())))
         wrong += [(name, "no such check", by) for by in bound[name] - there]
         wrong += [(name, "behind no sentence", check) for check in set(known) - used]
     assert not wrong

@@ -105,7 +105,9 @@ def test_all_notebooks_come_in_one_archive(built):
         names = archive.namelist()
         assert archive.testzip() is None
         notebook = nbformat.reads(archive.read("notebooks/feedback.ipynb"), as_version=4)
-    made = {f"notebooks/{path.name}" for path in (built / "_sources" / "book").glob("*.ipynb")}
+    made = set()
+    for path in (built / "_sources" / "book").rglob("*.ipynb"):
+        made.add(f"notebooks/{path.relative_to(built / '_sources' / 'book').as_posix()}")
     assert made < set(names) and any(name.startswith("notebooks/data/") for name in names)
     assert "the-book" in notebook.cells[2].source
 

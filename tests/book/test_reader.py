@@ -118,7 +118,7 @@ def test_a_readers_own_changes_stay(tmp_path):
 
 @pytest.mark.built
 def test_no_notebook_has_a_raw_role_or_a_number_missing():
-    made = sorted((HTML / "_sources" / "book").glob("*.ipynb"))
+    made = sorted((HTML / "_sources" / "book").rglob("*.ipynb"))
     assert len(made) >= 20
     numbers = 0
     for path in made:

@@ -38,7 +38,7 @@ PINS = named(
 
 def notebooks() -> list[str]:
     """The code of all notebooks."""
-    cells = [code for path in sorted(ROOT.glob("book/*.ipynb")) for code in code_cells(path)]
+    cells = [code for path in sorted(ROOT.glob("book/**/*.ipynb")) for code in code_cells(path)]
     return [code for code in cells if not code.startswith("%")]
 
 

@@ -30,7 +30,9 @@ def missing(code: str) -> list[str]:
 def test_names_in_shown_code_exist():
     homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
     sources = [path.read_text("utf-8") for home in homes for path in home.rglob("*.py")]
-    sources += [code for path in (ROOT / "book").glob("*.ipynb") for code in code_cells(path)]
+    sources += [
+        code for path in (ROOT / "book").glob("**/[!.]*.ipynb") for code in code_cells(path)
+    ]
     codes = {code for source in sources for code in shown(source)}
     assert len(codes) >= 10
     assert not [name for code in codes for name in missing(code)]

@@ -53,7 +53,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         own = claim.printed == claims._OWN
         assert ("This book's own claim" if own else typeset(claim.as_printed())) in inside
         page = [] if claim.chapter == _LEDGER else [claim.chapter]
-        found = re.findall(r"\]\((?:evidence-)?([\w-]+)\.ipynb\)", inside)
+        found = re.findall(r"\]\((?:evidence/)?([\w-]+)\.ipynb\)", inside)
         assert found == page
         code = f'<a href="../_modules/{code_of(claim)}">code</a>'
         assert (code in inside) == claim.is_measured == (">code</a>" in inside)

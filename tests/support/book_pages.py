@@ -11,25 +11,30 @@ from needed import needed
 ROOT = Path(__file__).resolve().parents[2]
 TOC = yaml.safe_load((ROOT / "_toc.yml").read_text(encoding="utf-8"))
 
-NUMBERED = [
-    page["file"] for part in TOC["parts"] if part.get("numbered") for page in part["chapters"]
-]
-EVIDENCE = [page for page in NUMBERED if page.startswith("book/evidence-")]
-CHAPTERS = [page for page in NUMBERED if page not in EVIDENCE]
-LESSONS = [page["file"] for part in TOC["parts"][:3] for page in part["chapters"]]
-BACK_MATTER = [
-    page["file"] for part in TOC["parts"] if not part.get("numbered") for page in part["chapters"]
-]
+
+def _chapters(numbered: bool) -> dict[str, list[str]]:
+    """Pages, each with those that stand under it in the contents."""
+    parts = [part for part in TOC["parts"] if bool(part.get("numbered")) is numbered]
+    return {
+        page["file"]: [below["file"] for below in page.get("sections", ())]
+        for part in parts
+        for page in part["chapters"]
+    }
+
+
+EVIDENCE_OF = _chapters(numbered=True)
+"""Each lesson's pages with what stands behind it."""
+CHAPTERS = list(EVIDENCE_OF)  # all in the shape of a lesson
+EVIDENCE = [page for below in EVIDENCE_OF.values() for page in below]
+LESSONS = [page["file"] for part in TOC["parts"][:4] for page in part["chapters"]]
+BACK_MATTER = [page for own, below in _chapters(numbered=False).items() for page in (own, *below)]
 API = [page for page in BACK_MATTER if page.startswith("book/api")]
-PAGES = [TOC["root"], *NUMBERED, *BACK_MATTER]
-
-
-def evidence_of(lesson: str) -> str:
-    """The page with what stands behind a lesson."""
-    return lesson.replace("book/", "book/evidence-")
-
-
-WALK = [page for page in CHAPTERS if evidence_of(page) in EVIDENCE]  # in the shape of a lesson
+PAGES = [
+    TOC["root"],
+    *(p for own, below in EVIDENCE_OF.items() for p in (own, *below)),
+    *BACK_MATTER,
+]
+WALK = CHAPTERS
 
 
 def source(page: str) -> Path | None:

@@ -15,14 +15,14 @@ from bookkeeping import (
 )
 from needed import needed
 
-MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 18, 84  # "about 15", and what a page has room for
-MAX_THESIS, MAX_PROMISE = 200, 30  # characters of a thesis, words of *You will*
+MAX_VISIBLE_LINES, MAX_VISIBLE_COLUMNS = 25, 84  # one idea, and what a page has room for
+MAX_OPENING, MAX_PROMISE = 60, 30  # words before the first picture, words of *You will*
 HIDDEN = {"hide-input", "hide-cell", "remove-input", "remove-cell"}
 FOLDED = {"source_hidden": True, "outputs_hidden": True}  # in JupyterLab
 TUTORIAL = "book/use-it-on-your-arm"
 FROM_SCRATCH = {TUTORIAL, *WALK}  # open cells run alone, so they import and print
 CLOSING = ["Paper and reproduction", "On your own", "Further reading"]
-CLOSING_OF_LESSON = CLOSING[1:]  # the paper's sentences stand on the evidence page
+FOUND = "What you found"  # ends a lesson; the paper's sentences stand on its evidence page
 MIN_EXERCISES = 3
 CHANGE_THIS = "change-this"  # tag of the one cell whose settings all open cells follow
 MOST_WORDS, MOST_NUMBERS, MOST_IN_PARAGRAPH = 2500, 40, 3
@@ -127,7 +127,7 @@ EVERYWHERE = (
 def title_then_thesis(notebook) -> list:
     title, thesis = paragraphs(notebook.cells[0].source)[:2]
     titled = re.fullmatch(r"(\([\w-]+\)=\n)?# .+", title)
-    plain = not re.match(r"[#>`:|*-]+ |\*\*", thesis) and len(thesis) <= MAX_THESIS
+    plain = not re.match(r"[#>`:|*-]+ |\*\*", thesis) and len(thesis.split()) <= MAX_OPENING
     return [] if titled and plain else [title, thesis]
 
 
@@ -139,10 +139,13 @@ def opening(notebook) -> list:
 
 
 def closing(notebook) -> list:
-    walk = any(CHANGE_THIS in tags(cell) for cell in notebook.cells)
-    wanted = CLOSING_OF_LESSON if walk else CLOSING
-    found = headings(prose(notebook), 2)[-len(wanted) :]
-    return [] if found == wanted else found
+    """*On your own*; then, of a lesson, what was found, with or without further reading."""
+    found = headings(prose(notebook), 2)
+    if not any(CHANGE_THIS in tags(cell) for cell in notebook.cells):
+        return [] if found[-len(CLOSING) :] == CLOSING else found
+    own = found.index(CLOSING[1]) if CLOSING[1] in found else len(found)
+    after = found[own + 1 :]
+    return [] if after and set(after) <= {FOUND, CLOSING[2]} else found
 
 
 def exercises(notebook) -> list:
@@ -188,18 +191,23 @@ def before_the_promise(notebook) -> list:
 
 
 def title_and_thesis_stand_alone(notebook) -> list:
-    cells = [c.source for c in before_the_promise(notebook) if c.cell_type == "markdown"]
-    return [] if len(cells) == 1 and len(paragraphs(cells[0])) == 2 else cells or ["no title"]
+    """A title and one paragraph, then the thing itself; below it, what to do with it."""
+    cells = before_the_promise(notebook)
+    shown = (
+        k for k, c in enumerate(cells) if c.cell_type == "code" and "remove-cell" not in tags(c)
+    )
+    above = [c.source for c in cells[: next(shown, None)] if c.cell_type == "markdown"]
+    return [] if len(above) == 1 and len(paragraphs(above[0])) == 2 else above or ["no title"]
 
 
 def result_stands_first(notebook) -> list:
-    """One cell shows something before the promise: a figure with its caption, or a widget."""
+    """Before the promise something is shown: figures with their captions, or widgets."""
     code = [cell for cell in before_the_promise(notebook) if cell.cell_type == "code"]
     shown = [cell for cell in code if "remove-cell" not in tags(cell)]
     widgets = [code[place] for place in needed([cell.source for cell in code])]
     results = [c for c in shown if c.metadata.get("mystnb", {}).get("figure") or c in widgets]
     folded = all("hide-input" in tags(cell) for cell in shown)
-    return [] if len(shown) == len(results) == 1 and folded else [len(shown), len(results)]
+    return [] if shown and len(shown) == len(results) and folded else [len(shown), len(results)]
 
 
 def three_lines_follow(notebook) -> list:
@@ -213,7 +221,17 @@ def three_lines_follow(notebook) -> list:
     return [] if len(words) <= MAX_PROMISE and not re.search(r"[.?!] ", lines[0]) else words
 
 
-LESSON = (title_and_thesis_stand_alone, result_stands_first, three_lines_follow)
+def ends_with_what_was_found(notebook) -> list:
+    found = headings(prose(notebook), 2)
+    return [] if FOUND in found[-2:] else found
+
+
+LESSON = (
+    title_and_thesis_stand_alone,
+    result_stands_first,
+    three_lines_follow,
+    ends_with_what_was_found,
+)
 
 
 # --- every lesson in its whole shape, and the tutorial -------------------------------------

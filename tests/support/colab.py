@@ -75,7 +75,11 @@ def main(python: str, names: list[str]) -> int:
         print(f"PYTHON must have {pinned()}, has {versions(python)}")
         return 2
     archive, bad = zipfile.ZipFile(io.BytesIO((HTML / "notebooks.zip").read_bytes())), {}
-    members = {Path(n).stem: n for n in archive.namelist() if n.endswith(".ipynb")}
+    members = {
+        n.partition("/")[2].removesuffix(".ipynb"): n
+        for n in archive.namelist()
+        if n.endswith(".ipynb")
+    }
     if unknown := set(names) - set(members):
         print(f"NAME must be among {', '.join(sorted(members))}, got {', '.join(sorted(unknown))}")
         return 2

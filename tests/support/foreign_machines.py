@@ -45,7 +45,9 @@ CI = "jog-1+other-libraries"
 
 def environment(name: str, folder: Path) -> dict[str, str]:
     """Environment of a setting; notebooks and claims share in `folder` what they measure."""
-    path = os.pathsep.join(filter(None, [JOGS, os.environ.get("PYTHONPATH", "")]))
+    path = os.pathsep.join(
+        filter(None, [JOGS, str(ROOT / "book"), os.environ.get("PYTHONPATH", "")])
+    )
     own = {"PYTHONPATH": path, "PYTHONWARNINGS": "error:::__main__", "DDLIB_MEASURED": str(folder)}
     differs = {key: value for part in name.split("+") for key, value in SETTINGS[part].items()}
     return {**os.environ, "OMP_NUM_THREADS": "1", **own, **differs}
@@ -53,7 +55,9 @@ def environment(name: str, folder: Path) -> dict[str, str]:
 
 def commands(jobs: int, root: Path) -> dict[str, list]:
     """What is checked, and how."""
-    pages = sorted((root / "book").glob("*.ipynb"))
+    pages = sorted(
+        path for where in ("", "evidence/") for path in root.glob(f"book/{where}*.ipynb")
+    )
     runner = root / "tests" / "support" / "forked_notebooks.py"
     files = [f"tests/report/test_{name}.py" for name in ("claims", "judging")]
     claims = ["-m", "pytest", "-q", "-n", jobs, *files, "-k", "verdicts_are or values_are"]

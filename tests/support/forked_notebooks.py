@@ -32,7 +32,7 @@ def failure(path: Path) -> str:
         NotebookClient(notebook, timeout=TIMEOUT, resources=place).execute()
     except Exception as error:  # of a cell, or the kernel is gone
         return str(error) or repr(error)
-    print(f"{path.name}: {time.monotonic() - started:.0f} s", flush=True)
+    print(f"{path.parent.name}/{path.name}: {time.monotonic() - started:.0f} s", flush=True)
     return ""
 
 

@@ -9,7 +9,7 @@ from ddlib.widgets.parts._common import filled
 
 STATES = {
     "EXPLORER_CODE": (
-        "evidence-convolution-filters",
+        "evidence/convolution-filters",
         {"width": 21, "seed": 15, "unit": "hidden 8", "joint": "shoulder"},
         "acceleration",
     ),
@@ -19,7 +19,7 @@ STATES = {
         "measured",
     ),
     "PICKER_CODE": (
-        "evidence-trajectories-and-recording",
+        "evidence/trajectories-and-recording",
         {"shoulder_deg": 39.5, "elbow_deg": 14.4},
         "11 ",
     ),
