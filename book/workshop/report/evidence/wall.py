@@ -119,12 +119,13 @@ def _body(claim: Claim, on: str) -> list[str]:
 
 def _links(claim: Claim, on: str) -> str:
     page, links = _page_of(claim), []
+    up = "" if on == _LEDGER else "../"  # evidence pages have a folder of their own
     if page and claim.chapter != on:
         links.append(f"[chapter]({page})")
     if on != _LEDGER:
-        links.append(f'<a href="ledger.html#claim-{claim.id}">in the ledger</a>')
+        links.append(f'<a href="{up}ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
-        links.append(f'<a href="{_source(claim)}">code</a>')
+        links.append(f'<a href="{up}{_source(claim)}">code</a>')
     return " · ".join(links)
 
 
