@@ -247,4 +247,4 @@ def _bounds(bounds: Mapping) -> str:
 def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
     names = (f"evidence/{claim.chapter}.ipynb", f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    return next((name for name in names if _FILE.with_name(name).is_file()), "")
+    return next((name for name in names if (_FILE.parent / name).is_file()), "")
