@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 from book_pages import ROOT, WITH_WIDGETS, code_cells, source
 from needed import needed
-from reactions import Handle, handles
+from reactions import SLIDER, Handle, handles
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -70,6 +70,7 @@ def lab(tmp_path_factory):
             env={
                 **os.environ,
                 "OMP_NUM_THREADS": "1",
+                "PYTHONPATH": str(home / "book"),
                 **{name: str(home / folder) for name, folder in folders.items()},
             },
             stdout=output,
@@ -160,6 +161,33 @@ def reacts_alone(page, handle: Handle):
     wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
 
 
+ARROWS = {"ArrowRight": "ArrowLeft", "ArrowUp": "ArrowDown"}
+CELLS = """() => {
+  const { content } = window.panel;
+  const seen = content.widgets.filter((cell) => !cell.isHidden).length;
+  return [content.activeCellIndex, content.mode, seen];
+}"""
+
+
+def keys_move_it(page, root):
+    """Arrows move each slider of a widget forth and back, and no cell: JupyterLab has them, too."""
+    sliders = root.locator(SLIDER).locator("visible=true")
+    if not sliders.count():
+        return
+    sliders.first.focus()
+    cells = page.evaluate(CELLS)
+    for slider in sliders.all():
+        start = slider.input_value()
+        for there, back in ARROWS.items():
+            if slider.input_value() == slider.get_attribute("max"):
+                there, back = back, there
+            slider.press(there)
+            assert slider.input_value() != start, there
+            slider.press(back)
+            assert slider.input_value() == start, back
+    assert page.evaluate(CELLS) == cells
+
+
 def way_of(handle: Handle):
     """What to ask of a widget with a kernel, and without one."""
     if handle.root.evaluate("(root) => Boolean(root.world)"):
@@ -224,7 +252,7 @@ def opened(running, lab):
 def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     """With a kernel, and when it is gone."""
     page = opened
-    page.evaluate("(path) => lab.show(path)", f"book/{source(name).name}")
+    page.evaluate("(path) => lab.show(path)", source(name).relative_to(ROOT).as_posix())
     wait(page, "the notebook", lambda: page.evaluate("Boolean(window.panel)"), STARTING)
     run(page, None if name == WHOLE else needed(code_cells(source(name))))
     models = page.evaluate("lab.shown()")
@@ -234,6 +262,8 @@ def test_widgets_of_a_chapter_live_in_the_lab(name, lab, opened):
     ways = [way_of(handle) for handle in firsts]
     for handle, model, (with_kernel, _) in zip(firsts, models, ways):
         with_kernel(page, handle, model)
+    for k in range(len(models)):
+        keys_move_it(page, roots.nth(k))
     kernel = page.evaluate("window.panel.sessionContext.session.kernel.id")
     request(f"{lab}api/kernels/{kernel}", "DELETE")
     for handle, (_, alone) in zip(firsts, ways):

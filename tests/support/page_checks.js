@@ -50,6 +50,14 @@
     if (size < (width < 600 ? 8.95 : 8))
       found.push(`text of ${size.toFixed(1)} px: ${el.textContent}`);
   }
+  for (const svg of all(".ddlib-widget .chart svg")) {
+    const marks = [...svg.querySelectorAll(".grid > text")].map((el) => [el, el.getBoundingClientRect()]);
+    marks.forEach(([el, a], i) => marks.slice(0, i).forEach(([other, b]) => {
+      const over = Math.min(a.right, b.right) - Math.max(a.left, b.left) > 0.5
+        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2;
+      if (a.width && over) found.push(`marks overlap: ${other.textContent} ${el.textContent}`);
+    }));
+  }
   for (const el of all("main :is(div, section, pre, mjx-container)")) {
     const inside = el.scrollWidth <= el.clientWidth + 1;
     if (inside || el.tabIndex >= 0 || !el.checkVisibility()) continue;

@@ -198,13 +198,23 @@ function chart(view, panel) {
     curve.beyond.setAttribute("d", Array.from(values, (v, i) => (beyond(v) ? triangle(v, i) : "")).join(""));
   }
 
+  // The horizontal axis, with marks so far apart that their texts have room.
+  function across() {
+    for (let room = panel.x_scale === "linear" ? 52 : 34; ; room += 10) {
+      const made = axis(...ends, panel.x_scale, left, right, room);
+      const [at, long] = [made.marks.map(made.place), made.texts.map((text) => text.length)];
+      const free = at.every((place, i) => !i || place - at[i - 1] > 3.5 * (long[i] + long[i - 1]) + 6);
+      if (free || room > right - left) return made;
+    }
+  }
+
   // Axes, and the curves that stay, for the range and size as they are.
   function layout() {
     bottom = height - 36;
     y = axis(low, high, panel.y_scale, bottom, 6, 30);
     left = 9 + Math.max(...y.texts.map((t) => 7 * t.length + (t.startsWith("−") ? 3 : 0)));
     right = width - 10;
-    x = axis(...ends, panel.x_scale, left, right, panel.x_scale === "linear" ? 52 : 34);
+    x = across();
     xs = panel.x.map((v) => short(x.place(v)));
     base = short(log ? bottom : y.place(Math.min(high, Math.max(low, 0))));
     const marks = panel.ticks.length ? panel.ticks : x.marks.map((v, i) => [v, x.texts[i]]);

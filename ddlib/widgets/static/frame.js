@@ -39,6 +39,7 @@ function frameOf({ el, key, title, linked, reset, code }) {
   let name = key;
   for (let k = 2; others.includes(name); k++) name = `${key}${k}`;
   el.dataset.widget = name;
+  el.dataset.lmSuppressShortcuts = "true"; // in JupyterLab the arrow keys move a handle, no cell
   const given = linked ? addressed(name) : {};
   const parts = {};
 

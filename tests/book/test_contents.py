@@ -1,0 +1,52 @@
+"""Contents, *Next* and evidence: one order for all."""
+
+import sys
+
+import pytest
+from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES, ROOT
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_contents
+import dd_moved
+
+
+def test_evidence_is_passed_by_and_leads_back():
+    pages = ["book/index", "book/a", "book/evidence/a", "book/evidence/b", "book/c"]
+    found = [dd_contents.neighbours(pages, page) for page in pages]
+    assert found[0] == (None, "book/a") and found[1] == ("book/index", "book/c")
+    assert found[2] == found[3] == ("book/a", "book/c") and found[4] == ("book/a", None)
+
+
+def test_old_names_lead_to_pages_that_there_are():
+    found = dd_moved.pages({"book/evidence/start", "book/whose-filters", "book/dynamics"})
+    assert found["book/evidence-start"] == "book/evidence/start"
+    assert set(found.values()) == {"book/evidence/start", "book/whose-filters"}
+
+
+def test_sections_are_found_where_they_stand_now(tmp_path):
+    old = dd_moved.yaml.safe_load(dd_moved.OLD.read_text(encoding="utf-8"))
+    name, anchors = next(iter(old.items()))
+    for page, ids in {name: anchors[:1], f"evidence/{name}": anchors[1:2], "c": anchors}.items():
+        path = tmp_path / "book" / f"{page}.html"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("".join(f'<p id="{each}">' for each in ids), encoding="utf-8")
+    moved = dd_moved.sections(tmp_path, [f"book/{name}", f"book/evidence/{name}", "book/c"])
+    assert moved[f"book/{name}"][f"book/evidence/{name}"] == anchors[1:2]
+    assert moved[f"book/{name}"]["book/c"] == sorted(anchors[2:])
+
+
+@pytest.mark.built
+def test_the_pages_lead_along_the_walk(parsed):
+    for page, after in zip(CHAPTERS, CHAPTERS[1:]):
+        for own in (page, *EVIDENCE_OF[page]):
+            link = parsed(own).select_one("a.right-next")["href"]
+            assert link.endswith(f"{after.removeprefix('book/')}.html"), own
+
+
+@pytest.mark.built
+def test_evidence_has_no_numbers_and_is_folded(parsed):
+    assert len(EVIDENCE) > 20
+    for page in EVIDENCE:
+        assert not parsed(page).select("article :is(h1, h2, h3) .section-number"), page
+    entries = parsed(PAGES[0]).select("nav.bd-links > .bd-toc-item > ul > li")
+    assert len(entries) < 40
