@@ -1,6 +1,7 @@
 """Contents, *Next* and evidence: one order for all."""
 
 import sys
+from itertools import pairwise
 
 import pytest
 from book_pages import CHAPTERS, EVIDENCE, EVIDENCE_OF, PAGES, ROOT
@@ -37,7 +38,7 @@ def test_sections_are_found_where_they_stand_now(tmp_path):
 
 @pytest.mark.built
 def test_the_pages_lead_along_the_walk(parsed):
-    for page, after in zip(CHAPTERS, CHAPTERS[1:]):
+    for page, after in pairwise(CHAPTERS):
         for own in (page, *EVIDENCE_OF[page]):
             link = parsed(own).select_one("a.right-next")["href"]
             assert link.endswith(f"{after.removeprefix('book/')}.html"), own
