@@ -1,7 +1,7 @@
 // What a printed volume takes of a page: its text with stills for widgets, links into the volume,
 // solutions apart, and the places of words for the index.
 ([name, chapters, where, words, book]) => { // book: for an EPUB, which wants MathML and XML
-  const key = name.replace("book/", "");
+  const key = name.replace("book/", "").replaceAll("/", "-");
   const article = document.querySelector("article.bd-article").cloneNode(true);
   const live = document.querySelector("article.bd-article");
   // A canvas is not cloned with its picture.
@@ -16,8 +16,7 @@
   const shown = all("*", live).map((el) => getComputedStyle(el).display !== "none");
   all("*").forEach((el, k) => { if (!shown[k] && !el.closest("svg, mjx-container, details")) el.dataset.gone = ""; });
   for (const el of all("[data-gone], script, .headerlink, .copybtn, .toggle-details, noscript, details.hide > summary, .tag_hide-input > details.hide, svg rect:not([width]), .ddlib-widget :is(button, select, input, .remark, .footer)")) el.remove();
-  for (const told of all(".cell_output"))  // of a check that nobody has answered yet
-    if (told.textContent.trim().startsWith("Put your answer in place of the dots")) told.remove();
+  for (const place of all(".exercise-answer")) place.closest(".cell_output").remove(); // to be handled
   for (const fold of all("details:not(.claim)")) fold.open = true;
   for (const fold of all("details.hide")) fold.replaceWith(...fold.childNodes);
   for (const claim of all("details.claim")) claim.replaceChildren(claim.querySelector("summary"));
@@ -54,16 +53,17 @@
   for (const link of all("a[href]")) {
     const to = new URL(link.getAttribute("href"), location.href);
     if (to.protocol.startsWith("http")) continue;
-    const page = /book\/([^/]+)\.html$/.exec(to.pathname)?.[1];
+    const page = /book\/((?:evidence\/)?[^/]+)\.html$/.exec(to.pathname)?.[1];
     if (!page || !chapters.includes(`book/${page}`)) { // elsewhere on the site
       const text = made("span", "elsewhere", "");
       text.append(...link.childNodes);
       link.replaceWith(text);
       continue;
     }
-    const id = to.hash ? `${page}--${decodeURIComponent(to.hash.slice(1))}` : `${page}--start`;
+    const there = page.replaceAll("/", "-");
+    const id = to.hash ? `${there}--${decodeURIComponent(to.hash.slice(1))}` : `${there}--start`;
     link.setAttribute("href", `#${id}`);
-    if (page !== key && page !== "glossary" && page !== "bibliography") {
+    if (there !== key && page !== "glossary" && page !== "bibliography") {
       const at = made("a", "see", "000");
       at.href = `#${id}`;
       at.dataset.page = id;
