@@ -215,9 +215,9 @@ def check(number: int, mine, asked=None) -> None:
         told = "wrong estimates do not come in; they are paid for by the update."
         judge(mine, -1.5, told, slips, "All terms but one cancel.")
     elif number == 2:
-        slips = [(lambda x: x in ("b", "d"), "which torques does that one act on?")]
+        slips = [(other, "which torques does that one act on?") for other in ("b", "d")]
         otherwise = "one of the letters a, b, d."
-        judge(mine, lambda x: x == "a", "the shoulder never accelerates.", slips, otherwise)
+        judge(mine, "a", "the shoulder never accelerates.", slips, otherwise)
     else:
 
         def short(seconds):

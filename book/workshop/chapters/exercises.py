@@ -9,7 +9,7 @@ from __future__ import annotations
 import base64
 import json
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,13 +18,14 @@ from IPython.display import display
 
 @dataclass(frozen=True)
 class Between:
-    """A number from `low` to `high`, both included."""
+    """A number from `low` to `high`, both included; or some numbers, each in its own range."""
 
-    low: float
-    high: float = math.inf
+    low: float | Sequence[float]
+    high: float | Sequence[float] = math.inf
 
     def __call__(self, mine) -> bool:
-        return self.low <= mine <= self.high
+        low, mine = np.asarray(self.low, dtype=float), np.asarray(mine, dtype=float)
+        return mine.shape == low.shape and bool(np.all((low <= mine) & (mine <= self.high)))
 
 
 def judge(
@@ -111,8 +112,8 @@ class Waiting:
         if isinstance(wanted, str):
             return {"word": wanted, "said": said}
         if isinstance(wanted, Between):
-            high = wanted.high if math.isfinite(wanted.high) else 1e300
-            return {"low": [wanted.low], "high": [high], "said": said}
+            low, high = np.broadcast_arrays(np.atleast_1d(wanted.low), wanted.high)
+            return {"low": [*map(float, low)], "high": [*np.minimum(high, 1e300)], "said": said}
         if isinstance(wanted, Callable):
             return None
         wanted = np.atleast_1d(np.asarray(wanted, dtype=float))

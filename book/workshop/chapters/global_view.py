@@ -200,7 +200,7 @@ def check(number: int, mine, *given) -> None:
         units, window = given
         right = "larger" if units > window else "smaller"
         told = f"{units:.3f} from the units alone, {window:.3f} from the window."
-        judge(mine, lambda word: word == right, told, otherwise="ten numbers stand for a window.")
+        judge(mine, right, told, otherwise="ten numbers stand for a window.")
     else:
         errors_with, alone = given
         told = "less error than the window alone has, in training and in the test."

@@ -14,7 +14,7 @@ from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from workshop import BOOK
 from workshop.beyond.studies.walking import STEP, gradient, layers, torque
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured
 
@@ -243,7 +243,7 @@ def check(number: int, mine, left: float | None = None) -> None:
         slips = [(85 / 0.011, "divide or multiply?"), (85 * 11, "the delay is in milliseconds.")]
         judge(mine, 85 * 0.011, "stiffness times delay.", slips, "Expand the late error in d.")
     elif number == 2:
-        slips = [(lambda a: 0 <= a < left, "more is left."), (lambda a: 1 >= a > left, "too much.")]
+        slips = [(Between(0, left), "more is left."), (Between(left, 1), "too much.")]
         judge(mine, left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2)
     else:
 

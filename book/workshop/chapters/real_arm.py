@@ -13,7 +13,7 @@ from ddlib.analysis import CLASSES
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate
 from ddlib.learning import p_value
 from ddlib.tables import quote, significant
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import results
 from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
@@ -307,8 +307,8 @@ def check(number: int, mine, *given) -> None:
         judge(mine, right, "so the inertia has these four angles.", slips, "Expand the square.")
     elif number == 2:
         at_random, error, model = given
-        slips = [(lambda mine: abs(mine / error(model) - 1) < 0.4, "so large it is by blocks.")]
-        right = lambda mine: abs(mine / at_random(model) - 1) < 0.4  # noqa: E731
+        near = lambda size: Between(0.6 * size, 1.4 * size)  # noqa: E731
+        slips, right = [(near(error(model)), "so large it is by blocks.")], near(at_random(model))
         otherwise = "how much of a window do its neighbours share?"
         judge(mine, right, "and it says little about other motions.", slips, otherwise)
     elif number == 3:

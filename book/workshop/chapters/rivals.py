@@ -11,7 +11,7 @@ from ddlib.figures import COLOURS, FAINT, Illustration, check_label, illustrate
 from ddlib.figures.style import NARROW
 from ddlib.tables import quote
 from workshop.beyond._measures.rivals import better, row
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import results
 from workshop.report.evidence.statements import stated
 
@@ -166,10 +166,7 @@ def check(number: int, mine, *asked) -> None:
                  (0.25, "that is the penalty over the variance.")]  # fmt: skip
         judge(mine, 0.8, "small inputs lose most.", slips, "Set the slope in w' to zero.")
     elif number == 2:
-
-        def near(pair):
-            return all(0.5 <= guess / right <= 2 for guess, right in zip(pair, asked, strict=True))
-
+        near = Between(0.5 * np.array(asked), 2 * np.array(asked))
         told = "form carries over what free weights cannot know."
         judge(mine, near, told, [], "one of them hardly minds, the other is lost.")
     else:

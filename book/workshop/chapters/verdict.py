@@ -381,13 +381,15 @@ def check(number: int, mine, *given) -> None:
         slips = [(27, "the sum over s² is twice the inertia."), (8, "the arm moves, too.")]
         judge(mine, 19, "three sums say it all.", slips, "Expand q(t + s); what is its third term?")
     elif number == 2:
-
-        def roughest(name):
-            rough = {n: np.abs(np.diff(x, axis=-2)).mean() for n, x in given[0].items()}
-            return name == max(rough, key=rough.get)
-
+        rough = {n: np.abs(np.diff(x, axis=-2)).mean() for n, x in given[0].items()}
         told = "it has no more to do with the motion than noise has, and any smooth shape beats it."
-        judge(mine, roughest, told, [], "which of them could the motors not have made?")
+        judge(
+            mine,
+            max(rough, key=rough.get),
+            told,
+            [],
+            "which of them could the motors not have made?",
+        )
     else:
 
         def parts(extents):
