@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import chromium
 import pytest
-from book_pages import LESSONS, WALK, code_cells, source
+from book_pages import LESSONS, code_cells, source
 
 browser_test = pytest.mark.browser
 
-MOST_SCREENS = 15
 FULL = "book/evidence-dynamics"  # has open code and much that is hidden
 BUTTON = ".btn-all-code"
 # Pieces of code that a reader sees, with what the page calls a piece of code to read.
@@ -39,17 +38,6 @@ def test_the_result_begins_on_the_first_screen(name, site, visit):
         chromium.settle(page)
         first, promise = page.evaluate(FIRST)
         assert first is not None and first < min(lowest, promise), width
-
-
-@browser_test
-@pytest.mark.chromium
-@pytest.mark.parametrize("name", WALK)
-def test_a_lesson_has_at_most_fifteen_screens(name, site, visit):
-    page = visit(f"{site}/{name}.html").page
-    page.set_viewport_size({"width": 1280, "height": 800})
-    chromium.settle(page)
-    tall = page.evaluate("document.querySelector('article').getBoundingClientRect().height")
-    assert tall <= MOST_SCREENS * 800
 
 
 @browser_test
