@@ -8,7 +8,7 @@ from book_pages import LESSONS, code_cells, source
 
 browser_test = pytest.mark.browser
 
-MOST_SCREENS = 15
+
 FULL = "book/evidence/dynamics"  # has open code and much that is hidden
 BUTTON = ".btn-all-code"
 # Pieces of code that a reader sees, with what the page calls a piece of code to read.
