@@ -75,9 +75,7 @@ class TorqueTerms(LiveWidget):
             [
                 Choice("motion", "Motion of Appendix I", motions, 1),
                 Choice("load", "Load in the hand", {x: f"{x} kg" for x in _LOADS}, 0),
-                Choice(
-                    "doubled", "Double the speed", {False: slow, True: fast}, False, "switch"
-                ),
+                Choice("doubled", "Double the speed", {False: slow, True: fast}, False, "switch"),
                 Choice("friction", "Friction", {False: "off", True: "on"}, False, "switch"),
             ],
             [
