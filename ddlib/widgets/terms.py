@@ -65,16 +65,16 @@ class TorqueTerms(LiveWidget):
         self._arms = {load: with_load(setup.arm, load) for load in _LOADS}
         self._effects, self._extents = Effects(friction=setup.effects.friction), extents_deg
         motions = {
-            k: f"{k}: shoulder {first:g}°, elbow {second:g}°"
+            k: f"{k}: {first:g}°, {second:g}°"
             for k, (first, second) in enumerate(extents_deg.tolist(), 1)
         }
-        fast, slow = (f"it takes {MOTION_SECONDS / speed:g} s" for speed in (2, 1))
+        fast, slow = (f"{MOTION_SECONDS / speed:g} s" for speed in (2, 1))
         names = [_SUM, *_TERMS, _FRICTION]
         super().__init__(
             self._curves,
             [
-                Choice("motion", "Motion of Appendix I", motions, 1),
-                Choice("load", "Load in the hand", {x: f"{x} kg" for x in _LOADS}, 0),
+                Choice("motion", "Motion: shoulder, elbow", motions, 1),
+                Choice("load", "Load", {x: f"{x} kg" for x in _LOADS}, 0),
                 Choice("doubled", "Double the speed", {False: slow, True: fast}, False, "switch"),
                 Choice("friction", "Friction", {False: "off", True: "on"}, False, "switch"),
             ],
