@@ -132,7 +132,7 @@ extras.push((view) => {
   const ask = make("p", { class: "ask" });
   const answers = make("div", { class: "answers", role: "group" });
   const verdict = make("p", { class: "verdict", role: "status" });
-  const guess = make("div", { class: "guess" }, ask, answers, verdict);
+  const guess = make("div", { class: "guess" }, verdict, ask, answers);
   let [first, second] = ["", ""];
   const four = terms.filter((name) => name !== SUM && name !== FRICTION);
   const rms = (name, joint = "elbow") => rmsOf(view.curves[`${joint} ${name}`]);
