@@ -39,6 +39,9 @@ from .player import (
 from .switches import (
     RealArmSwitches as RealArmSwitches,
 )
+from .terms import (
+    TorqueTerms as TorqueTerms,
+)
 from .tuner import (
     PIDTuner as PIDTuner,
 )

@@ -23,7 +23,6 @@ from ddlib.dynamics import (
     newton_euler,
     recursive_lagrange,
 )
-from ddlib.figures import curves
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -44,7 +43,7 @@ from ddlib.identification import (
     repeat,
     true_parameters,
 )
-from ddlib.setups import STATE_FEEDBACK
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import quote, scientific
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
 from workshop.chapters.exercises import judge
@@ -56,11 +55,16 @@ _TIMES = np.arange(300) * 0.01
 
 
 def _quoted() -> None:
-    """What of the elbow's torque the shoulder causes without gears and behind 100 to 1, in %."""
+    """What gears hide, what a recursion saves, and what Bejczy's simplification loses."""
     motion = pick_and_place(APPENDIX_I[0], _TIMES)
     share = 100 * share_of_other_joint(ARM, motion, [1.0, 100.0], PUMA_560_ROTORS[0])[:, 1]
     quote("dynamics-gear-direct", share[0])
     quote("dynamics-gear-hundred", share[1])
+    quote("dynamics-recursion", recursion().value)
+    driven = pick_and_place(APPENDIX_I[[0, 1, 2, 5]], _TIMES)
+    lost = 100 * share_of_velocity_terms(ARM, driven, effects=JOINT_DAMPING.effects)
+    for joint, share in zip(JOINTS, lost):
+        quote(f"dynamics-dropped-{joint}", share)
 
 
 def check(number: int, mine, M=None) -> None:
@@ -85,20 +89,6 @@ def check(number: int, mine, M=None) -> None:
         right = lambda x: np.min(x) >= 0 and np.max(x) <= 45 and size(x) < 7  # noqa: E731
         otherwise = "Give two pairs of extents."
         judge(mine, right, "more data are not always better data.", slips, otherwise)
-
-
-def torques() -> Illustration:
-    """Torque of both joints on trajectory 1, by origin."""
-    parts = ARM.torque_terms(*pick_and_place(APPENDIX_I[0], _TIMES))
-    parts["Coriolis"] = parts.pop("coriolis")
-    shown = {name: part for name, part in parts.items() if part.any()}
-    shown["actuation"] = sum(parts.values())
-    panels = {
-        f"{joint} torque, N m": {name: part[:, k] for name, part in shown.items()}
-        for k, joint in enumerate(JOINTS)
-    }
-    alt = "Inertial, coupling, centrifugal, Coriolis and actuation torque of both joints in time."
-    return curves(_TIMES, panels, "time, s", alt, columns=2, height=2.5)
 
 
 def operations(

@@ -127,10 +127,9 @@ function chart(view, panel) {
   const beyonds = cut.map((c) => c.beyond);
   const svg = make("svg", { role: "img", tabindex: 0, "data-y": panel.y_scale }, defs, span, grid, cursor, ...paths, ...beyonds);
   const legend = make("div", { class: "legend" });
-  if (curves.length > 1) {
-    for (const curve of curves) {
-      legend.append(make("span", {}, swatch(curve.kind, curve.k), curve.legend));
-    }
+  for (const curve of curves) {
+    curve.label = make("span", {}, swatch(curve.kind, curve.k), curve.legend);
+    if (curves.length > 1) legend.append(curve.label);
   }
   const title = make("div", { class: "title" }, panel.y_label);
   const el = make("div", { class: "chart" }, title, legend, svg);
@@ -290,5 +289,14 @@ function chart(view, panel) {
     svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}. Arrow keys read values`);
   }
 
-  return { el, panel, resize, redraw, describe, point };
+  // Other names of the curves, in their order.
+  function rename(names) {
+    names.forEach((name, i) => {
+      curves[i].legend = name;
+      curves[i].label.lastChild.data = name;
+    });
+    follow();
+  }
+
+  return { el, panel, resize, redraw, describe, point, rename };
 }

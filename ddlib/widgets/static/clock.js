@@ -1,8 +1,9 @@
 // Time that is played or chosen by a slider. Follows elements.js.
 
 // `draw(now)` shows a moment (s), words() what stands after it; with reduced motion the clock jumps
-// from one half second to the next.
-function clockOf(view, { at, end, step }, draw, words = () => "") {
+// from one half second to the next. `rate()` is how many of its seconds pass in one; again() goes on
+// after it has changed.
+function clockOf(view, { at, end, step, rate = () => 1 }, draw, words = () => "") {
   const id = `${view.id}-time`;
   const output = make("output", { for: id });
   const slider = make("input", { id, type: "range", min: 0, max: end, step });
@@ -15,7 +16,7 @@ function clockOf(view, { at, end, step }, draw, words = () => "") {
   function show() {
     draw(now);
     slider.value = now;
-    write(output, `${now.toFixed(2)}\u00a0s${words()}`);
+    write(output, `${(now / rate()).toFixed(2)}\u00a0s${words()}`);
     slider.setAttribute("aria-valuetext", output.textContent);
   }
   function pause() {
@@ -25,14 +26,14 @@ function clockOf(view, { at, end, step }, draw, words = () => "") {
   }
   function run(moment) {
     const passed = Math.max(0, moment - from) / 1000; // a frame may bear an earlier stamp
-    now = Math.min(end, calm.matches ? Math.floor(passed * 2) / 2 : passed);
+    now = Math.min(end, rate() * (calm.matches ? Math.floor(passed * 2) / 2 : passed));
     show();
     if (now < end) frame = requestAnimationFrame(run);
     else pause();
   }
   function start(time) {
     pause();
-    from = performance.now() - 1000 * time;
+    from = performance.now() - (1000 * time) / rate();
     write(play, "Pause");
     frame = requestAnimationFrame(run);
   }
@@ -42,6 +43,7 @@ function clockOf(view, { at, end, step }, draw, words = () => "") {
     now = time;
     show();
   }
+  const again = () => frame && start(now);
   slider.addEventListener("input", () => stand(Number(slider.value)));
-  return { el, play, slider, now: () => now, show, start, stand, pause };
+  return { el, play, slider, now: () => now, show, start, stand, pause, again };
 }

@@ -19,9 +19,8 @@ function readerOf(plot) {
   const marks = make("g", { class: "reading", visibility: "hidden", "aria-hidden": "true" }, line, ...dots);
   const where = make("div", { class: "where" });
   const outputs = curves.map(() => make("b"));
-  const rows = curves.map((curve, i) =>
-    make("div", {}, swatch(curve.kind, curve.k), ...(curves.length > 1 ? [`${curve.legend} `] : []), outputs[i]),
-  );
+  const labels = curves.map(() => make("span"));
+  const rows = curves.map((curve, i) => make("div", {}, swatch(curve.kind, curve.k), labels[i], outputs[i]));
   const box = make("div", { class: "readout", "aria-hidden": "true", hidden: "" }, where, ...rows);
   svg.append(marks);
   el.append(box);
@@ -44,6 +43,7 @@ function readerOf(plot) {
       const inside = y >= plot.top() - 4 && y <= plot.bottom() + 4;
       dots[k].setAttribute("visibility", inside ? "inherit" : "hidden"); // a run may be over
       if (inside) dots[k].setAttribute("transform", `translate(${plot.across(curve, index)} ${short(y)})`);
+      if (curves.length > 1) write(labels[k], `${curve.legend} `);
       write(outputs[k], plot.text(curve, index));
     });
     write(where, nameOf(index));

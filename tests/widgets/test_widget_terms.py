@@ -1,0 +1,134 @@
+"""The arm and its torque by terms: curves against ddlib, guesses, time, and keys."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from widget_pages import NEXT_FRAME, assert_curves, page_of
+
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, with_load
+from ddlib.setups import JOINT_DAMPING, Setup
+from ddlib.trajectories import APPENDIX_I, pick_and_place
+from ddlib.widgets import TorqueTerms
+
+TERMS = ("centrifugal", "coupling", "Coriolis", "inertial")
+SETTINGS = [
+    {},
+    {"doubled": True, "motion": 3},
+    {"load": 10, "friction": True, "motion": 5},
+    {"load": 5, "friction": True, "doubled": True, "motion": 6},
+]
+
+
+@pytest.fixture(scope="module")
+def terms():
+    return TorqueTerms()
+
+
+def known(motion=1, load=0, doubled=False, friction=False):
+    """Torques by the arm's equations, at the middles of a hundred parts of the motion."""
+    seconds = 1.5 if doubled else 3.0
+    time = seconds * np.linspace(0.005, 0.995, 100)
+    q, qd, qdd = pick_and_place(APPENDIX_I[motion - 1], time, seconds)
+    rubbing = JOINT_DAMPING.effects.friction_torque(qd) if friction else np.zeros_like(qd)
+    whole = with_load(CMU_DD_ARM_II, load).inverse_dynamics(q, qd, qdd) + rubbing
+    return {
+        f"{joint} {name}": x[:, j]
+        for name, x in {"whole torque": whole, "friction": rubbing}.items()
+        for j, joint in enumerate(("shoulder", "elbow"))
+    }
+
+
+@pytest.mark.parametrize("levels", SETTINGS)
+def test_terms_add_up_to_the_torque(terms, levels):
+    found = terms.interpolate(**levels)
+    for name, torque in known(**levels).items():
+        np.testing.assert_allclose(found[name], torque, atol=1e-9)
+    for joint in ("shoulder", "elbow"):
+        parts = sum(found[f"{joint} {term}"] for term in (*TERMS, "friction"))
+        np.testing.assert_allclose(parts, found[f"{joint} whole torque"], atol=1e-9)
+
+
+def test_double_speed_is_four_times_every_term_but_friction(terms):
+    slow, fast = (terms.interpolate(doubled=x, friction=True) for x in (False, True))
+    for joint in ("shoulder", "elbow"):
+        for term in TERMS:
+            np.testing.assert_allclose(
+                fast[f"{joint} {term}"], 4 * slow[f"{joint} {term}"], atol=1e-9
+            )
+        ratio = np.abs(fast[f"{joint} friction"]).max() / np.abs(slow[f"{joint} friction"]).max()
+        assert 1 < ratio < 2
+        assert fast[f"{joint} ratio"] == pytest.approx(slow[f"{joint} ratio"])
+        np.testing.assert_allclose(
+            fast[f"{joint} at single speed"], slow[f"{joint} whole torque"], atol=1e-9
+        )
+
+
+def test_an_arm_with_gravity_is_refused():
+    with pytest.raises(ValueError, match="horizontal arm"):
+        TorqueTerms(Setup("upright", JOINT_DAMPING.controller, arm=REYES_KELLY_ARM))
+
+
+def test_code_gives_the_root_mean_squares(terms):
+    place = {}
+    *lines, last = terms.code.splitlines()
+    exec("\n".join(lines), place)
+    found = eval(last, place)
+    curves = terms.interpolate()
+    for name in ("inertial", "coupling", "centrifugal"):
+        rms = np.sqrt((curves[f"elbow {name}"] ** 2).mean())
+        assert found[name][1] == pytest.approx(rms, rel=1e-6)
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("levels", SETTINGS)
+def test_the_page_computes_the_same(tmp_path, visit, terms, levels):
+    query = ",".join(f"{k}:{str(v).lower()}" for k, v in levels.items())
+    opened = visit(f"{page_of(tmp_path / 'page.html', terms)}?torque-terms={query}")
+    assert_curves(opened.page, terms.interpolate(**levels), 1e-6)
+    assert not opened.problems
+
+
+def names(page):
+    page.evaluate(NEXT_FRAME)
+    return page.locator(".terms tbody th span").all_inner_texts()
+
+
+@pytest.mark.browser
+def test_guess_then_double_the_speed(tmp_path, visit, terms):
+    opened = visit(page_of(tmp_path / "page.html", terms))
+    page = opened.page
+    assert names(page)[1:5] == list("ABCD")
+    assert "coupling" not in page.locator(".chart").nth(1).inner_text()
+    before = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
+    page.get_by_role("button", name="inertial").press("Enter")
+    assert names(page)[1:5] == list(TERMS)
+    assert "coupling" in page.locator(".chart").nth(1).inner_text()
+    said = page.locator(".guess .verdict")
+    assert said.inner_text().startswith("Not inertial: the largest at the elbow is coupling")
+    page.get_by_role("button", name="The ratio stays").click()
+    assert said.inner_text().startswith("Yes, the ratio stays")
+    assert page.get_by_role("switch", name="Double the speed").is_checked()
+    assert_curves(page, terms.interpolate(doubled=True))
+    after = page.locator(".terms tbody tr").nth(2).locator("td").all_inner_texts()
+    values = [[float(x.replace("−", "-")) for x in row] for row in (before, after)]
+    np.testing.assert_allclose(values[1], 4 * np.array(values[0]), atol=0.03)
+    page.get_by_role("button", name="Reset").click()
+    assert names(page)[1:5] == list("ABCD") and not opened.problems
+
+
+@pytest.mark.browser
+def test_time_moves_the_arm_and_plays_twice_as_fast(tmp_path, visit, terms):
+    opened = visit(page_of(tmp_path / "page.html", terms))
+    page = opened.page
+    arm = ".arm.real .links"
+    start = page.get_attribute(arm, "d")
+    page.get_by_role("slider", name="Time").press("Home")
+    assert page.get_attribute(arm, "d") != start
+    page.get_by_role("switch", name="Double the speed").check()
+    page.get_by_role("slider", name="Time").press("End")
+    assert page.locator(".player output").inner_text().startswith("1.50")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("parseFloat(document.querySelector('.player output').textContent) > 0.3")
+    page.get_by_role("button", name="Pause").click()
+    assert not opened.problems
