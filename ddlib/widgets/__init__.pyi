@@ -42,6 +42,9 @@ from .switches import (
 from .tuner import (
     PIDTuner as PIDTuner,
 )
+from .weights import (
+    WeightReader as WeightReader,
+)
 from .window import (
     SlidingWindow as SlidingWindow,
 )
