@@ -133,10 +133,18 @@ def relative_weights(
     return Weights(**{name: np.clip(part, -1, 1) for name, part in parts.items()})
 
 
-def hinton_on(axis: Axes, weights: Weights, scale: str = "network") -> tuple[float, float]:
-    """Draw all weights of a network as `hinton` does; width and height of the diagram.
+def hinton_on(
+    axis: Axes, weights: Weights, scale: str = "network", ring: tuple[int, int] | None = None
+) -> tuple[float, float]:
+    """Draw all weights of a network as `hinton` does; width and height, in the axes' own units.
 
-    Width and height are in columns of squares, and the axes' own units.
+    Parameters
+    ----------
+    axis : Axes
+    weights, scale
+        As for `hinton`.
+    ring : (int, int), optional
+        Unit, outputs counted first, and joint of a row that gets a frame.
     """
     shown = relative_weights(weights, scale)
     hidden, width = len(shown.hidden_bias), shown.width
@@ -156,6 +164,12 @@ def hinton_on(axis: Axes, weights: Weights, scale: str = "network") -> tuple[flo
     for k in range(hidden):
         blob(k % columns, 1.15 + k // columns, shown.hidden_bias[k],
              shown.output_weights[:, k], shown.hidden_weights[k])  # fmt: skip
+    if ring:
+        unit, joint = ring
+        outputs = len(shown.output_bias)
+        column, row = unit % columns, (unit >= outputs) * 0.15 + unit // columns
+        corner = column * (unit_width + 1.5) + 1.1, -row * (unit_height + 1.0) - 5.15 - 1.4 * joint
+        axis.add_patch(Rectangle(corner, width + 0.8, 1.5, fc="none", ec=COLOURS[1], lw=1.6))
     axis.set(xlim=(-0.5, columns * (unit_width + 1.5) - 1.0), aspect="equal")
     axis.set_ylim(-(rows + 1.15) * (unit_height + 1.0) - 0.5, 0.8)
     axis.axis("off")

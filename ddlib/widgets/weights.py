@@ -82,7 +82,7 @@ class WeightReader(_HintonWidget):
             self._curves,
             [
                 Choice("subtract", "Subtract the start", done, False, "switch"),
-                Choice("common", "One scale for all squares", each, False, "switch"),
+                Choice("common", "One scale for all", each, False, "switch"),
                 Choice("unit", "Unit", names, unit),
                 Choice("joint", "Row", rows, joint),
             ],
@@ -139,10 +139,11 @@ class WeightReader(_HintonWidget):
         weights, row = self._shown[False], self._row(False, self.unit, self.joint)
         time = self._panels[0].x
         step = time[1] - time[0]
+        place = self._names.index(self.unit), JOINTS.index(self.joint)
 
         def draw(figure):
             grid = GridSpec(2, 2, figure, height_ratios=(1, 8), width_ratios=(1.1, 1))
-            hinton_on(figure.add_subplot(grid[:, 0]), weights, "row")
+            hinton_on(figure.add_subplot(grid[:, 0]), weights, "row", place)
             squares, curve = (figure.add_subplot(grid[k, 1]) for k in range(2))
             squares.add_patch(Rectangle((-0.7, -0.7), row.size + 0.4, 1.4, fc="#8c8c8c", lw=0))
             dots(squares, row, 0, 0, 1, 1, np.abs(row).max())
