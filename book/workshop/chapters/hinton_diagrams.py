@@ -15,7 +15,6 @@ from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, scientific, significant
-from ddlib.widgets import WeightReader
 from workshop.chapters.exercises import judge
 from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
@@ -30,16 +29,19 @@ def _trained(members: int, initial: float = INITIAL) -> tuple[Weights, Weights]:
     return start, train_ensemble(start, data, **how)[0].weights
 
 
-def reader() -> WeightReader:
-    """The network that the lesson trains, with *Change this* as it is: to press and to subtract."""
-    start, trained = (weights[0] for weights in _trained(1))
-    note = (
-        "Every grey blob is a unit: the two torques on top, the hidden units below. Its upper row "
-        "weights the positions of the shoulder, its lower row those of the elbow, time running to "
-        "the right. Above the rows are its weights to or from other units, and its bias at the "
-        "left. Press a row, or move to the diagram and use the arrow keys."
-    )
-    return WeightReader(start, trained, note=note)
+NOTE = (
+    "Every grey blob is a unit: the two torques on top, the hidden units below. Its upper row "
+    "weights the positions of the shoulder, its lower row those of the elbow; time runs to the "
+    "right. Above the rows are its weights to or from other units, and at the left its bias. Press "
+    "a row, or move to the diagram and use the arrow keys."
+)
+"""What the widget on top of the lesson says of itself."""
+
+
+def before_and_after() -> tuple[Weights, Weights]:
+    """The network that the lesson trains with *Change this* as it is: its start, and trained."""
+    start, trained = _trained(1)
+    return start[0], trained[0]
 
 
 def printed_windows() -> figures.Illustration:
@@ -61,7 +63,7 @@ def printed_windows() -> figures.Illustration:
             axis = figure.add_subplot(place)
             hinton_on(axis, networks[width], ring=rings.get(width))
             sizes = paper.LARGEST_WEIGHT[width], networks[width].largest
-            told = "largest weight {:.1f}, here {:.1f}".format(*sizes)
+            told = "largest weight {:g}, ours {:.1f}".format(*sizes)
             axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{told}")
 
     alt = (
