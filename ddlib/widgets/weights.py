@@ -73,7 +73,7 @@ class WeightReader(_HintonWidget):
             for common, scale in scales.items()
         }
         unit = names[0] if unit is None else unit
-        rows = {name: f"{name}'s window" for name in JOINTS}
+        rows = {name: f"the {name}'s" for name in JOINTS}
         each = {False: "each row has its own", True: "as in the report"}
         done = {False: "as trained", True: "what training added"}
         super().__init__(
@@ -84,7 +84,7 @@ class WeightReader(_HintonWidget):
                 Choice("subtract", "Subtract the start", done, False, "switch"),
                 Choice("common", "One scale for all", each, False, "switch"),
                 Choice("unit", "Unit", names, unit),
-                Choice("joint", "Row", rows, joint),
+                Choice("joint", "Window", rows, joint),
             ],
             [
                 Panel(

@@ -7,7 +7,7 @@ extras.push((view) => {
   const [chart] = view.charts;
   const drawn = ["positive", "negative"].map((sign) => make("path", { class: sign }));
   const blob = make("rect", { class: "blob", y: 0, height: 22 });
-  const strip = make("svg", { class: "hinton-key row", height: 22, "aria-hidden": "true" }, blob, ...drawn);
+  const strip = make("svg", { class: "hinton-key row", width: 1, height: 22, "aria-hidden": "true" }, blob, ...drawn);
   chart.el.querySelector(".legend").append(strip);
   view.top.append(make("div", { class: "beside" }, chart.el, view.numbers, view.controls));
   view.el.classList.add("ddlib-weights");
@@ -23,7 +23,6 @@ extras.push((view) => {
     });
     drawn.forEach((path, i) => path.setAttribute("d", paths[i]));
     put(blob, { x: left, width: right - left });
-    put(strip, { width: right + 10 });
   }
 
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
