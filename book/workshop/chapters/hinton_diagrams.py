@@ -63,7 +63,7 @@ def printed_windows() -> figures.Illustration:
             axis = figure.add_subplot(place)
             hinton_on(axis, networks[width], ring=rings.get(width))
             sizes = paper.LARGEST_WEIGHT[width], networks[width].largest
-            told = "largest weight {:g}, ours {:.1f}".format(*sizes)
+            told = "largest weight: printed {:g}, ours {:.1f}".format(*sizes)
             axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{told}")
 
     alt = (
