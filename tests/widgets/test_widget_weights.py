@@ -94,7 +94,7 @@ def squares(page) -> np.ndarray:
     """Centre and signed area of the squares above the curve, from left to right."""
     found = []
     for sign, name in ((1, "positive"), (-1, "negative")):
-        path = page.locator(f"svg.row .{name}").get_attribute("d") or ""
+        path = page.locator(f"svg.strip .{name}").get_attribute("d") or ""
         for x, a in re.findall(r"M([\d.-]+) [\d.-]+h([\d.]+)", path):
             found.append((float(x) + float(a) / 2, sign * float(a) ** 2))
     return np.array(sorted(found))

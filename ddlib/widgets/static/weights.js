@@ -7,7 +7,7 @@ extras.push((view) => {
   const [chart] = view.charts;
   const drawn = ["positive", "negative"].map((sign) => make("path", { class: sign }));
   const blob = make("rect", { class: "blob", y: 0, height: 22 });
-  const strip = make("svg", { class: "hinton-key row", width: 1, height: 22, "aria-hidden": "true" }, blob, ...drawn);
+  const strip = make("svg", { class: "hinton-key strip", width: 1, height: 22, "aria-hidden": "true" }, blob, ...drawn);
   chart.el.querySelector(".legend").append(strip);
   view.top.append(make("div", { class: "beside" }, chart.el, view.numbers, view.controls));
   view.el.classList.add("ddlib-weights");
