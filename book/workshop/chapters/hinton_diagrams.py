@@ -52,25 +52,21 @@ def printed_windows() -> figures.Illustration:
     rings = {21: (2 + int(unit), int(joint))}
 
     def draw(figure):
-        wide = figure.get_figwidth() > 5
-        lines = GridSpec(2 if wide else 3, 1, figure)
-        if wide:
-            above = GridSpecFromSubplotSpec(1, 2, lines[0], width_ratios=(14, 24))
-            places = dict(zip(WINDOWS, (above[0], above[1], lines[1])))
-        else:
-            places = dict(zip(WINDOWS, lines))
+        lines = GridSpec(2, 1, figure)
+        above = GridSpecFromSubplotSpec(1, 2, lines[0], width_ratios=(14, 24))
+        places = dict(zip(WINDOWS, (above[0], above[1], lines[1])))
         for k, (width, place) in enumerate(places.items()):
             axis = figure.add_subplot(place)
             hinton_on(axis, networks[width], ring=rings.get(width))
             sizes = paper.LARGEST_WEIGHT[width], networks[width].largest
-            told = "largest weight: printed {:g}, ours {:.1f}".format(*sizes)
+            told = "largest printed {:g}, ours {:.1f}".format(*sizes)
             axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{told}")
 
     alt = (
         "Three Hinton diagrams, of windows of 11, 21 and 41 samples. At 21 the rows of one hidden "
         "unit have a frame. In rows of the two torques a single square at the centre stands out."
     )
-    return figures.illustrate(draw, alt, 7.0, 8.6, narrow_height=15.0)
+    return figures.illustrate(draw, alt, 7.0, 8.6)
 
 
 def _largest() -> dict[str, dict[int, np.ndarray]]:
