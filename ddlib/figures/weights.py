@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from ddlib._check import one_of
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     COLOURS,
@@ -98,7 +99,84 @@ def largest_weight(weights: Weights) -> float:
     return largest
 
 
-def hinton(weights: Weights) -> Illustration:
+def relative_weights(
+    weights: Weights, scale: str = "network", to: Weights | None = None
+) -> Weights:
+    """Weights as parts of the largest, from -1 to 1: what the squares of a Hinton diagram show.
+
+    Parameters
+    ----------
+    weights : Weights
+        One network.
+    scale : {"network", "row"}
+        What a weight is divided by: the largest weight or bias of the whole network, as in the
+        paper; or the largest of its own row, the weights from one joint's window to one unit.
+        Biases and weights between hidden and output units make one row then.
+    to : Weights, optional
+        The network whose largest weights these are; default: `weights`. Larger ones are cut.
+    """
+    one_of("scale", scale, ("network", "row"))
+    to = weights if to is None else to
+    for given in (weights, to):
+        if given.hidden_bias.ndim != 1:
+            raise ValueError("weights must be of one network: pick a member of the ensemble")
+        largest = largest_weight(given)
+    windows, others = (
+        ("hidden_weights", "direct_weights"),
+        ("hidden_bias", "output_weights", "output_bias"),
+    )
+    most = dict.fromkeys((*windows, *others), largest)
+    if scale == "row":
+        most = {name: np.abs(getattr(to, name)).max(-1, keepdims=True) for name in windows}
+        most |= dict.fromkeys(others, max(np.abs(getattr(to, name)).max() for name in others))
+    parts = {name: getattr(weights, name) / np.maximum(size, 1e-300) for name, size in most.items()}
+    return Weights(**{name: np.clip(part, -1, 1) for name, part in parts.items()})
+
+
+def hinton_on(
+    axis: Axes, weights: Weights, scale: str = "network", ring: tuple[int, int] | None = None
+) -> tuple[float, float]:
+    """Draw all weights of a network as `hinton` does; width and height, in the axes' own units.
+
+    Parameters
+    ----------
+    axis : Axes
+    weights, scale
+        As for `hinton`.
+    ring : (int, int), optional
+        Unit, outputs counted first, and joint of a row that gets a frame.
+    """
+    shown = relative_weights(weights, scale)
+    hidden, width = len(shown.hidden_bias), shown.width
+    columns, unit_width, unit_height = 2, width + 3.0, 7.0
+    rows = -(-hidden // columns)
+
+    def blob(column, row, bias, top, window):
+        x, y = column * (unit_width + 1.5), -row * (unit_height + 1.0)
+        box = Rectangle((x, y), unit_width, -unit_height, facecolor="#8c8c8c", lw=0)
+        axis.add_patch(box)
+        dots(axis, bias, x + 1.6, y - 1.4, 1, -1, 1)
+        dots(axis, top, x + unit_width - 0.5 - np.size(top), y - 1.4, 1, -1, 1)
+        dots(axis, window, x + 2.0, y - 4.4, 1, -1.4, 1)
+
+    for k in range(len(shown.output_bias)):
+        blob(k, 0, shown.output_bias[k], shown.output_weights[k], shown.direct_weights[k])
+    for k in range(hidden):
+        blob(k % columns, 1.15 + k // columns, shown.hidden_bias[k],
+             shown.output_weights[:, k], shown.hidden_weights[k])  # fmt: skip
+    if ring:
+        unit, joint = ring
+        outputs = len(shown.output_bias)
+        column, row = unit % columns, (unit >= outputs) * 0.15 + unit // columns
+        corner = column * (unit_width + 1.5) + 1.1, -row * (unit_height + 1.0) - 5.15 - 1.4 * joint
+        axis.add_patch(Rectangle(corner, width + 0.8, 1.5, fc="none", ec=COLOURS[1], lw=1.6))
+    axis.set(xlim=(-0.5, columns * (unit_width + 1.5) - 1.0), aspect="equal")
+    axis.set_ylim(-(rows + 1.15) * (unit_height + 1.0) - 0.5, 0.8)
+    axis.axis("off")
+    return columns * (unit_width + 1.5) - 0.5, (rows + 1.15) * (unit_height + 1.0) + 1.3
+
+
+def hinton(weights: Weights, scale: str = "network") -> Illustration:
     """Figures 5-1 to 5-3: all weights of one network in the paper's recursive layout.
 
     Every grey blob is a unit: the outputs on top (shoulder left, elbow right), the hidden
@@ -110,43 +188,25 @@ def hinton(weights: Weights) -> Illustration:
     ----------
     weights : Weights
         One network.
+    scale : {"network", "row"}
+        What the largest square stands for: the largest weight of the network, as in the paper,
+        or that of each row (`relative_weights`).
     """
-    if weights.hidden_bias.ndim != 1:
-        raise ValueError("weights must be of one network: pick a member of the ensemble")
-    largest = largest_weight(weights)
+    relative_weights(weights, scale)  # before any work
     hidden, width = len(weights.hidden_bias), weights.width
-    columns, unit_width, unit_height = 2, width + 3.0, 7.0
-    rows = -(-hidden // columns)
-
-    def blob(axis, column, row, bias, top, window):
-        x, y = column * (unit_width + 1.5), -row * (unit_height + 1.0)
-        box = Rectangle((x, y), unit_width, -unit_height, facecolor="#8c8c8c", lw=0)
-        axis.add_patch(box)
-        dots(axis, bias, x + 1.6, y - 1.4, 1, -1, largest)
-        dots(axis, top, x + unit_width - 0.5 - np.size(top), y - 1.4, 1, -1, largest)
-        dots(axis, window, x + 2.0, y - 4.4, 1, -1.4, largest)
+    across, down = hinton_on(Figure().subplots(), weights, scale)
 
     def draw(figure: Figure):
-        axis = figure.subplots()
-        for k in range(len(weights.output_bias)):
-            blob(axis, k, 0, weights.output_bias[k], weights.output_weights[k],
-                 weights.direct_weights[k])  # fmt: skip
-        for k in range(hidden):
-            blob(axis, k % columns, 1.15 + k // columns, weights.hidden_bias[k],
-                 weights.output_weights[:, k], weights.hidden_weights[k])  # fmt: skip
-        axis.set(xlim=(-0.5, columns * (unit_width + 1.5) - 1.0), aspect="equal")
-        axis.set_ylim(-(rows + 1.15) * (unit_height + 1.0) - 0.5, 0.8)
-        axis.axis("off")
+        hinton_on(figure.subplots(), weights, scale)
 
+    size = f"has magnitude {weights.largest:.1f}"
     alt = (
         f"Hinton diagram of a network with window {width}: two output units on top, {hidden} "
         f"hidden units below; white squares are positive, black negative weights, the largest "
-        f"has magnitude {largest:.1f}."
+        f"{size if scale == 'network' else 'of each row is of full size'}."
     )
-    total_width = columns * (unit_width + 1.5) - 0.5
-    total_height = (rows + 1.15) * (unit_height + 1.0) + 1.3
     inches = 7.0 if width > 15 else 5.2
-    return illustrate(draw, alt, inches, inches * total_height / total_width + 0.2)
+    return illustrate(draw, alt, inches, inches * down / across + 0.2)
 
 
 def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustration:

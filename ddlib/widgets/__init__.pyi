@@ -45,6 +45,9 @@ from .terms import (
 from .tuner import (
     PIDTuner as PIDTuner,
 )
+from .weights import (
+    WeightReader as WeightReader,
+)
 from .window import (
     SlidingWindow as SlidingWindow,
 )

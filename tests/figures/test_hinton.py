@@ -4,9 +4,12 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from pictures import boxes, drawn
 
-from ddlib.figures import hinton
+from ddlib.figures import COLOURS, hinton
+from ddlib.figures.weights import hinton_on, relative_weights
 from ddlib.learning import Weights
 from workshop.chapters.whole_state_space import hinton_states
 
@@ -106,6 +109,47 @@ def test_inputs_stand_in_their_order(diagram, width):
     else:
         assert upper[0, 1] == lower[0, 1] and upper[-1, 0] < lower[0, 0]
     assert upper[0, 1] > units[3, 2:].mean()  # below biases and weights to the outputs
+
+
+def test_each_row_has_a_scale_of_its_own():
+    """Or is given that of another network, which cuts what is larger."""
+    weights = Weights.random(1, 11, 5)[0]
+    weights.hidden_weights[2, 1] *= 1e-3
+    marks, _ = squares(lambda each: hinton(each, scale="row"), weights)
+    shown = relative_weights(weights, "row")
+    values = np.concatenate([getattr(shown, n).ravel() for n in (*NAMES, "output_weights")])
+    np.testing.assert_allclose(np.sort(marks[:, 3] * marks[:, 2] ** 2), np.sort(values))
+    np.testing.assert_allclose(np.abs(shown.hidden_weights).max(-1), 1)
+    np.testing.assert_allclose(np.abs(shown.direct_weights).max(-1), 1)
+    row = weights.hidden_weights[2, 1]
+    np.testing.assert_allclose(shown.hidden_weights[2, 1], row / np.abs(row).max())
+    half = Weights(*(getattr(weights, name) / 2 for name in NAMES))
+    for scale in ("row", "network"):
+        small = relative_weights(half, scale, weights)
+        assert small.largest == pytest.approx(0.5)
+        assert relative_weights(weights, scale, half).largest == 1
+    with pytest.raises(ValueError, match="scale must be one of"):
+        hinton(weights, scale="unit")
+
+
+@pytest.mark.parametrize("unit, joint", [(1, 0), (2, 1), (5, 0)])
+def test_a_row_gets_a_frame(unit, joint):
+    """Which holds all squares of this row, and no others."""
+    rest = Weights.random(1, 11, 5)[0]
+    axis = Figure().subplots()
+    hinton_on(axis, rest, ring=(unit, joint))
+    frame = next(p for p in axis.patches if to_hex(p.get_edgecolor()) == COLOURS[1]).get_bbox()
+    inside = [
+        p
+        for p in axis.patches
+        if p.get_bbox().width <= 1 and frame.contains(*p.get_bbox().get_points().mean(0))
+    ]
+    rows = np.concatenate([rest.direct_weights, rest.hidden_weights])
+    found = sorted(
+        p.get_bbox().width ** 2 * (1 if to_hex(p.get_facecolor()) == "#ffffff" else -1)
+        for p in inside
+    )
+    np.testing.assert_allclose(found, np.sort(rows[unit, joint]) / rest.largest)
 
 
 def test_refusals():

@@ -6,79 +6,152 @@ from dataclasses import replace
 from math import factorial
 
 import numpy as np
-from matplotlib.patches import Rectangle
+from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 
-from ddlib import figures
-from ddlib.analysis import classify, roughness, savitzky_golay
-from ddlib.figures.weights import dots
-from ddlib.learning import INITIAL, TrainingSet, Weights, cases, surrogate, train_ensemble
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib import figures, paper
+from ddlib.analysis import classify, roughness, savitzky_golay, shares
+from ddlib.figures.weights import hinton_on
+from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
+from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import scientific
+from ddlib.tables import Table, quote, scientific, significant
 from workshop.chapters.exercises import judge
-from workshop.report import committed
+from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 
-def _trained(members: int, initial: float, shifted: bool = False) -> tuple[Weights, Weights]:
+def _trained(members: int, initial: float = INITIAL) -> tuple[Weights, Weights]:
     """Random starts of a size, and what training as in the lesson makes of them."""
-    runs = JOINT_DAMPING.record()[:5]
-    torque = runs.tau[:, runs.motion]
-    torque = (surrogate("shifted", torque) if shifted else torque).reshape(-1, 2)
-    data = TrainingSet.from_arrays(cases(runs, 21)[0], torque)
+    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21)
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
     start = Weights.random(members, 21, initial=initial)
     return start, train_ensemble(start, data, **how)[0].weights
 
 
-def _rows(weights: Weights) -> np.ndarray:
-    """All rows of networks, those of the outputs first: (network, unit, joint, sample)."""
-    return np.concatenate([weights.direct_weights, weights.hidden_weights], 1)
+NOTE = (
+    "Every grey blob is a unit: the two torques on top, the hidden units below. Its upper row "
+    "weights the positions of the shoulder, its lower row those of the elbow; time runs to the "
+    "right. Above the rows are its weights to or from other units, and at the left its bias. Press "
+    "a row, or move to the diagram and use the arrow keys."
+)
+"""What the widget on top of the lesson says of itself."""
 
 
-def diagram() -> figures.Illustration:
-    """Rows for the shoulder's window, from a small and a large start: start, added, their sum."""
-    sizes, parts = (INITIAL, 10 * INITIAL), []
-    for initial in sizes:
-        start, end = (_rows(weights)[0, :, 0] for weights in _trained(1, initial))
-        parts.append((start, end - start, end))
+def before_and_after() -> tuple[Weights, Weights]:
+    """The network that the lesson trains with *Change this* as it is: its start, and trained."""
+    start, trained = _trained(1)
+    return start[0], trained[0]
+
+
+def printed_windows() -> figures.Illustration:
+    """Figures 5-1 to 5-3: networks of windows 11, 21 and 41, with the largest weights."""
+    networks = {w: results.median_network(w, JOINT_DAMPING.name).weights for w in WINDOWS}
+    parts = shares(networks[21].hidden_weights)[..., 1]
+    unit, joint = np.unravel_index(parts.argmax(), parts.shape)
+    rings = {21: (2 + int(unit), int(joint))}
 
     def draw(figure):
-        for line, initial, three in zip(figure.subplots(2, 3), sizes, parts):
-            largest = np.abs(three).max((0, 2))[:, None]
-            titles = f"random start, ±{initial:g}", "added by training", "trained"
-            for axis, title, rows in zip(line, titles, three):
-                axis.add_patch(Rectangle((-0.7, -0.7), 21.4, 12.4, facecolor="#8c8c8c"))
-                dots(axis, rows / largest, 0, 0, 1, 1, 1)
-                axis.set(title=title, xlim=(-0.7, 20.7), ylim=(11.7, -0.7), aspect="equal")
-                axis.axis("off")
+        lines = GridSpec(2, 1, figure)
+        above = GridSpecFromSubplotSpec(1, 2, lines[0], width_ratios=(14, 24))
+        places = dict(zip(WINDOWS, (above[0], above[1], lines[1])))
+        for k, (width, place) in enumerate(places.items()):
+            axis = figure.add_subplot(place)
+            hinton_on(axis, networks[width], ring=rings.get(width))
+            sizes = paper.LARGEST_WEIGHT[width], networks[width].largest
+            told = "largest printed {:g}, ours {:.1f}".format(*sizes)
+            axis.set_title(f"Figure 5-{k + 1}, window {width}:\n{told}")
 
     alt = (
-        "Rows of squares in three columns: without order, smooth, and the sum of both. In the "
-        "first line most of the start is too small to see; in the second its dots stand on the sum."
+        "Three Hinton diagrams, of windows of 11, 21 and 41 samples. At 21 the rows of one hidden "
+        "unit have a frame. In rows of the two torques a single square at the centre stands out."
     )
-    return figures.illustrate(draw, alt, 7.0, 3.5)
+    return figures.illustrate(draw, alt, 7.0, 8.6)
+
+
+def _largest() -> dict[str, dict[int, np.ndarray]]:
+    """Largest weights of 25 networks, by reading and window."""
+    table = results.read("table-4-1")["setups"]
+    return {s: {w: np.array(table[s][str(w)]["largest weight"]) for w in WINDOWS} for s in SETUPS}
+
+
+def largest_weights() -> Table:
+    """Largest weights, printed and ours: medians of 25 networks for each reading."""
+    ours = {s: {w: np.median(x) for w, x in each.items()} for s, each in _largest().items()}
+    rows = [
+        (w, f"{paper.LARGEST_WEIGHT[w]:g}", *(significant(each[w]) for each in ours.values()))
+        for w in WINDOWS
+    ]
+    off = {
+        s: max(np.exp(abs(np.log(each[w] / paper.LARGEST_WEIGHT[w]))) for w in WINDOWS)
+        for s, each in ours.items()
+    }
+    rows.append(("farthest off by a factor of", "", *(significant(x, 2) for x in off.values())))
+    return Table(("window, samples", "printed", *ours), rows)
+
+
+def _dots(width: int = 41) -> np.ndarray:
+    """How far the centre's weight is from its neighbours', over all paths: N m/rad.
+
+    Of each network of the damped arm and each joint's own torque, ``(network, joint)``; in the mean
+    over the windows of the training runs.
+    """
+    model = results.networks(width, JOINT_DAMPING.name)
+    windows = cases(split(JOINT_DAMPING.record())[0], width)[0][::20]
+    centre, shift = width // 2, 1e-4
+    found = []
+    for joint in range(2):
+        slopes = []
+        for sample in (centre - 1, centre, centre + 1):
+            moved = windows.copy()
+            moved[:, joint, sample] += shift
+            change = model.torque(moved) - model.torque(windows)
+            slopes.append(change[..., joint].mean(-1) / shift)
+        found.append(slopes[1] - (slopes[0] + slopes[2]) / 2)
+    return np.stack(found, -1)
+
+
+def _quoted() -> None:
+    """Numbers of the lesson's prose."""
+    for joint, dot, gain in zip(figures.JOINTS, _dots().T, JOINT_DAMPING.controller.kp):
+        quote(f"hinton-dot-{joint}", -np.median(dot))
+        quote(f"hinton-gain-{joint}", gain)
 
 
 def _said() -> None:
     """What the lesson says of smooth and rough parts, in eight networks of each start."""
-    smooth, like, named = [], [], {}
+    smooth, named = [], {}
     for initial in (INITIAL, 10 * INITIAL):
-        for shifted in (False, True):
-            pair = _trained(8, initial, shifted)
-            before, after = map(_rows, pair)
-            smooth.append(resampled(np.median(roughness(after - before), (1, 2))) < 0.05)
-            if not shifted:
-                share = (classify(pair[1].hidden_weights) != "not analysable").mean((1, 2))
-                named[initial] = resampled(share, np.mean)
-            if initial > INITIAL:
-                second = [np.diff(x, 2).reshape(8, -1) for x in (before, after)]
-                like.append(resampled([np.corrcoef(*x)[0, 1] for x in zip(*second)]) > 0.9)
+        start, trained = _trained(8, initial)
+        before, after = map(_rows, (start, trained))
+        added = roughness(after - before)
+        smooth.append(resampled(np.median(added, (1, 2))) < 0.05)
+        share = (classify(trained.hidden_weights) != "not analysable").mean((1, 2))
+        named[initial] = resampled(share, np.mean)
+        if initial == INITIAL:
+            stated("hinton-every-row", resampled((added < 0.2).mean((1, 2)), np.mean) > 0.9)
+            rough = roughness(after)[:, 2:] > 0.3
+            stated("hinton-look-rough", resampled(rough.mean((1, 2)), np.mean) > 0.15)
+        else:
+            second = [np.diff(x, 2).reshape(8, -1) for x in (before, after)]
+            like = resampled([np.corrcoef(*x)[0, 1] for x in zip(*second)])
+            stated("hinton-rough-start", like > 0.9)
     stated("hinton-added-smooth", np.all(smooth, 0))
-    stated("hinton-rough-start", np.all(like, 0))
     small, large = named.values()
     stated("hinton-small-shows", (small > 0.5) & (large < 0.5))
+    falls = []
+    for each in _largest().values():
+        size = [resampled(each[w]) for w in WINDOWS]
+        falls.append((size[0] > size[1]) & (size[1] > size[2]))
+    stated("hinton-falls", np.all(falls, 0))
+    gains = JOINT_DAMPING.controller.kp
+    near = [np.abs(resampled(-dot / gain) - 1) < 0.1 for dot, gain in zip(_dots().T, gains)]
+    stated("hinton-dot", np.all(near, 0))
+
+
+def _rows(weights: Weights) -> np.ndarray:
+    """All rows of networks, those of the outputs first: (network, unit, joint, sample)."""
+    return np.concatenate([weights.direct_weights, weights.hidden_weights], 1)
 
 
 def check(number: int, mine, given) -> None:

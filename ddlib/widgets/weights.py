@@ -1,0 +1,159 @@
+"""The weights of a trained network, less those it started from (section 5.1)."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+from matplotlib.gridspec import GridSpec
+from matplotlib.patches import Rectangle
+
+from ddlib.analysis import roughness
+from ddlib.figures import COLOURS, illustrate
+from ddlib.figures.weights import dots, hinton_on, relative_weights
+from ddlib.learning import Weights
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets._baking.still import START, encoded
+from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
+from ddlib.widgets.hinton import (
+    CENTRE,
+    EXACT,
+    JOINTS,
+    _diagram,
+    _HintonWidget,
+    unit_names,
+    weight_functions,
+)
+from ddlib.widgets.parts.parameters import Choice
+
+_MARGIN = 1.06  # of the axis over the largest weight of a row
+
+
+class WeightReader(_HintonWidget):
+    """Press a row of a Hinton diagram to see it as a curve, and subtract the random start.
+
+    Parameters
+    ----------
+    start, trained : Weights
+        One network before and after training.
+    step : float
+        Sampling period, s.
+    unit, joint : str, optional
+        The row that is shown first: of which unit ("hidden 3"), from whose window. Default: the
+        shoulder's row of the shoulder torque.
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    _esm = module(*SCRIPT, "hinton.js", "weights.js")
+    _css = module(*STYLE, "hinton.css", "weights.css")
+
+    def __init__(
+        self,
+        start: Weights,
+        trained: Weights,
+        step: float = LOG_STEP,
+        *,
+        unit: str | None = None,
+        joint: str = JOINTS[0],
+        **options,
+    ):
+        shapes = [[getattr(w, f.name).shape for f in fields(Weights)] for w in (start, trained)]
+        if shapes[0] != shapes[1] or trained.hidden_bias.ndim != 1:
+            raise ValueError(f"start and trained must be one network, got {start!r}, {trained!r}")
+        parts = [getattr(trained, f.name) - getattr(start, f.name) for f in fields(Weights)]
+        self._shown = {False: trained, True: Weights(*parts)}
+        self._names = names = unit_names(trained)
+        reach, half = trained.width // 2, step * 1e3
+        time = np.arange(-reach, reach + 1) * half
+        scales = {False: "row", True: "network"}
+        self._cells = {
+            (subtract, common): _diagram(relative_weights(weights, scale, trained), reach)
+            for subtract, weights in self._shown.items()
+            for common, scale in scales.items()
+        }
+        unit = names[0] if unit is None else unit
+        rows = {name: f"the {name}'s" for name in JOINTS}
+        each = {False: "each row has its own", True: "as in the report"}
+        done = {False: "as trained", True: "what training added"}
+        super().__init__(
+            trained,
+            reach,
+            self._curves,
+            [
+                Choice("subtract", "Subtract the start", done, False, "switch"),
+                Choice("common", "One scale for all", each, False, "switch"),
+                Choice("unit", "Unit", names, unit),
+                Choice("joint", "Window", rows, joint),
+            ],
+            [
+                Panel(
+                    "The row as a curve: weights",
+                    {"weights": "weight"},
+                    CENTRE,
+                    time,
+                    kind="stems",
+                    y_range=("lowest", "highest"),
+                )
+            ],
+            title="Read the weights",
+            alt=(
+                f"All weights of a trained network as squares, in {len(names)} grey blobs, one "
+                f"for each unit; and a row of the unit {unit}, from the {joint}'s window, as "
+                "squares above and as a curve below."
+            ),
+            scalars=[
+                Scalar("largest", "Largest weight of the row", digits=3),
+                Scalar("roughness", "Roughness of the row (noise: 1)", digits=3),
+            ],
+            depends={
+                "weights of all units": ("subtract", "common"),
+                **dict.fromkeys(("weights", "largest", "roughness"), ("subtract", "unit", "joint")),
+                **dict.fromkeys(("lowest", "highest"), ("unit", "joint")),
+                "full": ("common", "unit", "joint"),
+            },
+            largest="ever",
+            **{"tolerance": EXACT, **options},
+        )
+        self._keep(still=self._drawn())
+
+    def _row(self, subtract, unit, joint) -> np.ndarray:
+        functions = weight_functions(self._shown[subtract])
+        return functions[self._names.index(unit), JOINTS.index(joint)]
+
+    def _curves(self, subtract, common, unit, joint) -> dict:
+        both = [self._row(each, unit, joint) for each in (False, True)]
+        full = self._shown[False].largest if common else np.abs(both[0]).max()
+        return {
+            "weights": both[subtract],
+            "lowest": _MARGIN * min(0.0, np.min(both)),
+            "highest": _MARGIN * max(0.0, np.max(both)),
+            "largest": np.abs(both[subtract]).max(),
+            "roughness": roughness(both[subtract]),
+            "full": full,
+            "weights of all units": self._cells[subtract, common],
+        }
+
+    def _drawn(self) -> str:
+        """The starting state as a picture: the diagram, the row, its curve."""
+        weights, row = self._shown[False], self._row(False, self.unit, self.joint)
+        time = self._panels[0].x
+        step = time[1] - time[0]
+        place = self._names.index(self.unit), JOINTS.index(self.joint)
+
+        def draw(figure):
+            grid = GridSpec(2, 2, figure, height_ratios=(1, 8), width_ratios=(1.1, 1))
+            hinton_on(figure.add_subplot(grid[:, 0]), weights, "row", place)
+            squares, curve = (figure.add_subplot(grid[k, 1]) for k in range(2))
+            squares.add_patch(Rectangle((-0.7, -0.7), row.size + 0.4, 1.4, fc="#8c8c8c", lw=0))
+            dots(squares, row, 0, 0, 1, 1, np.abs(row).max())
+            ends = -0.5, row.size - 0.5
+            squares.set(xlim=ends, ylim=(-0.7, 0.7), aspect="equal")
+            squares.set_title(f"{self.unit}, {self.joint}'s window")
+            squares.axis("off")
+            curve.vlines(time, 0, row, color=COLOURS[0])
+            curve.plot(time, row, "o", ms=4, color=COLOURS[0])
+            curve.set(xlim=(time[0] - step / 2, time[-1] + step / 2), xlabel=CENTRE)
+            curve.set_ylabel("weight")
+
+        return START + encoded(illustrate(draw, self.still_alt, 7.0, 4.2).svg)

@@ -1,0 +1,149 @@
+"""The reader of weights: a row as squares and as a curve, with its start and without."""
+
+from __future__ import annotations
+
+import base64
+import re
+
+import numpy as np
+import pytest
+from scipy.stats import linregress
+from widget_pages import NEXT_FRAME, opened, page_of, settings
+
+from ddlib.learning import Weights
+from ddlib.widgets import WeightReader
+
+WIDTH, HIDDEN = 11, 5
+SIDE = 18.0
+"""Of the largest square above the curve, px."""
+T = np.arange(WIDTH) - WIDTH // 2
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """A start, and the same with a smooth curve in each row."""
+    start, other = Weights.random(2, WIDTH, HIDDEN, initial=0.05)
+    smooth = 0.01 * (T**2 - np.mean(T**2))
+    trained = Weights(
+        start.hidden_weights + smooth * np.arange(1, HIDDEN + 1)[:, None, None],
+        *(getattr(other, name) for name in ("hidden_bias", "output_weights")),
+        start.direct_weights + 5 * smooth,
+        other.output_bias,
+    )
+    return start, trained
+
+
+@pytest.fixture(scope="module")
+def widget(pair):
+    return WeightReader(*pair)
+
+
+def row_of(weights: Weights, unit: str, joint: str) -> np.ndarray:
+    kind, name = unit.split()
+    part = weights.hidden_weights if kind == "hidden" else weights.direct_weights
+    number = int(name) if kind == "hidden" else ("shoulder", "elbow").index(kind)
+    return part[number, ("shoulder", "elbow").index(joint)]
+
+
+def test_curves_are_the_weights_less_the_start(widget, pair):
+    for values in settings(widget, 40, seed=1):
+        start, trained = (row_of(w, values["unit"], values["joint"]) for w in pair)
+        shown, wanted = widget.interpolate(**values), trained - start * values["subtract"]
+        step = 1e-3 * np.abs(trained).max() + 1e-4
+        np.testing.assert_allclose(shown["weights"], wanted, atol=step)
+        assert shown["largest"][0] == pytest.approx(np.abs(wanted).max(), abs=step)
+        low, high = (shown[end][0] for end in ("lowest", "highest"))
+        for both in (trained, trained - start):
+            assert low - step <= both.min() and both.max() <= high + step
+        full = pair[1].largest if values["common"] else np.abs(trained).max()
+        assert shown["full"][0] == pytest.approx(full, rel=1e-3)
+        cells = shown["weights of all units"]
+        row, places = np.clip(wanted / full, -1, 1), range(len(cells) - WIDTH + 1)
+        off = min(np.abs(cells[k : k + WIDTH] - row).max() for k in places)
+        assert off < 2e-3  # it is in the diagram, too
+
+
+def test_what_was_added_is_smooth(widget):
+    for unit in ("hidden 0", "elbow torque"):
+        trained, added = (
+            widget.interpolate(subtract=each, unit=unit)["roughness"][0] for each in (False, True)
+        )
+        assert added < 0.1 and added < trained
+
+
+def test_its_still_has_the_diagram_and_the_curve(widget):
+    svg = base64.b64decode(widget.still.partition(",")[2]).decode()
+    assert svg.count("#8c8c8c") >= HIDDEN + 3 and "shoulder torque" in svg
+    assert "blobs" in widget.still_alt
+
+
+def test_it_refuses_networks_that_are_no_pair(pair):
+    start, trained = pair
+    other = Weights.random(1, WIDTH + 2, HIDDEN)[0]
+    for wrong in ((other, trained), (Weights.random(2, WIDTH), Weights.random(2, WIDTH))):
+        with pytest.raises(ValueError, match="start and trained must be one network"):
+            WeightReader(*wrong)
+    with pytest.raises(ValueError, match="unit must be one of"):
+        WeightReader(start, trained, unit="hidden 9")
+
+
+# In a page without a kernel
+
+
+def squares(page) -> np.ndarray:
+    """Centre and signed area of the squares above the curve, from left to right."""
+    found = []
+    for sign, name in ((1, "positive"), (-1, "negative")):
+        path = page.locator(f"svg.strip .{name}").get_attribute("d") or ""
+        for x, a in re.findall(r"M([\d.-]+) [\d.-]+h([\d.]+)", path):
+            found.append((float(x) + float(a) / 2, sign * float(a) ** 2))
+    return np.array(sorted(found))
+
+
+def assert_shown(page, pair, unit, joint, subtract):
+    page.evaluate(NEXT_FRAME)
+    start, trained = (row_of(w, unit, joint) for w in pair)
+    wanted = trained - start * subtract
+    drawn = squares(page)
+    areas = SIDE**2 * np.clip(wanted / np.abs(trained).max(), -1, 1)
+    shown = np.sqrt(np.abs(areas)) > 0.2  # smaller ones are left out
+    np.testing.assert_allclose(drawn[:, 1], areas[shown], atol=0.02 * SIDE**2)
+    dots = page.locator(".chart > svg > path.dots").get_attribute("d")
+    heights = [float(y) for y in re.findall(r"M[\d.-]+ ([\d.-]+)h0", dots)]
+    assert len(heights) == WIDTH
+    assert linregress(wanted, heights).rvalue == pytest.approx(-1, abs=1e-4)
+    places = [float(x) for x in re.findall(r"M([\d.-]+) [\d.-]+h0", dots)]
+    np.testing.assert_allclose(drawn[:, 0], np.array(places)[shown], atol=0.5)  # square over stem
+
+
+@pytest.mark.browser
+def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
+    here = opened(tmp_path, visit, widget)
+    page = here.page
+    assert_shown(page, pair, "shoulder torque", "shoulder", False)
+    page.locator('[role=gridcell][aria-label="hidden 2, elbow\'s window"]').click(force=True)
+    assert_shown(page, pair, "hidden 2", "elbow", False)
+    switch = page.get_by_label("Subtract the start")
+    switch.press(" ")
+    assert_shown(page, pair, "hidden 2", "elbow", True)
+    page.locator("svg.hinton").first.press("ArrowUp")
+    assert_shown(page, pair, "hidden 2", "shoulder", True)
+    switch.press(" ")
+    assert_shown(page, pair, "hidden 2", "shoulder", False)
+    page.get_by_role("button", name="Reset").click()
+    assert_shown(page, pair, "shoulder torque", "shoulder", False)
+    assert not here.problems
+
+
+@pytest.mark.browser
+def test_the_start_leaves_slowly(tmp_path, visit, widget, pair):
+    page = visit(page_of(tmp_path / "page.html", widget)).page
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 0")
+    assert_shown(page, pair, "hidden 0", "shoulder", False)
+    before = squares(page)
+    page.get_by_label("Subtract the start").press(" ")
+    page.wait_for_timeout(200)
+    between = squares(page)
+    page.wait_for_timeout(1200)
+    assert_shown(page, pair, "hidden 0", "shoulder", True)
+    assert len({before.tobytes(), between.tobytes(), squares(page).tobytes()}) == 3
