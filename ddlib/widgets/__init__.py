@@ -1,12 +1,8 @@
 """Interactive figures: exact with a kernel, interpolated in the built page without one.
 
-<<<<<<< HEAD
-- ``picker``, ``switches``, ``terms``, ``tuner``, ``window``, ``explorer``, ``player``: a widget
-  each, named after what the reader handles; ``hinton``: the diagram that two of them share
-=======
-- ``picker``, ``switches``, ``tuner``, ``window``, ``explorer``, ``player``, ``weights``: a
-  widget each, named after what the reader handles; ``hinton``: the diagram that three of them share
->>>>>>> 41993382e5db5a8520a700fc4c7402a0d641f4be
+- ``picker``, ``switches``, ``terms``, ``tuner``, ``window``, ``explorer``, ``player``,
+  ``weights``: a widget each, named after what the reader handles; ``hinton``: the diagram that
+  three of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
 - ``parts``: parameters, panels, pads; ``_baking``: values and a still for pages without a kernel
