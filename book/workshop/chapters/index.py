@@ -190,7 +190,7 @@ def _area(axis):
 
 
 _PICTURES = {
-    "dynamics": (_dynamics, "An arm of two links in three poses; part of its hand's path is thick."),
+    "dynamics": (_dynamics, "An arm in three poses; a part of its hand's path is thick."),
     "feedback": (_feedback, "A wanted angle, and the arm's, which swings around it."),
     "feedforward": (_feedforward, "A torque that is known before the motion; the loop's, thin."),
     "trajectories-and-recording": (_recording, "Dots: both joints' angles, sample by sample."),
@@ -223,7 +223,7 @@ def station(lesson: str) -> figures.Illustration:
     return figures.Illustration(made.svg, made.alt)  # as small on a phone
 
 
-def quoted() -> None:
+def _quoted() -> None:
     """The numbers of *What comes out*, and what its comparisons rest on."""
     system = cards.of_kind("system")
     quote("index-sentences", len(system))

@@ -149,7 +149,7 @@ function insideOf(world, spec, id) {
     slider.value = Math.round(100 * part);
     write(said, `${slider.value} %`);
     slider.setAttribute("aria-valuetext", said.textContent);
-    write(kinds[0].title, part === 1 ? "left of it" : "one row");
+    write(kinds[0].title, part === 1 ? "what is left" : "one row");
     world.changed?.();
   }
 

@@ -308,7 +308,7 @@ function build({ model, el }) {
   const hint = make("p", { class: "remark" }, spec.hint);
   el.replaceChildren(make(
     "div",
-    { class: "body" },
+    { class: "pieces" },
     make(
       "div",
       { class: "scene" },
