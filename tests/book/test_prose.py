@@ -79,7 +79,7 @@ def checks(page: str) -> list[str]:
     """
     cells = nbformat.read(source(page), as_version=4).cells
     code = [cell.source for cell in cells if cell.cell_type == "code"]
-    if page in WALK:
+    if page in (*WALK, "book/index"):
         module = page.removeprefix("book/").replace("-", "_")
         path = ROOT / "book" / "workshop" / "chapters" / f"{module}.py"
         code += [path.read_text(encoding="utf-8")] if path.is_file() else []

@@ -70,16 +70,16 @@ def test_every_notebook_has_its_time_and_share(parsed):
 
 @pytest.mark.built
 def test_pages_tell_the_time_to_read_them(parsed):
-    """Each chapter, and the four ways through them on the first page."""
+    """Each chapter, and the ten stations of the walk on the first page."""
     told = []
     for name in CHAPTERS:
         text = parsed(name).article.get_text()
         told.append((re.search(r"Time to read\s+(\d+) minutes, counted", text)[1], [source(name)]))
-    for way in parsed("book/index").select("#four-ways-in > ul > li"):
+    for way in parsed("book/index").select("#the-walk > .tag_station + p"):
         pages = [Path(a["href"]).stem for a in way.select("a[href]")]
         minutes = re.search(r"(\d+) minutes", way.get_text())[1]
         told.append((minutes, [ROOT / "book" / f"{name}.ipynb" for name in pages]))
-    assert len(told) >= len(CHAPTERS) + 4
+    assert len(told) == len(CHAPTERS) + 10
     for minutes, paths in told:
         count = sum(map(dd_runtime.words, paths)) / dd_runtime.WORDS_A_MINUTE
         assert abs(int(minutes) - count) <= 5, paths

@@ -13,6 +13,7 @@ from ddlib.setups import JOINT_DAMPING, POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import ThrownArm
 from ddlib.widgets.engine.throw import _REST
+from workshop.chapters.index import both as station_row
 from workshop.report import results
 
 WORLD = """([spec, weights, moves]) => {
@@ -88,15 +89,32 @@ def test_a_throw_is_the_pull_and_then_friction_alone(evaluate, widget):
 
 
 @pytest.mark.browser
-def test_weights_fold_into_a_line_and_a_parabola(evaluate):
+def test_weights_fold_into_a_constant_a_line_and_a_parabola(evaluate):
     n = np.arange(-10, 11)
     for f in results.networks(21).weights.hidden_weights[2, :, 0]:
         got = evaluate("(f) => folded(f)", f.tolist())
-        whole = np.sum([got["line"], got["parabola"], got["left"]], axis=0)
+        parts = [got[name] for name in ("constant", "line", "parabola", "left")]
+        whole = np.sum(parts, axis=0)
         np.testing.assert_allclose(whole, f, atol=1e-12)
-        np.testing.assert_allclose(got["shares"], shares(f)[1:3], atol=1e-9)
+        np.testing.assert_allclose(got["shares"], shares(f)[:3], atol=1e-9)
         left = np.array(got["left"])
-        assert np.abs([left @ n, left @ (n**2 - (n**2).mean())]).max() < 1e-9
+        assert np.abs([left.sum(), left @ n, left @ n**2]).max() < 1e-8
+        assert np.ptp(got["constant"]) == 0
+
+
+def test_it_opens_with_the_row_that_is_most_of_both(widget):
+    parts = shares(results.median_network(21, JOINT_DAMPING.name).weights.hidden_weights)
+    first, line, parabola = widget.spec["units"]
+    chosen = parts[first["unit"], first["joint"]]
+    assert chosen[1] * chosen[2] == (parts[..., 1] * parts[..., 2]).max()
+    assert parts[line["unit"], line["joint"], 1] == parts[..., 1].max()
+    assert parts[parabola["unit"], parabola["joint"], 2] == parts[..., 2].max()
+    assert station_row(results.median_network(21, JOINT_DAMPING.name).weights) == (
+        first["unit"],
+        first["joint"],
+    )
+    for share in chosen[1:3]:
+        assert f"{100 * share:.0f} %" in widget.still_alt
 
 
 # In a page without a kernel
@@ -148,3 +166,34 @@ def test_the_hand_is_pulled_by_pointer_and_keys(tmp_path, visit, widget):
     page.keyboard.down("ArrowLeft")
     page.keyboard.press("Tab")  # leaves the hand
     assert page.evaluate(STATE)["mode"] == "free" and not opened.problems
+
+
+DRAWN = (
+    "[...document.querySelectorAll('.equation canvas')].map((sheet) => sheet.toDataURL().length)"
+)
+
+
+@pytest.mark.browser
+def test_a_row_is_folded_from_the_first_and_by_hand(tmp_path, visit, widget):
+    address = page_of(tmp_path / "page.html", widget)
+    opened = visit(address, **CALM)
+    page, fold = opened.page, opened.page.get_by_role("slider", name="Fold")
+    titles = page.locator(".equation .title")
+    look = page.get_by_role("button", name="Look inside")
+    assert look.get_attribute("aria-expanded") == "true" and fold.input_value() == "100"
+    assert titles.all_inner_texts()[1:] == ["= constant 1 %", "+ line 58 %", "+ parabola 37 %"]
+    whole = page.evaluate(DRAWN)
+    fold.focus()
+    page.keyboard.press("Home")
+    page.evaluate(NEXT_FRAME)
+    assert fold.input_value() == "0" and titles.first.inner_text() == "one row"
+    flat = page.evaluate(DRAWN)
+    assert all(a < b for a, b in zip(flat[2:], whole[2:]))  # line and parabola are still to come
+    press(page, "Most of a line")
+    assert page.locator(".net .unit.chosen").count() == 1 and fold.input_value() == "100"
+    assert "elbow" in page.locator(".inside .remark").first.inner_text()
+    look.click()
+    assert look.get_attribute("aria-expanded") == "false"
+    assert not page.locator(".inside").is_visible()
+    closed = visit(f"{address}?thrown-arm=motion:2,inside:0", **CALM).page
+    assert not closed.locator(".inside").is_visible() and not opened.problems

@@ -1,104 +1,251 @@
-"""The landing page: the walk as a picture of eight stations."""
+"""The landing page: ten small pictures of one motion, one window and one row of one network."""
 
 from __future__ import annotations
+
+import warnings
+from functools import cache
 
 import numpy as np
 from matplotlib.patches import Rectangle
 
 from ddlib import figures
-from ddlib.analysis import shares, upright
+from ddlib.analysis import basis, gains, shares
 from ddlib.figures.weights import dots
-from ddlib.learning import TrainingSet, Weights, train_ensemble
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
+from ddlib.learning import NotConverged, TrainingSet, Weights, cases, solve, surrogate
+from ddlib.setups import JOINT_DAMPING, predict
+from ddlib.tables import quote
+from workshop.report import committed, results
+from workshop.report._measures import filter_trial as trial
+from workshop.report.evidence import cards
+from workshop.report.evidence.statements import resampled, stated
 
-_STATIONS = "arm equations loop recording window network weights filters".split()
+WIDTH = 21
+_SHOWN = 150  # samples of the motion
+_BLUE, _ORANGE, _GREEN, _PINK, *_ = figures.COLOURS
 
 
-def stations(width: int = 21) -> figures.Illustration:
-    """Eight small pictures, from the arm to the filters in a network that is trained for them."""
-    setup, start = JOINT_DAMPING, Weights.random(1, width)
-    recording = setup.record()
-    data = TrainingSet.from_recording(split(recording)[0], width)
-    how = {"momentum": 0.98, "warm_up": 500, "epochs": 4000, "progress": False}
-    network, run = train_ensemble(start, data, **how)[0][0], recording[5]
-    motion, time = run.motion, run.t[run.motion] - run.t[run.motion][0]
-    q = np.rad2deg(run.q_true[motion])
-    blue, orange, green, pink, *_ = figures.COLOURS
+def both(weights: Weights) -> tuple[int, int]:
+    """Hidden unit and joint whose row is most of a line and of a parabola, both at once."""
+    parts = shares(weights.hidden_weights)
+    large = parts[..., 1] * parts[..., 2]
+    return tuple(map(int, np.unravel_index(large.argmax(), large.shape)))
 
-    def arm(axis):
-        for k, at in enumerate((0, 60, 140)):
-            points = setup.arm.lengths * np.exp(1j * np.cumsum(run.q_true[motion][at]))
-            hand = np.cumsum([0, *points])
-            axis.plot(hand.real, hand.imag, "o-", color=blue, alpha=(0.35, 0.6, 1)[k], ms=5, lw=3)
-        axis.set(aspect="equal", xlim=(-0.1, 1.0), ylim=(-0.75, 0.1))
 
-    def equations(axis):
-        axis.text(0, 0.5, r"$\tau = M(q)\,\ddot{q} + c(q, \dot{q})$", fontsize=11, va="center")
-        axis.set(xlim=(0, 1), ylim=(0, 1))
+@cache
+def _network():
+    return results.median_network(WIDTH, JOINT_DAMPING.name)
 
-    def loop(axis):
-        for one, colour in ((STATE_FEEDBACK, green), (setup, orange)):
-            other = one.record()[5]
-            off = other.tracking_error[other.motion][:120, 0]
-            axis.plot(off / np.abs(off).max(), color=colour)
-        axis.axhline(0, color=figures.FAINT, lw=0.7)
 
-    def recording(axis):
-        axis.plot(time[::6], q[::6, 0], ".", color=blue, ms=3)
-        axis.plot(time[::6], q[::6, 1], ".", color=orange, ms=3)
+@cache
+def _row() -> np.ndarray:
+    """The row that is carried through all pictures; `ThrownArm` opens with it."""
+    return _network().weights.hidden_weights[both(_network().weights)]
 
-    def window(axis):
-        axis.plot(time, q[:, 0], color=blue, lw=1)
-        box = Rectangle((0.85, q[:, 0].min()), 0.5, np.ptp(q[:, 0]), color=green, alpha=0.35, lw=0)
-        axis.add_patch(box)
 
-    def units(axis):
-        inputs, hidden, outputs = (
-            np.column_stack([np.full(n, x), np.linspace(-1, 1, n)])
-            for x, n in ((0, 6), (1, 4), (2, 2))
-        )
-        for before, after in ((inputs, hidden), (hidden, outputs), (inputs, outputs)):
-            for a in before:
-                for b in after:
-                    axis.plot(*zip(a, b), color=figures.FAINT, lw=0.4)
-        for layer, colour in ((inputs, blue), (hidden, pink), (outputs, orange)):
-            axis.plot(*layer.T, "o", color=colour, ms=5)
+@cache
+def _motion() -> dict:
+    """The first second and a half of trajectory 6, from one sample to the next."""
+    run = JOINT_DAMPING.record()[5]
+    shown = slice(run.motion.start, run.motion.start + _SHOWN)
+    wanted = run.reference
+    beforehand = JOINT_DAMPING.arm.inverse_dynamics(wanted.q, wanted.qd, wanted.qdd)
+    whole = {
+        "q": run.q,
+        "wanted": wanted.q,
+        "tau": run.tau_true,
+        "beforehand": beforehand + JOINT_DAMPING.effects.friction_torque(wanted.qd),
+    }
+    kept = {name: x[shown] for name, x in whole.items()}
+    kept["told"] = predict(_network(), run)[:_SHOWN]
+    kept["hand"] = JOINT_DAMPING.arm.forward_kinematics(kept["q"])
+    return kept
 
-    def weights(axis):
-        shown = np.concatenate([network.weights.direct_weights[0], *network.weights.hidden_weights])
-        shown = shown[:8, ::2]
-        axis.add_patch(Rectangle((-1, -1), shown.shape[1] + 1, 9, facecolor="#8c8c8c", lw=0))
-        dots(axis, shown, 0, 0, 1, 1, np.abs(shown).max())
-        axis.set(xlim=(-1, shown.shape[1]), ylim=(-1, 8))
 
-    def filters(axis):
-        own = (network.weights.hidden_weights - start.hidden_weights[0]).reshape(-1, width)
-        for derivative, colour in ((1, green), (2, pink)):
-            f = upright(max(own, key=lambda f: shares(f)[derivative]))
-            axis.plot(f / np.abs(f).max(), color=colour)
-        axis.axhline(0, color=figures.FAINT, lw=0.7)
+@cache
+def _window() -> slice:
+    """The samples around the moment at which the shoulder's torque is largest."""
+    centre = int(_motion()["tau"][:, 0].argmax())
+    return slice(centre - WIDTH // 2, centre + WIDTH // 2 + 1)
+
+
+@cache
+def _unrelated() -> np.ndarray:
+    """The same row of a network that learnt torques which were shifted in time."""
+    runs, how = JOINT_DAMPING.record()[:5], JOINT_DAMPING
+    torque = surrogate("shifted", runs.tau[:, runs.motion]).reshape(-1, 2)
+    data = TrainingSet.from_arrays(cases(runs, WIDTH)[0], torque, scaling=how.scaling)
+    start = Weights.random(1, WIDTH, how.hidden, initial=how.initial)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NotConverged)  # it is stopped, as the table's networks are
+        solution = solve(start, data, decay=how.decay, steps=how.steps, progress=False)
+    weights = solution.model.weights[0]
+    return weights.hidden_weights[both(weights)]
+
+
+@cache
+def _inertias() -> dict[str, float]:
+    """What the row, the whole network and the arm make of the shoulder's acceleration, kg m²."""
+    model, (unit, joint) = _network(), both(_network().weights)
+    windows, _ = cases(committed.training(JOINT_DAMPING.name), WIDTH)
+    hidden, output = model.weights.activity(model.scaled(windows))
+    slopes = (hidden * (1 - hidden))[:, unit] * (output * (1 - output))[:, 0]
+    path = slopes.mean() * model.weights.output_weights[0, unit]
+    scale = model.inputs.gain[joint] / model.outputs.gain[0]
+    whole = trial.gains_of(model, windows).whole[0, 0, 2]
+    row = gains(path * scale * _row())[2]
+    return {"the row": row, "network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
+
+
+def _dynamics(axis):
+    hand = _motion()["hand"]
+    for k, alpha in ((0, 0.3), ((_window().start + _window().stop) // 2, 0.6), (-1, 1.0)):
+        axis.plot(*np.vstack([[0, 0], hand[k]]).T, "o-", color=_BLUE, alpha=alpha, ms=5, lw=3)
+    axis.plot(*hand[:, 1].T, color=figures.FAINT, lw=1)
+    axis.plot(*hand[_window(), 1].T, color=_ORANGE, lw=3.5)
+    axis.set(aspect="equal", xlim=(-0.05, 1.0), ylim=(-0.75, 0.05))
+
+
+def _feedback(axis):
+    axis.plot(_motion()["wanted"][:, 0], "--", color=figures.INK, lw=1.2)
+    axis.plot(_motion()["q"][:, 0], color=_BLUE, lw=2)
+
+
+def _feedforward(axis):
+    axis.axhline(0, color=figures.FAINT, lw=0.7)
+    torque = _motion()["beforehand"][:, 0]
+    axis.fill_between(np.arange(_SHOWN), 0, torque, color=_ORANGE, alpha=0.35, lw=0)
+    axis.plot(torque, color=_ORANGE, lw=2)
+    axis.plot(_motion()["tau"][:, 0], color=figures.INK, lw=1)
+
+
+def _recording(axis):
+    at = np.arange(0, _SHOWN, 4)
+    for joint, colour in enumerate((_BLUE, _GREEN)):
+        axis.plot(at, _motion()["q"][at, joint], ".", color=colour, ms=4)
+
+
+def _unit(axis):
+    row = _row()
+    at = np.linspace(0, 1, WIDTH)
+    for x, weight in zip(at, row / np.abs(row).max()):
+        colour = _ORANGE if weight > 0 else figures.INK
+        axis.plot([x, 0.5], [0, 0.8], color=colour, lw=2.5 * abs(weight), zorder=1)
+    axis.plot([0.5, 0.5], [0.8, 1.2], color=figures.INK, lw=1.5, zorder=1)
+    axis.plot(at, 0 * at, "o", color=_BLUE, ms=4.5)
+    axis.plot(0.5, 0.8, "o", ms=13, mfc=_ORANGE, mec=figures.INK)
+    axis.text(0.6, 0.95, "unit", fontsize=8.5)
+    axis.set(ylim=(-0.15, 1.2))
+
+
+def _network_at_work(axis):
+    q, tau, told = (_motion()[name][:, 0] for name in ("q", "tau", "told"))
+    axis.plot(1.3 + (q - q.max()) / np.ptp(q), color=_BLUE, lw=2)
+    axis.add_patch(Rectangle((_window().start, 0.25), WIDTH, 1.1, color=_ORANGE, alpha=0.25, lw=0))
+    centre = _window().start + WIDTH // 2
+    axis.plot(0.75 * tau / np.ptp(tau) - 0.4, color=figures.INK, lw=1)
+    axis.plot(0.75 * told[: centre + 1] / np.ptp(tau) - 0.4, color=_ORANGE, lw=2.5)
+    axis.annotate(
+        "", (centre, 0.75 * told[centre] / np.ptp(tau) - 0.36), (centre, 0.3),
+        arrowprops={"arrowstyle": "->", "color": figures.INK},
+    )  # fmt: skip
+
+
+def _squares(axis):
+    weights = _network().weights.hidden_weights
+    unit, joint = both(_network().weights)
+    rows = weights[:, joint] / np.abs(weights[:, joint]).max(-1, keepdims=True)
+    axis.add_patch(Rectangle((-1, -1), WIDTH + 1, len(rows) + 1, facecolor="#8c8c8c", lw=0))
+    dots(axis, rows, 0, 0, 1, 1, 1)
+    axis.add_patch(Rectangle((-0.8, unit - 0.6), WIDTH + 0.6, 1.2, fill=False, ec=_ORANGE, lw=2.5))
+    axis.set(xlim=(-1.2, WIDTH + 0.2), ylim=(-1.2, len(rows) + 0.2))
+
+
+def _folded(axis):
+    row, along = _row(), basis(WIDTH)
+    axis.axhline(0, color=figures.FAINT, lw=0.7)
+    axis.vlines(np.arange(WIDTH), 0, row, color=_BLUE, alpha=0.45, lw=1.5)
+    axis.plot(row, "o", color=_BLUE, alpha=0.45, ms=3.5)
+    for degree, colour in ((1, _ORANGE), (2, _GREEN)):
+        axis.plot(along[degree] * (along[degree] @ row), color=colour, lw=2.2)
+
+
+def _whose(axis):
+    axis.axhline(0, color=figures.FAINT, lw=0.7)
+    for name, row, colour, x in (("A", _row(), _BLUE, 0), ("B", _unrelated(), _PINK, WIDTH + 3)):
+        axis.plot(x + np.arange(WIDTH), row / np.abs(row).max(), "o-", color=colour, ms=2.5, lw=1.2)
+        axis.text(x + 1, -0.9, name, fontsize=10, fontweight="bold")
+    axis.set(ylim=(-1.1, 1.1))
+
+
+def _area(axis):
+    along = basis(WIDTH)[2]
+    parabola = along * np.sign(along @ _row())
+    x = np.linspace(0, 1, WIDTH)
+    axis.fill_between(x * 8, 4.2, 4.2 + 2.5 * parabola / np.ptp(parabola), color=_GREEN, alpha=0.5)
+    for k, (name, value) in enumerate(_inertias().items()):
+        axis.barh(2 - k, value, color=(_GREEN, _ORANGE, _BLUE)[k], height=0.7)
+        axis.text(value + 0.2, 2 - k, f"{name} {value:.1f}", fontsize=8.5, va="center")
+    axis.text(8.3, 4.2, "kg m²", fontsize=8.5, va="center")
+    axis.set(xlim=(0, 12), ylim=(-0.6, 6))
+
+
+_PICTURES = {
+    "dynamics": (_dynamics, "An arm in three poses; a part of its hand's path is thick."),
+    "feedback": (_feedback, "A wanted angle, and the arm's, which swings around it."),
+    "feedforward": (_feedforward, "A torque that is known before the motion; the loop's, thin."),
+    "trajectories-and-recording": (_recording, "Dots: both joints' angles, sample by sample."),
+    "backpropagation": (_unit, "A window's dots, tied to one unit by thick and thin weights."),
+    "window-networks": (_network_at_work, "A window on an angle; below, a torque told so far."),
+    "hinton-diagrams": (_squares, "Ten rows of black and white squares; one row is framed."),
+    "convolution-filters": (_folded, "The framed row as stems, with its line and its parabola."),
+    "whose-filters": (_whose, "Two smooth rows, A and B, that look much alike."),
+    "inertia-in-the-weights": (_area, "A parabola's area, and bars for row, network and arm."),
+}
+_BANDED = _feedback, _feedforward, _recording
+
+
+def station(lesson: str) -> figures.Illustration:
+    """The small picture of a lesson of the walk."""
+    picture, alt = _PICTURES[lesson]
 
     def draw(figure):
-        pictures = arm, equations, loop, recording, window, units, weights, filters
-        whole = figure.subplots()
-        whole.axis("off")
-        columns = 4 if figure.get_figwidth() > 5 else 2
-        rows = len(pictures) // columns
-        for k, picture in enumerate(pictures):
-            x, y = k % columns / columns, 1 - (1 + k // columns) / rows
-            place = (x + 0.02, y + 0.03, 1 / columns - 0.04, 1 / rows - 0.11)
-            picture(axis := whole.inset_axes(place))
-            axis.set_title(f"{k + 1} {_STATIONS[k]}")
-            axis.set_xticks([])
-            axis.set_yticks([])
-            axis.grid(False)
-            for side in axis.spines.values():
-                side.set_visible(False)
+        axis = figure.subplots()
+        picture(axis)
+        if picture in _BANDED:
+            axis.axvspan(_window().start, _window().stop - 1, color=_ORANGE, alpha=0.2, lw=0)
+        axis.set_xticks([])
+        axis.set_yticks([])
+        axis.grid(False)
+        for side in axis.spines.values():
+            side.set_visible(False)
 
-    alt = (
-        "Eight stations: 1, an arm of two links in three poses; 2, its equation of motion; 3, the "
-        "errors of two loops, one that rings and one that does not; 4, dots of a recorded motion; "
-        "5, a window laid on it; 6, a network with hidden units and direct links; 7, its weights "
-        "as black and white squares; 8, two filters: what learning added to two rows of them."
+    made = figures.illustrate(draw, alt, 2.0, 1.4)
+    return figures.Illustration(made.svg, made.alt)  # as small on a phone
+
+
+def _quoted() -> None:
+    """The numbers of *What comes out*, and what its comparisons rest on."""
+    system = cards.of_kind("system")
+    quote("index-sentences", len(system))
+    quote("index-reproduced", cards.tally(system)["reproduced"])
+    at = trial.row(WIDTH)
+    found = {"real": at["real"], **{kind: at["nulls"][kind] for kind in ("shifted", "phases")}}
+    velocity, acceleration = (
+        {kind: trial.share(x, "hidden", [name]) for kind, x in found.items()}
+        for name in ("velocity", "acceleration")
     )
-    return figures.illustrate(draw, alt, 7.4, 3.2, narrow_height=6.0)
+    unrelated = [resampled(acceleration[kind], np.mean) for kind in ("shifted", "phases")]
+    real = resampled(acceleration["real"], np.mean)
+    stated("index-acceleration-of-the-arm", real > 2 * np.max(unrelated, 0))
+    least = min(velocity[kind].mean() for kind in ("shifted", "phases"))
+    stated("index-velocity-of-any", bool(least >= velocity["real"].mean()))
+    inertia, own = np.array(at["real"]["gains"])[:, 0, 0, 2], trial.arm_gains()[0, 0, 2]
+    quote("index-inertia", np.median(inertia))
+    quote("index-inertia-arm", own)
+    stated("index-inertia-near", np.abs(resampled(inertia) / own - 1) < 0.25)
+    rivals = results.read("tuned")["rivals"]
+    network, known = (
+        np.array(rivals[name]["errors"]["trajectory 6"])
+        for name in ("network of 1988", "identified")
+    )
+    stated("index-rivals", resampled(known / network[: len(known)]) < 1)

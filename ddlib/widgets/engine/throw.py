@@ -5,23 +5,24 @@ from __future__ import annotations
 import numpy as np
 import traitlets as t
 
-from ddlib.analysis import shares
-from ddlib.figures import JOINTS
+from ddlib.analysis import basis, shares
+from ddlib.figures import COLOURS, DASHES, FAINT, INK, JOINTS, illustrate
 from ddlib.learning import TorqueModel
 from ddlib.paper import TEST_TRAJECTORY
 from ddlib.setups import JOINT_DAMPING, Setup, predict
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
-from ddlib.widgets._baking.still import still_picture
+from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import STYLE, _PageWidget, module
 from ddlib.widgets.engine._plain import ENGINE, _weight_bytes, gains, lean, network, plant
-from ddlib.widgets.parts.panels import Panel
 
 _REST = 0.4  # s between two motions that are played: longer than half a window
 _FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
 _SPRING = 150.0  # N/m, stiffness of the pull on the hand
 _TOSS_RATE = 4.0  # rad/s^2, largest acceleration that the button gives the joints,
 _TOSS_SECONDS = 0.4  # and for how long
+
+_PARTS = "constant", "line", "parabola"
 
 _HINT = (
     "Grab the hand and throw it, or focus it and hold an arrow key. Friction slows the arm; under "
@@ -94,35 +95,68 @@ def _trajectory(k: int) -> dict:
 
 
 def _units(model: TorqueModel) -> list[dict]:
-    """The hidden units whose weights from one joint's window lie closest to a line, a parabola."""
+    """The hidden units whose weights from one joint's window lie closest to a line, a parabola.
+
+    First the one in which both are large; it is the one that is shown.
+    """
     parts = shares(model.weights.hidden_weights)
+    line, parabola = parts[..., 1], parts[..., 2]
+    wanted = {"both": line * parabola, "a line": line, "a parabola": parabola}
     units = []
-    for kind, degree in (("line", 1), ("parabola", 2)):
-        unit, joint = np.unravel_index(parts[..., degree].argmax(), parts.shape[:2])
-        label = f"The unit closest to a {kind}"
+    for kind, share in wanted.items():
+        unit, joint = np.unravel_index(share.argmax(), share.shape)
+        label = "A row with both" if kind == "both" else f"Most of {kind}"
         units.append({"label": label, "unit": int(unit), "joint": int(joint)})
     return units
 
 
 def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
-    """A motion with true torques and the network's, and what the picture shows."""
+    """A motion with true torques and the network's, a row folded, and what the picture shows."""
     recording = setup.record(APPENDIX_I[[TEST_TRAJECTORY - 1]])[0]
     moving = recording.motion
     time, told = recording.t[moving], predict(model, recording)
-    curves = {
-        f"{joint} angle": np.rad2deg(recording.q[moving, j]) for j, joint in enumerate(JOINTS)
-    }
-    for j, joint in enumerate(JOINTS):
-        curves[f"{joint} true"] = recording.tau_true[moving, j]
-        curves[f"{joint} network"] = told[:, j]
-    angles = {f"{joint} angle": joint for joint in JOINTS}
-    panels = [Panel("Positions that the network sees, °", angles, "time, s", time)]
-    for joint in JOINTS:
-        lines = {f"{joint} true": "true", f"{joint} network": "network"}
-        panels.append(Panel(f"{joint.title()} torque, N m", lines, "time, s", time))
+    unit = _units(model)[0]
+    row = model.weights.hidden_weights[unit["unit"], unit["joint"]]
+    at, along = np.arange(len(row)) - len(row) // 2, basis(len(row))[:3]
+    parts = along * (along @ row)[:, None]
+    part = [f"{100 * share:.0f} %" for share in shares(row)]
+    most = 1.1 * np.abs(row).max()
+    hand = setup.arm.forward_kinematics(recording.q_true[moving])
+
+    def motion(arm, angles, *torques):
+        arm.plot(*hand[:, 1].T, color=FAINT, lw=1)
+        for k, alpha in ((0, 0.3), (45, 0.55), (len(hand) // 2, 1.0)):
+            x, y = np.vstack([[0, 0], hand[k]]).T
+            arm.plot(x, y, "o-", color=COLOURS[0], alpha=alpha, lw=3)
+        arm.set(title="The arm", aspect="equal")
+        arm.axis("off")
+        for j, (joint, axis) in enumerate(zip(JOINTS, torques)):
+            angles.plot(time, np.rad2deg(recording.q[moving, j]), DASHES[j], label=joint)
+            axis.plot(time, recording.tau_true[moving, j], color=INK, label="true")
+            axis.plot(time, told[:, j], "--", color=COLOURS[1], label="network")
+            axis.set(title=f"{joint.title()} torque, N m", xlabel="time, s")
+        angles.set(title="Positions, °", xlabel="time, s")
+        for axis in (angles, *torques):
+            axis.legend()
+
+    def folded(whole, *axes):
+        names = (f"{kind} {share}" for kind, share in zip(_PARTS, part))
+        titles = ("one row of weights", *(f"{'+' if k else '='} {n}" for k, n in enumerate(names)))
+        for axis, title, values, k in zip((whole, *axes), titles, (row, *parts), (0, 3, 1, 2)):
+            axis.vlines(at, 0, values, color=COLOURS[k])
+            axis.plot(at, values, "o", ms=4, color=COLOURS[k])
+            axis.set(title=title, xlabel="sample", ylim=(-most, most))
+
+    def draw(figure):
+        above, below = figure.subplots(2, 4)
+        motion(*above)
+        folded(*below)
+
+    joint = JOINTS[unit["joint"]]
     alt = (
-        f"The arm's joint angles along trajectory {TEST_TRAJECTORY} over three seconds; beside "
-        "them, for shoulder and elbow, the true torque and the torque that a network tells from "
-        "windows of these angles."
+        f"The arm along trajectory {TEST_TRAJECTORY}, its joint angles over three seconds and, for "
+        "shoulder and elbow, the true torque and the torque that a network tells from windows of "
+        f"these angles. Below, the weights of one hidden unit for the {joint}, and their three "
+        f"parts: a constant, a line with {part[1]} and a parabola with {part[2]} of their energy."
     )
-    return still_picture(curves, panels, {}, None, alt), alt
+    return START + encoded(illustrate(draw, alt, 11.0, 5.0).svg), alt

@@ -19,7 +19,7 @@ function sheet(height, label = "") {
 // The colours of the page, by the names of their variables.
 function coloursOf(el) {
   const style = getComputedStyle(el);
-  const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2"];
+  const names = ["ink", "soft", "line", "paper", "c0", "c1", "c2", "c3"];
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }
 

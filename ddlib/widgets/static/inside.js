@@ -1,5 +1,54 @@
-// "Look inside": the weights of one hidden unit, folded into a line and a parabola, and what these
-// two measure while the arm moves. Follows world.js and running.js.
+// "Look inside": one row of the network's weights, folded into a constant, a line and a parabola, and
+// what the latter two measure while the arm moves. Follows world.js and running.js.
+
+// The network from window to torques, with one row of its weights marked. Activity fills its units.
+function netOf(hidden) {
+  const [wide, high, dots] = [168, 112, 7];
+  const spread = (n, from, to) => Array.from({ length: n }, (_, k) => from + ((to - from) * k) / (n - 1));
+  const windows = [spread(dots, 6, 76), spread(dots, 92, wide - 6)];
+  const units = spread(hidden, 12, wide - 12);
+  const outputs = [wide / 2 - 24, wide / 2 + 24];
+  const [inputY, hiddenY, outputY] = [88, 46, 10];
+  const lines = (froms, y0, tos, y1) =>
+    froms.flatMap((a) => tos.map((b) => `M${short(a)} ${y0}L${short(b)} ${y1}`)).join("");
+  const faint = make("path", {
+    class: "faint",
+    d: lines(windows.flat(), inputY, units, hiddenY) + lines(units, hiddenY, outputs, outputY),
+  });
+  const marked = make("path", { class: "marked" });
+  const circles = units.map((x) => make("circle", { class: "unit", cx: short(x), cy: hiddenY, r: 6 }));
+  const places = windows.flatMap((xs, j) =>
+    xs.map((x) => make("circle", { class: j ? "elbow" : "shoulder", cx: short(x), cy: inputY, r: 3 })),
+  );
+  const ends = outputs.map((x) => make("circle", { class: "output", cx: x, cy: outputY, r: 6 }));
+  const name = (x, y, text, anchor) => make("text", { x, y, "text-anchor": anchor }, text);
+  const names = [
+    name(41, high - 4, "shoulder", "middle"),
+    name(127, high - 4, "elbow", "middle"),
+    name(0, outputY + 4, "torques", "start"),
+  ];
+  const el = make(
+    "svg",
+    { class: "net", viewBox: `0 0 ${wide} ${high}`, role: "img" },
+    ...[faint, marked, ...places, ...circles, ...ends, ...names],
+  );
+  const choose = ({ unit, joint }) => {
+    put(marked, {
+      class: `marked ${joint ? "elbow" : "shoulder"}`,
+      d: lines(windows[joint], inputY, [units[unit]], hiddenY),
+    });
+    circles.forEach((circle, k) => circle.classList.toggle("chosen", k === unit));
+    el.setAttribute("aria-label", `The network: from the windows of both joints to ${hidden} hidden units, one of them marked, and to two torques`);
+  };
+  const shown = new Array(hidden).fill(-1);
+  const draw = (activity) => {
+    activity?.forEach((value, k) => {
+      const part = Math.round(50 * value) / 50;
+      if (part !== shown[k]) put(circles[k], { "fill-opacity": (shown[k] = part) });
+    });
+  };
+  return { el, choose, draw };
+}
 
 function insideOf(world, spec, id) {
   const { net } = world.model;
@@ -8,39 +57,37 @@ function insideOf(world, spec, id) {
   let parts = null;
   let frame = 0;
 
-  const orange = { colour: "c1", width: 2, dash: [6, 3] };
-  const both = (truth, told) => [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...orange, of: told }];
-  const rows = [
-    {
-      colour: "c0",
-      title: make("span"),
-      live: ["Activity of the unit", [0, 1], [{ ...orange, dash: [], of: (s) => s.hidden?.[chosen.unit] }]],
-    },
-    {
-      colour: "c1",
-      title: make("span"),
-      live: ["velocity, rad/s", [-1, 1], both((s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint])],
-      pair: ["velocity", "what the line measures"],
-    },
-    {
-      colour: "c2",
-      title: make("span"),
-      live: ["acceleration, rad/s²", [-8, 8], both((s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint])],
-      pair: ["acceleration", "what the parabola measures"],
-    },
+  // The row, and what it is folded into
+  const drawing = netOf(spec.network.layout.hidden);
+  const kinds = [
+    { name: "what is left", colour: "c0" },
+    { name: "constant", colour: "c3" },
+    { name: "line", colour: "c1" },
+    { name: "parabola", colour: "c2" },
   ];
-  const cells = rows.map((row, k) => {
-    const [what, [low, high], lines] = row.live;
-    row.stems = stems({ height: 84, label: "Weights", colour: row.colour });
-    row.chart = timeChart({ height: k === 2 ? 110 : 84, label: what, low, high, lines, bottom: k === 2 });
-    row.name = make("span");
-    const pair = row.pair ? [keyOf("ink", row.pair[0]), keyOf("c1 dashed", row.pair[1])] : [];
-    return make(
-      "div",
-      { class: "fold-row" },
-      make("div", {}, make("div", { class: "title" }, row.title), row.stems.el),
-      make("div", {}, make("div", { class: "title" }, row.name), make("div", { class: "legend" }, ...pair), row.chart.el),
-    );
+  for (const kind of kinds) {
+    kind.title = make("span");
+    kind.stems = stems({ height: 84, label: kind.name, colour: kind.colour });
+  }
+  const equation = make(
+    "div",
+    { class: "equation" },
+    make("div", { class: "whole" }, drawing.el),
+    ...kinds.map(({ title, stems }) => make("div", {}, make("div", { class: "title" }, title), stems.el)),
+  );
+
+  // What line and parabola measure
+  const told = { colour: "c1", width: 2, dash: [6, 3] };
+  const charts = [
+    ["velocity", "rad/s", "line", 1, (s) => s.v[chosen.joint], (s) => s.rates?.[chosen.joint]],
+    ["acceleration", "rad/s²", "parabola", 8, (s) => s.a[chosen.joint], (s) => s.bends?.[chosen.joint]],
+  ].map(([what, unit, shape, high, truth, of]) => {
+    const lines = [{ colour: "ink", width: 2.5, dash: [], of: truth }, { ...told, of }];
+    const chart = timeChart({ height: 110, label: `${what} over three seconds`, low: -high, high, lines, bottom: true });
+    const title = make("div", { class: "title" });
+    const legend = make("div", { class: "legend" });
+    legend.append(keyOf("ink", what), keyOf("c1 dashed", `from the ${shape}`));
+    return { chart, title, quantity: `${what}, ${unit}`, el: make("div", {}, title, legend, chart.el) };
   });
 
   const choices = spec.units.map((unit) =>
@@ -62,11 +109,12 @@ function insideOf(world, spec, id) {
   hint.append("At rest velocity and acceleration are zero, and so is what a line and a parabola measure. ");
   const el = make(
     "div",
-    { class: "inside", id: `${id}-inside`, hidden: "" },
+    { class: "inside", id: `${id}-inside` },
+    equation,
     make("div", { class: "choices" }, ...choices, make("div", { class: "slider" }, label, said, slider)),
     words,
     hint,
-    ...cells,
+    make("div", { class: "measured" }, ...charts.map((one) => one.el)),
   );
 
   function choose(unit) {
@@ -74,21 +122,24 @@ function insideOf(world, spec, id) {
     choices.forEach((button, k) => button.setAttribute("aria-pressed", spec.units[k] === unit));
     const at = (unit.unit * 2 + unit.joint) * net.width;
     const weights = net.hiddenWeights.subarray(at, at + net.width);
-    parts = { ...folded(weights), largest: Math.max(...Array.from(weights, Math.abs)) };
-    const [line, parabola] = parts.shares.map((x) => `${Math.round(100 * x)} %`);
+    parts = { ...folded(weights), weights, largest: Math.max(...Array.from(weights, Math.abs)) };
+    const [constant, line, parabola] = parts.shares.map((x) => `${Math.round(100 * x)} %`);
     const joint = NAMES[unit.joint];
-    write(rows[1].title, `a line: ${line}`);
-    write(rows[2].title, `a parabola: ${parabola}`);
-    write(rows[0].name, `Activity of hidden unit ${unit.unit}`);
-    write(rows[1].name, `${joint[0].toUpperCase()}${joint.slice(1)} velocity, rad/s`);
-    write(rows[2].name, `${joint[0].toUpperCase()}${joint.slice(1)} acceleration, rad/s²`);
-    rows[1].stems.el.setAttribute("aria-label", `A line, ${line} of the weights' energy`);
-    rows[2].stems.el.setAttribute("aria-label", `A parabola, ${parabola} of the weights' energy`);
-    const means = "Under a window a line measures velocity, a parabola acceleration.";
+    [constant, line, parabola].forEach((share, k) => {
+      const { name, title, stems } = kinds[k + 1];
+      write(title, `${k ? "+" : "="} ${name} ${share}`);
+      stems.el.setAttribute("aria-label", `A ${name}, ${share} of the weights' energy`);
+    });
+    kinds[0].stems.el.setAttribute("aria-label", `The ${net.width} weights of the row, pale, and what is left of them`);
+    for (const { title, quantity } of charts) {
+      write(title, `${joint[0].toUpperCase()}${joint.slice(1)} ${quantity}`);
+    }
+    drawing.choose(unit);
     write(
       words,
-      `Hidden unit ${unit.unit} weights the ${net.width} positions of the ${joint} like this: ${line} ` +
-        `of the weights' energy lies on a line, ${parabola} on a parabola. ${means}`,
+      `This row weights the ${net.width} positions of the ${joint} for the marked hidden unit: ${line} of its ` +
+        `energy lies on a straight line, ${parabola} on a parabola. Under a window a line measures ` +
+        `velocity, a parabola acceleration.`,
     );
     set(fold);
   }
@@ -98,7 +149,7 @@ function insideOf(world, spec, id) {
     slider.value = Math.round(100 * part);
     write(said, `${slider.value} %`);
     slider.setAttribute("aria-valuetext", said.textContent);
-    write(rows[0].title, part === 0 ? "weights" : part === 1 ? "what is left" : "weights, less the two");
+    write(kinds[0].title, part === 1 ? "what is left" : "one row");
     world.changed?.();
   }
 
@@ -116,24 +167,31 @@ function insideOf(world, spec, id) {
     frame = requestAnimationFrame(turn);
   }
 
-  const api = { el, hint, open: false };
+  // It stands open, folded.
+  const api = { el, hint, open: true, unfold };
+  api.close = () => {
+    api.open = false;
+    el.hidden = true;
+  };
   api.toggle = () => {
-    api.open = el.hidden;
-    el.hidden = !el.hidden;
+    if (api.open) return api.close();
+    api.open = true;
+    el.hidden = false;
     api.resize();
-    if (api.open) unfold();
+    unfold();
   };
   api.resize = () => {
-    if (api.open) for (const row of rows) [row.stems, row.chart].forEach((place) => place.resize());
+    if (api.open) for (const place of [...kinds.map((one) => one.stems), ...charts.map((one) => one.chart)]) place.resize();
   };
   api.draw = (samples, phase, colours) => {
     if (!api.open) return;
-    const { left, line, parabola, largest } = parts;
-    const rest = left.map((x, i) => x + (1 - fold) * (line[i] + parabola[i]));
-    rows[0].stems.draw(rest, largest, colours);
-    rows[1].stems.draw(line.map((x) => fold * x), largest, colours);
-    rows[2].stems.draw(parabola.map((x) => fold * x), largest, colours);
-    rows.forEach((row) => row.chart.draw(samples, phase, colours));
+    const { weights, left, constant, line, parabola, largest } = parts;
+    const three = [constant, line, parabola];
+    const rest = left.map((x, i) => x + (1 - fold) * (constant[i] + line[i] + parabola[i]));
+    kinds[0].stems.draw(rest, largest, colours, weights);
+    three.forEach((part, k) => kinds[k + 1].stems.draw(part.map((x) => fold * x), largest, colours));
+    charts.forEach(({ chart }) => chart.draw(samples, phase, colours));
+    drawing.draw(samples[samples.length - 1 - world.half]?.hidden);
     hint.hidden = !world.still();
   };
   api.stop = () => cancelAnimationFrame(frame);

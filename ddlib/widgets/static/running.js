@@ -144,11 +144,12 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
   return place;
 }
 
-// Weights over a window as stems; `values` and the size of the largest are given at each drawing.
+// Weights over a window as stems; `values` and the size of the largest are given at each drawing,
+// and what stands pale behind them, if anything does.
 function stems({ height, label, colour }) {
   const place = sheet(height, label);
   const { pen } = place;
-  place.draw = (values, largest, colours) => {
+  place.draw = (values, largest, colours, pale = []) => {
     const { width } = place;
     const pitch = (width - 16) / (values.length - 1);
     const y = (value) => height / 2 - (value / largest) * (height / 2 - 5);
@@ -158,16 +159,21 @@ function stems({ height, label, colour }) {
     pen.lineTo(width - 2, y(0));
     stroke(pen, colours.soft, 1);
     pen.fillStyle = colours[colour];
-    values.forEach((value, i) => {
+    const size = Math.min(3, 0.45 * pitch);
+    const each = (value, i) => {
       const x = 8 + i * pitch;
       pen.beginPath();
       pen.moveTo(x, y(0));
       pen.lineTo(x, y(value));
       stroke(pen, colours[colour], 1.5);
       pen.beginPath();
-      pen.arc(x, y(value), 3, 0, 7);
+      pen.arc(x, y(value), size, 0, 7);
       pen.fill();
-    });
+    };
+    pen.globalAlpha = 0.3;
+    pale.forEach(each);
+    pen.globalAlpha = 1;
+    values.forEach(each);
   };
   return place;
 }

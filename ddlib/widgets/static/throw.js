@@ -77,7 +77,7 @@ function build({ model, el }) {
   const motions = spec.trajectories.length;
   world.play(motions - 1);
   while (world.mode === "play") world.period();
-  const [, given, open] = location.search.match(/[?&]thrown-arm=motion:(\d)(,inside:1)?/) ?? [];
+  const [, given, inner] = location.search.match(/[?&]thrown-arm=motion:(\d)(?:,inside:([01]))?/) ?? [];
   world.play(Number(given ?? 0));
   for (let k = (spec.rest + 0.6 * spec.motion) / spec.step; k > 0; k--) world.period();
 
@@ -85,7 +85,7 @@ function build({ model, el }) {
   const { low, gain, first } = spec.network.inputs;
   const apart = Math.round(1e3 * spec.step * spec.every);
   const band = strip({
-    height: 112,
+    height: 88,
     label: `Positions of both joints run under a window of ${width} samples`,
     width,
     lows: low,
@@ -93,7 +93,7 @@ function build({ model, el }) {
   });
   const torques = ["Shoulder", "Elbow"].map((joint, j) =>
     timeChart({
-      height: j ? 128 : 98,
+      height: j ? 104 : 76,
       label: `${joint} torque over the last three seconds: the true one and the network's`,
       low: -spec.torques[j],
       high: spec.torques[j],
@@ -224,14 +224,15 @@ function build({ model, el }) {
     look.setAttribute("aria-expanded", inside.open);
     draw();
   });
-  look.setAttribute("aria-expanded", "false");
+  if (inner === "0") inside.close();
+  look.setAttribute("aria-expanded", inside.open);
   look.setAttribute("aria-controls", inside.el.id);
 
   // The state to take along; the common frame is too heavy for the first page.
   const address = () => {
     const url = new URL(location.href);
     url.searchParams.delete("thrown-arm");
-    const state = `thrown-arm=motion:${world.shown}${inside.open ? ",inside:1" : ""}`;
+    const state = `thrown-arm=motion:${world.shown}${inside.open ? "" : ",inside:0"}`;
     return `${url.origin === "null" ? "file://" : url.origin}${url.pathname}${url.search ? `${url.search}&` : "?"}${state}`;
   };
   const copies = (text, what, write) =>
@@ -305,7 +306,9 @@ function build({ model, el }) {
 
   const title = (...parts) => make("div", { class: "title" }, ...parts);
   const hint = make("p", { class: "remark" }, spec.hint);
-  el.replaceChildren(
+  el.replaceChildren(make(
+    "div",
+    { class: "pieces" },
     make(
       "div",
       { class: "scene" },
@@ -323,12 +326,11 @@ function build({ model, el }) {
       ),
     ),
     make("div", { class: "words" }, said, outside),
+    inside.el,
     errors,
     hint,
-    make("div", { class: "buttons" }, ...taken),
-    inside.el,
-  );
-  if (open) look.click();
+    make("div", { class: "buttons taken" }, ...taken),
+  ));
   world.changed = () => frame || draw();
   say(`Paused on ${named()}. Grab the hand and let go, or press Play.`);
 
@@ -354,6 +356,7 @@ function build({ model, el }) {
       left = moving;
     } else if (!greeted) {
       greeted = true;
+      if (inside.open) inside.unfold();
       say(`Playing ${named()}.`);
       start();
     } else if (left) start();

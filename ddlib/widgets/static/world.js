@@ -150,15 +150,16 @@ function parabolaOf(half) {
   return bowl.map((x) => x / gain);
 }
 
-// Weights as a line, a parabola and what is left, and the two's shares of the energy.
+// Weights as a constant, a line, a parabola and what is left, and the three's shares of the energy.
 function folded(weights) {
   const half = weights.length >> 1;
   const onto = (shape) => {
     const factor = along(shape, weights) / along(shape, shape);
     return shape.map((x) => factor * x);
   };
-  const [line, parabola] = [onto(lineOf(half)), onto(parabolaOf(half))];
-  const share = (part) => along(part, part) / along(weights, weights);
-  const left = Array.from(weights, (x, i) => x - line[i] - parabola[i]);
-  return { line, parabola, left, shares: [share(line), share(parabola)] };
+  const three = [windowed(half, () => 1), lineOf(half), parabolaOf(half)].map(onto);
+  const [constant, line, parabola] = three;
+  const shares = three.map((part) => along(part, part) / along(weights, weights));
+  const left = Array.from(weights, (x, i) => x - constant[i] - line[i] - parabola[i]);
+  return { constant, line, parabola, left, shares };
 }
