@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 
 from ddlib import figures
-from ddlib.analysis import classify, decompose
+from ddlib.analysis import classify, decompose, gains, mean_gradient
 from ddlib.dynamics import IMI_ARM
-from ddlib.learning import TARGET_RANGE, TrainingSet, Weights, p_value, train_ensemble
+from ddlib.learning import TrainingSet, Weights, cases as cases_of, p_value, train_ensemble
 from ddlib.setups import (
     INITIAL,
     SETUPS,
@@ -30,7 +30,7 @@ from workshop.report.studies.start import RANGES, SOLVED, agreement, chosen
 PRINTED = "0 to 1"
 """Range of the inputs that the report prints."""
 
-SHOWN = (1.0, 0.3, 0.1, 0.01)
+SHOWN = (1.0, 0.3, 0.1, INITIAL)
 """Ranges whose unit the first figure shows."""
 
 
@@ -225,15 +225,16 @@ def beside_unrelated() -> figures.Illustration:
     return figures.illustrate(draw, alt, 7.0, 4.0)
 
 
-def other_torques(members: int = 8) -> dict[str, float]:
-    """Share of hidden acceleration filters in the walk's network, by the torques it learns.
+def other_torques(members: int = 8) -> dict[str, tuple[float, float]]:
+    """Acceleration filters in the walk's network, and its inertia, by the torques it learns.
 
     The arm's own, those that another arm would need along the same motion, and the arm's with
-    shoulder and elbow exchanged. Trained as the page is made.
+    shoulder and elbow exchanged: the share of hidden filters, and by the mean gradient the
+    shoulder's inertia in kg m², in the median. Trained as the page is made.
     """
     recording = TRIAL.record()
     training = split(recording)[0]
-    data = TrainingSet.from_recording(training, 21, scaling=TRIAL.scaling)
+    windows, _ = cases_of(training, 21)
     states = np.moveaxis(true_states(training, TRIAL), -1, 0)
     wanted = {
         "own": training.tau[:, training.motion],
@@ -242,19 +243,21 @@ def other_torques(members: int = 8) -> dict[str, float]:
     }
     found = {}
     for name, torque in wanted.items():
-        given = replace(data, y=_to_targets(torque.reshape(-1, 2)))
+        given = TrainingSet.from_arrays(windows, torque.reshape(-1, 2), scaling=TRIAL.scaling)
         model, *_ = train_ensemble(
             Weights.random(members, 21, initial=INITIAL), given, rate=TRIAL.rate / 21,
             momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
         )  # fmt: skip
-        found[name] = float((classify(model.weights.hidden_weights) == "acceleration").mean())
+        share = (classify(model.weights.hidden_weights) == "acceleration").mean()
+        inertia = np.median(gains(mean_gradient(model, windows))[:, 0, 0, 2])
+        found[name] = float(share), float(inertia)
     return found
 
 
-def _to_targets(torque) -> np.ndarray:
-    """Torques scaled to the range of the output units."""
-    low, high = TARGET_RANGE
-    return low + (high - low) * (torque - torque.min(0)) / np.ptp(torque, axis=0)
+def other_inertia() -> float:
+    """Mean inertia of the shoulder, kg m², of the other arm along the same motion."""
+    states = true_states(split(TRIAL.record())[0], TRIAL)
+    return float(IMI_ARM.mass_matrix(states[..., 0])[..., 0, 0].mean())
 
 
 # --- what a small start costs -----------------------------------------------------------------
@@ -395,7 +398,9 @@ def _quoted() -> None:
     )
     other = other_torques()
     for name, key in (("own", "own"), ("another arm", "arm"), ("exchanged", "exchanged")):
-        quote(f"start-torques-{key}", 100 * other[name])
+        quote(f"start-torques-{key}", 100 * other[name][0])
+    quote("start-torques-inertia", other["another arm"][1])
+    quote("start-torques-inertia-arm", other_inertia())
     direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
     unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
     quote("start-direct-unrelated", 100 * unrelated.mean())
