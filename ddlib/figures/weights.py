@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from ddlib._check import number, shaped
 from ddlib.analysis import decompose
@@ -209,6 +210,8 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
         look = {"color": COLOURS[(2, 0, 1)[k]], "ls": (":", "-", "--")[k], "lw": 1.5}
         axis.plot(x, y, label=name, **look)
     low, high = axis.get_ylim()
+    ticks = MaxNLocator(5).tick_values(low, high)
+    axis.set_yticks([tick for tick in ticks if low <= tick <= high])
     axis.set_ylim(low, low + (high - low) / 0.8)
     axis.set_xlim(x[0] - step, x[-1] + step)
     across = axis.get_xaxis_transform()  # x in ms, y in parts of the panel's height
@@ -217,7 +220,8 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     side = min(0.95 * room / (f.size + 1), 17.0)  # points
     area = side**2 * np.abs(f) / (np.abs(f).max() or 1.0)
     colours = np.where(f > 0, "#ffffff", "#000000")
-    axis.scatter(x, np.full(f.size, 0.92), area, colours, "s", transform=across, lw=0, zorder=4)
+    look = {"marker": "s", "transform": across, "lw": 0, "zorder": 4}
+    axis.scatter(x, np.full(f.size, 0.92), area, colours, **look)
 
 
 def _told(parts) -> str:

@@ -76,7 +76,7 @@ class FilterExplorer(_HintonWidget):
         some = next(iter(self._weights.values()))
         self._reach = reach = max(self._weights) // 2
         time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
-        parts = {name: name for name in ("constant", "even", "odd")}
+        parts = {name: name for name in ("even", "odd", "constant")}
         energy = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
         gains = {"gain": "whole", "gain, varying": "without its constant"}
         gains |= {"gain, ideal": "ideal derivative"}

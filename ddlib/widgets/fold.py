@@ -53,8 +53,8 @@ class FilterFold(CurveWidget):
             self._curves,
             [
                 Choice("row", "Row", labels, labels[0]),
-                Parameter("fold", "Fold", 0, 100, 0, "%", 2),
-                Parameter("angle", "Angle", -_ANGLE, _ANGLE, 0, "°", 2),
+                Parameter("fold", "Fold", 0, 100, 50, "%", 2),
+                Parameter("angle", "Angle", -_ANGLE, _ANGLE, _ANGLE, "°", 2),
                 Parameter("speed", "Speed", -_SPEED, _SPEED, 0, "°/s", 2),
                 Parameter("acceleration", "Acceleration", -_ACCELERATION, _ACCELERATION, 0,
                           "°/s²", 2),
@@ -62,7 +62,8 @@ class FilterFold(CurveWidget):
             [
                 Panel("Weights, less their parts", {"left": "weights"}, CENTRE, ms, kind="stems",
                       **whole),
-                Panel("Parts, folded out of them", list(_PARTS), CENTRE, ms, **whole),
+                Panel("Parts, folded out of them", ["even", "odd", "constant"], CENTRE, ms,
+                      **whole),
                 Panel("Angle in the window, °", {"window": "angle"}, CENTRE, ms,
                       y_range=(-20.0, 20.0)),
                 Panel("What comes in at the unit", {"answers": "answer"}, "from which part",
@@ -70,8 +71,9 @@ class FilterFold(CurveWidget):
             ],
             title="Fold a row of weights",
             alt=(
-                "The weights of one row as stems over the window, with nothing folded out yet; a "
-                "joint at rest in the window, to which no part of the row answers."
+                "The weights of one row as stems over the window, half folded out into a constant, "
+                "an even and an odd part; a joint at rest in the window, and bars of what each "
+                "part of the row answers to it."
             ),
             depends={
                 **dict.fromkeys(("left", *_PARTS), ("row", "fold")),

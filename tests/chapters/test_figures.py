@@ -24,6 +24,7 @@ from workshop.chapters import (
 
 UPON_A_COLOUR = {
     "ranking": "#000000", "hinton": "#ffffff", "hinton_states": "#ffffff",
+    "decomposed": "#ffffff", "decomposed, one": "#ffffff",
     "maps": "#ffffff", "arm_sketch": "#ffffff",
 }  # fmt: skip
 """What these paint black or white lies on a colour, or has an edge in the page's ink."""

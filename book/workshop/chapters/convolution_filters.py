@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddlib._check import finite_array, shaped
-from ddlib.analysis import classify, decompose, purest, roughness, shares, upright
+from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -68,11 +68,11 @@ def said_and_seen() -> Table:
     """What the report says of its Figures 5-4 to 5-8, and what the rows of `reported` hold."""
     rows = []
     for figure, f in reported().items():
-        _, v, a, j, rest = 100 * shares(f)
-        cells = (f"{x:.0f}" for x in (v, a, j, rest))
-        rows.append((figure, _REPORT[figure][2], *cells, str(classify(f))))
-    heads = "report's figure", "the report says", "velocity, %", "acceleration, %", "jerk, %"
-    return Table((*heads, "rest, %", "ours is named"), rows)
+        each = zip((*DERIVATIVES, "rest"), shares(f))
+        cell = ", ".join(f"{name} {100 * share:.0f}" for name, share in each if share > 0.05)
+        rows.append((figure, _REPORT[figure][2], cell, str(classify(f))))
+    heads = "figure", "what the report says", "what we see, % of the energy", "name by the rule"
+    return Table(heads, rows)
 
 
 def puzzles() -> dict[str, np.ndarray]:
