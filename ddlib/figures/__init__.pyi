@@ -21,7 +21,7 @@ from .style import (
     plain_ticks as plain_ticks,
 )
 from .weights import (
-    decomposition as decomposition,
+    decomposed as decomposed,
     hinton as hinton,
     network_diagram as network_diagram,
 )

@@ -8,16 +8,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 
-from ddlib._check import one_of
+from ddlib._check import number, one_of, shaped
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     COLOURS,
     FAINT,
     INK,
     JOINTS,
+    NARROW,
     Illustration,
     illustrate,
+    legend_above,
 )
 from ddlib.learning import Weights
 
@@ -209,40 +212,80 @@ def hinton(weights: Weights, scale: str = "network") -> Illustration:
     return illustrate(draw, alt, inches, inches * down / across + 0.2)
 
 
-def decomposition(functions: Mapping[str, np.ndarray], step: float) -> Illustration:
-    """Figures 5-4 to 5-8: weight functions with their constant, even and odd parts.
+def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) -> Illustration:
+    """Figures 5-4 to 5-8: rows of weights as squares, and as curves with their parts.
+
+    Above each panel the row stands as in a Hinton diagram; the thick curve below is the same row,
+    and its constant, even and odd part (`ddlib.analysis.decompose`) add up to it.
 
     Parameters
     ----------
-    functions : mapping
-        ``{title: weight function (width,)}``.
+    functions : array_like or mapping
+        One weight function ``(width,)``, or several as ``{title: weight function}``.
     step : float
         Sampling period, s.
     """
-    columns = min(len(functions), 2)
-    rows = -(-len(functions) // columns)
+    if not isinstance(functions, Mapping):
+        functions = {"": functions}
+    if not functions:
+        raise ValueError("functions must hold one weight function or more, got none")
+    number("step", step, 0.0, open_low=True)
+    parts = {}
+    for title, f in functions.items():
+        parts[title] = decompose(shaped(f"weights of {title!r}", f, "(width,)"))
+    columns = min(len(parts), 3)
+    rows = -(-len(parts) // columns)
 
     def draw(figure: Figure):
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
-        for axis, (title, f) in zip(axes, functions.items()):
-            parts = decompose(f)
-            half = len(f) // 2
-            x = np.arange(-half, half + 1) * step * 1e3
-            axis.plot(x, f, color=INK, lw=2.6, alpha=0.55, label="weights")
-            axis.plot(x, parts.even, color=COLOURS[0], ls="-", lw=1.3, label="even")
-            axis.plot(x, parts.odd, color=COLOURS[1], ls="--", lw=1.3, label="odd")
-            axis.axhline(float(parts.constant[0]), color=COLOURS[2], ls=":", lw=1.3,
-                         label="constant")  # fmt: skip
+        beside = columns if figure.get_figwidth() > NARROW else 1
+        room = 72 * figure.get_figwidth() / beside - 62  # points, less ticks and label
+        for axis, (title, part) in zip(axes, parts.items()):
+            _row_and_parts(axis, part, 1e3 * step, room)
             axis.set_title(title)
-        figure.legend(*axes[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
-        for axis in axes[len(functions) - columns : len(functions)]:
-            axis.set_xlabel("time from the window's centre, ms")
+        legend_above(figure, *axes[0].get_legend_handles_labels())
+        for axis in axes[max(0, len(parts) - columns) : len(parts)]:
+            axis.set_xlabel("time from the centre, ms")
         for axis in axes[::columns]:
             axis.set_ylabel("weight")
-        for axis in axes[len(functions) :]:
+        for axis in axes[len(parts) :]:
             axis.remove()
 
-    alt = "Weight functions over the window with their constant, even and odd parts: " + "; ".join(
-        functions
-    )
-    return illustrate(draw, alt, 7.0, 2.3 * rows + 0.3)
+    told = "; ".join(f"{title}: {_told(part)}" if title else _told(part)
+                     for title, part in parts.items())  # fmt: skip
+    alt = f"Weights over the window, as squares and as a curve with its parts. {told}."
+    return illustrate(draw, alt, 7.0, 2.6 if rows == columns == 1 else 0.4 + 2.3 * rows)
+
+
+def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
+    """A row's squares in the upper fifth of a panel, `room` points wide, and its curves below."""
+    f = parts.sum()
+    half = f.size // 2
+    x = np.arange(-half, half + 1) * step
+    constant = np.broadcast_to(parts.constant, f.shape)
+    axis.plot(x, f, color=INK, lw=2.8, alpha=0.55, label="weights")
+    for k, (name, y) in enumerate({"constant": constant, "even": parts.even,
+                                   "odd": parts.odd}.items()):  # fmt: skip
+        look = {"color": COLOURS[(2, 0, 1)[k]], "ls": (":", "-", "--")[k], "lw": 1.5}
+        axis.plot(x, y, label=name, **look)
+    low, high = axis.get_ylim()
+    ticks = MaxNLocator(5).tick_values(low, high)
+    axis.set_yticks([tick for tick in ticks if low <= tick <= high])
+    axis.set_ylim(low, low + (high - low) / 0.8)
+    axis.set_xlim(x[0] - step, x[-1] + step)
+    across = axis.get_xaxis_transform()  # x in ms, y in parts of the panel's height
+    axis.add_patch(Rectangle((x[0] - step, 0.84), x[-1] - x[0] + 2 * step, 0.16,
+                             transform=across, facecolor="#8c8c8c", lw=0, zorder=3))  # fmt: skip
+    side = min(0.95 * room / (f.size + 1), 17.0)  # points
+    area = side**2 * np.abs(f) / (np.abs(f).max() or 1.0)
+    colours = np.where(f > 0, "#ffffff", "#000000")
+    look = {"marker": "s", "transform": across, "lw": 0, "zorder": 4}
+    axis.scatter(x, np.full(f.size, 0.92), area, colours, **look)
+
+
+def _told(parts) -> str:
+    """The parts of a weight function in words, by their shares of its energy."""
+    each = {"constant": np.broadcast_to(parts.constant, parts.even.shape), "even": parts.even}
+    energy = {name: float((y**2).sum()) for name, y in {**each, "odd": parts.odd}.items()}
+    whole = sum(energy.values()) or 1.0
+    return ", ".join(f"{name} {100 * e / whole:.0f} %" for name, e in energy.items())

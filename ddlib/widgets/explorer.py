@@ -52,7 +52,7 @@ class FilterExplorer(_HintonWidget):
     Parameters
     ----------
     models : mapping
-        Window size -> `TorqueModel` of an ensemble; two sizes or more.
+        Window size -> `TorqueModel` of an ensemble; with one size there is no menu of sizes.
     members : sequence of int
         Which networks of each ensemble can be chosen, by their seed; two or more.
     **options
@@ -67,24 +67,27 @@ class FilterExplorer(_HintonWidget):
     def __init__(
         self, models: Mapping[int, TorqueModel], members: Sequence[int] = (0, 1, 2), **options
     ):
-        self._weights = {width: model.weights for width, model in _check_models(models, 1).items()}
+        self._weights = {
+            width: model.weights for width, model in _check_models(models, 1, 1).items()
+        }
         for weights in self._weights.values():
             for member in members:
                 integer("members", member, 0, len(weights) - 1)
         some = next(iter(self._weights.values()))
         self._reach = reach = max(self._weights) // 2
         time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
-        parts = {name: name for name in ("constant", "even", "odd")}
+        parts = {name: name for name in ("even", "odd", "constant")}
         energy = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
         gains = {"gain": "whole", "gain, varying": "without its constant"}
         gains |= {"gain, ideal": "ideal derivative"}
         window = {"cursor": ("first", "last"), "y_fit": True}
+        sizes = [width_choice(self._weights)] if len(self._weights) > 1 else []
         super().__init__(
             some[0],
             reach,
             self._curves,
             [
-                width_choice(self._weights),
+                *sizes,
                 Choice("seed", "Network", {k: f"seed {k}" for k in members}, members[0]),
                 Choice("unit", "Unit", unit_names(some[0]), unit_names(some[0])[0]),
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
@@ -110,8 +113,8 @@ class FilterExplorer(_HintonWidget):
                 "jerk in their energy, and their gain over frequency."
             ),
             depends={
-                "weights of all units": ("width", "seed"),
-                **dict.fromkeys(("first", "last"), ("width",)),
+                "weights of all units": (*(size.name for size in sizes), "seed"),
+                **{end: [size.name for size in sizes] for end in ("first", "last")},
             },
             note=(
                 "Both axes of the gain are logarithmic: a derivative is a straight line. From 1 to "
@@ -119,17 +122,18 @@ class FilterExplorer(_HintonWidget):
                 "ideal acceleration filter by a factor of 100. The straight line drawn is that of "
                 "the filter's main derivative, as slow signals have it."
             ),
-            presets=_named(self._weights, members),
+            presets=_named(self._weights, members, bool(sizes)),
             presets_title="Named filters",
             **{"tolerance": EXACT, **options},
         )
 
-    def _filter(self, width, seed, unit, joint):
+    def _filter(self, seed, unit, joint, width):
         weights = self._weights[width][seed]
         return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
 
-    def _curves(self, width, seed, unit, joint) -> dict:
-        f = self._filter(width, seed, unit, joint)
+    def _curves(self, seed, unit, joint, width=None) -> dict:
+        width = width or next(iter(self._weights))
+        f = self._filter(seed, unit, joint, width)
         parts = decompose(f)
         half = (width // 2 + 0.5) * LOG_STEP * 1e3
         constant = np.broadcast_to(parts.constant, f.shape)
@@ -145,7 +149,7 @@ class FilterExplorer(_HintonWidget):
         }
 
 
-def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, dict]:
+def _named(weights: Mapping[int, Weights], members: Sequence[int], sized: bool) -> dict[str, dict]:
     """The purest hidden filters of the middle window size, by the names that the rule gives."""
     width = sorted(weights)[len(weights) // 2]
     every = weights[width].hidden_weights[list(members)]
@@ -156,7 +160,7 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int]) -> dict[str, 
             place = np.argwhere((every == purest(every, name)).all(-1))[0]
             member, unit, joint = map(int, place)
             presets[name] = {
-                "width": width,
+                **({"width": width} if sized else {}),
                 "seed": members[member],
                 "unit": f"hidden {unit}",
                 "joint": JOINTS[joint],

@@ -40,13 +40,14 @@ def zero_padded(f, reach: int) -> np.ndarray:
     return np.pad(f, [(0, 0)] * (f.ndim - 1) + [(zeros, zeros)])
 
 
-def _check_models(models, axes: int) -> dict[int, TorqueModel]:
-    """`models` if it maps two window sizes or more to models, otherwise an error.
+def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
+    """`models` if it maps `least` window sizes or more to models, otherwise an error.
 
     Their weights have no leading axis (``axes=0``, one network) or one (an ensemble).
     """
-    if not isinstance(models, Mapping) or len(models) < 2:
-        raise TypeError(f"models must map two window sizes or more to models, got {models!r}")
+    if not isinstance(models, Mapping) or len(models) < least:
+        sizes = "two window sizes or more" if least == 2 else "window sizes"
+        raise TypeError(f"models must map {sizes} to models, got {models!r}")
     for width, model in models.items():
         if not isinstance(model, TorqueModel):
             raise TypeError(f"models must hold TorqueModels, got {model!r} for {width!r}")

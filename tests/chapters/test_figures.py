@@ -24,6 +24,7 @@ from workshop.chapters import (
 
 UPON_A_COLOUR = {
     "ranking": "#000000", "hinton": "#ffffff", "hinton_states": "#ffffff",
+    "decomposed": "#ffffff", "decomposed, one": "#ffffff",
     "maps": "#ffffff", "arm_sketch": "#ffffff",
 }  # fmt: skip
 """What these paint black or white lies on a colour, or has an edge in the page's ink."""
@@ -122,7 +123,10 @@ REFUSALS = [
         ({"a": {"test": {11: [0.1, 0.0]}}}, given.PRINTED),
         "errors of 'a' must be",
     ),
-    (figures.decomposition, ({"a": np.ones(10)}, 0.01), "f must have an odd"),
+    (figures.decomposed, ({"a": np.ones(10)}, 0.01), "f must have an odd"),
+    (figures.decomposed, (np.ones((2, 11)), 0.01), "weights of"),
+    (figures.decomposed, ({}, 0.01), "functions must hold one"),
+    (figures.decomposed, (np.ones(11), 0.0), "step must"),
     (beyond.maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),
     (dynamics.arm_sketch, (ARM, [0.1, BAD]), "q must be finite"),
     (dynamics.estimates, ({"a": fitted()}, [1.0], ("x", "y"), 5.0), "truth must"),

@@ -114,7 +114,8 @@ EXAMPLES = {
     "rmss_by_window": partial(shared.rmss_by_window, TABLE, PRINTED),
     "network_diagram": lambda: shared.network_diagram(Weights.random(1, 21)[0]),
     "hinton": lambda: shared.hinton(Weights.random(1, 41)[0]),
-    "decomposition": partial(shared.decomposition, FILTERS, 0.01),
+    "decomposed": partial(shared.decomposed, FILTERS, 0.01),
+    "decomposed, one": lambda: shared.decomposed(FILTERS["unit 0"], 0.01),
 
     "arm_sketch": partial(dynamics.arm_sketch, CMU_DD_ARM_II, [0.6, 0.9]),
     "operations": partial(

@@ -33,7 +33,7 @@ def _picture() -> None:
         for name in ("velocity", "acceleration")
     }
     target = results.FOLDER.parent / "_static" / "readme.svg"
-    figures.decomposition(found, LOG_STEP).save(target)
+    figures.decomposed(found, LOG_STEP).save(target)
 
 
 def _make(name: str, code: str) -> None:

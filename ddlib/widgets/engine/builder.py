@@ -143,7 +143,7 @@ class FilterBuilder(_PageWidget):
             Panel("Gain, 1/s²", gain, "frequency, Hz", _FREQUENCIES, "log", "log", y_range=_GAINS),
         ]
         spec = {
-            "title": "Be the network: measure acceleration",
+            "title": "Draw a filter by hand: measure acceleration",
             "hint": _HINT,
             "width": _WIDTH,
             "samples": len(q),

@@ -1,0 +1,87 @@
+"""A row of weights that folds into its parts, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from widget_pages import NEXT_FRAME, PATHS, opened, settings
+
+from ddlib.widgets.fold import FilterFold
+
+S = np.arange(-7, 8)
+ROUGH = 10 * np.random.default_rng(2).normal(size=15)
+ROWS = {"line": 3.0 * S, "parabola": S**2 - (S**2).mean(), "rough": ROUGH}
+PARTS = ("constant", "even", "odd")
+
+
+@pytest.fixture(scope="module")
+def widget():
+    return FilterFold(ROWS)
+
+
+def test_truths_of_any_state(widget):
+    for values in settings(widget, 40, seed=1):
+        f, x = ROWS[values["row"]], 0.01 * S
+        shown = widget.interpolate(**values)
+        size = np.abs(f).max()
+        part = values["fold"] / 100
+        np.testing.assert_allclose(
+            shown["left"] + sum(shown[name] for name in PARTS), f, atol=1e-3 * size
+        )
+        odd = (f - f[::-1]) / 2
+        np.testing.assert_allclose(shown["odd"], part * odd, atol=1e-3 * size)
+        np.testing.assert_allclose(shown["constant"], part * f.mean(), atol=1e-3 * size)
+        window = values["angle"] + values["speed"] * x + values["acceleration"] * x**2 / 2
+        np.testing.assert_allclose(shown["window"], window, atol=0.01)
+        answers = shown["answers"]
+        reach = shown["most answer"][0]
+        assert answers[3] == pytest.approx(f @ np.deg2rad(window), abs=2e-3 * reach)
+        assert answers[2] == pytest.approx(odd @ np.deg2rad(window), abs=2e-3 * reach)
+        assert answers[:3].sum() == pytest.approx(answers[3], abs=4e-3 * reach)
+
+
+def test_a_line_hears_speed_alone_and_a_parabola_acceleration_alone(widget):
+    still = {"angle": 0, "speed": 0, "acceleration": 0}
+    for row, motion, part in (("line", "speed", 2), ("parabola", "acceleration", 1)):
+        for moved, most in (("angle", 5), ("speed", 50), ("acceleration", 1000)):
+            shown = widget.interpolate(**{**still, "row": row, moved: most})
+            heard = np.abs(shown["answers"]) > 0.01 * shown["most answer"]
+            assert heard.tolist() == [moved == motion and k in (part, 3) for k in range(4)]
+
+
+def test_all_answers_stay_on_the_chart(widget):
+    for values in settings(widget, 40, seed=3):
+        shown = widget.interpolate(**values)
+        if sum(abs(values[name]) > 0 for name in ("angle", "speed", "acceleration")) == 1:
+            assert np.abs(shown["answers"]).max() <= shown["most answer"][0]
+
+
+def test_refusals():
+    for rows, error, message in (
+        ({"a": S}, TypeError, "rows must map two labels or more"),
+        ({"a": S, "b": S[:-2]}, ValueError, r"rows\['b'\] must have shape"),
+        ({"a": S[:-1], "b": S[:-1]}, ValueError, "odd"),
+    ):
+        with pytest.raises(error, match=message):
+            FilterFold(rows)
+    with pytest.raises(ValueError, match="step must"):
+        FilterFold(ROWS, 0.0)
+
+
+@pytest.mark.browser
+def test_fold_and_motion_by_keys_and_buttons(tmp_path, visit, widget):
+    here = opened(tmp_path, visit, widget)
+    page = here.page
+    before = page.evaluate(PATHS)
+    page.get_by_role("slider", name="Fold").focus()
+    page.keyboard.press("End")
+    page.evaluate(NEXT_FRAME)
+    folded = page.evaluate(PATHS)
+    assert folded[1:4] != before[1:4]
+    page.get_by_role("button", name="Speed up").click()
+    page.evaluate(NEXT_FRAME)
+    slider = page.get_by_role("slider", name="Acceleration")
+    assert slider.get_attribute("aria-valuetext").replace(",", "").startswith("1000")
+    page.get_by_role("combobox", name="Row").select_option(label="parabola")
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(PATHS) != folded and not here.problems
