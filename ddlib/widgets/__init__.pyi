@@ -43,5 +43,6 @@ from .tuner import (
     PIDTuner as PIDTuner,
 )
 from .window import (
+    HiddenTorque as HiddenTorque,
     SlidingWindow as SlidingWindow,
 )
