@@ -60,12 +60,12 @@ def least_error() -> Measured:
 def acceleration_by_window() -> CurveWidget:
     """The shoulder's acceleration by a parabola in a window, for three encoders."""
     sizes, encoders = np.arange(3, 62, 2), {10.5: "10.5 bits", 12.5: "12.5 bits", 16.0: "16 bits"}
-    found, errors = {}, {}
+    found, errors, true = {}, {}, {}
     for bits in encoders:
         rounding = Quantisation(2 * np.pi / 2**bits)
         setup = replace(JOINT_DAMPING, effects=replace(JOINT_DAMPING.effects, encoder=(rounding,)))
         run = setup.record(paper.APPENDIX_I_EXTENTS_DEG)[0]
-        truth = np.gradient(run.qd_true, run.step, axis=0)[run.motion, 0]
+        truth = true[bits] = np.gradient(run.qd_true, run.step, axis=0)[run.motion, 0]
         for w in map(int, sizes):
             windows = sliding_windows(run.q, w, run.motion)[:, 0]
             found[bits, w] = windows @ savitzky_golay(w, 2, run.step, degree=2)
@@ -76,8 +76,8 @@ def acceleration_by_window() -> CurveWidget:
     def told(width, bits):
         k = int(np.flatnonzero(sizes == width)[0])
         estimate = np.clip(found[bits, width], -most, most)
-        return {"estimate": estimate, "errors": errors[bits], "error": errors[bits][k],
-                "at": float(width)}  # fmt: skip
+        error = {"errors": errors[bits], "error": errors[bits][k], "at": float(width)}
+        return {"estimate": estimate, "true": true[bits], **error}
 
     label = "error / deviation of the acceleration"
     return CurveWidget(
@@ -87,9 +87,14 @@ def acceleration_by_window() -> CurveWidget:
             Choice("bits", "Encoder", encoders, 12.5),
         ],
         [
-            Panel("Shoulder's acceleration, rad/s²", {"estimate": "by a parabola in the window"},
-                  "time, s", time, fixed={"true": truth}, y_range=(-most, most),
-                  limits=(-most, most)),
+            Panel(
+                "Shoulder's acceleration, rad/s²",
+                {"estimate": "by a parabola in the window", "true": "true"},
+                "time, s",
+                time,
+                y_range=(-most, most),
+                limits=(-most, most),
+            ),
             Panel(label.capitalize(), {"errors": "error"}, "window, samples", sizes.astype(float),
                   cursor="at", y_scale="log"),
         ],
