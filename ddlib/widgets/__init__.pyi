@@ -52,5 +52,6 @@ from .weights import (
     WeightReader as WeightReader,
 )
 from .window import (
+    HiddenTorque as HiddenTorque,
     SlidingWindow as SlidingWindow,
 )

@@ -152,7 +152,7 @@ class CurveWidget(_PageWidget):
             )
         self._code = code or default_code(type(self), self._parameters)
         self._presets = checked_presets(presets, self._parameters)
-        start = evaluate(function, {p.name: p.value for p in parameters})
+        start = self._first({p.name: p.value for p in parameters})
         self.add_traits(**{p.name: _Checked(p).tag(sync=True) for p in parameters})
         told = {"title": title, "note": note, "presets_title": presets_title}
         self._keep(
@@ -164,6 +164,10 @@ class CurveWidget(_PageWidget):
         super().__init__()
         self._compute()
         self.observe(self._on_change, [*self._parameters, "request"])
+
+    def _first(self, values) -> dict:
+        """The curves of the still picture."""
+        return evaluate(self._function, values)
 
     def _bake(self, *given):
         """What the page takes its curves from."""

@@ -1,4 +1,4 @@
-"""What a network sees and does while its window slides along a recording (section 3)."""
+"""A window that slides along a recording: what is in it, what a network does (section 3)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import traitlets as t
 
 from ddlib._check import finite_array
 from ddlib.learning import TorqueModel, sliding_windows
+from ddlib.learning.windows import check_width
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
 from ddlib.widgets.engine._live import LiveWidget
@@ -143,4 +144,89 @@ class SlidingWindow(LiveWidget):
             **dict(zip(("from", "to"), ends)),
             "first": -1e3 * half,
             "last": 1e3 * half,
+        }
+
+
+class HiddenTorque(LiveWidget):
+    """Slide a window along a motion, and guess the torque in its middle before it is seen.
+
+    The torque is covered from the window's first sample on.
+
+    Parameters
+    ----------
+    recording : Recording
+        One run, with rests long enough for the window.
+    width : int
+        Samples of the window, odd.
+    **options
+        Passed on to `LiveWidget`.
+    """
+
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "hidden.js"))
+
+    recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
+    recorded.tag(sync=True)
+
+    def __init__(self, recording: Recording, width: int = 21, **options):
+        finite_array("recording.q", recording.q, 2)
+        if recording.q.ndim != 2:
+            raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
+        check_width(width)
+        self._half, self._time = width // 2, recording.t[recording.motion]
+        self._windows = np.degrees(sliding_windows(recording.q, width, recording.motion))
+        self._torque = recording.tau[recording.motion]
+        start = {"joint": JOINTS[0], "sample": len(self._time) // 5, "shown": False}
+        around = np.arange(-self._half, self._half + 1) * LOG_STEP * 1e3
+        span = {"x_label": "time, s", "x": self._time, "cursor": ("from", "to")}
+        inside = {"inside": "position", "chord": "straight line"}
+        super().__init__(
+            self._curves,
+            [
+                Choice("joint", "Joint", JOINTS, start["joint"]),
+                Choice(
+                    "sample",
+                    "Middle of the window",
+                    {k: f"{x:.2f} s" for k, x in enumerate(self._time)},
+                    start["sample"],
+                    display="slider",
+                ),
+                Choice("shown", "Uncover the torque", {False: "off", True: "on"}, False, "switch"),
+            ],
+            [
+                Panel("Position, °", {"position": "position"}, **span, y_fit=True),
+                Panel("In the window, °", inside, "time from its middle, ms", around, y_fit=True),
+                Panel("Torque, N m", {"torque": "torque"}, **span, y_range=("low", "high")),
+            ],
+            title="Hidden torque",
+            alt=(
+                "Position of a joint over the motion, with a window shaded; the positions in the "
+                "window beside the straight line between its ends; the torque up to the window, "
+                "covered from there on."
+            ),
+            examples=[
+                {"joint": joint, "sample": k, "shown": True}
+                for joint in JOINTS
+                for k in (0, len(self._time) - 1)
+            ],
+            **options,
+        )
+        motion, half = recording.motion, self._half
+        parts = recording.q[motion.start - half : motion.stop + half].T.ravel(), self._torque.T
+        self._keep(recorded=np.concatenate([x.ravel() for x in parts]).astype("<f8").tobytes())
+
+    def _curves(self, joint, sample, shown) -> dict:
+        j, time = JOINTS.index(joint), self._time
+        inside = self._windows[sample, j]
+        torque = self._torque[:, j].copy()
+        most = 1.1 * np.abs(torque).max()
+        if not shown:
+            torque[max(1, sample - self._half + 1) :] = np.nan
+        reach = (self._half + 0.5) * LOG_STEP
+        ends = np.clip([time[sample] - reach, time[sample] + reach], time[0], time[-1])
+        return {
+            "position": self._windows[:, j, self._half],
+            "inside": inside,
+            "chord": np.linspace(inside[0], inside[-1], len(inside)),
+            "torque": torque,
+            **{"low": -most, "high": most, "from": ends[0], "to": ends[1]},
         }

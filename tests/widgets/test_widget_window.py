@@ -8,7 +8,7 @@ from widget_pages import assert_curves, drag, page_of, settings
 
 from ddlib.learning import sliding_windows
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
-from ddlib.widgets.window import SlidingWindow
+from ddlib.widgets.window import HiddenTorque, SlidingWindow
 from workshop.report import results
 
 MEMBER = 1
@@ -78,4 +78,52 @@ def test_the_page_computes_what_ddlib_does(tmp_path, visit, widget):
     page.get_by_label("Window size").press("Home")
     slider.press("Home")
     shows(11, 0)
+    assert not opened.problems
+
+
+# The torque that is hidden
+
+
+@pytest.fixture(scope="module")
+def hidden(test_run):
+    return HiddenTorque(test_run)
+
+
+def test_the_torque_is_covered_from_the_window_on(hidden, test_run):
+    motion = test_run.motion
+    for values in settings(hidden, 30, seed=2):
+        joint, k, shown = values["joint"], values["sample"], values["shown"]
+        j, curves = ("shoulder", "elbow").index(joint), hidden.interpolate(**values)
+        seen = np.isfinite(curves["torque"])
+        last = 300 if shown else max(1, k - 9)
+        assert seen[:last].all() and not seen[last:].any()
+        np.testing.assert_array_equal(curves["torque"][seen], test_run.tau[motion, j][seen])
+        at = motion.start + k
+        around = np.degrees(test_run.q[at - 10 : at + 11, j])
+        np.testing.assert_allclose(curves["inside"], around)
+        np.testing.assert_allclose(np.diff(curves["chord"]), np.ptp(around[[0, -1]]) / 20 * np.sign(
+            around[-1] - around[0]), atol=1e-9)  # fmt: skip
+        assert curves["low"][0] < -np.abs(test_run.tau[motion, j]).max()
+
+
+@pytest.mark.parametrize(
+    "given, says",
+    [({"width": 20}, "width must be odd"), ({"recording": STATE_FEEDBACK}, "one run")],
+)
+def test_what_it_refuses(test_run, given, says):
+    if "recording" in given:
+        given = {"recording": split(STATE_FEEDBACK.record())[0]}
+    with pytest.raises(ValueError, match=says):
+        HiddenTorque(**{"recording": test_run, **given})
+
+
+@pytest.mark.browser
+def test_the_page_hides_and_uncovers_it(tmp_path, visit, hidden):
+    opened = visit(page_of(tmp_path / "page.html", hidden) + "?hidden-torque=sample:75")
+    page, slider = opened.page, opened.page.get_by_role("slider")
+    assert_curves(page, hidden.interpolate(joint="shoulder", sample=75, shown=False))
+    slider.press("ArrowRight")
+    page.get_by_label("Uncover the torque").click()
+    page.get_by_label("Joint").select_option(label="elbow")
+    assert_curves(page, hidden.interpolate(joint="elbow", sample=76, shown=True))
     assert not opened.problems

@@ -15,9 +15,10 @@ from ddlib.figures.style import COLOURS, INK, JOINTS, Illustration, illustrate
 from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
-from ddlib.tables import quote, spread
+from ddlib.tables import Table, quote, significant, spread
 from workshop.chapters.exercises import judge
 from workshop.report import results
+from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
 from workshop.report.exact_states import random_states, states_along, torque
@@ -140,10 +141,42 @@ def on_trajectory() -> Illustration:
     return _torque_along(t, torque(states), _networks().torque(states))
 
 
+def figure_6_1() -> Illustration:
+    """The weights of a network whose error on set A is the median."""
+    errors = _errors()["random set A"]
+    return hinton_states(_networks()[int(np.argsort(errors)[len(errors) // 2])].weights)
+
+
+def table_6_1(yours) -> Table:
+    """Table 6-1 as printed, beside medians and 95 % intervals of 25 networks, and the reader's.
+
+    `yours` are errors on sets A and B, and on trajectory 6 by its own deviation and by set A's.
+    """
+    a, b, six = paper.TABLE_6_1.values()
+    rows = []
+    for name, printed, claim, mine in zip(
+        ("random set A", "random set B", "trajectory 6, over its own deviation",
+         "trajectory 6, over the deviation of A"),
+        (a, b, six, six),
+        ("a", "b", "trajectory-own", "trajectory"),
+        yours,
+        strict=True,
+    ):  # fmt: skip
+        found = claims.measured(f"table-6-1-{claim}")
+        ends = np.quantile(found.replicates, (0.025, 0.975))
+        middle, low, high = (significant(x, 2) for x in (found.value, *ends))
+        ours = f"{middle} ({low} to {high})"
+        rows.append((name, significant(printed, 2), ours, significant(mine, 2)))
+    return Table(("states", "printed in 1988", "25 networks", "your network"), rows)
+
+
 def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
+    quote("states-largest", claims.measured("figure-6-1").value)
+    quote("states-largest-printed", next(c.printed for c in claims.load() if c.id == "figure-6-1"))
     for key, errors in zip(("a", "b", "six"), _errors().values()):
         quote(f"states-book-{key}", float(np.median(errors)))
+    quote("states-book-other", claims.measured("table-6-1-trajectory").value)
     quote("states-book-printed", paper.TABLE_6_1["trajectory 6"])
     for key, share in zip(("q2", "v1"), _watched().mean(1)):
         quote(f"states-book-{key}", 100 * share)
@@ -159,7 +192,17 @@ def _watched() -> np.ndarray:
 def _said() -> None:
     """What the lesson says of the book's networks in words."""
     a, _, six = _errors().values()
+    miss = [
+        np.sqrt(((_networks().torque(s) - torque(s)) ** 2).mean(1))
+        for s in (_states(), random_states(seed=1))
+    ]
+    stated("states-easier-place", [resampled(r) < 0.8 for r in (miss[0] / miss[1]).T])
     stated("states-six-worse", resampled(six / a) > 2)
+    size = np.median(np.abs(_networks().weights.hidden_weights), 1).reshape(-1, 6)
+    small, big = (resampled(size[:, k]) for k in (0, 3))
+    rest = [resampled(size[:, k]) for k in (1, 2, 4, 5)]
+    ends = (small < np.min(rest, 0)) & (big > np.max(rest, 0))
+    stated("states-smallest-and-largest", ends)
     stated("states-elbow-watched", resampled(_watched()[0], np.mean) > 0.55)
 
 

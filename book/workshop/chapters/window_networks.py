@@ -21,13 +21,17 @@ from ddlib.figures.style import (
 from ddlib.learning import cases
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
-from ddlib.tables import quote
+from ddlib.tables import Table, quote, significant
+from ddlib.widgets import HiddenTorque
 from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
 
 _KINDS = ("training", "test")
+_NAMES = {"training": "training", "test": "trajectory 6"}
+_NEAR = 1.5  # factor within which a median counts as that of the paper
+_CELLS = [(what, w) for what in _KINDS for w in WINDOWS]
 _PRINTED = {what: {w: getattr(paper.TABLE_4_1[w], what) for w in WINDOWS} for what in _KINDS}
 
 TRAINER_CODE = """\
@@ -68,9 +72,46 @@ def _errors() -> dict:
     }
 
 
-def table_4_1() -> Illustration:
-    """The printed errors and the book's, under three readings."""
+def hidden_torque() -> HiddenTorque:
+    """A window that slides over the shoulder's or the elbow's path on trajectory 6."""
+    return HiddenTorque(split(JOINT_DAMPING.record())[1])
+
+
+def table_4_1() -> Table:
+    """Table 4-1 as printed, beside medians and 95 % intervals of the book's three readings.
+
+    Bold: within a factor of 1.5 of what is printed.
+    """
+    readings = {
+        "damped joints": "-damping",
+        "damped by the controller": "",
+        "hardly damped": "-position",
+    }
+    rows = []
+    for what, w in _CELLS:
+        row = [f"{_NAMES[what]}, window {w}", significant(_PRINTED[what][w], 2)]
+        for ending in readings.values():
+            found = claims.measured(f"table-4-1-{what}-{w}{ending}")
+            ends = np.quantile(found.replicates, (0.025, 0.975))
+            middle, low, high = (significant(x, 2) for x in (found.value, *ends))
+            near = abs(np.log(found.value / _PRINTED[what][w])) <= np.log(_NEAR)
+            row.append(f"{f'**{middle}**' if near else middle} ({low} to {high})")
+        rows.append(row)
+    return Table(("error", "printed in 1988", *readings), rows)
+
+
+def errors_by_reading() -> Illustration:
+    """The printed errors and those of all networks, under the three readings."""
     return rmss_by_window(_errors(), _PRINTED)
+
+
+def _bends() -> tuple[np.ndarray, np.ndarray]:
+    """How far a window's path on trajectory 6 sags below the line of its ends; the torque."""
+    test = split(JOINT_DAMPING.record())[1]
+    windows, torque = cases(test, 21)
+    share = np.linspace(0, 1, windows.shape[-1])
+    line = windows[..., :1] * (1 - share) + windows[..., -1:] * share
+    return (line - windows).mean(-1), torque
 
 
 def _factors() -> dict:
@@ -96,6 +137,8 @@ def _quoted() -> None:
     quote("window-live-level", live["level"])
     quote("window-live-direct", np.median(seen["direct"]))
     quote("window-live-shifted", np.median(live["rows"]["as printed, shifted"]["test"]))
+    bends, torque = _bends()
+    quote("window-bend-sign", 100 * (np.sign(bends) == np.sign(torque)).mean())
     quote("window-steps", JOINT_DAMPING.steps)
     quote("window-worst", off[JOINT_DAMPING.name].max())
     quote("window-worst-state", off["state feedback"].max())
@@ -112,6 +155,10 @@ def _said() -> None:
     drawn = np.abs(np.log([found.replicates / printed for found, printed in measured])).max(0)
     others = min(off[name].max() for name in SETUPS if name != JOINT_DAMPING.name)
     stated("window-only-damping", np.exp(drawn) < others)
+    near = {name: bool((x <= _NEAR).all()) for name, x in off.items()}
+    stated("window-all-bold", [name for name in near if near[name]] == [JOINT_DAMPING.name])
+    bends, torque = _bends()
+    stated("window-bend", bool(((np.sign(bends) == np.sign(torque)).mean(0) > 0.9).all()))
     seen = live["as printed"]
     stated("window-live-ahead", (seen["direct"] < seen["error"]).mean() > 0.9)
     stated("window-live-longer", live["as printed"]["error"].min() > live["centred"]["error"].max())

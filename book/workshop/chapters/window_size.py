@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 from scipy.stats import spearmanr
 
 from ddlib import figures, paper
-from ddlib.analysis import refitted
+from ddlib.analysis import refitted, savitzky_golay
+from ddlib.effects import Quantisation
 from ddlib.figures.style import Illustration
-from ddlib.learning import cases
+from ddlib.learning import cases, sliding_windows
+from ddlib.setups import JOINT_DAMPING
 from ddlib.tables import quote, significant
+from ddlib.widgets import Choice, CurveWidget, Panel, Scalar
 from workshop.chapters.exercises import judge
 from workshop.report import committed, results
 from workshop.report.evidence import claims
@@ -51,6 +55,54 @@ def least_error() -> Measured:
         return sizes[np.argmin([median(cell) for cell in cells], axis=0)]
 
     return judged(least, *(np.array(row["test"]) for row in rows), text=text)
+
+
+def acceleration_by_window() -> CurveWidget:
+    """The shoulder's acceleration by a parabola in a window, for three encoders."""
+    sizes, encoders = np.arange(3, 62, 2), {10.5: "10.5 bits", 12.5: "12.5 bits", 16.0: "16 bits"}
+    found, errors, true = {}, {}, {}
+    for bits in encoders:
+        rounding = Quantisation(2 * np.pi / 2**bits)
+        setup = replace(JOINT_DAMPING, effects=replace(JOINT_DAMPING.effects, encoder=(rounding,)))
+        run = setup.record(paper.APPENDIX_I_EXTENTS_DEG)[0]
+        truth = true[bits] = np.gradient(run.qd_true, run.step, axis=0)[run.motion, 0]
+        for w in map(int, sizes):
+            windows = sliding_windows(run.q, w, run.motion)[:, 0]
+            found[bits, w] = windows @ savitzky_golay(w, 2, run.step, degree=2)
+        misses = [found[bits, w] - truth for w in map(int, sizes)]
+        errors[bits] = np.sqrt(np.mean(np.square(misses), 1) / truth.var())
+    time, most = run.t[run.motion], 2.0 * np.abs(truth).max()
+
+    def told(width, bits):
+        k = int(np.flatnonzero(sizes == width)[0])
+        estimate = np.clip(found[bits, width], -most, most)
+        error = {"errors": errors[bits], "error": errors[bits][k], "at": float(width)}
+        return {"estimate": estimate, "true": true[bits], **error}
+
+    label = "error / deviation of the acceleration"
+    return CurveWidget(
+        told,
+        [
+            Choice("width", "Window", {int(w): f"{w} samples" for w in sizes}, 5, "slider"),
+            Choice("bits", "Encoder", encoders, 12.5),
+        ],
+        [
+            Panel(
+                "Shoulder's acceleration, rad/s²",
+                {"estimate": "by a parabola in the window", "true": "true"},
+                "time, s",
+                time,
+                y_range=(-most, most),
+                limits=(-most, most),
+            ),
+            Panel(label.capitalize(), {"errors": "error"}, "window, samples", sizes.astype(float),
+                  cursor="at", y_scale="log"),
+        ],
+        title="Acceleration by window",
+        alt="The shoulder's acceleration along the first motion, true and by a parabola in a short "
+        "window, which shows the encoder's steps; and its error over windows.",
+        scalars=[Scalar("error", "Error over the deviation of the acceleration")],
+    )  # fmt: skip
 
 
 def errors_by_size() -> Illustration:
@@ -104,6 +156,8 @@ def _said() -> None:
     stated("size-training-uneven", bool((np.diff(_medians("training")[1]) > 0).any()))
     stated("size-test-falls", trend("test") < -0.5)
     stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
+    level = least_squares_by_size()[sizes >= 11, 1]
+    stated("size-linear-level", bool(level.max() < 1.1 * level.min()))
     stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
 

@@ -82,6 +82,9 @@ class LiveWidget(CurveWidget):
         """The function's result at the parameters as they stand; NaN where a run was over."""
         return self._baked.interpolate(**self.values)
 
+    def _first(self, values) -> dict:
+        return self._baked.interpolate(**values)
+
     def _bake(self, function, parameters, *_):
         return _Computed(function, parameters, *self._known)
 

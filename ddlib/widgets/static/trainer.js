@@ -138,56 +138,82 @@ function schoolOf(spec, choice, cases) {
   return school;
 }
 
-// All filters as stems, two joints below each other in a cell; what has a name is coloured.
+// All filters as curves over the window's time: the direct ones large, then those of the hidden units;
+// both joints' windows share a frame and a scale. What has a name is bold.
 function unitSheet(spec) {
-  const cells = [...NAMES, ...Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`)];
+  const units = Array.from({ length: spec.layout.hidden }, (_, k) => `unit ${k + 1}`);
+  const cells = [...NAMES.map((name) => `${name} torque`), ...units];
   const place = sheet(0);
   const { el, pen } = place;
-  const narrow = () => el.clientWidth < 480;
-  const columns = () => (narrow() ? 4 : 6);
-  const high = () => (narrow() ? 82 : 96);
+  const [TALL, LOW, FOOT] = [150, 104, 16];
+  const columns = () => (el.clientWidth < 480 ? 2 : 5);
+  const boxOf = (c) => {
+    const across = c < 2 ? 2 : columns();
+    const k = c < 2 ? c : c - 2;
+    const wide = place.width / across;
+    const top = c < 2 ? 0 : TALL + Math.floor(k / across) * LOW;
+    return { left: (k % across) * wide, top, wide: wide - 14, high: c < 2 ? TALL : LOW };
+  };
   const fit = place.resize;
   place.resize = () => {
-    place.height = high() * Math.ceil(cells.length / columns());
+    place.height = TALL + LOW * Math.ceil(units.length / columns());
     fit();
+  };
+  const half = (spec.layout.width >> 1) * spec.loop.step * spec.loop.every * 1000; // ms
+  const write = (text, x, y, align, colour) => {
+    pen.textAlign = align;
+    pen.fillStyle = colour;
+    pen.fillText(text, x, y);
+  };
+  const line = (x0, y0, x1, y1, colour) => {
+    pen.beginPath();
+    pen.moveTo(x0, y0);
+    pen.lineTo(x1, y1);
+    stroke(pen, colour, 1);
   };
   place.draw = (school, colours, over) => {
     const { direct, hidden } = filtersOf(school.net);
     const all = [...direct, ...hidden];
     const names = [...school.names.direct, ...school.names.hidden];
-    const wide = place.width / columns();
-    const room = (high() - 34) / 2;
     pen.clearRect(0, 0, place.width, place.height);
-    pen.font = "12px system-ui, sans-serif";
     pen.textBaseline = "middle";
     cells.forEach((cell, c) => {
-      const [left, top] = [(c % columns()) * wide + 3, Math.floor(c / columns()) * high()];
-      pen.fillStyle = colours.ink;
-      pen.textAlign = "left";
-      pen.fillText(cell, left, top + 9);
+      const { left, top, wide, high } = boxOf(c);
+      const [first, last] = [top + 20, top + high - FOOT - 4];
+      const middle = (first + last) / 2;
+      const tallest = JOINTS.reduce((most, j) => all[2 * c + j].reduce((a, w) => Math.max(a, Math.abs(w)), most), 1e-9);
+      pen.font = "13px system-ui, sans-serif";
+      write(cell, left, top + 9, "left", colours.ink);
+      let right = left + wide;
+      for (const j of [...JOINTS].reverse()) {
+        const name = SHORT[spec.classes[names[2 * c + j]]] ?? (over ? "none" : "");
+        write(name, right, top + 9, "right", colours[j ? "c2" : "c0"]);
+        right -= name ? pen.measureText(name).width + 7 : 0;
+      }
+      pen.font = "11px system-ui, sans-serif";
+      line(left, middle, left + wide, middle, colours.soft);
+      for (const [t, x, align] of [[-half, 0, "left"], [0, wide / 2, "center"], [half, wide, "right"]]) {
+        line(left + x, first, left + x, last, colours.line);
+        const text = format(t, -half, half, "", 0);
+        write(align === "right" ? `${text} ms` : text, left + x, last + 10, align, colours.soft);
+      }
+      const size = tallest.toFixed(tallest < 0.0995 ? 3 : tallest < 9.95 ? 2 : 1);
       for (const j of JOINTS) {
         const f = all[2 * c + j];
-        const name = SHORT[spec.classes[names[2 * c + j]]];
-        const tallest = f.reduce((most, w) => Math.max(most, Math.abs(w)), 1e-9);
-        const base = top + 16 + j * (room + 14) + room / 2;
-        const pitch = (wide - 12) / f.length;
+        const y = (w) => middle - (w / tallest) * ((last - first) / 2 - 2);
+        const x = (i) => left + (i / (f.length - 1)) * wide;
         pen.beginPath();
-        pen.moveTo(left, base);
-        pen.lineTo(left + wide - 12, base);
-        stroke(pen, colours.line, 1);
-        pen.beginPath();
-        f.forEach((w, i) => {
-          const x = left + (i + 0.5) * pitch;
-          pen.moveTo(x, base);
-          pen.lineTo(x, base - (w / tallest) * (room / 2 - 2));
-        });
-        const colour = name ? colours[j ? "c2" : "c0"] : colours.soft;
-        stroke(pen, colour, name ? 2.4 : 1.2);
-        if (!name && !over) continue;
-        pen.textAlign = "right";
-        pen.fillStyle = colour;
-        pen.fillText(name ?? "none", left + wide - 12, base - room / 2 - 7);
+        f.forEach((w, i) => (i ? pen.lineTo(x(i), y(w)) : pen.moveTo(x(i), y(w))));
+        const colour = colours[j ? "c2" : "c0"];
+        const named = SHORT[spec.classes[names[2 * c + j]]] !== undefined;
+        stroke(pen, colour, named ? 2.6 : 1.3, j ? [5, 3] : []);
       }
+      pen.setLineDash([]);
+      pen.strokeStyle = colours.paper;
+      pen.lineWidth = 4;
+      pen.textAlign = "left";
+      pen.strokeText(`±${size}`, left + 3, first + 6); // upon curves
+      write(`±${size}`, left + 3, first + 6, "left", colours.ink);
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
     el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
@@ -252,6 +278,7 @@ function build({ model, el }) {
   const record = buttonOf("Record and train", () => {
     restart();
     go();
+    hands.scrollIntoView({ block: "nearest" });
     frame.changed();
   });
   const recorded = make("p", { class: "recorded", id: `${view.id}-recorded`, role: "status" });
@@ -320,27 +347,21 @@ function build({ model, el }) {
   const drawn = spec.panels.map((panel) => chart(view, panel));
   const runs = make("div", { class: "runs", hidden: "" });
   const history = [];
+  const key = NAMES.map((name, j) => make("span", {}, swatch("line", j ? 2 : 0), `${name}'s window`));
+  key[1].querySelector("path").setAttribute("stroke-dasharray", "5 3");
+  const letters = make("span", {}, "bold with a letter: a acceleration, v velocity, j jerk");
+  const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), status, weighed, list);
   el.replaceChildren(
     frame.el,
     guess,
+    make("div", { class: "bench" }, hands, make("div", { class: "results" }, drawn[0].el)),
+    said,
+    make("div", { class: "title" }, "Weights over the window's time: the direct ones, then those of the hidden units"),
+    make("div", { class: "legend" }, ...key, letters),
+    units.el,
+    make("div", { class: "charts" }, ...drawn.slice(1).map((one) => one.el)),
+    make("div", { class: "settings" }, first, ...settings),
     make("div", { class: "picks" }, picks.svg, make("div", {}, picks.title, picks.table, picks.buttons, recorded)),
-    make(
-      "div",
-      { class: "bench" },
-      make(
-        "div",
-        { class: "hands" },
-        make("div", { class: "buttons" }, play, once, anew),
-        status,
-        weighed,
-        make("div", { class: "title" }, "Weights: direct to each output, then ten hidden units; the shoulder's window above the elbow's"),
-        units.el,
-        list,
-        said,
-      ),
-      make("div", { class: "results" }, make("div", { class: "charts" }, ...drawn.map((one) => one.el))),
-      make("div", { class: "settings" }, first, ...settings),
-    ),
     runs,
     make("p", { class: "remark" }, spec.hint),
   );

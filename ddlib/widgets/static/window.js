@@ -1,15 +1,5 @@
 // What SlidingWindow (window.py) computes. Follows sliding.js.
 
-// Positions (rad), joint by joint, and torques (N m) of the motion, from their bytes; positions reach
-// `reach` samples beyond it on either side.
-function recordedOf(bytes, samples, reach) {
-  const all = numbersOf(bytes, "Float64");
-  const [around, wanted] = [samples + 2 * reach, 2 * (2 * samples + 2 * reach)];
-  if (all.length !== wanted) throw new Error(`${all.length} numbers in place of ${wanted}`);
-  const cut = (from, length) => JOINTS.map((j) => all.subarray(from + j * length, from + (j + 1) * length));
-  return { positions: cut(0, around), torques: cut(2 * around, samples) };
-}
-
 live = (view) => {
   const { model, spec } = view;
   const [strip, , chart] = spec.panels;

@@ -1,0 +1,25 @@
+// What HiddenTorque (window.py) shows. Follows sliding.js. Its torque is covered from the window's
+// first sample on, unless the reader has it uncovered.
+
+live = (view) => {
+  const { model, spec } = view;
+  const [whole, part] = spec.panels;
+  const [samples, width] = [whole.x.length, part.x.length];
+  const half = width >> 1;
+  view.recorded ??= recordedOf(model.get("recorded"), samples, half);
+  const [joint, sample, shown] = ["joint", "sample", "shown"].map(view.get);
+  const j = NAMES.indexOf(joint);
+  const degrees = view.recorded.positions[j].map((q) => (q * 180) / Math.PI);
+  const inside = degrees.slice(sample, sample + width);
+  const chord = inside.map((_, i) => inside[0] + ((inside[width - 1] - inside[0]) * i) / (width - 1));
+  const last = shown ? samples : Math.max(1, sample - half + 1);
+  const torque = view.recorded.torques[j].map((tau, k) => (k < last ? tau : NaN));
+  const step = (whole.x.at(-1) - whole.x[0]) / (samples - 1);
+  const end = (t) => [Math.min(whole.x.at(-1), Math.max(whole.x[0], t))];
+  const reach = step * (half + 0.5);
+  const most = 1.1 * view.recorded.torques[j].reduce((a, tau) => Math.max(a, Math.abs(tau)), 0);
+  return {
+    ...{ position: degrees.slice(half, half + samples), inside, chord, torque, low: [-most], high: [most] },
+    ...{ from: end(whole.x[sample] - reach), to: end(whole.x[sample] + reach) },
+  };
+};
