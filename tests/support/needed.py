@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import re
 
-MADE = re.compile(r"widgets\.|chapter\.(explorer$|[A-Z]+[a-z])")  # by modules: calls that make one
+MADE = re.compile(  # by modules: calls that make one
+    r"widgets\.|chapter\.((explorer|hidden_torque|acceleration_by_window)$|[A-Z]+[a-z])"
+)
 
 
 def needed(cells: list[str]) -> list[int]:
