@@ -34,7 +34,7 @@ def test_notebooks_keep_to_the_rule(rule, notebooks):
         pages = LESSONS  # the walk and its side paths
     if rule is visible_code_teaches:
         pages = [page for page in pages if page not in FROM_SCRATCH]
-    assert len(pages) >= 14
+    assert len(pages) >= 13
     assert not {page: wrong for page in pages if (wrong := rule(notebooks[page]))}
 
 
