@@ -1,6 +1,6 @@
 """Interactive figures: exact with a kernel, interpolated in the built page without one.
 
-- ``picker``, ``switches``, ``tuner``, ``window``, ``explorer``, ``player``: a widget each,
+- ``picker``, ``switches``, ``tuner``, ``whose``, ``window``, ``explorer``, ``player``: a widget each,
   named after what the reader handles; ``hinton``: the diagram that two of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves

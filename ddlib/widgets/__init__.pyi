@@ -42,6 +42,10 @@ from .switches import (
 from .tuner import (
     PIDTuner as PIDTuner,
 )
+from .whose import (
+    GuessRound as GuessRound,
+    WhoseFilters as WhoseFilters,
+)
 from .window import (
     SlidingWindow as SlidingWindow,
 )
