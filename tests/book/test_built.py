@@ -151,9 +151,14 @@ def test_no_answer_stands_in_the_open(parsed):
 def test_old_addresses_within_lessons_lead_somewhere(parsed):
     """On the lesson's page, or on its evidence page, to which `moved.js` leads."""
     old = yaml.safe_load((ROOT / "tests" / "support" / "old_anchors.yml").read_text("utf-8"))
+    script = (ROOT / "book" / "_static" / "moved.js").read_text(encoding="utf-8")
+    moved = json.loads(re.search(r"const MOVED = (\{.*?\n  \});", script, re.S)[1])
     lost = {}
     for page in set(WALK) & set(LESSONS):
-        places = parsed(page), parsed(evidence_of(page))
+        to = moved.get(f"{page[5:]}.html", {})
+        others = {to} if isinstance(to, str) else set(to.values())
+        names = (evidence_of(page), *(f"book/{other.removesuffix('.html')}" for other in others))
+        places = parsed(page), *map(parsed, names)
         names = old[page.removeprefix("book/")]
         lost[page] = [n for n in names if not any(place.find(id=n) for place in places)]
         assert parsed(page).select_one(f'article a[href^="{evidence_of(page)[5:]}.html"]')

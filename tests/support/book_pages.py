@@ -24,9 +24,15 @@ API = [page for page in BACK_MATTER if page.startswith("book/api")]
 PAGES = [TOC["root"], *NUMBERED, *BACK_MATTER]
 
 
+SHARED = {
+    "book/whose-filters": "book/evidence-why-smooth-filters",
+    "book/inertia-in-the-weights": "book/evidence-convolution-filters",
+}  # lessons whose evidence has the name of another page
+
+
 def evidence_of(lesson: str) -> str:
     """The page with what stands behind a lesson."""
-    return lesson.replace("book/", "book/evidence-")
+    return SHARED.get(lesson, lesson.replace("book/", "book/evidence-"))
 
 
 WALK = [page for page in CHAPTERS if evidence_of(page) in EVIDENCE]  # in the shape of a lesson

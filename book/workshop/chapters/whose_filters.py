@@ -17,7 +17,7 @@ from ddlib.widgets import GuessRound
 from workshop.chapters import start
 from workshop.chapters.convolution_filters import _dots
 from workshop.chapters.exercises import judge
-from workshop.chapters.why_smooth_filters import said_of_descent
+from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
@@ -177,7 +177,6 @@ def _said() -> None:
     stated("whose-few-names", (unnamed[0.03] < 0.5) & (unnamed[0.3] > 0.5))
     turn = [start.turned().replicates > 0]
     stated("whose-small-turns", turn[0])
-    stated("whose-smooth-solvers", said_of_descent()["solvers all"])
 
 
 def check(number: int, mine, given) -> None:

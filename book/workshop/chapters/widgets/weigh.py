@@ -60,7 +60,10 @@ class WeighTheArm(CurveWidget):
                 Choice("entry", "Inertia of the", list(_ENTRIES), "shoulder"),
             ],
             [
-                Panel("Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", y_fit=True, **shade),
+                Panel(
+                    "Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", y_fit=True,
+                    **shade,
+                ),
                 Panel(
                     "What each sample adds: ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
                     y_fit=True, **shade,
