@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ddlib.dynamics import IMI_ARM
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import TrainingSet, Weights, p_value, surrogates, train_ensemble
-from ddlib.setups import INITIAL, JOINT_DAMPING, split, true_states
+from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, split, true_states
 from ddlib.tables import quote
 from ddlib.widgets import GuessRound
 from workshop.chapters import start
@@ -163,7 +163,15 @@ def _said() -> None:
     stated("whose-velocity-any", resampled(real, np.mean) < min(map(np.mean, nulls.values())))
     real, nulls = _named("acceleration")
     chances = [p_value(real.mean(), nulls[kind], "more") for kind in ("shifted", "phases")]
-    stated("whose-acceleration-more", max(chances) < 0.06)
+    apart = real.mean() > max(nulls[kind].max() for kind in ("shifted", "phases"))
+    stated("whose-acceleration-more", max(chances) < 0.06 and apart)
+    places = [(r, s) for r in SETUPS for s in results.read("start-nulls")["ranges"]]
+    means = [
+        [start.shares_beside(*place, "velocity")[kind].mean() for place in places]
+        for kind in ("real", "shifted", "phases")
+    ]
+    own, *unrelated = (np.mean(each) for each in means)
+    stated("whose-velocity-elsewhere", own < min(unrelated))
     other = start.other_torques()
     stated("whose-other-arm", other["another arm"] > other["own"] / 2)
     named = [start.named(JOINT_DAMPING.name, size) for size in (0.03, 0.3)]

@@ -105,9 +105,9 @@ function build({ model, el }) {
     const hits = tried.filter((i) => guessOf(i) === rightOf(i)).length;
     write(score, tried.length ? `${hits} of ${tried.length} right` : "no guess yet");
     const other = SIDES.find((letter) => letter !== right);
-    const said = `${right} learnt this arm's torques, ${other} ${rounds[k].told}.`;
+    const said = `${right} learnt this arm’s torques, ${other} ${rounds[k].told}.`;
     const begin = mine === right ? "Right:" : "No:";
-    write(verdict, mine === "-" ? "Which of the two learnt this arm's torques?" : `${begin} ${said} ${rounds[k].remark}`);
+    write(verdict, mine === "-" ? "Which of the two learnt this arm’s torques?" : `${begin} ${said} ${rounds[k].remark}`);
   }
   const shown = make("div", { class: "galleries" }, ...galleries.map((one) => one.el));
   el.replaceChildren(frame.el, bar, verdict, shown);

@@ -37,7 +37,7 @@ class UnitFromFiveStarts(CurveWidget):
         super().__init__(
             self._curves,
             [
-                Choice("size", "Start, up to", {s: f"±{s:g}" for s in sizes}, sizes[-2], "slider"),
+                Choice("size", "Start, up to", {s: f"±{s:g}" for s in sizes}, sizes[-1], "slider"),
                 Choice("unit", "Hidden unit", range(1, units + 1), 1),
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
             ],

@@ -92,7 +92,8 @@ class WeighTheArm(CurveWidget):
         at, half = _ENTRIES[entry], len(self._x) // 2
         g = self._gradients[learnt][at]
         parts = self._x**2 / 2 * g
-        sums = np.array([parts[half - k : half + k + 1].sum() for k in range(1, half + 1)])
+        counted = (min(k, reach) for k in range(1, half + 1))  # none beyond the slider
+        sums = np.array([parts[half - k : half + k + 1].sum() for k in counted])
         true, edge = self._inertia[learnt][at], (reach + 0.5) * LOG_STEP * 1e3
         return {
             "gradient": g, "parts": parts, "sum": sums, "arm": np.full(half, true),
