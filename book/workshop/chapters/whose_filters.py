@@ -119,7 +119,7 @@ def of_torques(panels: Mapping[str, Mapping[str, np.ndarray]], arm: float | None
         for label, shown in panels.items()
     )
     alt = f"Means of networks, by the torques that they were trained on. {told}."
-    return illustrate(draw, alt, 7.0, 2.3)
+    return illustrate(draw, alt, 7.0, 2.3, narrow_height=2.3 * len(panels))
 
 
 def names_beside() -> Illustration:
