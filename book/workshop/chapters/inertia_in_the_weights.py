@@ -51,7 +51,7 @@ def inertia_beside() -> Illustration:
     row = trial.row(_WIDTH)
     sets = {"real": row["real"], **trial.matched(row)}
     inertia = {kind: np.array(found["gains"])[:, 0, 0, 2] for kind, found in sets.items()}
-    return of_torques({"shoulder's inertia in the networks, kg m²": inertia}, _arm())
+    return of_torques({"shoulder's inertia, kg m²": inertia}, _arm())
 
 
 def _arm() -> float:
