@@ -51,6 +51,10 @@ from .tuner import (
 from .weights import (
     WeightReader as WeightReader,
 )
+from .whose import (
+    GuessRound as GuessRound,
+    WhoseFilters as WhoseFilters,
+)
 from .window import (
     HiddenTorque as HiddenTorque,
     SlidingWindow as SlidingWindow,

@@ -75,7 +75,13 @@ BEYOND = """([selector, text]) => [...document.querySelectorAll(selector)]
 
 def test_formulas_fit_a_phone(site, visit):
     """Set smaller where they must be, but never too small to read."""
-    for name in ("adaptive-control", "convolution-filters", "rivals", "why-smooth-filters"):
+    for name in (
+        "adaptive-control",
+        "convolution-filters",
+        "rivals",
+        "whose-filters",
+        "inertia-in-the-weights",
+    ):
         page = visit(f"{site}/book/{name}.html", width=390).page
         formulas = page.evaluate(BEYOND, ["article div.math > mjx-container", ""])
         assert formulas and all(over <= 1 and size >= 10.5 for over, size in formulas), name

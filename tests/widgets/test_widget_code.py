@@ -14,7 +14,7 @@ STATES = {
         "acceleration",
     ),
     "_SPECTRUM_CODE": (
-        "why-smooth-filters",
+        "evidence/why-smooth-filters",
         {"case": 1, "width": 11, "direction": 4, "epoch": 1000},
         "measured",
     ),

@@ -1,4 +1,4 @@
-"""The arm's mass under regularisation: figure and widget of the chapter *Convolution filters*."""
+"""The arm's mass under a penalty: figure and widget of *The inertia in the weights*."""
 
 from __future__ import annotations
 

@@ -1,16 +1,18 @@
-"""What the chapter *Why the filters are smooth* shows, quotes, says and judges; its widget."""
+"""What the evidence page *Why the filters are smooth* shows and quotes; its widget."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from ddlib._check import integer
 from ddlib.analysis import content
+from ddlib.figures import curves
 from ddlib.figures.style import COLOURS, NARROW, Illustration, illustrate
-from ddlib.learning import Directions, TrainingSet, Weights, effective_steps, train_ensemble
+from ddlib.learning import Directions, TrainingSet, Weights, train_ensemble
 from ddlib.setups import JOINT_DAMPING, WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
@@ -18,9 +20,8 @@ from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
-from workshop.chapters.exercises import judge
 from workshop.report import results
-from workshop.report.evidence.statements import resampled, stated
+from workshop.report.evidence.statements import resampled
 from workshop.report.studies.span import LAZY, READINGS
 
 _WHO = ("measured", "predicted")
@@ -49,7 +50,7 @@ for who in ("measured", "predicted"):
 
 
 def _windows() -> tuple[TrainingSet, np.ndarray, np.ndarray]:
-    """The lesson's training set on centred windows, their variances, and their directions."""
+    """The walk's training set on centred windows, their variances, and their directions."""
     data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21, scaling=(-1, 1))
     data = replace(data, x=data.x - data.x.mean(0))
     _, values, axes = np.linalg.svd(data.x.reshape(len(data.x), -1), full_matrices=False)
@@ -101,54 +102,87 @@ def _halves() -> dict[str, np.ndarray]:
     return {"velocity": half[:, 3:5].mean(1), "acceleration": half[:, 5:7].mean(1)}
 
 
-def _said() -> None:
-    """What the lesson says of networks: of the book's, and of eight that are trained as in it."""
+def said_of_descent() -> dict[str, np.ndarray | bool]:
+    """What is said of networks: of the book's, and of eight that are trained for it."""
     velocity, acceleration = _halves().values()
-    stated("smooth-velocity-first", resampled(acceleration - velocity) > 0)
     ways = results.read("whitening")["directions"]
     directions = len(ways["plain"]["change over start"])
     learnt = {way: resampled(found["learnt"]) / directions for way, found in ways.items()}
     solvers = np.min([learnt["whitened"], learnt["plain"]], 0)
-    stated("smooth-solvers-all", (solvers > 0.9) & (learnt["descent"] < 0.5))
-    ways = [
+    further = [
         np.divide(*(cell[who]["moved"][-1] for who in _WHO))
         for cell in results.read("span")["by range"]
     ]
-    stated("smooth-rich-beyond", ways[0] > 4 * ways[2])
-    data, _, axes = _windows()
-    start = Weights.random(8, 21, initial=LAZY)
+    ratio = _moved(8, ["plain"])["plain"].direct
+    return {
+        "velocity first": resampled(acceleration - velocity) > 0,
+        "solvers all": (solvers > 0.9) & (learnt["descent"] < 0.5),
+        "rich beyond": further[0] > 4 * further[2],
+        "flat stay": resampled(np.median(ratio[:, 12:], 1)) < 0.2,
+        "acceleration most": resampled(ratio[:, 4:6].min(1) / ratio[:, :4].max(1)) > 1,
+    }
+
+
+class _Ways(NamedTuple):
+    """How far training moved weights along each direction, over their start, by network."""
+
+    direct: np.ndarray
+    hidden: np.ndarray
+
+
+def _whiten(variance, axes) -> np.ndarray:
+    return axes.T @ np.diag(1 / np.sqrt(variance)) @ axes
+
+
+def _moved(members: int, kinds: Sequence[str]) -> dict[str, _Ways]:
+    """Networks trained for 2,000 epochs from ±0.3 on centred windows, plain or whitened."""
+    data, variance, axes = _windows()
+    start = Weights.random(members, 21, initial=LAZY)
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
-    trained = train_ensemble(start, data, **how)[0].weights
-    pair = (w.direct_weights.reshape(8, 2, -1) @ axes.T for w in (start, trained))
-    before, after = pair
-    ratio = np.sqrt(((after - before) ** 2).sum(1) / (before**2).sum(1))
-    stated("smooth-flat-stay", resampled(np.median(ratio[:, 12:], 1)) < 0.2)
-    stated("smooth-acceleration-most", resampled(ratio[:, 4:6].min(1) / ratio[:, :4].max(1)) > 1)
+    found = {}
+    for kind in kinds:
+        given = data
+        if kind == "whitened":
+            seen = data.x.reshape(len(data.x), -1) @ _whiten(variance, axes)
+            given = replace(data, x=seen.reshape(data.x.shape))
+        after = train_ensemble(start, given, **how)[0].weights
+        ratios = []
+        for name in ("direct_weights", "hidden_weights"):
+            before, trained = (
+                getattr(w, name).reshape(members, -1, 42) @ axes.T for w in (start, after)
+            )
+            ratios.append(np.sqrt(((trained - before) ** 2).sum(1) / (before**2).sum(1)))
+        found[kind] = _Ways(*ratios)
+    return found
 
 
-def check(number: int, mine, given) -> None:
-    """Judge an answer, `given` the epochs, step times variance by direction, or the windows."""
-    if number == 1:
-        worth = effective_steps([0.0], [given], 0.98)[0, 0]
-        slips = (
-            (given / 0.02, "momentum takes some steps to gather."),
-            (given, "that is without it."),
-        )
-        judge(mine, worth, "nearly fifty for each epoch.", slips, tolerance=0.005)
-    elif number == 2:
-        half = np.log(0.5) / np.log1p(-given[4])
-        slips = (
-            (1 / given[4], "then 37 % are left."),
-            (-np.log(0.5) / given[2], "that is velocity."),
-        )
-        judge(mine, half, "so many steps for acceleration.", slips)
-    else:
+def directions_moved(members: int = 3) -> Illustration:
+    """How far training moves weights along each direction, on windows as they are and whitened."""
+    numbers, panel = np.arange(1, 43), {}
+    for kind, (direct, hidden) in _moved(members, ["plain", "whitened"]).items():
+        told = "as they are" if kind == "plain" else kind
+        panel[f"outputs, {told}"] = np.sqrt((direct**2).mean(0))
+        panel[f"hidden, {told}"] = np.sqrt((hidden**2).mean(0))
+    panel["as large as the start"] = np.ones(42)
+    alt = "Changes of weights over directions of the windows, plain and whitened; a line at 1."
+    return curves(
+        numbers, {"change over start": panel}, "direction, number", alt, height=2.6, y_log=True
+    )
 
-        def level(matrix):
-            values = np.linalg.svd(given @ matrix, compute_uv=False)
-            return np.allclose(values, values[0], rtol=1e-3) and values[0] > 0
 
-        judge(mine, level, "all variances are equal.", (), "take the variances of X @ mine.")
+def whitened_filters(target: int = 0) -> Illustration:
+    """A linear filter after plain steps, and after one step on whitened windows."""
+    data, variance, axes = _windows()
+    x, y = data.x.reshape(len(data.x), -1), data.y[:, target] - data.y[:, target].mean()
+    along = axes @ (x.T @ y) / len(x) / variance  # of the least-squares filter
+    learnt = {"one whitened step": along @ axes}
+    for steps in (10_000, 1_000_000):
+        gone = 1 - (1 - variance / (2 * variance[0])) ** steps
+        learnt[f"{steps:,} plain steps"] = gone * along @ axes
+    shown = {name: f.reshape(2, 21)[target] / y.std() for name, f in learnt.items()}
+    time = 1000 * LOG_STEP * np.arange(-10, 11)
+    alt = "Three filters: after two numbers of plain steps, and after one whitened step."
+    return curves(time, {"weight": shown}, "time from the centre, ms", alt, height=2.2)
 
 
 def explorer() -> _SpectrumExplorer:

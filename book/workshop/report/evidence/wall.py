@@ -244,7 +244,11 @@ def _bounds(bounds: Mapping) -> str:
     return ("" if "from" in bounds else "up ") + " ".join(edges)
 
 
+_BEHIND = {"whose-filters": "why-smooth-filters"}  # a lesson's evidence page of another name
+
+
 def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
-    names = (f"evidence/{claim.chapter}.ipynb", f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
+    behind = _BEHIND.get(claim.chapter, claim.chapter)
+    names = (f"evidence/{behind}.ipynb", f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
     return next((name for name in names if (_FILE.parent / name).is_file()), "")

@@ -1,0 +1,142 @@
+"""The lesson *The inertia in the weights*: what it weighs, its numbers, words and answers."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ddlib.analysis import mean_gradient
+from ddlib.dynamics import IMI_ARM
+from ddlib.figures.style import Illustration
+from ddlib.learning import TorqueModel, Weights, cases
+from ddlib.setups import INITIAL, split
+from ddlib.simulation import LOG_STEP
+from ddlib.tables import quote
+from workshop.chapters import excitation, start
+from workshop.chapters.exercises import judge
+from workshop.chapters.whose_filters import of_torques, trained, training_set
+from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
+from workshop.report._measures import filter_trial as trial
+from workshop.report.evidence.statements import resampled, stated
+from workshop.report.studies.nulls import TRIAL
+
+_WIDTH = 21
+_LEARNT = {
+    "own": "this arm's torques",
+    "shifted": "these torques, shifted in time",
+    "another arm": "another arm's torques",
+}
+
+
+@cache
+def gradients() -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Mean gradients by what was learnt, N m/rad; and the inertia that it belongs to, kg m²."""
+    data, training = training_set(), split(TRIAL.record())[0]
+    begin = Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL)
+    weights = trained(list(_LEARNT), Weights.concatenate([begin] * len(_LEARNT)))
+    model = TorqueModel(weights, data.inputs, data.outputs, LOG_STEP)
+    windows, torque = cases(training, _WIDTH)
+    found = dict(zip(_LEARNT.values(), mean_gradient(model, windows)))
+    flat = windows.reshape(len(windows), -1)
+    fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque, rcond=None)
+    found["this arm's torques, by least squares"] = fit.T.reshape(2, 2, _WIDTH)
+    q = training.q_true[:, training.motion]
+    own, other = (arm.mass_matrix(q).mean((0, 1)) for arm in (TRIAL.arm, IMI_ARM))
+    return found, {name: other if "another" in name else own for name in found}
+
+
+def inertia_beside() -> Illustration:
+    """The shoulder's inertia in networks of the arm's torques and of unrelated ones."""
+    row = trial.row(_WIDTH)
+    sets = {"real": row["real"], **trial.matched(row)}
+    inertia = {kind: np.array(found["gains"])[:, 0, 0, 2] for kind, found in sets.items()}
+    return of_torques({"shoulder's inertia, kg m²": inertia}, _arm())
+
+
+def _arm() -> float:
+    return float(trial.arm_gains()[0, 0, 2])
+
+
+def _quoted() -> None:
+    """Numbers of the lesson."""
+    quote("inertia-m11", np.median(np.array(trial.row(_WIDTH)["real"]["gains"])[:, 0, 0, 2]))
+    quote("inertia-m11-arm", _arm())
+    quote("inertia-off", 100 * trial.calibrated("inertia", _WIDTH).value)
+    quote("inertia-off-by", excitation.half_foretold().value)
+    lost = excitation.cell("state feedback", 1.0)
+    quote("inertia-lost", np.median(np.array(lost["descent"]["M11"])[-1]))
+    quote("inertia-lost-arm", lost["arm"])
+    quote("inertia-lost-error", np.median(lost["descent"]["error"][-1]))
+
+
+def _said() -> None:
+    """What the lesson says in words about committed results, and of networks trained as in it."""
+    row, arm = trial.row(_WIDTH), _arm()
+    inertia = [
+        np.array(x["gains"])[:, 0, 0, 2] for x in (row["real"], *trial.matched(row).values())
+    ]
+    stated("inertia-apart", min(inertia[0]) > max(map(max, inertia[1:])))
+    stated("inertia-near", np.abs(resampled(inertia[0]) / arm - 1) < 0.25)
+    places = list(trial.ENTRIES["inertia"].values())
+    kinds = row["real"], row["nulls"]["shifted"], row["nulls"]["phases"]
+    gains = (np.moveaxis(np.array(x["gains"]), 0, -1) for x in kinds)
+    real, *nulls = (np.transpose([each[at] for at in places]) for each in gains)
+    true = np.array([trial.arm_gains()[at] for at in places])
+    stated("inertia-no-null", max(trial.near_by_chance(x, real, true) for x in nulls) < 0.06)
+    lost, back = (
+        np.array(excitation.cell(drive, 1.0)["descent"]["M11"])[-1]
+        for drive in ("state feedback", "state feedback, two sines")
+    )
+    stated("inertia-swing-back", resampled(lost) < resampled(back, seed=1) / 4)
+    cut = excitation.cell("state feedback", 1.0)
+    stated("inertia-swing-lost", resampled(lost) < cut["arm"] / 4)
+    whole = excitation.cell("state feedback")
+    errors = [resampled(c["descent"]["error"][-1], seed=k) for k, c in enumerate((cut, whole))]
+    stated("inertia-error-low", errors[0] < errors[1])
+    stated("inertia-half-foretold", excitation.half_foretold().replicates < 3)
+    every = excitation.results.read("excitation")["cells"]
+    reached = [np.isfinite(excitation.half_measured(each)).all() for each in every]
+    stated("inertia-half-but-one", sum(reached) == len(every) - 1)
+    found, known = gradients()
+    x = LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
+    mass = {name: (g @ x**2 / 2)[0, 0] for name, g in found.items()}
+    near = [abs(mass[n] / known[n][0, 0] - 1) < 0.3 for n in mass if "shifted" not in n]
+    stated("inertia-of-either-arm", all(near))
+    shares = start.shares_beside(TRIAL.name, INITIAL, "velocity")
+    unrelated = min(shares[kind].mean() for kind in ("shifted", "phases"))
+    stated("inertia-velocity-any", resampled(shares["real"], np.mean) < unrelated)
+    clear = [start.p_more(TRIAL.name, size, "acceleration") for size in (0.03, 0.3)]
+    stated("inertia-acceleration-more", max(clear) < 0.06)
+    stated("inertia-least-squares", near[-1])
+
+
+def check(number: int, mine, *given) -> None:
+    """Judge an answer: `given` stiffness, inertia, frequency; nothing; or the window's time."""
+    if number == 1:
+        K, M, omega = given
+        slips = (
+            (M, "that would be so without stiffness."),
+            (
+                M + K / omega**2,
+                "mind the sign: a sine's position is against its acceleration.",
+            ),
+        )
+        judge(mine, M - K / omega**2, "stiffness lies in inertia's way, most on slow motions.",
+              slips, "put q = sin(ωt) into K q + M q̈ and divide by q̈.")  # fmt: skip
+    elif number == 2:
+        slips = ((1 / 3, "at λ½ itself a half is left, not all."), (0.5, "that is at λ½."))
+        judge(mine, 0.25, "and three quarters are hidden behind position.", slips,
+              "put λ = 3 λ½ into the formula of the remaining share.")  # fmt: skip
+    else:
+        (x,) = given
+        moments = np.array([x**0, x, x**2 / 2])
+        least = np.linalg.pinv(moments) @ np.array([0.0, 3.0, 2.0])
+
+        def fits(g):
+            return np.allclose(moments @ np.asarray(g, float), [0, 3, 2], atol=1e-3)
+
+        judge(mine, lambda g: fits(g) and np.sum(np.square(g)) < 1.001 * least @ least,
+              "three moments, and no energy to spare.",
+              [(fits, "the moments are right, but a filter of less energy has them, too.")],
+              f"it needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip

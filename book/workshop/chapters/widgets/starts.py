@@ -1,0 +1,75 @@
+"""One hidden unit's weights, trained from random starts of several sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ddlib.analysis import decompose, shares
+from ddlib.learning import Weights
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel
+from ddlib.widgets.parts.panels import Panel
+from ddlib.widgets.parts.parameters import Choice
+
+_SHARES = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
+
+
+class UnitFromFiveStarts(CurveWidget):
+    """Move the size of the start, and see what training makes of one row of weights.
+
+    Parameters
+    ----------
+    networks : mapping
+        Size of the start -> `Weights` of one network before training, and of the same one after.
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    def __init__(self, networks: Mapping[float, tuple[Weights, Weights]], **options):
+        self._networks = dict(networks)
+        sizes = sorted(self._networks)
+        width = self._networks[sizes[0]][0].hidden_weights.shape[-1]
+        units = self._networks[sizes[0]][0].hidden_weights.shape[-3]
+        time = (np.arange(width) - width // 2) * LOG_STEP * 1e3
+        super().__init__(
+            self._curves,
+            [
+                Choice("size", "Start, up to", {s: f"±{s:g}" for s in sizes}, sizes[-1], "slider"),
+                Choice("unit", "Hidden unit", range(1, units + 1), 1),
+                Choice("joint", "Window of", JOINTS, JOINTS[0]),
+            ],
+            [
+                Panel(
+                    "Weights", {"after": "after training", "before": "before training"},
+                    CENTRE, time, y_fit=True,
+                ),
+                Panel(
+                    "Parts, after training", {"even": "even", "odd": "odd", "constant": "constant"},
+                    CENTRE, time, y_fit=True,
+                ),
+                share_panel("Share of the energy", "responds to", _SHARES),
+            ],
+            **{
+                "alt": "One row of weights before and after training, its even and odd part, and "
+                "which derivatives it responds to, from a random start of one size.",
+                "title": "One unit, five starts",
+                "note": "The same random numbers, made larger or smaller; the same recording and "
+                "the same number of epochs. Shares are those of the constant and of the three "
+                "derivatives; the rest follows none of them.",
+                "tolerance": EXACT,
+                **options,
+            },
+        )  # fmt: skip
+
+    def _curves(self, size, unit, joint) -> dict:
+        pair = (w.hidden_weights for w in self._networks[size])
+        before, after = (w.reshape(-1, *w.shape[-2:])[unit - 1, JOINTS.index(joint)] for w in pair)
+        parts = decompose(after)
+        return {
+            "after": after, "before": before, "even": parts.even, "odd": parts.odd,
+            "constant": np.zeros(after.shape) + parts.constant,
+            "shares": shares(after),
+        }  # fmt: skip

@@ -1,0 +1,102 @@
+"""The arm on the scales: the second moment of a gradient, added up sample by sample."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ddlib._check import shaped
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets.base import CurveWidget
+from ddlib.widgets.hinton import CENTRE, EXACT
+from ddlib.widgets.parts.panels import Panel, Scalar
+from ddlib.widgets.parts.parameters import Choice
+
+_ENTRIES = {
+    "shoulder": (0, 0),
+    "coupling": (0, 1),
+    "elbow": (1, 1),
+}  # of the mass matrix: torque, joint
+
+
+class WeighTheArm(CurveWidget):
+    """Widen the part of a window that counts, and watch its weighted area grow to an inertia.
+
+    Parameters
+    ----------
+    gradients : mapping
+        What was learnt -> mean gradient of the torques by the window, N m/rad, shape
+        ``(torque, joint, samples)``.
+    inertia : mapping
+        The same names -> mean mass matrix that belongs to it, kg m², shape (2, 2).
+    **options
+        Passed on to `CurveWidget`.
+    """
+
+    def __init__(
+        self, gradients: Mapping[str, np.ndarray], inertia: Mapping[str, np.ndarray], **options
+    ):
+        names = list(gradients)
+        width = np.shape(gradients[names[0]])[-1]
+        self._gradients = {
+            name: shaped(f"gradient of {name!r}", g, (2, 2, width)) for name, g in gradients.items()
+        }
+        self._inertia = {
+            name: shaped(f"inertia of {name!r}", inertia[name], (2, 2)) for name in names
+        }
+        self._x = (np.arange(width) - width // 2) * LOG_STEP
+        reaches = range(1, width // 2 + 1)
+        time = 1e3 * self._x
+        shade = {"cursor": ("first", "last")}
+        super().__init__(
+            self._curves,
+            [
+                Choice(
+                    "reach", "Count samples up to", {k: f"±{10 * k} ms" for k in reaches}, 3,
+                    "slider",
+                ),
+                Choice("learnt", "Learnt", names, names[0]),
+                Choice("entry", "Inertia of the", list(_ENTRIES), "shoulder"),
+            ],
+            [
+                Panel(
+                    "Gradient g, N m/rad", "gradient", CENTRE, time, kind="stems", y_fit=True,
+                    **shade,
+                ),
+                Panel(
+                    "What each sample adds: ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
+                    y_fit=True, **shade,
+                ),
+                Panel(
+                    "Sum so far, kg m²",
+                    {"sum": "in the weights", "arm": "the arm itself"},
+                    "samples up to ± ms", 10.0 * np.array(reaches), cursor="place", y_fit=True,
+                ),
+            ],
+            **{
+                "alt": "The gradient of the shoulder's torque by its window as stems; what each "
+                "sample adds to its second moment, as bars; and the sum over more and more "
+                "samples beside the arm's own inertia.",
+                "title": "Weigh the arm",
+                "scalars": [
+                    Scalar("now", "Sum", "kg m²", 2),
+                    Scalar("true", "The arm's own", "kg m²", 2),
+                ],
+                "tolerance": EXACT,
+                **options,
+            },
+        )  # fmt: skip
+
+    def _curves(self, reach, learnt, entry) -> dict:
+        at, half = _ENTRIES[entry], len(self._x) // 2
+        g = self._gradients[learnt][at]
+        parts = self._x**2 / 2 * g
+        counted = (min(k, reach) for k in range(1, half + 1))  # none beyond the slider
+        sums = np.array([parts[half - k : half + k + 1].sum() for k in counted])
+        true, edge = self._inertia[learnt][at], (reach + 0.5) * LOG_STEP * 1e3
+        return {
+            "gradient": g, "parts": parts, "sum": sums, "arm": np.full(half, true),
+            "now": sums[reach - 1], "true": true, "first": -edge, "last": edge,
+            "place": 10.0 * reach,
+        }  # fmt: skip

@@ -1,0 +1,105 @@
+"""Whose filters, and the arm on the scales: their handles say what the networks say."""
+
+import numpy as np
+import pytest
+from axe import violations
+from traitlets import TraitError
+from widget_pages import NEXT_FRAME, page_of
+
+from ddlib.analysis import gains
+from ddlib.learning import Weights
+from ddlib.simulation import LOG_STEP
+from ddlib.widgets import GuessRound, WhoseFilters
+from workshop.chapters import whose_filters as chapter
+from workshop.chapters.widgets.starts import UnitFromFiveStarts
+from workshop.chapters.widgets.weigh import WeighTheArm
+
+X = np.arange(-10, 11.0)
+PARABOLAS = np.tile(X**2 - (X**2).mean(), (20, 1))
+NOISE = np.random.default_rng(2).normal(size=(20, 21))
+ROUNDS = [GuessRound(PARABOLAS, NOISE, f"learnt number {k}", f"Remark {k}.") for k in range(4)]
+
+
+def test_galleries_have_rows_names_and_one_answer():
+    widget = WhoseFilters(ROUNDS)
+    assert widget.guesses == "----" and set(widget.right) == {"A", "B"}
+    for each, right in zip(widget.spec["rounds"], widget.right):
+        own = each["galleries"]["AB".index(right)]
+        assert own["arm"] and own["counts"] == [["acceleration", 20]]
+        assert np.allclose(own["rows"], PARABOLAS / PARABOLAS.max(), atol=1e-3)
+    with pytest.raises(TraitError, match="guesses must be 4 of A, B and -"):
+        widget.guesses = "AX--"
+    with pytest.raises(TraitError, match="round must be 0 to 3"):
+        widget.round = 4
+    with pytest.raises(ValueError, match="one or more"):
+        WhoseFilters([])
+    with pytest.raises(ValueError, match=r"\(filters, samples\)"):
+        WhoseFilters([ROUNDS[0]._replace(own=X)])
+
+
+@pytest.mark.browser
+def test_a_guess_is_judged_counted_and_kept(tmp_path, visit):
+    widget = WhoseFilters(ROUNDS)
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page = opened.page
+    verdict, score = page.locator(".verdict"), page.locator(".score")
+    assert "Which of the two" in verdict.inner_text() and score.inner_text() == "no guess yet"
+    assert page.locator(".row.c0").count() == 0 and page.locator(".row").count() == 40
+    right = widget.right
+    page.get_by_role("button", name=f"{right[0]} learnt this arm").press("Enter")
+    assert verdict.inner_text().startswith("Right:") and "Remark 0." in verdict.inner_text()
+    assert page.locator(".row.c0").count() == 20
+    told = page.locator(".told").all_inner_texts()
+    assert any("20\u00a0acceleration" in text for text in told)
+    page.get_by_role("button", name="Next round").click()
+    wrong = "AB"["BA".index(right[1])]
+    page.get_by_role("button", name=f"{wrong} learnt this arm").click()
+    assert verdict.inner_text().startswith("No:") and score.inner_text() == "1 of 2 right"
+    assert not violations(page)
+    page.get_by_role("button", name="Reset").click()
+    page.evaluate(NEXT_FRAME)
+    assert score.inner_text() == "no guess yet" and not opened.problems
+
+
+def test_torques_that_do_not_belong_are_as_large():
+    own = chapter.torques("own")
+    shifted, again = chapter.torques("shifted"), chapter.torques("shifted, again")
+    assert np.allclose(np.sort(own, 0), np.sort(shifted, 0)) and not np.allclose(shifted, again)
+    foreign = chapter.torques("another arm")
+    assert np.corrcoef(own[:, 0], foreign[:, 0])[0, 1] > 0.9
+
+
+def test_one_unit_is_shown_before_and_after():
+    sizes = (0.1, 1.0)
+    networks = {
+        size: tuple(Weights.random(1, 21, 3, initial=size, seed=k)[0] for k in range(2))
+        for size in sizes
+    }
+    widget = UnitFromFiveStarts(networks)
+    widget.size, widget.unit, widget.joint = 0.1, 2, "elbow"
+    shown, (before, after) = widget.curves, networks[0.1]
+    assert np.allclose(shown["before"], before.hidden_weights[1, 1])
+    parts = shown["even"] + shown["odd"] + shown["constant"]
+    assert np.allclose(parts, after.hidden_weights[1, 1]) and np.isclose(shown["shares"].sum(), 1)
+    assert widget.interpolation_error() < 1e-3
+
+
+def test_the_sum_over_all_samples_is_the_inertia():
+    g = np.random.default_rng(0).normal(size=(2, 2, 21))
+    widget = WeighTheArm({"one": g, "other": 2 * g}, {"one": np.eye(2), "other": 3 * np.eye(2)})
+    widget.reach, widget.learnt, widget.entry = 10, "other", "coupling"
+    shown = widget.curves
+    assert np.isclose(shown["now"], gains(2 * g)[0, 1, 2]) and shown["true"] == 0
+    assert np.isclose(shown["sum"][-1], shown["now"])
+    widget.reach = 1
+    inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
+    assert np.allclose(widget.curves["sum"], inner)  # nothing beyond the slider
+    with pytest.raises(ValueError, match="gradient of 'one' must have shape"):
+        WeighTheArm({"one": g[0], "other": g}, {"one": np.eye(2), "other": np.eye(2)})
+
+
+@pytest.mark.parametrize("number, right, wrong", [(1, 0.75, 1.5), (3, 99, 100)])
+def test_answers_are_judged(number, right, wrong, capsys):
+    for mine, told in ((right, "Right"), (wrong, "Wrong")):
+        chapter.check(number, mine, 3.0)
+        assert capsys.readouterr().out.startswith(told)
