@@ -70,7 +70,7 @@ class FeedforwardSwitches(LiveWidget):
             lambda **setting: _kept(arm, **setting),
             [
                 Choice("model", "Model of the arm", _SWITCH, False, "switch"),
-                Parameter("masses", "Masses of the model, of the right ones", 0, 200, 100, "%"),
+                Parameter("masses", "Masses of the model", 0, 200, 100, "% of the right"),
                 Choice("known", "The model knows friction", _SWITCH, False, "switch"),
                 Choice("feedback", "Feedback", _SWITCH, True, "switch"),
                 Choice("friction", "Friction in the joints", _SWITCH, True, "switch"),
@@ -100,7 +100,7 @@ class FeedforwardSwitches(LiveWidget):
             ),
             scalars=[
                 *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°", 3) for j in JOINTS),
-                Scalar("share", "Both, of feedback alone", "%", 1),
+                Scalar("share", "Both joints, of feedback alone", "%", 1),
             ],
             code=_CODE,
             note="Arrows of the diagram are as thick as the shoulder's torque (root mean square).",

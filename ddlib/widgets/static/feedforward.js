@@ -71,36 +71,36 @@ extras.push((view) => {
   const text = (x, y, words, kind = "") => make("text", { x, y, class: kind }, words);
   const box = (name, x, y, ...lines) => {
     const rows = lines.map((line, k) => text(x, y + 4.5 + 15 * (k - (lines.length - 1) / 2), line));
-    return make("g", { class: `box ${name}` }, make("rect", { x: x - 44, y: y - 21, width: 88, height: 42, rx: 5 }), ...rows);
+    return make("g", { class: `box ${name}` }, make("rect", { x: x - 50, y: y - 22, width: 100, height: 44, rx: 5 }), ...rows);
   };
   const flow = (name, d, ...rest) => make("g", { class: `flow ${name}` }, make("path", { d }), ...rest);
   const head = (x, y, turn = 0) => make("path", { class: "head", d: "M0 0L-9 -5V5Z", transform: `translate(${x} ${y}) rotate(${turn})` });
   const sum = (x, y) => make("circle", { class: "sum", cx: x, cy: y, r: 9 });
-  const ahead = text(294, 22, "", "amount");
-  const back = text(294, 109, "", "amount");
+  const ahead = text(282, 34, "", "amount");
+  const back = text(274, 108, "", "amount");
   const model = text(190, 45, "", "");
   const said = text(190, 60, "", "small");
-  const svg = make("svg", { class: "figure", role: "img", viewBox: "0 0 470 176" });
+  const svg = make("svg", { class: "figure", role: "img", viewBox: "0 16 484 154" });
   const boxes = [
     box("model", 190, 45),
     box("feedback", 190, 120, "feedback", "at each joint"),
-    box("plant", 396, 120, "arm"),
-    box("", 50, 82, "reference", "trajectory"),
+    box("plant", 404, 120, ""),
+    box("", 52, 82, "reference", "trajectory"),
   ];
   boxes[0].append(model, said);
-  const rubs = text(396, 138, "", "small");
-  boxes[2].append(rubs);
+  const rubs = text(404, 134, "", "small");
+  boxes[2].append(text(404, 118, "arm"), rubs);
   svg.append(
-    flow("", "M50 61V45H138", head(146, 45)),
-    flow("", "M50 103V120H98", head(106, 120)),
-    flow("feedback", "M124 120H138", head(146, 120)),
-    flow("model", "M234 45H322V102", head(322, 111, 90)),
-    flow("feedback", "M234 120H304", head(313, 120)),
-    flow("total", "M331 120H343", head(352, 120)),
-    flow("", "M440 120H458", head(466, 120)),
-    flow("", "M450 120V166H115V138", head(115, 129, -90)),
+    flow("", "M52 60V45H132", head(140, 45)),
+    flow("", "M52 104V120H98", head(106, 120)),
+    flow("feedback", "M124 120H132", head(140, 120)),
+    flow("model", "M240 45H322V102", head(322, 111, 90)),
+    flow("feedback", "M240 120H304", head(313, 120)),
+    flow("total", "M331 120H346", head(354, 120)),
+    flow("", "M454 120H474", head(482, 120)),
+    flow("", "M466 120V166H115V138", head(115, 129, -90)),
     sum(115, 120), sum(322, 120), ...boxes, ahead, back,
-    text(130, 138, "−", "sign"), text(336, 104, "+", "sign"), text(280, 160, "measured motion", "small"),
+    text(130, 138, "−", "sign"), text(336, 104, "+", "sign"), text(290, 160, "measured motion", "small"),
   );
   view.top.prepend(svg);
 
