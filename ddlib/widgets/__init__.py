@@ -1,6 +1,6 @@
 """Interactive figures: exact with a kernel, interpolated in the built page without one.
 
-- ``picker``, ``switches``, ``terms``, ``tuner``, ``window``, ``explorer``, ``fold``,
+- ``picker``, ``feedforward``, ``switches``, ``terms``, ``tuner``, ``window``, ``explorer``, ``fold``,
   ``player``, ``weights``, ``whose``: a widget each, named after what the reader handles;
   ``hinton``: the diagram that three of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share

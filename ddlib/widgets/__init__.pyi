@@ -20,6 +20,9 @@ from .engine.trainer import (
 from .explorer import (
     FilterExplorer as FilterExplorer,
 )
+from .feedforward import (
+    FeedforwardSwitches as FeedforwardSwitches,
+)
 from .fold import (
     FilterFold as FilterFold,
 )

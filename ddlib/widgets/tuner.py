@@ -13,7 +13,7 @@ from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import Effects, ViscousFriction
 from ddlib.figures import JOINTS
 from ddlib.paper import TEST_TRAJECTORY
-from ddlib.setups import KD, KP
+from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP, LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.base import SCRIPT, STYLE, module
@@ -23,7 +23,7 @@ from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
-_VISCOUS = (0.5, 0.15)  # friction of the joints, N m s/rad, the only effect here; assumed
+_VISCOUS = JOINT_DAMPING_VISCOUS  # friction of the joints, N m s/rad, the only effect here
 _MOST_DEG = 30.0  # error at which a run is stopped: larger than any of a stable loop here
 _LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
 
@@ -31,9 +31,10 @@ _T = np.arange(round(3.5 / CONTROL_STEP) + 1) * CONTROL_STEP
 
 _TIMES = _T[:: round(LOG_STEP / CONTROL_STEP)]  # when the curves are sampled, s
 
-_ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": KD[1] / KD[0]}
+# Gains of the elbow over the shoulder's; those of the damper give both the same damping ratio.
+_ELBOW = {"kp": KP[1] / KP[0], "ki": KP[1] / KP[0], "kd": 0.2}
 
-_START = {"kp": KP[0], "ki": 0.0, "kd": KD[0], "late": 0, "feedforward": False}  # the book's gains
+_START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False}  # the book's arm
 
 _CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -75,47 +76,54 @@ _KINDS = (
 
 _QUESTIONS = (
     _Question(
-        "the damper is taken away (derivative gain 0)",
-        {"kd": 0.0},
-        _KINDS,
-        1,
-        "P alone is a spring. Only the joint's own friction takes energy out of the swing.",
-    ),
-    _Question(
-        "there is no damper, and an integral gain of 600 N m/(rad s) is added",
-        {"kd": 0.0, "ki": 600.0},
-        ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
+        "the springs are made twelve times as stiff (proportional gain 9000 N m/rad)",
+        {"kp": 9000.0},
+        ("It swings for a shorter time.", _KINDS[1], _KINDS[2]),
         2,
-        "An integral answers to errors that have been: it pushes late, and so along the swing.",
-        {"kd": 0.0},
+        "Beyond a limit, stiffness feeds the swing. The page below finds out why.",
     ),
     _Question(
-        "there is no damper, and every torque comes 20 ms late",
-        {"kd": 0.0, "late": 10},
+        "the springs are as stiff as that, and a damper of 60 N m s/rad is added",
+        {"kp": 9000.0, "kd": 60.0},
+        _KINDS,
+        0,
+        "The damper takes more energy out of each swing than the stiff springs put in.",
+        {"kp": 9000.0},
+    ),
+    _Question(
+        "every torque comes 10 ms late",
+        {"late": 5},
         _KINDS,
         2,
         "A late spring pushes along the velocity. That is negative friction, and there is more of "
         "it than of the joint's own.",
-        {"kd": 0.0},
     ),
     _Question(
-        "the damper is there, and every torque comes 20 ms late",
-        {"late": 10},
+        "every torque comes 10 ms late, and a damper of 60 N m s/rad is added",
+        {"kd": 60.0, "late": 5},
         _KINDS,
         0,
         "The damper leads by more than the delay lags: the phase margin pays for it.",
+        {"late": 5},
     ),
     _Question(
-        "the damper is more than twice as strong (80 N m s/rad), and every torque comes 40 ms late",
-        {"kd": 80.0, "late": 20},
+        "a damper of 100 N m s/rad is added, and every torque comes 40 ms late",
+        {"kd": 100.0, "late": 20},
         _KINDS,
         2,
         "A stronger damper has its crossover at a higher frequency, where the same delay is a "
         "larger angle.",
     ),
     _Question(
-        "the damper is made twice as strong (70 N m s/rad)",
-        {"kd": 2 * KD[0]},
+        "an integral gain of 3000 N m/(rad s) is added",
+        {"ki": 3000.0},
+        ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
+        2,
+        "An integral answers to errors that have been: it pushes late, and so along the swing.",
+    ),
+    _Question(
+        "a damper of 60 N m s/rad is made twice as strong",
+        {"kd": 120.0},
         (
             "The first torque stays as it is.",
             "The first torque doubles.",
@@ -123,10 +131,11 @@ _QUESTIONS = (
         ),
         1,
         "The reference begins with a jump of its velocity, and only the damper looks at velocity.",
+        {"kd": 60.0},
     ),
     _Question(
-        "feedforward is switched on",
-        {"feedforward": True},
+        "feedforward is added to a damper of 60 N m s/rad",
+        {"kd": 60.0, "feedforward": True},
         (
             "All errors shrink.",
             "The first error stays, the later ones shrink.",
@@ -134,7 +143,8 @@ _QUESTIONS = (
         ),
         1,
         "The model knows which torque the wanted acceleration needs. It knows nothing of the jump "
-        "at the start.",
+        "at the start, nor of friction.",
+        {"kd": 60.0},
     ),
 )
 
@@ -142,8 +152,8 @@ _QUESTIONS = (
 class PIDTuner(LiveWidget):
     """Tune the gains of both joints on trajectory 6; the arm moves, and so does the last one.
 
-    The sliders set the shoulder's gains; the elbow's are in the ratio of the book's `KP` and `KD`
-    (its integral gain in that of `KP`). The arm is rigid, with viscous friction and exact sensors;
+    The sliders set the shoulder's gains; the elbow's are in the ratio of `JOINT_DAMPING_KP`, its
+    derivative gain a fifth. The arm is rigid, with viscous friction and exact sensors;
     feedforward uses the rigid arm as its model, without friction. The page computes everything by
     the live engine. A run is stopped where a joint's error passes `_MOST_DEG`. Growth and margins
     are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
@@ -169,9 +179,9 @@ class PIDTuner(LiveWidget):
         super().__init__(
             self._both,
             [
-                Parameter("kp", "Proportional gain", 50, 1200, KP[0], "N m/rad", scale="log"),
-                Parameter("ki", "Integral gain", 0, 1500, 0, "N m/(rad s)"),
-                Parameter("kd", "Derivative gain", 0, 80, KD[0], "N m s/rad"),
+                Parameter("kp", "Proportional gain", 50, 12000, KP[0], "N m/rad", scale="log"),
+                Parameter("ki", "Integral gain", 0, 4000, 0, "N m/(rad s)"),
+                Parameter("kd", "Derivative gain", 0, 150, 0, "N m s/rad"),
                 Choice("late", "The torque comes late by", milliseconds, 0, "slider"),
                 Choice("feedforward", "Feedforward", {False: "off", True: "on"}, False, "switch"),
             ],
@@ -186,11 +196,11 @@ class PIDTuner(LiveWidget):
                 for what, unit in (("error", "°"), ("torque", "N m"))
                 for joint in JOINTS
             ],
-            examples=[{"kd": 0.0}, {"kp": 50.0}],
+            examples=[{"kd": 60.0}, {"kp": 50.0}],
             title="PID tuner",
             alt=(
-                "Tracking error and torque of both joints over trajectory 6 under PD control with "
-                "the book's gains, without feedforward."
+                "Tracking error and torque of both joints over trajectory 6 with the springs and "
+                "the friction of the book's arm, without damper, integral or feedforward."
             ),
             scalars=[
                 *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°", 2) for j in JOINTS),

@@ -16,7 +16,6 @@ from workshop.chapters import (
     adaptive_control,
     convolution_filters as filters,
     dynamics,
-    feedback,
     feedforward,
     joints_three_and_four as more_joints,
     real_arm,
@@ -124,9 +123,7 @@ EXAMPLES = {
     "estimates": lambda: dynamics.estimates(
         {"fair": fitted(100), "off": fitted(100, 0.5), "once": fitted()}, [1, 2], ("x", "y"), 20.0
     ),
-    "ringing": feedback.ringing,
     "feedforward_loop": feedforward.feedforward_loop,
-    "wrong_models": feedforward.wrong_models,
     "reached": partial(
         recording.reached, {"quiet": 0.1 * RINGING, "ringing": RINGING}, radius=np.pi
     ),

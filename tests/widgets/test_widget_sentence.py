@@ -7,6 +7,7 @@ import pytest
 from widget_pages import functions, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.setups import JOINT_DAMPING_VISCOUS
 from ddlib.widgets import LoopSentence, TorqueSentence
 from ddlib.widgets.engine import _loops as loops
 
@@ -56,16 +57,18 @@ def test_torques_are_those_of_the_arm():
     assert known[0] in sentence.text() and sentence.still_alt == sentence.text()
 
 
-def test_the_limit_of_a_spring_is_that_of_the_chapter():
-    """Twice the friction over the period: above it the loop is unstable, below it is not."""
+def test_the_limit_of_a_spring_lies_between_those_of_the_joints():
+    """Twice the friction over the period, for each joint alone; the elbow's is the lower one."""
     sentence = LoopSentence()
-    for friction, period in ((0.5, 2.0), (0.3, 1.0)):
+    share = JOINT_DAMPING_VISCOUS[1] / JOINT_DAMPING_VISCOUS[0]
+    lower = share / sentence.spec["ratios"]["kp"]  # of the elbow, in terms of the shoulder's gain
+    for friction, period in ((5.3, 2.0), (3.0, 1.0)):
         limit = 2 * friction / (1e-3 * period)
         growth = [
-            sentence.growth(period=period, kp=share * limit, kd=0, friction=friction)
-            for share in (0.99, 1.01)
+            sentence.growth(period=period, kp=part * limit, kd=0, friction=friction)
+            for part in (0.99 * lower, 1.01)
         ]
-        assert growth[0] < 0 < growth[1]
+        assert lower < 1 and growth[0] < 0 < growth[1]
     assert "stable, and what" in sentence.results(**sentence.values)["verdict"]
 
 

@@ -104,25 +104,18 @@ def swing(run, begin, end):
 def test_what_happens_if():
     """Each answer that the page calls right, by ddlib, with a margin."""
     before, after = zip(*([known_run(**x) for x in (q.first, q.change)] for q in _QUESTIONS))
-    # swings through the whole motion, and dies out no sooner
-    free = after[0]
-    assert -1 / 9 < free["growth"] < 0 and np.isnan(free["stopped"])
-    assert 0.7 < swing(free, 2, 3) / swing(free, 1, 2) < 1.3
-    assert swing(free, 2, 3) > 5 * swing(before[0], 2, 3)
-    for k in (1, 2, 4):
+    for k in (0, 2, 4, 5):
         assert "grows" in _QUESTIONS[k].choices[_QUESTIONS[k].right]
         assert after[k]["growth"] > 0.5 and after[k]["stopped"] < 2.8
         assert before[k]["growth"] < 0 and np.isnan(before[k]["stopped"])
-    late = after[3]
-    assert late["growth"] < 0.8 * before[3]["growth"] < 0
-    assert swing(late, 1, 3) < 1.3 * swing(before[3], 1, 3)
-    assert late["shoulder phase margin"] < before[3]["shoulder phase margin"] - 5
-    assert after[4]["stopped"] < 1
-    first = [x[5]["shoulder torque"][0] for x in (before, after)]
+    for k in (1, 3):  # settles, where it grew
+        assert before[k]["growth"] > 0.5 and after[k]["growth"] < -2
+        assert swing(after[k], 2, 3) < swing(known_run(), 2, 3) / 5
+    first = [x[6]["shoulder torque"][0] for x in (before, after)]
     assert first[1] == pytest.approx(2 * first[0], rel=0.01) and first[0] < -10
     for joint in JOINTS:
-        off, on = (x[6][f"{joint} error"] for x in (before, after))
-        assert rms(on[LATE]) < rms(off[LATE]) / 4
+        off, on = (x[7][f"{joint} error"] for x in (before, after))
+        assert rms(on[LATE]) < rms(off[LATE]) / 2
         assert np.abs(on).max() == pytest.approx(np.abs(off).max(), rel=0.1)
 
 
@@ -171,16 +164,16 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
     assert_computed(page, kp=kp)
     assert page.evaluate(SEEN)["before"] == _START  # the ghost stands where the change began
     page.wait_for_timeout(1000)  # a new change begins
-    page.locator("input[id$=-kd]").press("Home")
+    page.locator("input[id$=-kd]").press("End")
     page.locator("input[id$=-ki]").press("ArrowRight")
     page.evaluate(NEXT_FRAME)
     ki = value_of(page, tuner, "ki")
     page.locator("input[id$=-late]").press("ArrowRight")
-    assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1)
+    assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1)
     assert page.evaluate(SEEN)["before"] == {**_START, "kp": pytest.approx(kp)}
-    assert "unstable" in page.locator(".verdict").inner_text()
+    assert "stable" in page.locator(".verdict").inner_text()
     page.get_by_role("switch").press("Space")
-    assert_computed(page, kp=kp, kd=0.0, ki=ki, late=1, feedforward=True)
+    assert_computed(page, kp=kp, kd=150.0, ki=ki, late=1, feedforward=True)
     assert not opened.problems
 
 
@@ -188,11 +181,11 @@ def test_drag_keys_switch_and_the_ghost(tmp_path, visit, tuner):
 def test_an_unstable_loop_says_what_would_calm_it(tmp_path, visit, tuner):
     """In the page's own per cent: a little less is stable, a little more is not."""
     url = page_of(tmp_path / "page.html", tuner)
-    page = visit(f"{url}?pidtuner=kd:80,late:20", **CALM).page
+    page = visit(f"{url}?pidtuner=kd:100,late:20", **CALM).page
     page.wait_for_function("/%/.test(document.querySelector('.remedy').textContent)")
     told = page.locator(".remedy").inner_text()
     part = float(re.search(r"([\d.]+)\s%", told)[1]) / 100
-    whole, joints = {**_START, "kd": 80.0}, plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
+    whole, joints = {**_START, "kd": 100.0}, plant(ARM.mass_matrix([0.0, 0.0]), _VISCOUS)
     stable = []
     for share in (0.96, 1.04):
         law = _gains(*(part * share * whole[name] for name in ("kp", "ki", "kd")))

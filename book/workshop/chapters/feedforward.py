@@ -1,4 +1,4 @@
-"""What the lesson *What feedforward adds* shows, quotes and asks, and what its claims measure."""
+"""What the lesson *What feedforward adds* shows and asks, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from matplotlib.patches import Circle, FancyBboxPatch
 from ddlib.control import PID, ComputedTorque, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, PUMA_560_ROTORS
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects
-from ddlib.figures import curves
 from ddlib.figures.style import COLOURS, FAINT, INK, NARROW, Illustration, illustrate
 from ddlib.setups import KD, KP
 from ddlib.simulation import (
@@ -24,7 +23,7 @@ from ddlib.simulation import (
     run_system,
     smooth_pick_and_place,
 )
-from ddlib.tables import quote, scientific, significant
+from ddlib.tables import scientific, significant
 from ddlib.trajectories import APPENDIX_I, pick_and_place
 from workshop.chapters.exercises import judge
 from workshop.report.evidence.verdicts import Measured
@@ -127,28 +126,6 @@ def _arrow(axis: Axes, *points):
     axis.text((x0 + x1) / 2, y0 + 0.1, name, ha="center", va="bottom")
 
 
-@cache
-def _left() -> dict[str, np.ndarray]:
-    """What models that are off by a factor leave of the error of feedback alone, %."""
-    effects = {"rigid arm": IDEAL}
-    effects["with friction and sensors that no model knows"] = CMU_DD_ARM_II_EFFECTS
-    found = {n: _rms(_errors(_FACTORS, np.ones(_FACTORS.size), e)) for n, e in effects.items()}
-    return {name: 100 * error / error[0] for name, error in found.items()}
-
-
-def wrong_models() -> Illustration:
-    """The error of the arm against how far the model in its feedforward is off."""
-    alt = "The error falls in a line from feedback alone to the right model and rises as "
-    alt += "steeply beyond it; with friction it does not reach zero."
-    panels = {"error, % of feedback alone": _left()}
-    return curves(_FACTORS, panels, "torque of the model over the right torque", alt, height=2.6)
-
-
-def _quoted() -> None:
-    """The number of the lesson: what the right inertias leave on an arm with friction."""
-    quote("pid-wrong-least", min(_left()["with friction and sensors that no model knows"]))
-
-
 def check(number: int, mine, *given) -> None:
     """Judge an answer to an exercise, with what the lesson's cells found."""
     if number == 1:
@@ -171,7 +148,6 @@ def check(number: int, mine, *given) -> None:
 
 # --- what the claims of the chapter measure
 
-_FACTORS = np.linspace(0, 2, 11)
 _EXTENTS = APPENDIX_I[0]
 _TIMES = np.arange(1500) * CONTROL_STEP
 # Inertia that each joint has by itself, the arm stretched, kg m^2

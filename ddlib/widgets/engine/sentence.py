@@ -12,7 +12,7 @@ from ddlib._check import one_of
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.effects import IDEAL
 from ddlib.figures import illustrate
-from ddlib.setups import KD, KP
+from ddlib.setups import JOINT_DAMPING_KP as KP, JOINT_DAMPING_VISCOUS
 from ddlib.simulation import CONTROL_STEP
 from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import _FRAME, STYLE, _PageWidget, module
@@ -21,7 +21,8 @@ from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 
-_SHARE = np.array([1.0, KP[1] / KP[0]])  # friction of the joints, over the shoulder's: as the gains
+# Friction of the joints, over the shoulder's
+_SHARE = np.array([1.0, JOINT_DAMPING_VISCOUS[1] / JOINT_DAMPING_VISCOUS[0]])
 
 
 class _LiveSentence(_PageWidget):
@@ -114,10 +115,10 @@ class LoopSentence(_LiveSentence):
     """Friction, a period and two gains, and whether the sampled loop is stable.
 
     The loop is the linear one of the stretched arm, as in `ddlib.widgets.tuner`; friction and gains
-    are the shoulder's, the elbow's in the ratio of the book's.
+    are the shoulder's, the elbow's in the ratio of the book's; its damper has a fifth.
     """
 
-    FRICTION = 0.5  # of the shoulder at which the modes are given, N m s/rad
+    FRICTION = JOINT_DAMPING_VISCOUS[0]  # of the shoulder at which the modes are given, N m s/rad
 
     def __init__(self):
         super().__init__(
@@ -128,16 +129,16 @@ class LoopSentence(_LiveSentence):
             ],
             [
                 Parameter("period", "Control period", 0.5, 40, 1e3 * CONTROL_STEP, "ms"),
-                Parameter("kp", "Proportional gain", 50, 1200, KP[0], "N m/rad"),
-                Parameter("kd", "Derivative gain", 0, 80, 0, "N m s/rad"),
-                Parameter("friction", "Viscous friction", 0.1, 2, self.FRICTION, "N m s/rad"),
+                Parameter("kp", "Proportional gain", 50, 12000, KP[0], "N m/rad"),
+                Parameter("kd", "Derivative gain", 0, 150, 0, "N m s/rad"),
+                Parameter("friction", "Viscous friction", 0.1, 10, self.FRICTION, "N m s/rad"),
             ],
-            {"period": 0.5, "kp": 10, "kd": 0.5, "friction": 0.05},
+            {"period": 0.5, "kp": 50, "kd": 0.5, "friction": 0.1},
             {
                 "kind": "loop",
                 "modes": modes(CMU_DD_ARM_II, self.FRICTION * _SHARE),
                 "friction": self.FRICTION,
-                "ratios": {"kp": KP[1] / KP[0], "kd": KD[1] / KD[0]},
+                "ratios": {"kp": KP[1] / KP[0], "kd": 0.2},
             },
             "from ddlib.widgets import LoopSentence\n\n"
             "LoopSentence().growth(period={period}, kp={kp}, kd={kd}, friction={friction})",

@@ -2,7 +2,7 @@
 
 const PAUSE = 800; // ms without a change after which a setting is the one before the next
 const THOUGHT = 250; // ms without a change after which it is sought what would make a loop stable
-const NYQUIST = "fig-feedback-nyquist"; // figure of the chapter that explains margins
+const BODE = "fig-pid-bode"; // figure of the chapter that explains margins
 
 // Everything about one setting.
 function tuned(loop, setting) {
@@ -84,9 +84,9 @@ extras.push((view) => {
   const verdict = make("p", { class: "verdict", role: "status" });
   const remedy = make("p", { class: "remedy", role: "status" });
   const chapter = "How close to instability?";
-  const figure = document.getElementById(NYQUIST)
-    ? make("a", { href: `#${NYQUIST}` }, `the Nyquist plot under “${chapter}”`)
-    : `the Nyquist plot in the chapter What feedback does, under “${chapter}”`;
+  const figure = document.getElementById(BODE)
+    ? make("a", { href: `#${BODE}` }, `the Bode plot under “${chapter}”`)
+    : `the Bode plot in the chapter What feedback does, under “${chapter}”`;
   const pointer = make("p", { class: "remark" }, "What a margin is: ", figure, ".");
   const key = (kind, text) => {
     const line = make("path", { class: "links", d: "M2 6H24" });

@@ -1,0 +1,77 @@
+"""Figure 2-1 as a thing to switch, in Python and in a page without a kernel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from widget_pages import PATHS, assert_curves, page_of
+
+from ddlib.control import Feedforward, proportional
+from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_KP as KP
+from ddlib.simulation import record
+from ddlib.trajectories import APPENDIX_I
+from ddlib.widgets.feedforward import _FRICTION, _TIMES, FeedforwardSwitches
+
+
+@pytest.fixture(scope="module")
+def switches():
+    return FeedforwardSwitches()
+
+
+def test_with_the_jump_it_is_a_recording(switches):
+    """By `record`, whose motion follows a rest."""
+    arm = JOINT_DAMPING.arm
+    law = Feedforward(arm, proportional(KP))
+    recording = record(arm, law, APPENDIX_I[0], effects=_FRICTION)
+    shown = switches.interpolate(model=True, jump=True)
+    moving = recording.motion
+    error = np.rad2deg(recording.tracking_error[moving, 0])
+    np.testing.assert_allclose(shown["shoulder error"], error, atol=1e-6)
+    torque = shown["shoulder ahead"] + shown["shoulder back"]
+    np.testing.assert_allclose(torque, recording.tau_true[moving, 0], atol=1e-5)
+    assert len(error) == len(_TIMES)
+
+
+def test_model_and_feedback_multiply(switches):
+    """On the arm without friction a model's error is the share that is left."""
+    for masses in (0, 80, 100, 120, 200):
+        left = switches.interpolate(model=True, masses=masses, friction=False)["share"][0]
+        assert left == pytest.approx(abs(100 - masses), abs=0.5)
+    rubbing = [switches.interpolate(model=True, known=known)["share"][0] for known in (0 > 1, True)]
+    assert 25 < rubbing[0] < 45 and rubbing[1] < 1
+    assert switches.interpolate(model=True, feedback=False)["share"][0] > 1000
+
+
+@pytest.mark.browser
+def test_the_page_computes_and_says_the_same(tmp_path, visit, switches):
+    url = page_of(tmp_path / "page.html", switches)
+    key = switches.spec["key"]
+    for setting in (
+        {"model": True, "masses": 130.0, "known": True},
+        {"model": True, "feedback": False},
+        {"model": True, "friction": False, "jump": True},
+    ):
+        texts = {name: str(value).lower() for name, value in setting.items()}
+        query = ",".join(f"{name}:{text}" for name, text in texts.items())
+        page = visit(f"{url}?{key}={query}").page
+        assert_curves(page, switches._function(**{**switches.values, **setting}), 1e-5)
+
+
+@pytest.mark.browser
+def test_switches_by_keyboard(tmp_path, visit, switches):
+    opened = visit(page_of(tmp_path / "page.html", switches))
+    page = opened.page
+    before = page.evaluate(PATHS)
+    figure = page.locator("svg.figure")
+    assert "the model gives nothing" in figure.get_attribute("aria-label")
+    page.get_by_role("switch", name="Model of the arm").press("Space")
+    page.get_by_role("switch", name="The model knows friction").press("Space")
+    page.locator("input[id$=-masses]").press("ArrowLeft")
+    page.wait_for_function("!document.querySelector('svg.figure').matches('.no-model')")
+    assert "the model gives" in figure.get_attribute("aria-label")
+    assert page.evaluate(PATHS) != before
+    page.get_by_role("switch", name="Feedback").press("Space")
+    page.wait_for_function("document.querySelector('svg.figure').matches('.no-feedback')")
+    page.get_by_role("button", name="Reset").click()
+    page.wait_for_function("document.querySelector('svg.figure').matches('.no-model')")
+    assert not opened.problems
