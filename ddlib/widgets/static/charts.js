@@ -280,5 +280,8 @@ function chart(view, panel) {
     svg.setAttribute("aria-label", `${panel.y_label} over ${panel.x_label}: ${parts.join("; ")}. Arrow keys read values`);
   }
 
-  return { el, panel, resize, redraw, describe, point };
+  // The place of a point of the chart, px; for a class with more to draw in it.
+  const at = (a, b) => [x.place(a), y.place(b)];
+
+  return { el, panel, resize, redraw, describe, point, at };
 }
