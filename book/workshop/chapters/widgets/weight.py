@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib.widgets import Panel, Parameter, Scalar
+from ddlib.widgets import LiveWidget, Panel, Parameter, Scalar
 from ddlib.widgets.base import SCRIPT, STYLE, module
-from ddlib.widgets.engine._live import LiveWidget
 
 _HERE = Path(__file__).parent
 
