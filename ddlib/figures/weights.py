@@ -32,6 +32,7 @@ def network_diagram(weights: Weights) -> Illustration:
 
     def row(axis, y, n, x0, x1, colour):
         """Draw `n` units (at most nine, dots between) and return their places."""
+        size = min(11.0, 1.7 * axis.figure.get_figwidth())  # points; they never touch
         shown = min(n, 9)
         places = np.linspace(x0, x1, shown)
         middle = {shown // 2} if n > shown else set()
@@ -39,7 +40,7 @@ def network_diagram(weights: Weights) -> Illustration:
             if k in middle:
                 axis.text(x, y, "…", ha="center", va="center", fontsize=14)
             else:
-                axis.plot(x, y, "o", ms=11, mfc=colour, mec=INK, mew=0.8, zorder=3)
+                axis.plot(x, y, "o", ms=size, mfc=colour, mec=INK, mew=0.8, zorder=3)
         return [x for k, x in enumerate(places) if k not in middle]
 
     def draw(figure: Figure):

@@ -4,6 +4,9 @@ from .base import (
     CurveWidget as CurveWidget,
     module as module,
 )
+from .engine._live import (
+    LiveWidget as LiveWidget,
+)
 from .engine.builder import (
     FilterBuilder as FilterBuilder,
 )

@@ -62,6 +62,15 @@ class _Extents(t.TraitType):
             raise t.TraitError(str(error)) from None
 
 
+class _Recorded(t.Any):
+    """What was recorded last; who reads it gets a recording of the extents as they stand."""
+
+    def get(self, obj, cls=None):
+        if obj._recorded_at != obj.extents_deg:
+            obj.record()
+        return super().get(obj, cls)
+
+
 class TrajectoryPicker(LiveWidget):
     """Pick a trajectory of the paper's family; see arm, joint angles and torques; record it.
 
@@ -69,7 +78,8 @@ class TrajectoryPicker(LiveWidget):
     The Lagrange-Euler torques are those of the reference motion itself: no controller, no
     friction. With `models` the trajectory is also recorded, without quantisation and noise of
     the sensors, and the networks see the recorded positions. The page computes all of it by the
-    live engine; only the map of errors under the pad is computed here.
+    live engine; only the map of errors under the pad is computed here. The arm is drawn from above,
+    with the paths of its hand in all trajectories of the recording.
 
     Parameters
     ----------
@@ -79,8 +89,8 @@ class TrajectoryPicker(LiveWidget):
         Arm, effects and controller that record; with `models` the engine must have them, and the
         controller must be a `PID`.
     on_record : callable, optional
-        Called with the extents when the reader records; default ``setup.record``, sensors
-        included. Its result is kept in `recording`.
+        Called with the extents to record them; default ``setup.record``, sensors included. Its
+        result is kept in `recording`.
     trajectories_deg : array_like, shape (runs, 2)
         Extents of the recording within the square, degrees; the last one is the test.
     **options
@@ -91,7 +101,8 @@ class TrajectoryPicker(LiveWidget):
     extents_deg : tuple
         Extents of shoulder and elbow in degrees; starts as the test trajectory.
     recording : object
-        What `on_record` returned last, or None.
+        What `on_record` returned for the extents as they stand. It is called when the reader
+        presses the button, or when this is read and the extents are new.
     numbers : dict
         The numbers beside the pad over the whole square: name -> ndarray, shape
         ``(shoulder, elbow)``, at 31 extents of each joint from 0 to 45 degrees.
@@ -107,7 +118,8 @@ class TrajectoryPicker(LiveWidget):
     weights = t.Bytes(help="the networks' weights as float32", read_only=True).tag(sync=True)
     map = t.Dict(help="errors of each network over the square", read_only=True).tag(sync=True)
     record_status = t.Dict({"text": "", "count": 0}, read_only=True).tag(sync=True)
-    recording = t.Any(None)
+    recording = _Recorded(None)
+    _recorded_at = None  # the extents that `recording` belongs to
 
     def __init__(
         self,
@@ -179,10 +191,13 @@ class TrajectoryPicker(LiveWidget):
 
     def record(self):
         """Record the trajectory as it stands; returns and keeps the recording."""
-        self.recording = self._on_record(self.extents_deg)
+        extents_deg = self.extents_deg
+        recording = self._on_record(extents_deg)
+        self._recorded_at = extents_deg  # first, as observers read the recording
+        self.recording = recording
         angles = " and ".join(f"{x:.1f}°" for x in self.extents_deg)
         self._say(f"Recorded {angles}: now in the widget's recording.")
-        return self.recording
+        return recording
 
     def _from_parameters(self, _):
         self.extents_deg = (self.shoulder_deg, self.elbow_deg)

@@ -7,7 +7,7 @@ from open_cells import CHANGES, execute, exercises, imports, lesson, run
 
 DATA = ROOT / "book" / "data"  # goes with the notebooks
 MOST_SECONDS = 30  # of one core, for the open cells of a lesson
-LIBRARIES = {"ddlib", "numpy", "scipy", "sympy", "torch", "control", "matplotlib"}
+LIBRARIES = {"ddlib", "numpy", "scipy", "sympy", "torch", "control", "matplotlib", "ipywidgets"}
 STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "time", "warnings"}
 
 

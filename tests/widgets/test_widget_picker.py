@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from ipywidgets import FloatSlider, link
 from widget_pages import LIVE, NEXT_FRAME, PATHS, assert_curves, drag, page_of, shown_values
 
 from ddlib.metrics import rmss
@@ -54,6 +55,28 @@ def test_recording_is_the_experiments_or_ones_own():
     assert "Recorded 10.0° and 20.5°" in picker.record_status["text"]
     picker._handle_custom_msg({"type": "record", "extents_deg": [10, 99]}, [])
     assert len(calls) == 1 and "must lie in [0, 45], got 99" in picker.record_status["text"]
+
+
+def test_who_reads_the_recording_has_that_of_the_extents_as_they_stand():
+    calls, seen = [], []
+    picker = TrajectoryPicker(on_record=lambda e: calls.append(e) or tuple(e))
+    picker.observe(lambda change: seen.append(change.new), "recording")
+    assert picker.recording == picker.recording == picker.extents_deg == tuple(APPENDIX_I[5])
+    assert len(calls) == 1 and picker.record_status["count"] == 1
+    picker.shoulder_deg = 12.0  # as the page sets it while the point is dragged
+    assert len(calls) == 1
+    assert picker.recording == (12.0, APPENDIX_I[5, 1]) == picker.record()
+    assert seen == [tuple(APPENDIX_I[5]), (12.0, APPENDIX_I[5, 1])]
+
+
+def test_traits_can_be_linked():
+    picker, slider = TrajectoryPicker(), FloatSlider(max=45)
+    link((picker, "elbow_deg"), (slider, "value"))
+    assert slider.value == APPENDIX_I[5, 1]
+    slider.value = 30
+    assert picker.extents_deg == (APPENDIX_I[5, 0], 30)
+    picker.extents_deg = (1, 2)
+    assert slider.value == 2
 
 
 def test_networks_see_what_the_simulator_records(full, networks):
@@ -155,6 +178,22 @@ def test_drag_keys_and_sliders(tmp_path, visit, full):
     assert shown_values(page)[:2] == [9.5, 40.0]
     assert_shown(page, full, (9.5, 40.0))
     assert not opened.problems
+
+
+@browser_test
+def test_the_arm_is_drawn_with_its_paths(tmp_path, visit, picker):
+    page = visit(page_of(tmp_path / "page.html", picker)).page
+    paths = page.locator(".arm .other path").evaluate_all(
+        "all => all.map((p) => p.getAttribute('d'))"
+    )
+    assert len(set(paths)) == len(APPENDIX_I)
+    assert page.locator(".arm .other text").all_text_contents() == list("123456")
+    # that of the test is the path of the arm as it stands
+    assert page.locator(".arm .trail").get_attribute("d") == paths[-1]
+    page.locator("input[id$=elbow_deg]").press("Home")
+    page.evaluate(NEXT_FRAME)
+    assert page.locator(".arm .trail").get_attribute("d") != paths[-1]
+    assert not page.locator(".record").count()  # no kernel, nothing that records
 
 
 @browser_test

@@ -1,4 +1,4 @@
-"""What *Backpropagation* says and asks, parity in two forms, and what its claims measure."""
+"""What *Backpropagation* shows and asks, parity in two forms, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 
 from ddlib import paper
 from ddlib._check import finite_array, integer, number, one_of, shaped
-from ddlib.figures import Illustration, families
+from ddlib.figures import Illustration, families, network_diagram
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
 from ddlib.tables import quote, scientific, significant, spread
 from workshop.chapters.exercises import judge
+from workshop.chapters.widgets.weight import OneWeight as OneWeight
 from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, judged, median
@@ -167,6 +168,11 @@ def _raced() -> dict[str, History]:
     return {n: train_ensemble(start, data, momentum=m, **how)[1] for n, m in momenta.items()}
 
 
+def walked() -> Illustration:
+    """The network of the walk: window 21, ten hidden units."""
+    return network_diagram(Weights.random(1, 21)[0])
+
+
 def race() -> Illustration:
     """Their training errors."""
     lines = {name: (run.epochs, run.training) for name, run in _raced().items()}
@@ -186,9 +192,9 @@ def _quoted() -> None:
     """The book's numbers in the lesson's prose."""
     plain, quick = map(np.median, _needed())
     kept = results.read("acceleration")["parity"]
+    quote("backpropagation-weights", Weights.random(1, 21)[0].count(biases=True))
     quote("backpropagation-needed-without", plain)
     quote("backpropagation-needed-with", quick)
-    quote("backpropagation-race-gain", plain / quick)
     quote("backpropagation-parity-race", np.median(kept["without"]) / np.median(kept["with"]))
 
 
@@ -226,9 +232,9 @@ def check(number: int, mine, *given) -> None:
         judge(mine, lambda eta: best / 11 < eta < 11 * best, told, slips)
     else:
         descend, x, d, level = given
-        end = cache(lambda mine: descend(x, d, *mine, epochs=300, warm_up=0)[1][-1])
+        end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])
         slips = [(lambda mine: end(mine) > 1, "off course, the steps are too large.")]
-        hint = f"the training RMSS has to fall below {level / 2:.2f} in 300 epochs."
+        hint = f"the training RMSS has to fall below {level / 2:.2f} in 1,000 epochs."
         told = "what momentum adds up, patience need not."
         judge(mine, lambda mine: end(mine) < level / 2, told, slips, hint)
 

@@ -18,7 +18,15 @@ from ddlib.control import proportional
 from ddlib.figures.style import COLOURS, FAINT, INK, Illustration, illustrate
 from ddlib.learning import sliding_windows
 from ddlib.paper import TRAINING_TRAJECTORIES
-from ddlib.setups import KP, POSITION_FEEDBACK, SETUPS, STATE_FEEDBACK, WINDOWS, true_states
+from ddlib.setups import (
+    JOINT_DAMPING as JOINT_DAMPING,
+    KP,
+    POSITION_FEEDBACK,
+    SETUPS,
+    STATE_FEEDBACK,
+    WINDOWS,
+    true_states,
+)
 from ddlib.simulation import LOG_STEP, Recording, rms
 from ddlib.tables import quote, scientific, significant
 from ddlib.trajectories import (
@@ -28,6 +36,7 @@ from ddlib.trajectories import (
     pick_and_place,
     random_extents,
 )
+from ddlib.widgets import TrajectoryPicker as TrajectoryPicker
 from workshop.chapters.exercises import judge
 from workshop.report import committed
 from workshop.report.evidence.verdicts import Measured, turns_at

@@ -298,5 +298,8 @@ function chart(view, panel) {
     follow();
   }
 
-  return { el, panel, resize, redraw, describe, point, rename };
+  // The place of a point of the chart, px; for a class with more to draw in it.
+  const at = (a, b) => [x.place(a), y.place(b)];
+
+  return { el, panel, resize, redraw, describe, point, rename, at };
 }

@@ -112,6 +112,7 @@ const pose = (lengths, q, scale) => placesOf(lengths, q).map(([x, y]) => [short(
 
 function armOf(view) {
   const { lengths, angles, times } = view.model.get("arm");
+  const { motion } = view.model.get("loop");
   const scale = 230 / (lengths[0] + lengths[1]);
   const rad = (x) => (x * Math.PI) / 180;
   const far = angles.map((name) => rad(view.spec.curves.find((c) => c.name === name).low));
@@ -122,14 +123,23 @@ function armOf(view) {
   const hand = make("circle", { class: "hand", r: 5 });
   const ground = make("line", { class: "ground", x1: 0, x2: 244, y1: 0, y2: 0 });
   const base = make("circle", { class: "joint", r: 7 });
-  const words = "The arm from above; the dotted line is the path of the hand";
+  const words =
+    "The arm from above; the dotted line is the path of its hand, pale lines are its paths in the " +
+    "trajectories of the recording";
   const svg = make(
     "svg",
     { class: "arm", viewBox: `-20 -16 280 ${deepest[1] + 32}`, role: "img", "aria-label": words },
-    ...[ground, trail, ...links, base, elbow, hand],
+    ...[ground, ...view.spec.pad.marks.map(others), trail, ...links, base, elbow, hand],
   );
   let joints = [[0], [0]];
 
+  // The path of the hand in a trajectory of the recording, with its number where the motion turns.
+  function others({ x, y, label, group }) {
+    const hands = times.map((t) => pose(lengths, pickAndPlace([rad(x), rad(y)], t, motion).q, scale)[1]);
+    const [left, top] = hands[hands.length >> 1];
+    const text = make("text", { x: left - 4, y: top + 4, "text-anchor": "end" }, label);
+    return make("g", { class: `other ${group}` }, make("path", { d: `M${hands.map((p) => p.join(" ")).join("L")}` }), text);
+  }
   function path(curves) {
     joints = angles.map((name) => curves[name]);
     const points = times.map((_, i) => pose(lengths, joints.map((q) => rad(q[i])), scale)[1]);
@@ -153,6 +163,7 @@ extras.push((view) => {
   const arm = armOf(view);
   view.el.classList.add("ddlib-picker");
   if (Object.keys(view.model.get("map").errors).length) mapOf(view);
+  else view.el.classList.add("alone"); // the motion, without networks
 
   const clock = clockOf(view, { at: arm.end / 2, end: arm.end, step: arm.end / 300 }, (now) => {
     arm.stand(now);
@@ -172,10 +183,8 @@ extras.push((view) => {
   let waiting = 0;
   function done() {
     clearTimeout(waiting);
-    record.disabled = Boolean(model.kernelless);
-    said.textContent = model.kernelless
-      ? "Recording needs a running kernel: open this chapter as a notebook."
-      : model.get("record_status").text;
+    record.disabled = false;
+    said.textContent = model.get("record_status").text;
   }
   const ask = () => {
     record.disabled = true;
@@ -199,7 +208,8 @@ extras.push((view) => {
   view.keep("time", () => clock.now().toFixed(2), (text) => clock.stand(Number(text)));
   clock.slider.addEventListener("input", view.changed);
   view.top.firstChild.after(view.numbers); // beside the pad: seen while it is dragged
-  view.controls.append(verdict, make("div", { class: "record" }, record, said));
+  view.controls.append(verdict);
+  if (!model.kernelless) view.controls.append(make("div", { class: "record" }, record, said));
   view.top.append(make("div", { class: "arm-box" }, arm.svg, make("div", { class: "player" }, clock.play, clock.el)));
   const follow = (curves) => {
     arm.path(curves);

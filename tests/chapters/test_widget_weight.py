@@ -1,0 +1,99 @@
+"""One weight turned by hand: its curves, its slope, and its steps in a browser without a kernel."""
+
+import numpy as np
+import pytest
+from axe import violations
+from widget_pages import NEXT_FRAME, assert_curves, page_of, shown_values
+
+from workshop.chapters.widgets.weight import WANTED, OneWeight
+
+
+@pytest.fixture
+def widget():
+    return OneWeight()
+
+
+def steps(weight, size, momentum, count):
+    """Weights after so many steps, by the formulas of the lesson."""
+    last, path = 0.0, [weight]
+    for _ in range(count):
+        y = 1 / (1 + np.exp(-path[-1]))
+        last = momentum * last - size * (y - WANTED) * y * (1 - y)
+        path.append(path[-1] + last)
+    return path
+
+
+def test_the_slope_is_that_of_the_error(widget):
+    x = widget.spec["panels"][0]["x"]
+    for weight in (-7.9, -2.0, 0.0, 0.8, 5.0):
+        widget.weight = weight
+        curves = widget.curves
+        error = np.interp([weight - 0.1, weight + 0.1], x, curves["error"])
+        assert curves["slope"][0] == pytest.approx(np.diff(error)[0] / 0.2, abs=2e-4)
+        # the straight line touches the curve there
+        assert np.interp(weight, x, curves["tangent"]) == pytest.approx(curves["errs"][0])
+        assert np.diff(curves["tangent"]) == pytest.approx(0.1 * curves["slope"][0])
+        assert curves["step"][0] == -widget.size * curves["slope"][0]
+    widget.weight = np.log(WANTED / (1 - WANTED))
+    assert (
+        widget.curves["answers"][0] == pytest.approx(WANTED)
+        and abs(widget.curves["slope"][0]) < 1e-12
+    )
+
+
+@pytest.mark.browser
+def test_the_page_computes_what_python_does(tmp_path, visit, widget):
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page = opened.page
+    page.evaluate(NEXT_FRAME)
+    assert_curves(page, widget.curves)
+    page.locator("input[id$=weight]").press("End")
+    page.locator("input[id$=size]").press("ArrowRight")
+    page.evaluate(NEXT_FRAME)
+    widget.weight = shown_values(page)[0]
+    widget.size = page.evaluate("document.querySelector('.ddlib-weight').view.get('size')")
+    assert widget.weight == 8 and widget.size > 10
+    assert_curves(page, widget.curves)
+    assert not violations(page) and not opened.problems
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize("momentum", [0, 0.5])
+def test_steps_go_downhill(tmp_path, visit, widget, momentum):
+    url = page_of(tmp_path / "page.html", widget)
+    opened = visit(f"{url}?one-weight=momentum:{momentum}")
+    page = opened.page
+    wanted = steps(-2.0, 10.0, momentum, 11)
+    now = "document.querySelector('.ddlib-weight').view.get('weight')"
+    page.get_by_role("button", name="Step", exact=True).click()
+    assert page.evaluate(now) == pytest.approx(wanted[1])
+    page.get_by_role("button", name="Ten steps").click()
+    said = page.locator(".walk p")
+    said.get_by_text("11 steps from −2.00").wait_for()
+    assert page.evaluate(now) == pytest.approx(wanted[-1])
+    assert page.locator(".walked").first.get_attribute("d").count("M") == 11
+    page.locator("input[id$=weight]").press("ArrowLeft")  # by hand: it begins anew
+    page.evaluate(NEXT_FRAME)
+    assert said.inner_text() == "" and not page.locator(".walked").first.get_attribute("d")
+    page.get_by_role("button", name="Step", exact=True).click()
+    page.get_by_role("button", name="Reset").click()
+    page.evaluate(NEXT_FRAME)
+    assert page.evaluate(now) == -2 and said.inner_text() == ""
+    assert not opened.problems
+
+
+@pytest.mark.browser
+def test_a_weight_that_runs_away_stays_in_its_range(tmp_path, visit, widget):
+    widget.weight, widget.size, widget.momentum = -1.0, 100.0, 0.9
+    opened = visit(page_of(tmp_path / "page.html", widget))
+    page = opened.page
+    step, said = page.get_by_role("button", name="Step", exact=True), page.locator(".walk p")
+    for _ in range(2):
+        step.click()
+    page.evaluate(NEXT_FRAME)
+    assert "the weight ran to the end of its range" in said.inner_text()
+    step.click()  # where it stands still: it forgets the step before
+    page.evaluate(NEXT_FRAME)
+    now = page.evaluate("document.querySelector('.ddlib-weight').view.get('weight')")
+    assert said.inner_text() == "3 steps from −1.00." and 7.9 < now < 8
+    assert not opened.problems
