@@ -137,7 +137,6 @@ EXAMPLES = {
     "intervals": partial(
         windows.intervals, INTERVALS, "factor", "Rows.", log=True, band=(0.7, 1.4)
     ),
-    "beside_unrelated": filters.beside_unrelated,
     "against_nulls": partial(filters.against_nulls, NULLS, "share of the filters", "Bars."),
     "by_explained": partial(
         filters.by_explained, NULLS["hidden"], {"mixed": GROUPS},

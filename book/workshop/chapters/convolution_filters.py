@@ -163,45 +163,6 @@ def check(number: int, mine, window: int) -> None:
               "take its sum with 1, k and k²: all three must be zero.")  # fmt: skip
 
 
-_TORQUES = {
-    "real": "the arm's own", "shifted": "shifted in time", "other run": "another run's",
-    "phases": "random phases",
-}  # fmt: skip
-
-
-def beside_unrelated(width: int = 21) -> Illustration:
-    """Names and inertia of networks of the arm's torques, beside those of unrelated torques."""
-    row, arm = trial.row(width), trial.arm_gains()[0, 0, 2]
-    sets = {"real": row["real"], **trial.matched(row)}
-    panels = {
-        f"{name} filters, %": {
-            kind: 100 * trial.share(found, "hidden", [name]) for kind, found in sets.items()
-        }
-        for name in ("velocity", "acceleration")
-    }
-    inertia = {kind: np.array(found["gains"])[:, 0, 0, 2] for kind, found in sets.items()}
-    panels["inertia, kg m²"] = inertia
-
-    def draw(figure: Figure):
-        axes = figure.subplots(1, len(panels), sharey=True)
-        for axis, (label, shown) in zip(axes, panels.items()):
-            for k, (kind, values) in enumerate(shown.items()):
-                _dots(axis, values, k, 0, kind, colour=COLOURS[min(k, 1)])
-                axis.plot([np.mean(values)] * 2, [k - 0.3, k + 0.3], color=INK, lw=2)
-            axis.grid(visible=False, axis="y")
-            axis.set(xlabel=label, ylim=(len(sets) - 0.5, -0.6))
-        axes[-1].axvline(arm, color=INK, ls="--", lw=1.0)
-        axes[-1].annotate(" the arm", (arm, -0.55), ha="right", va="top")
-        axes[0].set_yticks(range(len(sets)), [_TORQUES[kind] for kind in sets])
-
-    told = "; ".join(
-        f"{label}: " + ", ".join(f"{_TORQUES[k]} {np.mean(x):.0f}" for k, x in shown.items())
-        for label, shown in panels.items()
-    )
-    alt = f"Means of networks, by the torques that they were trained on. {told}; the arm {arm:.1f}."
-    return illustrate(draw, alt, 7.0, 2.3)
-
-
 def against_nulls(
     panels: Mapping[str, Mapping[str, Mapping[str, np.ndarray]]], label: str, alt: str
 ) -> Illustration:

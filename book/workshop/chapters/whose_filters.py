@@ -173,7 +173,7 @@ def _said() -> None:
     own, *unrelated = (np.mean(each) for each in means)
     stated("whose-velocity-elsewhere", own < min(unrelated))
     other = start.other_torques()
-    stated("whose-other-arm", other["another arm"] > other["own"] / 2)
+    stated("whose-other-arm", other["another arm"][0] > other["own"][0] / 2)
     named = [start.named(JOINT_DAMPING.name, size) for size in (0.03, 0.3)]
     more = [resampled(x, np.mean, seed=k) for k, x in enumerate(named)]
     stated("whose-start-hides", more[0] > more[1])
