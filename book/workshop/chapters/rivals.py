@@ -130,7 +130,7 @@ def _plane(axis: Axes, low, high, asked) -> None:
     """Trajectory 6 and its moment in the elbow's angle and velocity."""
     path = np.rad2deg(asked.x[:, 0, :2])
     axis.plot(*path.T, color=INK, lw=0.8)
-    axis.plot(*path[_MOMENT], "o", color=INK, ms=5, mec="white")
+    axis.plot(*path[_MOMENT], "o", color=INK, ms=5, mec=FAINT)
     (x0, y0), (x1, y1) = np.rad2deg(low[:2]), np.rad2deg(high[:2])
     axis.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="elbow's angle, °", ylabel="velocity, °/s")
     axis.grid(False)
@@ -236,7 +236,7 @@ def _draw_network(axis: Axes) -> None:
     for unit, weight in zip(units, out / abs(out).max()):
         look = dict(color=_SIGNED(0.5 + weight / 2), lw=0.6 + 2 * abs(weight))
         axis.plot([unit, 0.5], [0.52, 1.0], **look)
-    look = dict(cmap="Greys_r", vmin=0, vmax=1, ec=INK, zorder=3)
+    look = dict(cmap="Greys_r", vmin=-0.1, vmax=1.1, ec=INK, zorder=3)
     axis.scatter(units, np.full(len(units), 0.52), s=70, c=activity, **look)
     axis.plot(0.5, 1.0, "o", color=INK, ms=8)
     axis.text(0.56, 1.0, "elbow's torque", va="center", fontsize=8.5)
