@@ -17,6 +17,7 @@ from workshop.chapters import (
     convolution_filters as filters,
     dynamics,
     feedforward,
+    global_view,
     joints_three_and_four as more_joints,
     real_arm,
     rivals,
@@ -173,6 +174,9 @@ EXAMPLES = {
         rivals._dots, {"worse": ([0.2, 0.4, 0.3], "7"), "better": ([0.1, 0.2], "90")}, "better",
         0.02, ("RMSS", "numbers"), "Two rivals.",
     ),
+    "six ways": rivals.from_window_to_torque,
+    "parity": rivals.parity_drawn,
+    "units at work": global_view.at_work,
     "against": partial(
         run_time._against,
         {"RMSS": MEMBERS, "loop, mm": {"21": (np.ones(2) * 5, np.ones(2) * 6)}}, "error, mm",

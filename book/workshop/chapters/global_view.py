@@ -1,4 +1,4 @@
-"""What the lesson *The global view* quotes, and what its claims measure: hidden units at work."""
+"""What the lesson *What hidden units do together* shows, quotes, and what its claims measure."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from functools import cache
 from itertools import product
 
 import numpy as np
+from matplotlib.figure import Figure
 from scipy.linalg import orth
 
 from ddlib.analysis import ablation, explained, net_inputs, refitted, saturated, transition_width
-from ddlib.figures.style import Illustration
-from ddlib.learning import cases
+from ddlib.figures import legend_above
+from ddlib.figures.style import COLOURS, DASHES, INK, Illustration, illustrate
+from ddlib.learning import TrainingSet, cases
 from ddlib.metrics import rmss
 from ddlib.setups import (
     JOINT_DAMPING,
@@ -23,6 +25,7 @@ from ddlib.setups import (
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
 from workshop.chapters.exercises import judge
+from workshop.chapters.hinton_diagrams import before_and_after
 from workshop.chapters.start import values
 from workshop.chapters.window_networks import intervals
 from workshop.report import committed, results
@@ -109,6 +112,38 @@ def beside_linear() -> dict:
         networks = errors(committed.networks(w, name), committed.recording(name))
         each.append(np.stack([networks.training, networks.test], -1))
     return found
+
+
+def at_work() -> Illustration:
+    """Ten hidden units during the first motion, before training and after, above the torque."""
+    run = JOINT_DAMPING.record()[:5]
+    data = TrainingSet.from_recording(run, 21)
+    time, end = run.t[run.motion], len(run.t[run.motion])
+    panels = {}
+    for name, weights in zip(("before training", "after training"), before_and_after()):
+        hidden, output = weights.activity(data.x)
+        panels[name] = hidden[:end], data.outputs.unscale(output)[:end, 1]
+    wanted = data.outputs.unscale(data.y)[:end, 1]
+
+    def draw(figure: Figure):
+        axes = figure.subplots(2, 2, sharex=True, sharey="row", height_ratios=(1.4, 1))
+        for (units, torques), (name, (hidden, predicted)) in zip(axes.T, panels.items()):
+            for k, activity in enumerate(hidden.T):
+                units.plot(time, activity, DASHES[k // 6], color=COLOURS[k % 6], lw=1.1)
+            units.set_title(name)
+            torques.plot(time, wanted, color=INK, lw=0.9, ls="--", label="torque")
+            torques.plot(time, predicted, color=COLOURS[1], label="the network's")
+            torques.set_xlabel("time, s")
+        axes[0, 0].set_ylabel("activity")
+        axes[1, 0].set_ylabel("elbow's torque, N m")
+        legend_above(figure, *torques.get_legend_handles_labels())
+
+    alt = (
+        "Activities of ten hidden units over three seconds, and the elbow's torque below. Before "
+        "training the units drift apart slowly, and the network's torque is nearly level. After "
+        "training they swing with the torque, and the network follows it."
+    )
+    return illustrate(draw, alt, 7.0, 3.6)
 
 
 def over_linear() -> Illustration:

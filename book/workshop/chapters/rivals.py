@@ -1,19 +1,39 @@
-"""The lesson *Rivals then and now*: its figure, numbers and checks; errors by seed and day."""
+"""The lesson *Rivals then and now*: its figures, numbers and checks; errors by seed and day."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
-from ddlib.figures import COLOURS, FAINT, Illustration, check_label, illustrate
-from ddlib.figures.style import NARROW
+from ddlib.figures import (
+    COLOURS,
+    FAINT,
+    Illustration,
+    check_label,
+    illustrate,
+    legend_above,
+)
+from ddlib.figures.style import DASHES, INK, JOINTS, NARROW
+from ddlib.setups import JOINT_DAMPING
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.beyond._measures.rivals import better, row
+from workshop.beyond.rivals.bases import Polynomial
+from workshop.beyond.rivals.cmac import CMAC
+from workshop.beyond.rivals.identified import Identified, Linear
+from workshop.beyond.rivals.protocol import Cases
+from workshop.beyond.rivals.tables import CellTable
+from workshop.chapters.backpropagation import NETWORKS
 from workshop.chapters.exercises import Between, judge
-from workshop.report import results
+from workshop.report import committed, results
 from workshop.report.evidence.statements import stated
+from workshop.report.parity import parity, patterns
 
 _RUBBING, _PARTS = "linear filter with friction", ("trajectory 6", "inside", "outside")
 _TOLD = {
@@ -83,6 +103,201 @@ def show(_name: str = "errors") -> Illustration:
     floor = results.read("rivals")["floor"]["positions"]["trajectory 6"]
     labels = "error on trajectory 6, RMSS", "error", "numbers"
     return _dots(shown, marked, floor, labels, f"Rivals by their median error: {told}.")
+
+
+# --- how each rival of 1988 comes from a window to a torque
+
+_WIDTH, _MOMENT = 21, 60  # samples of the window; sample of trajectory 6 that all are asked for
+_SIGNED = LinearSegmentedColormap.from_list("signed", (COLOURS[0], "#d9d9d9", COLOURS[1]))
+_QUANTITIES = ("1", "q₁", "v₁", "a₁", "q₂", "v₂", "a₂")
+
+
+@cache
+def _learnt() -> tuple[Cases, Cases]:
+    """Windows of the five training motions, and of trajectory 6."""
+    recording = committed.recording(JOINT_DAMPING.name)
+    return Cases.windows(recording[:-1], _WIDTH), Cases.windows(recording[-1:], _WIDTH)
+
+
+def _elbow(cases: Cases) -> Cases:
+    """The elbow's angle and velocity alone, which is as much as a page can draw."""
+    x = cases.estimated().x[:, 1:].copy()
+    x[..., 2] = 0.0
+    return Cases(x, cases.torque[:, 1:], "states", cases.step)
+
+
+def _plane(axis: Axes, low, high, asked) -> None:
+    """Trajectory 6 and its moment in the elbow's angle and velocity."""
+    path = np.rad2deg(asked.x[:, 0, :2])
+    axis.plot(*path.T, color=INK, lw=0.8)
+    axis.plot(*path[_MOMENT], "o", color=INK, ms=5, mec=FAINT)
+    (x0, y0), (x1, y1) = np.rad2deg(low[:2]), np.rad2deg(high[:2])
+    axis.set(xlim=(x0, x1), ylim=(y0, y1), xlabel="elbow's angle, °", ylabel="velocity, °/s")
+    axis.grid(False)
+
+
+def _draw_table(axis: Axes) -> None:
+    known, asked = map(_elbow, _learnt())
+    table = CellTable(12).fit(known)
+    low, high = table.low[0], table.high[0]
+    edges = [np.rad2deg(np.linspace(a, b, table.cells + 1)) for a, b in zip(low[:2], high[:2])]
+    torque = np.full((table.cells, table.cells), np.nan)
+    torque[table.filled[:, 1], table.filled[:, 0]] = table.coefficients[:, 0, 0]
+    most = np.nanquantile(abs(torque), 0.95)
+    axis.pcolormesh(*edges, torque, cmap=_SIGNED, vmin=-most, vmax=most, ec=FAINT, lw=0.3)
+    _plane(axis, low, high, asked)
+    axis.set_title("Table: look it up")
+
+
+def _draw_cmac(axis: Axes) -> None:
+    known, asked = map(_elbow, _learnt())
+    cmac = CMAC(4, 0.4, epochs=1).fit(known)
+    low, high = np.rad2deg([cmac.low[0, :2], cmac.high[0, :2]])
+    here = (np.rad2deg(asked.x[_MOMENT, 0, :2]) - low) / (high - low)
+    size = cmac.width * (high - low)
+    for layer in range(cmac.layers):
+        shift = layer / cmac.layers
+        corner = low + (np.floor(here / cmac.width + shift) - shift) * size
+        look = dict(color=COLOURS[layer], lw=0.6, alpha=0.6)
+        for k in range(4):
+            axis.axvline(low[0] + (k - shift) * size[0], **look)
+            axis.axhline(low[1] + (k - shift) * size[1], **look)
+        axis.add_patch(Rectangle(corner, *size, fc=COLOURS[layer], alpha=0.28))
+        axis.add_patch(Rectangle(corner, *size, fill=False, ec=COLOURS[layer], lw=1.6))
+    _plane(axis, cmac.low[0], cmac.high[0], asked)
+    axis.set_title("CMAC: add four cells")
+
+
+def _draw_polynomial(axis: Axes) -> None:
+    known = _learnt()[0].estimated()
+    polynomial = Polynomial(2, "monomials", ridge=1e-4).fit(known)
+    cells = np.full((7, 7), np.nan)
+    for powers, value in zip(polynomial.exponents, polynomial.coefficients[:, 1]):
+        factors = np.repeat(np.arange(1, 7), powers)
+        second, first = sorted([0, 0, *factors])[-2:]
+        cells[first, second] = value
+    most = np.nanmax(abs(cells))
+    axis.pcolormesh(cells, cmap=_SIGNED, vmin=-most, vmax=most, ec=FAINT, lw=0.3)
+    axis.set(xticks=np.arange(7) + 0.5, yticks=np.arange(7) + 0.5, xlabel="first factor")
+    axis.set(xticklabels=_QUANTITIES, yticklabels=_QUANTITIES, ylabel="second factor")
+    axis.invert_yaxis()
+    axis.grid(False)
+    axis.tick_params(length=0)
+    axis.set_title("Polynomial: products")
+
+
+def _draw_filter(axis: Axes) -> None:
+    linear = Linear().fit(_learnt()[0])
+    late = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
+    for j, weights in enumerate(linear.matrix[:, 1].reshape(2, _WIDTH)):
+        axis.plot(late, weights, DASHES[j], color=COLOURS[j], label=JOINTS[j])
+    axis.axhline(0, color=FAINT, lw=0.6)
+    axis.set(xlabel="time in the window, ms", ylabel="weight, N m/rad")
+    axis.legend(loc="lower left", handlelength=1.2, fontsize=8, borderaxespad=0.1)
+    axis.set_title("Filter: weigh angles")
+
+
+def _draw_equations(axis: Axes) -> None:
+    known, asked = (cases.estimated() for cases in _learnt())
+    found = Identified().fit(known).parameters()
+    (_, v1, a1), (q2, v2, a2) = asked.x[_MOMENT]
+    bars = {
+        "b": found["b"] * (np.cos(q2) * a1 + np.sin(q2) * v1**2),
+        "d": found["d"] * (a1 + a2),
+        "viscous": found["F_v2"] * v2,
+        "Coulomb": found["F_c2"] * np.sign(v2),
+    }
+    left = np.cumsum([0.0, *bars.values()])
+    rows = np.arange(len(bars) + 1)
+    axis.barh(rows[:-1], list(bars.values()), left=left[:-1], color=COLOURS[2], height=0.6)
+    axis.barh(rows[-1], left[-1], color=INK, height=0.6)
+    axis.axvline(0, color=FAINT, lw=0.6)
+    axis.set(yticks=rows, yticklabels=[*bars, "sum"], xlabel="elbow's torque, N m")
+    axis.invert_yaxis()
+    axis.grid(axis="y", visible=False)
+    axis.tick_params(axis="y", length=0)
+    axis.set_title("Equations: known terms")
+
+
+def _draw_network(axis: Axes) -> None:
+    model = results.median_network(_WIDTH, JOINT_DAMPING.name)
+    weights, window = model.weights, _learnt()[1].x[_MOMENT : _MOMENT + 1]
+    activity = weights.activity(model.scaled(window))[0].ravel()
+    out = weights.output_weights.reshape(2, -1)[1]
+    units = np.linspace(0.05, 0.95, len(activity))
+    centred = window[0] - window[0].mean(-1, keepdims=True)
+    for j, angles in enumerate(centred):
+        x = np.linspace(0, 0.45, _WIDTH) + 0.55 * j
+        axis.plot(x, 0.1 + 0.08 * angles / abs(centred).max(), ".", color=COLOURS[j], ms=3)
+        axis.text(x.mean(), -0.03, f"{JOINTS[j]}", ha="center", va="top", fontsize=8.5)
+        for unit in units:
+            axis.plot([x.mean(), unit], [0.2, 0.52], color=FAINT, lw=0.5, alpha=0.7)
+        axis.plot([x.mean(), 0.5], [0.2, 1.0], color=COLOURS[3], lw=0.9, alpha=0.7)
+    for unit, weight in zip(units, out / abs(out).max()):
+        look = dict(color=_SIGNED(0.5 + weight / 2), lw=0.6 + 2 * abs(weight))
+        axis.plot([unit, 0.5], [0.52, 1.0], **look)
+    look = dict(cmap="Greys_r", vmin=-0.1, vmax=1.1, ec=INK, zorder=3)
+    axis.scatter(units, np.full(len(units), 0.52), s=70, c=activity, **look)
+    axis.plot(0.5, 1.0, "o", color=INK, ms=8)
+    axis.text(0.56, 1.0, "elbow's torque", va="center", fontsize=8.5)
+    axis.set(xlim=(-0.03, 1.03), ylim=(-0.15, 1.1))
+    axis.set_axis_off()
+    axis.set_title("Network: bend, add up")
+
+
+def from_window_to_torque() -> Illustration:
+    """How six rivals come from one moment of trajectory 6 to the elbow's torque."""
+    known = _draw_table, _draw_cmac, _draw_polynomial
+    pictures = *known, _draw_filter, _draw_equations, _draw_network
+
+    def draw(figure: Figure):
+        for axis, picture in zip(figure.subplots(2, 3).ravel(), pictures):
+            picture(axis)
+
+    alt = (
+        "Six pictures. A table: squares of angle and velocity, coloured where a training motion "
+        "passed; trajectory 6 runs through empty ones, too. CMAC: four shifted grids, and the one "
+        "cell of each in which a moment lies. A polynomial: a triangle of products of two "
+        "quantities, coloured by their coefficients. A linear filter: a curve of weights for each "
+        "joint. Equations: four bars that add up to the elbow's torque. A network: two windows, "
+        "ten hidden units, one output, and direct weights past the units."
+    )
+    return illustrate(draw, alt, 7.2, 4.7)
+
+
+def parity_drawn() -> Illustration:
+    """Parity of three bits as corners of a cube, and what it takes to represent that of many."""
+    many = np.arange(2, 11)
+    terms = [2**n for n in many]
+    wired = [NETWORKS["binary counter"](int(n)).coefficients for n in many]
+
+    def draw(figure: Figure):
+        cube, counts = figure.subplots(1, 2, width_ratios=(1, 1.6))
+        corners = patterns(3)
+        places = corners @ np.array([[1.0, 0.0], [0.45, 0.35], [0.0, 1.0]])
+        for a, b in zip(*np.triu_indices(8)):
+            if abs(corners[a] - corners[b]).sum() == 1:
+                cube.plot(*places[[a, b]].T, color=FAINT, lw=1.0, zorder=1)
+        for bits, place, even in zip(corners, places, parity(corners)):
+            look = dict(mfc=COLOURS[1] if even else "none", mec=COLOURS[1], ms=9)
+            cube.plot(*place, "o", **look)
+            told = "".join(map(str, bits))
+            side = dict(ha="left", va="bottom") if bits[1] else dict(ha="right", va="top")
+            shift = (6, 5) if bits[1] else (-6, -5)
+            cube.annotate(told, place, shift, textcoords="offset points", **side)
+        cube.set(xlim=(-0.5, 1.9), ylim=(-0.4, 1.7), aspect="equal")
+        cube.set_axis_off()
+        counts.plot(many, terms, "o-", color=COLOURS[0], ms=4, label="polynomial")
+        counts.plot(many, wired, "s--", color=COLOURS[1], ms=4, label="network")
+        counts.set(yscale="log", xlabel="bits, number", ylabel="coefficients, number")
+        legend_above(figure, *counts.get_legend_handles_labels())
+
+    alt = (
+        "A cube whose corners are the eight inputs of three bits; every edge joins a filled corner "
+        f"and an empty one. Beside it coefficients over bits: at ten bits {terms[-1]:,} of a "
+        f"polynomial and {wired[-1]} of a network."
+    )
+    return illustrate(draw, alt, 6.6, 2.5)
 
 
 def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988") -> np.ndarray:

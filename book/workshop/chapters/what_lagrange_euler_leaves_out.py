@@ -201,7 +201,7 @@ def _quoted() -> None:
     rubbing = rms(sum(_left(None, friction=(one,)) for one in _SETUP.effects.friction))
     for name, whole in {"driven": "rigid body", "asked": "rigid body, reference"}.items():
         quote(f"left-friction-{name}", 100 * (rubbing / sizes[whole])[0])
-    for name in ("friction", "quantisation"):
+    for name in ("friction", "quantisation", "saturation"):
         alone = dict.fromkeys(switches.values, "off") | {name: "strong"}
         quote(f"left-{name}-position", switches.interpolate(**alone)["shoulder position"][0])
 
