@@ -85,12 +85,17 @@
     return cases.find((one) => size(one) === count && fits(one, values))?.said ?? otherwise;
   };
 
-  // What the cell above says of the answer: mine = ...  # a share, from 0 to 1
+  // What the cell above says of the answer, as in mine = ...  # a share, from 0 to 1. With a field
+  // below that cell has nothing more to say, if it is all there is in it.
   const wanted = (place) => {
     let cell = place.closest(".cell");
-    for (let k = 0; cell && k < 3; k += 1, cell = cell.previousElementSibling) {
-      const [, said] = cell.querySelector("pre")?.textContent.match(/^mine = \.{3}\s*# (.+)$/m) ?? [];
-      if (said) return said;
+    for (let k = 0; cell && k < 2; k += 1, cell = cell.previousElementSibling) {
+      const code = cell.querySelector("pre")?.textContent.trim() ?? "";
+      const [all, said] = code.match(/^mine = \.{3}(?:\s*# (.+))?$/m) ?? [];
+      if (all) {
+        cell.classList.toggle("is-asked-below", all === code);
+        return said ?? "";
+      }
     }
     return "";
   };

@@ -101,9 +101,11 @@ def test_answers_in_the_page(tmp_path, visit):
         made.append(Waiting(cases, f"Wrong: {otherwise}", *tolerance or [0.02])._repr_html_())
     path = tmp_path / "page.html"
     above = "<div class='cell'><pre>mine = ...  # a share, from 0 to 1\n</pre></div>"
+    style = "<style>.is-asked-below { display: none }</style>"
     cells = above + "".join(f"<div class='cell'>{one}</div>" for one in made)
-    path.write_text(f"<!doctype html><meta charset='utf-8'>{cells}<script>{script}</script>")
+    path.write_text(f"<!doctype html><meta charset='utf-8'>{style}{cells}<script>{script}</script>")
     page = visit(path.as_uri()).page
+    assert page.locator("pre").is_hidden()
     labels = page.locator("label").all_inner_texts()
     assert labels[0] == "Your answer: a share, from 0 to 1" and labels[4].startswith("Your answers")
     for k, kind in enumerate(JUDGED):
