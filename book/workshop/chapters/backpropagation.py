@@ -13,7 +13,7 @@ from ddlib.figures import Illustration, families, network_diagram
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
 from ddlib.tables import quote, scientific, significant, spread
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.chapters.widgets.weight import OneWeight as OneWeight
 from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
@@ -225,11 +225,11 @@ def check(number: int, mine, *given) -> None:
         misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
         best = min(misses, key=misses.get)
         slips = [
-            (lambda eta: 0 < eta < best, "so small a change drowns in rounding."),
-            (lambda eta: eta > best, "so large a change meets the curvature."),
+            (Between(5e-324, best), "so small a change drowns in rounding."),  # above 0
+            (Between(best), "so large a change meets the curvature."),
         ]
         told = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
-        judge(mine, lambda eta: best / 11 < eta < 11 * best, told, slips)
+        judge(mine, Between(best / 11, 11 * best), told, slips)
     else:
         descend, x, d, level = given
         end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])

@@ -25,7 +25,7 @@ from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
 from ddlib.widgets.engine import builder
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
@@ -144,7 +144,7 @@ def check(number: int, mine, window: int) -> None:
     elif number == 2:
         early = (k - 3) ** 2
         share = shares(early - early.mean())[2]
-        judge(mine, lambda guess: abs(guess - share) < 0.1,
+        judge(mine, Between(share - 0.1, share + 0.1),
               f"{share:.2f} of its energy is left to acceleration, the rest is velocity.",
               otherwise="too far off: expand (k - 3)² and compare the parts.")  # fmt: skip
     elif number == 3:

@@ -46,7 +46,7 @@ from ddlib.identification import (
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import quote, scientific
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import MultipleOf, judge
 from workshop.report.evidence.verdicts import Measured, judged
 
 _MARKERS = "os^DvPX"
@@ -75,10 +75,8 @@ def check(number: int, mine, M=None) -> None:
         told = "the forearm even turns backwards."
         judge(mine, -lag, told, slips, "What must the second row of the equation be?")
     elif number == 2:
-        unseen = np.array([-2.0, 1.0, -1.0])
-        right = lambda x: np.allclose(np.cross(np.reshape(x, 3), unseen), 0) and np.any(x)  # noqa: E731
-        otherwise = "Write both torques with the elbow straight."
-        judge(mine, right, "both torques stay what they are.", (), otherwise)
+        told, unseen = "both torques stay what they are.", MultipleOf((-2.0, 1.0, -1.0))
+        judge(mine, unseen, told, otherwise="Write both torques with the elbow straight.")
     else:
         size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
         slips = (

@@ -15,7 +15,7 @@ from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, scientific, significant
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
@@ -179,9 +179,9 @@ def check(number: int, mine, given) -> None:
     else:
         rough = {e: np.median(roughness(w.direct_weights)) for e, w in sorted(given.items())}
         tenth = next((e for e, value in rough.items() if value < 0.1 * rough[0]), np.inf)
-        early = lambda mine: mine < tenth, "too early. How large is the start?"
+        early = Between(-np.inf, tenth), "too early. How large is the start?"
         told = f"here it is epoch {tenth:,}."
-        judge(mine, lambda mine: tenth <= 2 * mine <= 4 * tenth, told, [early], "too late.")
+        judge(mine, Between(tenth / 2, 2 * tenth), told, [early], "too late.")
 
 
 def adjacency(width: int = 11, epochs: int = 100) -> Measured:

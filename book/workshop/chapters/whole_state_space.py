@@ -16,7 +16,7 @@ from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 from ddlib.tables import Table, quote, significant, spread
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, judge
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -217,12 +217,12 @@ def check(number: int, mine, *given) -> None:
         judge(mine, right, "the angle alone is worth something, the velocity nothing.", slips)
     elif number == 2:
         turned, before = given
-        told = f"it grows {turned / before:.2f} times."
+        grown = turned / before
         slips = [
-            (lambda m: m > 1, "is the torque another one?"),
-            (lambda m: 0 < m < 1, "why less?"),
+            (Between(1), "is the torque another one?"),
+            (Between(5e-324, 1), "why less?"),  # above 0
         ]
-        judge(mine, lambda m: 0.5 < m * before / turned < 2, told, slips)
+        judge(mine, Between(grown / 2, 2 * grown), f"it grows {grown:.2f} times.", slips)
     else:
         error_from, before = given
         found = cache(lambda m: error_from(np.array(m)))

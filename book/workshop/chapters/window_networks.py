@@ -23,7 +23,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
 from ddlib.tables import Table, quote, significant
 from ddlib.widgets import HiddenTorque
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Between, OneOf, judge
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -194,15 +194,18 @@ def check(number: int, mine, *given) -> None:
     elif number == 2:
         (left,) = given
         most = paper.TABLE_4_1[21].test
-        small = lambda w: w % 2 == 1 and w > 0 and 2 * (2 * w + 1) < 50  # noqa: E731
-        judge(mine, lambda w: small(w) and left(w) < most, "it can only add.",
-              [(lambda w: not small(w), "that is even, or too many weights."),
-               (small, "it is small enough, but too much is left.")])  # fmt: skip
+        small = [w for w in range(1, 50, 2) if 2 * (2 * w + 1) < 50]
+        right = OneOf(*(w for w in small if left(w) < most))
+        slips = (
+            (OneOf(*small), "it is small enough, but too much is left."),
+            (Between(-np.inf), "that is even, or too many weights."),
+        )
+        judge(mine, right, "it can only add.", slips, tolerance=1e-9)
     else:
         factor = given[0] / given[1]
         told = f"the error is {factor:.0f} times as large, about that of a guess of the mean."
         word = "larger" if factor > 2 else "smaller" if factor < 0.5 else "alike"
-        judge(mine, lambda m: m == word, told,
+        judge(mine, word, told,
               otherwise="Along which of the two paths did the measured torque drive?")  # fmt: skip
 
 
