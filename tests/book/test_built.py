@@ -194,7 +194,7 @@ def test_pages_with_widgets_are_known_and_light(parsed):
 @built_test
 def test_the_texts_of_the_search_are_light(built):
     texts = (built / "_static" / dd_search.FILE).read_bytes()
-    assert 30_000 < len(gzip.compress(texts, 6)) < 102_000
+    assert 30_000 < len(gzip.compress(texts, 6)) < 112_000
 
 
 def test_text_on_canvases_can_be_read():
