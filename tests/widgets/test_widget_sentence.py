@@ -69,7 +69,7 @@ def test_the_limit_of_a_spring_lies_between_those_of_the_joints():
             for part in (0.99 * lower, 1.01)
         ]
         assert lower < 1 and growth[0] < 0 < growth[1]
-    assert "stable, and what" in sentence.results(**sentence.values)["verdict"]
+    assert "stable, and a disturbance" in sentence.results(**sentence.values)["verdict"]
 
 
 READ = """() => {

@@ -12,21 +12,24 @@ from ddlib._check import finite_array
 from ddlib.figures.maps import SIGNS, rmss_by_window
 from ddlib.figures.style import (
     COLOURS,
+    DASHES,
     FAINT,
     Illustration,
     illustrate,
     legend_above,
     plain_ticks,
 )
-from ddlib.learning import cases
+from ddlib.learning import Weights, cases
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
 from ddlib.tables import Table, quote, significant
 from ddlib.widgets import HiddenTorque
 from workshop.chapters.exercises import Between, OneOf, judge
 from workshop.report import results
+from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
+from workshop.report.studies.nulls import TRIAL
 
 _KINDS = ("training", "test")
 _NAMES = {"training": "training", "test": "trajectory 6"}
@@ -100,6 +103,55 @@ def table_4_1() -> Table:
     return Table(("error", "printed in 1988", *readings), rows)
 
 
+def figure_4_1() -> Illustration:
+    """Measured torque of the shoulder on trajectory 6, and a network's, for the three windows.
+
+    The networks with damped joints whose test error is the median; printed and own RMSS in titles.
+    """
+    test = split(JOINT_DAMPING.record())[1]
+    time, panels = test.t[test.motion], {}
+    for w in WINDOWS:
+        inputs, torque = cases(test, w)
+        told = results.median_network(w, JOINT_DAMPING.name).torque(inputs)
+        printed, own = (significant(x, 2) for x in (_PRINTED["test"][w], rmss(told, torque)))
+        panels[f"window {w}: RMSS {printed} printed, {own} here"] = torque[:, 0], told[:, 0]
+
+    def draw(figure: Figure):
+        axes = figure.subplots(len(panels), 1, sharex=True, sharey=True)
+        for axis, (title, both) in zip(axes, panels.items()):
+            for k, (name, y) in enumerate(zip(("measured", "network"), both)):
+                axis.plot(time, y, color=COLOURS[k], ls=DASHES[k], label=name)
+            axis.set(title=title, ylabel="N m")
+        axes[-1].set_xlabel("time, s")
+        legend_above(figure, *axes[0].get_legend_handles_labels())
+
+    alt = f"Measured torque of the shoulder, and a network's upon it. {'; '.join(panels)}."
+    return illustrate(draw, alt, 7.0, 5.0)
+
+
+def orders() -> dict[str, claims.Measured]:
+    """Whether the least median test error is at 21, of the three readings."""
+    names = {"state feedback": "", "position feedback": "-position", JOINT_DAMPING.name: "-damping"}
+    return {name: claims.measured(f"least-at-21{ending}") for name, ending in names.items()}
+
+
+def order_medians() -> dict[int, float]:
+    """Median test errors by window, with damped joints."""
+    return {w: claims.measured(f"table-4-1-test-{w}-damping").value for w in WINDOWS}
+
+
+def order_stated() -> bool:
+    """Hardly damped: least at 21; by the controller: not; damped joints: 41, and undecided."""
+    share = {name: found.replicates.mean() for name, found in orders().items()}
+    medians = order_medians()
+    return bool(
+        share["position feedback"] > 0.95
+        and share["state feedback"] < 0.05
+        and 0.05 < share[JOINT_DAMPING.name] < 0.95
+        and min(medians, key=medians.get) == 41
+    )
+
+
 def errors_by_reading() -> Illustration:
     """The printed errors and those of all networks, under the three readings."""
     return rmss_by_window(_errors(), _PRINTED)
@@ -140,6 +192,15 @@ def _quoted() -> None:
     bends, torque = _bends()
     quote("window-bend-sign", 100 * (np.sign(bends) == np.sign(torque)).mean())
     quote("window-steps", JOINT_DAMPING.steps)
+    quote("window-long-epochs", TRIAL.epochs)
+    medians = order_medians()
+    for w in WINDOWS:
+        weights = Weights.random(1, w)[0].count()
+        quote(f"window-order-{w}", medians[w])
+        quote(f"window-rule-{w}", 2 * w * JOINT_DAMPING.hidden)
+        quote(f"window-count-{w}", weights)
+        quote(f"window-passes-{w}", 1500 * weights)
+    quote("window-order-share", 100 * orders()[JOINT_DAMPING.name].replicates.mean())
     quote("window-worst", off[JOINT_DAMPING.name].max())
     quote("window-worst-state", off["state feedback"].max())
 
@@ -168,6 +229,11 @@ def _said() -> None:
         for k, x in enumerate(("shifted", "real"))
     )
     stated("window-live-named", shifted > real)
+    trained = 1 - filter_trial.share(
+        filter_trial.row(21)["nulls"]["shifted"], "hidden", ["not analysable"]
+    )
+    stated("window-long-named", trained.min() == 0 and trained.max() > 0.5)
+    stated("window-order", order_stated())
     training, test = split(JOINT_DAMPING.record())
     left = []
     for w in WINDOWS:
@@ -190,7 +256,7 @@ def check(number: int, mine, *given) -> None:
             (right - hidden * window - direct // 2, "each joint has a window of its own."),
         )
         judge(mine, right, "inputs to hidden, hidden to outputs, inputs to outputs.", slips,
-              "Count the lines of each of the three bundles in the figure.", 1e-9)  # fmt: skip
+              "Count each of the three bundles of the figure, dots included.", 1e-9)  # fmt: skip
     elif number == 2:
         (left,) = given
         most = paper.TABLE_4_1[21].test

@@ -13,10 +13,11 @@ from ddlib.analysis import refitted, savitzky_golay
 from ddlib.effects import Quantisation
 from ddlib.figures.style import Illustration
 from ddlib.learning import cases, sliding_windows
-from ddlib.setups import JOINT_DAMPING
+from ddlib.setups import JOINT_DAMPING, WINDOWS
 from ddlib.tables import quote, significant
 from ddlib.widgets import Choice, CurveWidget, Panel, Scalar
 from workshop.chapters.exercises import fitting, judge
+from workshop.chapters.window_networks import order_medians, order_stated
 from workshop.report import committed, results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -130,6 +131,8 @@ def _quoted() -> None:
     for width, error in zip(*_medians("test")):
         quote(f"size-test-{width}", error)
     sizes, test = _medians("test")
+    for width, error in order_medians().items():
+        quote(f"size-order-{width}", error)
     quote("size-linear-most", least_squares_by_size()[sizes >= 11, 1].max())
     quote("size-networks-least", test[sizes >= 11].min())
     quote("size-behind", behind_least_squares().sum())
@@ -158,6 +161,10 @@ def _said() -> None:
     stated("size-test-uneven", bool((np.diff(_medians("test")[1]) > 0).any()))
     level = least_squares_by_size()[sizes >= 11, 1]
     stated("size-linear-level", bool(level.max() < 1.1 * level.min()))
+    stated("size-order", order_stated())
+    table = results.read("table-4-1")["setups"]["state feedback"]
+    three = {w: np.median(table[str(w)]["errors"]["test"]) for w in WINDOWS}
+    stated("size-order-state", min(three, key=three.get) == 41)
     stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
 

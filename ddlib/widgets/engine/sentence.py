@@ -155,7 +155,7 @@ class LoopSentence(_LiveSentence):
         growth = self.growth(**values)
         seconds = np.log(2) / abs(growth)
         time = f"{seconds:.2f} s" if seconds < 10 else f"{seconds:.0f} s"
-        stable = f"stable, and what lasts longest halves in {time}"
+        stable = f"stable, and a disturbance halves in {time}"
         return {"verdict": stable if growth < 0 else f"unstable, and a swing doubles in {time}"}
 
 

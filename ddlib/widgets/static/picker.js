@@ -99,7 +99,7 @@ function mapOf(view) {
   const ramp = make("svg", { width: 12 * LEVELS, height: 12, "aria-hidden": "true" });
   layers.forEach((_, k) => ramp.append(make("rect", { class: "level", x: 12 * k, width: 12, height: 12, "fill-opacity": short(0.07 * k) })));
   scale.append(ramp, `${(step * (LEVELS - 1)).toFixed(1)} and more`);
-  const title = "Errors under the pad";
+  const title = "Show the errors of";
   const words = { class: "presets under", role: "group", "aria-label": title };
   const choice = make("div", words, make("span", { "aria-hidden": "true" }, title), ...buttons.map(([, b]) => b));
   show(names[0]);

@@ -14,7 +14,7 @@ const ENDS = {
     const growth = growthOf(modes, gains, period / 1000, 0);
     const seconds = Math.LN2 / Math.abs(growth);
     const time = `${seconds.toFixed(seconds < 10 ? 2 : 0)}\u00a0s`;
-    const stable = `stable, and what lasts longest halves in ${time}`;
+    const stable = `stable, and a disturbance halves in ${time}`;
     return { verdict: growth < 0 ? stable : `unstable, and a swing doubles in ${time}` };
   },
 };

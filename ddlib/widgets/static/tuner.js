@@ -128,7 +128,7 @@ extras.push((view) => {
     const { growth, log, seconds } = view.now;
     const linear =
       growth < 0
-        ? `The linear loop is stable: what lasts longest halves in ${span(growth)}.`
+        ? `The linear loop is stable: a disturbance halves in ${span(growth)}.`
         : `The linear loop is unstable: a disturbance doubles in ${span(growth)}.`;
     if (log.stopped === null) return linear;
     return `${linear} Run stopped at ${(log.stopped * seconds).toFixed(2)}\u00a0s: an error passed ${degrees}°.`;
