@@ -28,6 +28,7 @@ ICON_SCRIPT = "fontawesome.js"  # not needed: the icons are in the page
 SEARCH_SCRIPTS = {"searchtools.js", "language_data.js", "searchindex.js"}
 MATHS_SCRIPT = "tex-svg-full.js"
 
+TOGGLE = '<summary><span class="toctree-toggle"'  # in the contents: an icon without words
 FIELD = 'field search-button__button pst-js-only"'
 HEAD = (  # for the page that only leads to the first one: without an icon, browsers look for it
     '<!doctype html><html lang="en"><meta charset="utf-8"><title>To the first page</title>'
@@ -38,6 +39,7 @@ REPAIRS = (
     ('<div id="pst-primary-sidebar"', '<div id="pst-primary-sidebar" role="complementary"'),
     ('role="doc-biblioentry"', 'role="listitem"'),  # that role is deprecated
     ('<summary aria-label="Toggle hidden content">', "<summary>"),  # its text says more
+    (TOGGLE, TOGGLE.replace("<summary>", '<summary aria-label="Pages below this one">')),
     ('field search-button__button pst-js-only" title="Search" aria-label="Search"', FIELD),
     ('<table class="indextable', '<table role="presentation" class="indextable'),
 )

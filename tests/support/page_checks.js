@@ -53,6 +53,7 @@
   for (const svg of all(".ddlib-widget .chart svg")) {
     const marks = [...svg.querySelectorAll(".grid > text")].map((el) => [el, el.getBoundingClientRect()]);
     marks.forEach(([el, a], i) => marks.slice(0, i).forEach(([other, b]) => {
+      if (el.getAttribute("class") !== other.getAttribute("class")) return; // of another axis
       const over = Math.min(a.right, b.right) - Math.max(a.left, b.left) > 0.5
         && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2;
       if (a.width && over) found.push(`marks overlap: ${other.textContent} ${el.textContent}`);
