@@ -160,7 +160,7 @@ def _said() -> None:
             for w, printed in paper.TABLE_4_1.items()
             for what in ("training", "test")
         ]
-        near += [setup] * (np.abs(off).max() < np.log(1.5))
+        near += [setup] * int(np.abs(off).max() < np.log(1.5))
     stated("filters-table-solver", near == [JOINT_DAMPING.name])
     rough = {k: roughness(f) for k, f in reported().items()}
     small = max(rough[f"Figure 5-{k}"] for k in (4, 5, 6))
