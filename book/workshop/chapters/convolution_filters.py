@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ddlib import paper
 from ddlib._check import finite_array, shaped
 from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
 from ddlib.figures.style import (
@@ -16,6 +17,7 @@ from ddlib.figures.style import (
     DASHES,
     FAINT,
     INK,
+    JOINTS,
     Illustration,
     check_label,
     illustrate,
@@ -26,6 +28,7 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
 from ddlib.widgets.engine import builder
 from workshop.chapters.exercises import Between, judge
+from workshop.chapters.index import both
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
@@ -64,6 +67,17 @@ def reported() -> dict[str, np.ndarray]:
     return found
 
 
+def _joint(f: np.ndarray) -> int:
+    """The joint whose window a row of `reported` weights."""
+    weights = results.networks(f.size).weights.hidden_weights
+    return int(np.argwhere((np.abs(weights) == np.abs(f)).all(-1))[0][2])
+
+
+def panels() -> dict[str, np.ndarray]:
+    """The rows of `reported` by figure and joint."""
+    return {f"{figure}, {JOINTS[_joint(f)]}": f for figure, f in reported().items()}
+
+
 def said_and_seen() -> Table:
     """What the report says of its Figures 5-4 to 5-8, and what the rows of `reported` hold."""
     rows = []
@@ -75,14 +89,22 @@ def said_and_seen() -> Table:
     return Table(heads, rows)
 
 
+def carried() -> np.ndarray:
+    """The landing page's row, per radian of its joint."""
+    model = results.median_network(21, JOINT_DAMPING.name)
+    unit, joint = both(model.weights)
+    return model.inputs.gain[joint] * model.weights.hidden_weights[unit, joint]
+
+
 def puzzles() -> dict[str, np.ndarray]:
-    """The rows of Figures 5-6, 5-4 and 5-5 without their names, per radian of their joint."""
-    model, found = results.networks(21), reported()
-    rows = {}
+    """The landing page's row; then those of Figures 5-6, 5-4 and 5-5 without their names.
+
+    Each is per radian of its joint.
+    """
+    gain, found = results.networks(21).inputs.gain, reported()
+    rows = {"landing page": carried()}
     for label, figure in {"A": "Figure 5-6", "B": "Figure 5-4", "C": "Figure 5-5"}.items():
-        same = (np.abs(model.weights.hidden_weights) == np.abs(found[figure])).all(-1)
-        joint = int(np.argwhere(same)[0][2])
-        rows[label] = model.inputs.gain[joint] * found[figure]
+        rows[label] = gain[_joint(found[figure])] * found[figure]
     return rows
 
 
@@ -101,6 +123,8 @@ def _quoted() -> None:
         quote(f"filters-own-{width}", builder.score(builder.starts()[f"Savitzky–Golay, {width}"]))
     for name in ("velocity", "acceleration"):
         quote(f"filters-{name}", 100 * _named(name)[0].mean())
+    for name, share in zip(("carried", "carried-bend"), shares(carried())[1:3]):
+        quote(f"filters-{name}", 100 * share)
     constant = shares(results.networks(21).weights.hidden_weights)[..., 0]
     quote("filters-constant", 100 * float(np.median(constant)))
 
@@ -128,6 +152,16 @@ def _said() -> None:
     odd = {k: (decompose(f).odd ** 2).sum() / (f**2).sum() for k, f in reported().items()}
     lies = odd["Figure 5-4"] > 0.8, odd["Figure 5-5"] < 0.2, 0.3 < odd["Figure 5-6"] < 0.7
     stated("filters-report-lies", all(lies))
+    stated("filters-carried-double", str(classify(carried())) == "velocity + acceleration")
+    table, near = results.read("table-4-1")["setups"], []
+    for setup, cells in table.items():
+        off = [
+            np.log(np.median(cells[str(w)]["errors"][what]) / getattr(printed, what))
+            for w, printed in paper.TABLE_4_1.items()
+            for what in ("training", "test")
+        ]
+        near += [setup] * int(np.abs(off).max() < np.log(1.5))
+    stated("filters-table-solver", near == [JOINT_DAMPING.name])
     rough = {k: roughness(f) for k, f in reported().items()}
     small = max(rough[f"Figure 5-{k}"] for k in (4, 5, 6))
     stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)

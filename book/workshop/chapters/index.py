@@ -93,7 +93,7 @@ def _inertias() -> dict[str, float]:
     scale = model.inputs.gain[joint] / model.outputs.gain[0]
     whole = trial.gains_of(model, windows).whole[0, 0, 2]
     row = gains(path * scale * _row())[2]
-    return {"the row": row, "network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
+    return {"the row": row, "its network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
 
 
 def _dynamics(axis):
@@ -120,7 +120,7 @@ def _feedforward(axis):
 
 def _recording(axis):
     at = np.arange(0, _SHOWN, 4)
-    for joint, colour in enumerate((_BLUE, _GREEN)):
+    for joint, colour in enumerate((_BLUE, _ORANGE)):
         axis.plot(at, _motion()["q"][at, joint], ".", color=colour, ms=4)
 
 
@@ -199,7 +199,7 @@ _PICTURES = {
     "hinton-diagrams": (_squares, "Ten rows of black and white squares; one row is framed."),
     "convolution-filters": (_folded, "The framed row as stems, with its line and its parabola."),
     "whose-filters": (_whose, "Two smooth rows, A and B, that look much alike."),
-    "inertia-in-the-weights": (_area, "A parabola's area, and bars for row, network and arm."),
+    "inertia-in-the-weights": (_area, "A parabola's area, and bars for row, its network and arm."),
 }
 _BANDED = _feedback, _feedforward, _recording
 

@@ -120,7 +120,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
       }
       ranges.push([a, b]);
       const [top, floor] = [16 + (j * height) / 2, height / 2 - 8 + (j * height) / 2];
-      pen.fillStyle = colours[j ? "c2" : "c0"];
+      pen.fillStyle = colours[j ? "c1" : "c0"];
       for (let i = first; i < samples.length; i++) {
         const x = right - (samples.length - 1 - i + phase) * pitch;
         const y = top + ((b - samples[i].q[j]) / (b - a)) * (floor - top);
@@ -136,7 +136,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
     pen.textBaseline = "middle";
     pen.textAlign = "left";
     JOINTS.forEach((j) => {
-      pen.fillStyle = colours[j ? "c2" : "c0"];
+      pen.fillStyle = colours[j ? "c1" : "c0"];
       const [low, high] = ranges[j].map((x) => format(x));
       pen.fillText(`${j ? "elbow" : "shoulder"}, ${low} to ${high}`, 0, 8 + (j * height) / 2);
     });

@@ -37,10 +37,10 @@ function stageOf(world, spec) {
     make("circle", { class: "dot", r: 5 }),
   );
   handle.setAttribute("aria-label", "The arm's hand: arrow keys pull it for as long as they are pressed");
-  const name = make("text", { class: "y", x: reach, y: reach - 4 }, "shaded: trained here");
+  const name = make("text", { class: "x", x: 0, y: reach + 14 }, "shaded: trained here");
   const svg = make(
     "svg",
-    { class: "stage", viewBox: `${-reach} ${-reach} ${2 * reach} ${2 * reach}`, role: "group" },
+    { class: "stage", viewBox: `${-reach} ${-reach} ${2 * reach} ${2 * reach + 22}`, role: "group" },
     ...[circle, region, name, ...links, base, elbow, rope, handle],
   );
   svg.setAttribute("aria-label", "The arm from above");
