@@ -181,7 +181,7 @@ def answers_are_folded(notebook) -> list:
 CHAPTER = (title_then_thesis, opening, closing, answers_are_folded)
 
 
-# --- every lesson of Parts I to III -------------------------------------------------------
+# --- every lesson, and the tutorial -------------------------------------------------------
 
 
 def before_the_promise(notebook) -> list:

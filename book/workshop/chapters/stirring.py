@@ -1,4 +1,4 @@
-"""*Stirring*: the study's errors, day by day; the lesson's numbers, figure, and checks."""
+"""*From pick-and-place to circles*: errors, day by day; the lesson's numbers and checks."""
 
 from __future__ import annotations
 
