@@ -127,7 +127,7 @@ def copied(page, name="Code") -> str:
 
 def code_of(chapter: str, name: str) -> str:
     """The text that a cell of a page, or its lesson's module, keeps under a name."""
-    lesson = chapter.removeprefix("evidence-").replace("-", "_")
+    lesson = chapter.removeprefix("evidence/").replace("-", "_")
     module = ROOT / "book" / "workshop" / "chapters" / f"{lesson}.py"
     kept = [module.read_text(encoding="utf-8")] if module.is_file() else []
     for source in code_cells(ROOT / "book" / f"{chapter}.ipynb") + kept:
