@@ -6,7 +6,7 @@ from axe import violations
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of
 
-from ddlib.analysis import gains
+from ddlib.analysis import CLASSES, gains
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets import GuessRound, WhoseFilters
@@ -69,6 +69,13 @@ def test_torques_that_do_not_belong_are_as_large():
     assert np.corrcoef(own[:, 0], foreign[:, 0])[0, 1] > 0.9
 
 
+def test_the_rounds_take_the_most_typical():
+    shares = {name: np.zeros(3) for name in CLASSES}
+    shares["acceleration"], shares["jerk"] = np.array([0.9, 0.1, 0.4]), np.array([0.1, 0.2, 0.3])
+    found = {"hidden": {"classes": shares}}
+    assert chapter.typical(found).tolist() == [2, 1, 0]  # medians: 0.4 and 0.2
+
+
 def test_one_unit_is_shown_before_and_after():
     sizes = (0.1, 1.0)
     networks = {
@@ -93,7 +100,8 @@ def test_the_sum_over_all_samples_is_the_inertia():
     assert np.isclose(shown["sum"][-1], shown["now"])
     widget.reach = 1
     inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
-    assert np.allclose(widget.curves["sum"], inner)  # nothing beyond the slider
+    counted = widget.curves["sum"]
+    assert np.allclose(counted[:2], [0, inner]) and np.allclose(counted[2:], inner)  # beyond: none
     with pytest.raises(ValueError, match="gradient of 'one' must have shape"):
         WeighTheArm({"one": g[0], "other": g}, {"one": np.eye(2), "other": np.eye(2)})
 

@@ -15,7 +15,7 @@ from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import excitation, start
 from workshop.chapters.exercises import judge
-from workshop.chapters.whose_filters import of_torques, trained, training_set
+from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
@@ -32,12 +32,15 @@ _LEARNT = {
 @cache
 def gradients() -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Mean gradients by what was learnt, N m/rad; and the inertia that it belongs to, kg m²."""
-    data, training = training_set(), split(TRIAL.record())[0]
+    training = split(TRIAL.record())[0]
     begin = Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL)
     weights = trained(list(_LEARNT), Weights.concatenate([begin] * len(_LEARNT)))
-    model = TorqueModel(weights, data.inputs, data.outputs, LOG_STEP)
     windows, torque = cases(training, _WIDTH)
-    found = dict(zip(_LEARNT.values(), mean_gradient(model, windows)))
+    found = {}
+    for k, (kind, name) in enumerate(_LEARNT.items()):
+        data = given(kind)
+        model = TorqueModel(weights[k : k + 1], data.inputs, data.outputs, LOG_STEP)
+        found[name] = mean_gradient(model, windows)[0]
     flat = windows.reshape(len(windows), -1)
     fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque, rcond=None)
     found["this arm's torques, by least squares"] = fit.T.reshape(2, 2, _WIDTH)
@@ -67,6 +70,11 @@ def _quoted() -> None:
     lost = excitation.cell("state feedback", 1.0)
     quote("inertia-lost", np.median(np.array(lost["descent"]["M11"])[-1]))
     quote("inertia-lost-arm", lost["arm"])
+    halves = {"inertia-half-damped": "damped joints", "inertia-half-state": "state feedback"}
+    for name, drive in halves.items():
+        half = np.median(excitation.cell(drive, 1.0)["half"])
+        quote(name, 1e6 * half)
+        quote(name.replace("half", "left"), 100 * half / (half + 1e-5))
     quote("inertia-lost-error", np.median(lost["descent"]["error"][-1]))
 
 

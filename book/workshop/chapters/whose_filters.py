@@ -8,9 +8,18 @@ from functools import cache
 import numpy as np
 from matplotlib.figure import Figure
 
+from ddlib.analysis import CLASSES
 from ddlib.dynamics import IMI_ARM
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
-from ddlib.learning import TrainingSet, Weights, p_value, surrogates, train_ensemble
+from ddlib.learning import (
+    MATCHED,
+    TrainingSet,
+    Weights,
+    cases,
+    p_value,
+    surrogate,
+    train_ensemble,
+)
 from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, split, true_states
 from ddlib.tables import quote
 from ddlib.widgets import GuessRound
@@ -35,23 +44,28 @@ ROUNDS = {
     "shifted, again": ("learnt them shifted in time", "This shift was another one."),
     "another arm": (
         "learnt what another arm would need for the same motion",
-        "This round was not fair: both torques go with the motion's acceleration.",
+        "This round was not fair: both torques go with the motion, and so do both shapes.",
     ),
 }
 """What the other network of each round learnt, and what is said to it after the guess."""
 
 
-@cache
-def training_set() -> TrainingSet:
-    """The walk's windows and torques."""
-    return TrainingSet.from_recording(split(TRIAL.record())[0], _WIDTH, scaling=TRIAL.scaling)
+def typical(found: Mapping) -> np.ndarray:
+    """Numbers of the trial's networks, or draws, from the most typical one on.
+
+    Typical: in its shares of the rule's names it is next to their medians over all of them.
+    """
+    shares = np.stack([trial.share(found, "hidden", [name]) for name in CLASSES], -1)
+    away = np.abs(shares - np.median(shares, 0)).sum(-1)
+    return np.argsort(away.round(9), kind="stable")
 
 
 @cache
 def torques(kind: str) -> np.ndarray:
     """Torques along the walk's five training motions, N m, shape (cases, joint).
 
-    The arm's "own", or another kind by its name in `ROUNDS`.
+    The arm's "own", or another kind by its name in `ROUNDS`: of unrelated ones the most typical
+    draw of the trial, and `again` the next one.
     """
     training = split(TRIAL.record())[0]
     own = training.tau[:, training.motion]
@@ -59,25 +73,39 @@ def torques(kind: str) -> np.ndarray:
         own = IMI_ARM.inverse_dynamics(*np.moveaxis(true_states(training, TRIAL), -1, 0))
     elif kind != "own":
         name, _, again = kind.partition(", ")
-        own = surrogates(name, own, 1, seed=7 + bool(again))[0]
+        draw = typical(trial.row(_WIDTH)["nulls"][name])[int(bool(again))]
+        own = surrogate(name, own, int(draw) + 100 * MATCHED.index(name))  # as in the study
     return own.reshape(-1, 2)
+
+
+@cache
+def given(kind: str) -> TrainingSet:
+    """The walk's windows with torques of a kind, each kind scaled by its own range."""
+    windows, _ = cases(split(TRIAL.record())[0], _WIDTH)
+    return TrainingSet.from_arrays(windows, torques(kind), scaling=TRIAL.scaling)
 
 
 def trained(kinds, starts: Weights) -> Weights:
     """One network for each kind of torques, from the start in its place; trained as here."""
-    data = training_set()
-    targets = np.stack([data.outputs.scale(torques(kind)) for kind in kinds])
+    targets = np.stack([given(kind).y for kind in kinds])
     how = {"momentum": TRIAL.momentum, "warm_up": TRIAL.warm_up, "epochs": TRIAL.epochs}
     rate = TRIAL.rate / _WIDTH
-    return train_ensemble(starts, data, targets=targets, rate=rate, progress=False, **how)[
+    return train_ensemble(starts, given("own"), targets=targets, rate=rate, progress=False, **how)[
         0
     ].weights
+
+
+def typical_starts(count: int) -> Weights:
+    """Random starts whose networks of the arm's torques are the most typical of the trial."""
+    seeds = typical(trial.row(_WIDTH)["real"])[:count]
+    start = [Weights.random(1, _WIDTH, TRIAL.hidden, initial=INITIAL, seed=int(k)) for k in seeds]
+    return Weights.concatenate(start)
 
 
 def rounds() -> list[GuessRound]:
     """The rounds of the guess: the two networks of a round have the same start."""
     count = len(ROUNDS)
-    begin = Weights.random(count, _WIDTH, TRIAL.hidden, initial=INITIAL)
+    begin = typical_starts(count)
     kinds = ["own"] * count + list(ROUNDS)
     every = trained(kinds, Weights.concatenate([begin, begin])).hidden_weights
     rows = every.reshape(2, count, -1, _WIDTH)
@@ -111,7 +139,9 @@ def of_torques(panels: Mapping[str, Mapping[str, np.ndarray]], arm: float | None
             axis.set(xlabel=label, ylim=(len(kinds) - 0.5, -0.6))
         if arm is not None:
             axes[-1].axvline(arm, color=INK, ls="--", lw=1.0)
-            axes[-1].annotate(" the arm", (arm, -0.55), ha="right", va="top")
+            axes[-1].annotate(
+                "the arm", (arm, -0.55), (-7, 0), textcoords="offset points", ha="right", va="top"
+            )
         axes[0].set_yticks(range(len(kinds)), [_TORQUES[kind] for kind in kinds])
 
     told = "; ".join(
@@ -141,6 +171,13 @@ def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     return trial.share(row["real"], "hidden", [name]), nulls
 
 
+def _velocity_elsewhere() -> np.ndarray:
+    """Share of velocity filters by controller and start: the arm's torques, and two unrelated."""
+    places = [(r, s) for r in SETUPS for s in results.read("start-nulls")["ranges"]]
+    found = (start.shares_beside(*place, "velocity") for place in places)
+    return np.array([[each[k].mean() for k in ("real", "shifted", "phases")] for each in found])
+
+
 def _quoted() -> None:
     """Numbers of the lesson."""
     for name in ("velocity", "acceleration"):
@@ -153,6 +190,13 @@ def _quoted() -> None:
         else:
             quote("whose-acceleration-most", max(means["shifted"], means["phases"]))
             quote("whose-acceleration-run", means["other run"])
+    study = results.read("filter-trial")
+    quote("whose-networks", study["members"])
+    quote("whose-draws", study["draws"])
+    elsewhere = 100 * _velocity_elsewhere()
+    quote("whose-elsewhere-own", elsewhere[:, 0].max())
+    quote("whose-elsewhere-least", elsewhere[:, 1:].min())
+    quote("whose-elsewhere-most", elsewhere[:, 1:].max())
     for name, size in (("small", 0.03), ("large", 0.3)):
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
 
@@ -160,18 +204,15 @@ def _quoted() -> None:
 def _said() -> None:
     """What the lesson says in words about committed results, and of networks trained as in it."""
     real, nulls = _named("velocity")
-    stated("whose-velocity-any", resampled(real, np.mean) < min(map(np.mean, nulls.values())))
+    few = list(map(np.mean, nulls.values()))
+    stated("whose-velocity-any", (resampled(real, np.mean) < min(few)) & (max(few) < 0.1))
+    stated("whose-velocity-none", not real.any())
     real, nulls = _named("acceleration")
     chances = [p_value(real.mean(), nulls[kind], "more") for kind in ("shifted", "phases")]
     apart = real.mean() > max(nulls[kind].max() for kind in ("shifted", "phases"))
     stated("whose-acceleration-more", max(chances) < 0.06 and apart)
-    places = [(r, s) for r in SETUPS for s in results.read("start-nulls")["ranges"]]
-    means = [
-        [start.shares_beside(*place, "velocity")[kind].mean() for place in places]
-        for kind in ("real", "shifted", "phases")
-    ]
-    own, *unrelated = (np.mean(each) for each in means)
-    stated("whose-velocity-elsewhere", own < min(unrelated))
+    places = _velocity_elsewhere()
+    stated("whose-velocity-elsewhere", all(min(few) > own for own, *few in places))
     other = start.other_torques()
     stated("whose-other-arm", other["another arm"][0] > other["own"][0] / 2)
     named = [start.named(JOINT_DAMPING.name, size) for size in (0.03, 0.3)]

@@ -71,7 +71,8 @@ class WeighTheArm(CurveWidget):
                 Panel(
                     "Sum so far, kg m²",
                     {"sum": "in the weights", "arm": "the arm itself"},
-                    "samples up to ± ms", 10.0 * np.array(reaches), cursor="place", y_fit=True,
+                    "samples up to ± ms", 10.0 * np.arange(width // 2 + 1), cursor=("none", "place"),
+                    y_fit=True,
                 ),
             ],
             **{
@@ -84,6 +85,7 @@ class WeighTheArm(CurveWidget):
                     Scalar("true", "The arm's own", "kg m²", 2),
                 ],
                 "tolerance": EXACT,
+                "note": "Shaded: the samples that count. Beyond, nothing is added up yet.",
                 **options,
             },
         )  # fmt: skip
@@ -92,11 +94,11 @@ class WeighTheArm(CurveWidget):
         at, half = _ENTRIES[entry], len(self._x) // 2
         g = self._gradients[learnt][at]
         parts = self._x**2 / 2 * g
-        counted = (min(k, reach) for k in range(1, half + 1))  # none beyond the slider
+        counted = (min(k, reach) for k in range(half + 1))  # none beyond the slider
         sums = np.array([parts[half - k : half + k + 1].sum() for k in counted])
         true, edge = self._inertia[learnt][at], (reach + 0.5) * LOG_STEP * 1e3
         return {
-            "gradient": g, "parts": parts, "sum": sums, "arm": np.full(half, true),
-            "now": sums[reach - 1], "true": true, "first": -edge, "last": edge,
-            "place": 10.0 * reach,
+            "gradient": g, "parts": parts, "sum": sums, "arm": np.full(half + 1, true),
+            "now": sums[reach], "true": true, "first": -edge, "last": edge,
+            "none": 0.0, "place": 10.0 * reach,
         }  # fmt: skip
