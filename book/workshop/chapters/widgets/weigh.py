@@ -72,8 +72,7 @@ class WeighTheArm(CurveWidget):
                     "Sum so far, kg m²",
                     {"sum": "in the weights", "arm": "the arm itself"},
                     "samples up to ± ms", 10.0 * np.arange(width // 2 + 1),
-                    cursor=("none", "place"),
-                    y_fit=True,
+                    cursor=("none", "place"), y_fit=True,
                 ),
             ],
             **{
