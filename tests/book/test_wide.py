@@ -38,7 +38,7 @@ NUMBER = r"^[≤≥]?\s?[\d.]+\s(s|ms|µs|×|GiB)$"
         ("book/status", 390, "td, td > p", NUMBER),
         ("book/api/control", 390, "dt.sig .pre", WORD),
         ("book/api/workshop", 390, "article h2", r"^[\w.]+$"),
-        ("book/use-it-on-your-arm", 390, ".prev-next-title", r"^\w+$"),
+        ("book/glossary", 390, ".prev-next-title", r"^\w+$"),
         ("genindex", 390, ".indextable a", r"^[\w.]+$"),
     ],
 )
