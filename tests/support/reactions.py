@@ -19,14 +19,15 @@ DRAWING = 'svg[tabindex="0"]:not(.chart > svg), svg [tabindex="0"]'  # charts on
 SLIDER = 'input[type="range"]'
 SWITCH = 'input[role="switch"]'
 NUMBER = '[role="spinbutton"]'
+BUTTON = ".presets button"  # of which one is pressed, the first at the start
 
 
 def handles(root) -> list[Handle]:
     """The first drawing (or part of one) that can be dragged and the first slider of a widget.
 
-    Where there is neither, the first switch or number.
+    Where there is neither, the first switch or number, or a button that chooses what is shown.
     """
-    for kinds in ((DRAWING, SLIDER), (SWITCH, NUMBER)):
+    for kinds in ((DRAWING, SLIDER), (SWITCH, NUMBER), (BUTTON,)):
         found = [root.locator(kind).locator("visible=true") for kind in kinds]
         if some := [Handle(root, kind.first) for kind in found if kind.count()]:
             return some
@@ -63,6 +64,8 @@ class Handle:
 
     def drag(self) -> None:
         """With the mouse, from the middle to a place far from where the handle stands."""
+        if self._is_button():
+            return self._next().click()
         far = self._far()
         self.page.mouse.move(*self._point(0.5))
         self.page.mouse.down()
@@ -74,6 +77,9 @@ class Handle:
         """A key that goes to where there is room."""
         if self.handle.get_attribute("role") == "switch":
             return self.handle.press("Space")
+        if self._is_button():
+            pressed = self.handle.get_attribute("aria-pressed") == "true"
+            return (self._next() if pressed else self.handle).press("Enter")
         stands, before = self._stands(), self.picture()
         keys = ("ArrowRight", "ArrowLeft") if stands is None else ("End", "Home")
         self.handle.focus()
@@ -81,8 +87,17 @@ class Handle:
         if stands is None and self.picture() == before:
             self.page.keyboard.press(keys[1])
 
+    def _is_button(self) -> bool:
+        return self.handle.evaluate("(el) => el.matches('button')")
+
+    def _next(self):
+        """The button after this one."""
+        return self.handle.locator("xpath=following-sibling::button[1]")
+
     def tap(self) -> None:
         """With a finger."""
+        if self._is_button():
+            return self._next().tap()
         self.page.touchscreen.tap(*self._point(self._far()))
         plus = self.handle.locator("xpath=following-sibling::*//button").last
         if self.handle.get_attribute("role") == "spinbutton" and plus.is_visible():
