@@ -190,7 +190,9 @@ extras.push((view) => {
   const player = make("div", { class: "player" }, clock.play, clock.el);
   view.top.prepend(make("div", { class: "arm-box" }, stage.svg, player));
   view.controls.append(guess);
-  view.el.querySelector(".charts").after(view.numbers, make("div", { class: "table-box" }, table));
+  const charts = view.el.querySelector(".charts");
+  charts.before(view.numbers); // near the handle, on a phone too
+  charts.after(make("div", { class: "table-box" }, table));
   let rate = 0;
   let path = "";
   const follow = () => {
