@@ -161,7 +161,6 @@ def reacts_alone(page, handle: Handle):
     wait(page, "baked values", lambda: interpolated.count() == 1, ANSWER)
 
 
-ARROWS = {"ArrowRight": "ArrowLeft", "ArrowUp": "ArrowDown"}
 CELLS = """() => {
   const { content } = window.panel;
   const seen = content.widgets.filter((cell) => !cell.isHidden).length;
@@ -170,7 +169,7 @@ CELLS = """() => {
 
 
 def keys_move_it(page, root):
-    """Arrows move each slider of a widget forth and back, and no cell: JupyterLab has them, too."""
+    """Arrows move each slider of a widget, and no cell: JupyterLab has them, too."""
     sliders = root.locator(SLIDER).locator("visible=true")
     if not sliders.count():
         return
@@ -178,13 +177,8 @@ def keys_move_it(page, root):
     cells = page.evaluate(CELLS)
     for slider in sliders.all():
         start = slider.input_value()
-        for there, back in ARROWS.items():
-            if slider.input_value() == slider.get_attribute("max"):
-                there, back = back, there
-            slider.press(there)
-            assert slider.input_value() != start, there
-            slider.press(back)
-            assert slider.input_value() == start, back
+        slider.press("ArrowLeft" if start == slider.get_attribute("max") else "ArrowRight")
+        assert slider.input_value() != start
     assert page.evaluate(CELLS) == cells
 
 
