@@ -91,8 +91,8 @@ FAULTS = {
     "text of 7.0 px: small": '<div class="ddlib-figure"><svg width="90" height="90" '
     'viewBox="0 0 180 180"><text x="9" y="90" font-size="14">small</text></svg></div>',
     "marks overlap: 0.01 0.1": '<div class="ddlib-widget"><div class="ddlib-widget chart"><svg '
-    'width="90" height="90"><g class="grid"><text x="20" y="50">0.01</text><text x="30" y="50">0.1</text></g>'
-    "</svg></div></div>",
+    'width="90" height="90"><g class="grid"><text x="20" y="50">0.01</text>'
+    '<text x="30" y="50">0.1</text></g></svg></div></div>',
     "scrolls, but not by keyboard": '<div style="overflow-x:auto"><p style="width:2000px">a</p>'
     "</div>",
     "MathJax for 0 formulas": '<script type="text/x" src="mathjax.js"></script>',

@@ -79,7 +79,7 @@ def test_the_first_cell_fetches_the_book(tmp_path):
         subprocess.run([*me, *words], check=True)
     away = tmp_path / "elsewhere"
     away.mkdir()
-    cell = dd_reader.SETUP.format(address=home.as_uri())
+    cell = dd_reader.SETUP.format(address=home.as_uri(), folder="book")
     asked = "from workshop.chapters import feedback\nimport ddlib, os\n"
     asked += "print(ddlib.__file__, os.path.isdir('data'))"
     told = subprocess.run(
@@ -92,7 +92,7 @@ def test_the_first_cell_fetches_the_book(tmp_path):
     )
     assert told.returncode == 0, told.stderr
     assert told.stdout.split()[-1] == "True"
-    alone = dd_reader.SETUP.format(address="")
+    alone = dd_reader.SETUP.format(address="", folder="book")
     told = subprocess.run(
         [sys.executable, "-P", "-c", alone], cwd=away, env={}, capture_output=True, text=True
     )
