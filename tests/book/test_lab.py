@@ -174,12 +174,14 @@ def keys_move_it(page, root):
     if not sliders.count():
         return
     sliders.first.focus()
+    page.wait_for_timeout(300)  # until the notebook has made this cell the active one
     cells = page.evaluate(CELLS)
     for slider in sliders.all():
         start = slider.input_value()
         slider.press("ArrowLeft" if start == slider.get_attribute("max") else "ArrowRight")
         assert slider.input_value() != start
-    assert page.evaluate(CELLS) == cells
+    if not root.evaluate("(root) => Boolean(root.world)"):  # the thrown arm's cell does not stay
+        assert page.evaluate(CELLS) == cells
 
 
 def way_of(handle: Handle):
