@@ -52,7 +52,7 @@ def test_a_tile_for_each_claim_with_all_that_the_file_says():
         assert typeset(claim.why) in inside and typeset(claim.refuted) in inside
         own = claim.printed == claims._OWN
         assert ("This book's own claim" if own else typeset(claim.as_printed())) in inside
-        page = [] if claim.chapter == _LEDGER else [claim.chapter]
+        page = [] if claim.chapter == _LEDGER else [wall._BEHIND.get(claim.chapter, claim.chapter)]
         found = re.findall(r"\]\((?:evidence/)?([\w-]+)\.ipynb\)", inside)
         assert found == page
         code = f'<a href="../_modules/{code_of(claim)}">code</a>'
