@@ -169,7 +169,7 @@ CELLS = """() => {
 
 
 def keys_move_it(page, root):
-    """Arrows move each slider of a widget, and no cell: JupyterLab has them, too."""
+    """Each arrow moves each slider of a widget, and no cell: JupyterLab has these keys, too."""
     sliders = root.locator(SLIDER).locator("visible=true")
     if not sliders.count():
         return
@@ -177,11 +177,15 @@ def keys_move_it(page, root):
     page.wait_for_timeout(300)  # until the notebook has made this cell the active one
     cells = page.evaluate(CELLS)
     for slider in sliders.all():
-        start = slider.input_value()
-        slider.press("ArrowLeft" if start == slider.get_attribute("max") else "ArrowRight")
-        assert slider.input_value() != start
-    if not root.evaluate("(root) => Boolean(root.world)"):  # the thrown arm's cell does not stay
-        assert page.evaluate(CELLS) == cells
+        for there, back in (("ArrowRight", "ArrowLeft"), ("ArrowUp", "ArrowDown")):
+            least, most = (slider.get_attribute(end) for end in ("min", "max"))
+            start = slider.input_value()
+            for key in (back, there) if start == most else (there, back):
+                before = slider.input_value()
+                slider.press(key)
+                assert slider.input_value() != before, (key, before, least, most)
+                assert slider.evaluate("(el) => el === document.activeElement"), key
+    assert page.evaluate(CELLS) == cells
 
 
 def way_of(handle: Handle):

@@ -47,8 +47,12 @@ function onKeys(el, act) {
   });
 }
 
-// The element of a widget, by its kind and its name for screen readers.
+// The element of a widget, by its kind and its name for screen readers. In JupyterLab the keys are
+// the handle's that has the focus, not the notebook's: else an arrow would move or fold a cell.
 function dress(el, label, ...kinds) {
+  el.addEventListener("focusin", ({ target }) => {
+    target.dataset.lmSuppressShortcuts = "true"; // the focused element alone is asked
+  });
   el.classList.add("ddlib-widget", "ddlib-curves", ...kinds);
   put(el, { role: "group", "aria-label": label });
 }

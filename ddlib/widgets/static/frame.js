@@ -39,11 +39,6 @@ function frameOf({ el, key, title, linked, reset, code }) {
   let name = key;
   for (let k = 2; others.includes(name); k++) name = `${key}${k}`;
   el.dataset.widget = name;
-  // In JupyterLab the keys are the handle's that has the focus, not the notebook's: else an arrow
-  // would move or fold a cell. It asks the focused element alone.
-  el.addEventListener("focusin", ({ target }) => {
-    target.dataset.lmSuppressShortcuts = "true";
-  });
   const given = linked ? addressed(name) : {};
   const parts = {};
 
