@@ -183,9 +183,9 @@ def main(root: Path, strict: bool) -> int:
         folder = cache_path(root, root / "_build")
         folder.mkdir(parents=True, exist_ok=True)
         os.environ.setdefault("OMP_NUM_THREADS", "1")  # one core for each notebook
-        # of the pages, whatever the environment asks for: with Agg they would have no pictures
         paths = (str(root / "book"), os.environ.get("PYTHONPATH"))  # for pages in its folders, too
         os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
+        # that of the pages, whatever the environment asks for: with Agg they would have no pictures
         os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
         os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
         with made_ready(root, strict) as pages:

@@ -21,6 +21,9 @@ FIRST = 2  # sentences of a section that are kept in any case; of evidence, one
 WORD = re.compile(r"[^\W\d_]{8,}")
 STEM = 7  # letters by which words are told apart
 
+ELSEWHERE = {"paper-and-reproduction", "further-reading"}
+"""Sections whose sentences the ledger and the bibliography have as well."""
+
 OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block, nodes.citation)
 """What is found by itself, or is no prose."""
 
@@ -55,6 +58,8 @@ def texts_of(doctree: nodes.document, first: int = FIRST) -> dict[str, str]:
     found = {}
     known = set()
     for section in doctree.findall(nodes.section):
+        if section["ids"][0] in ELSEWHERE:
+            continue
         inside = "".join(prose(child) for child in section.children)
         found[section["ids"][0]] = shortened(inside, known, first)
     for item in doctree.findall(nodes.definition_list_item):

@@ -5,12 +5,13 @@ from __future__ import annotations
 import ast
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 
 import nbformat
 import prose
 import pytest
 import yaml
-from book_pages import API, EVIDENCE_OF, PAGES, ROOT, WALK, source
+from book_pages import API, EVIDENCE, EVIDENCE_OF, PAGES, ROOT, WALK, source
 
 SUPPORT = ROOT / "tests" / "support"
 ALLOWED = yaml.safe_load((SUPPORT / "allowed_numbers.yml").read_text(encoding="utf-8"))
@@ -72,6 +73,15 @@ def test_typed_results_are_told_from_names_and_settings():
         assert prose.typed_numbers(prose.sentence(planted)) == numbers, planted
 
 
+def module_of(page: str) -> Path:
+    name = page.rpartition("/")[2].replace("-", "_")
+    return ROOT / "book" / "workshop" / "chapters" / f"{name}.py"
+
+
+ALONE = [page for page in EVIDENCE if module_of(page) not in map(module_of, WALK)]
+"""Evidence pages with a module of their own, or with none."""
+
+
 def checks(page: str) -> list[str]:
     """Names of the `stated` calls of a notebook, or of a lesson's module, which a test runs.
 
@@ -79,9 +89,8 @@ def checks(page: str) -> list[str]:
     """
     cells = nbformat.read(source(page), as_version=4).cells
     code = [cell.source for cell in cells if cell.cell_type == "code"]
-    if page in (*WALK, "book/index"):
-        module = page.removeprefix("book/").replace("-", "_")
-        path = ROOT / "book" / "workshop" / "chapters" / f"{module}.py"
+    if page in (*WALK, "book/index", *ALONE):
+        path = module_of(page)
         code += [path.read_text(encoding="utf-8")] if path.is_file() else []
     trees = [ast.parse(text) for text in code]
     calls = [
@@ -119,9 +128,11 @@ def test_bound_sentences_stand_in_their_page_and_their_checks_too():
     assert set(BOUND) <= set(NAMES) and sum(map(len, BOUND.values())) > 200
 
 
-@pytest.mark.parametrize("page", WALK)
-def test_what_a_lesson_states_is_so(page):
-    """By the `_said` of the lesson's module, if the lesson binds words at all."""
-    name = page.removeprefix("book/")
-    if name in BOUND:
-        import_module(f"workshop.chapters.{name.replace('-', '_')}")._said()
+@pytest.mark.parametrize("page", [*WALK, *ALONE])
+def test_what_a_page_states_is_so(page):
+    """By the `_said` of the page's module, if the page binds words at all."""
+    path = module_of(page)
+    if page.removeprefix("book/") in BOUND and path.is_file():
+        module = import_module(f"workshop.chapters.{path.stem}")
+        assert page not in WALK or hasattr(module, "_said"), path
+        getattr(module, "_said", lambda: None)()

@@ -1,8 +1,8 @@
 """Lessons: short, with code in the open that runs alone, follows changes, and judges answers."""
 
 import pytest
-from book_pages import ROOT, WALK
-from chapter_rules import SHAPE, TUTORIAL
+from book_pages import LESSONS, ROOT, WALK
+from chapter_rules import SHAPE, TUTORIAL, words
 from open_cells import CHANGES, execute, exercises, imports, lesson, run
 
 DATA = ROOT / "book" / "data"  # goes with the notebooks
@@ -14,6 +14,10 @@ STANDARD = {"collections", "dataclasses", "fractions", "itertools", "math", "tim
 @pytest.mark.parametrize("rule", SHAPE, ids=lambda rule: rule.__name__)
 def test_lessons_have_the_shape(rule):
     assert not {page: wrong for page in (*WALK, TUTORIAL) if (wrong := rule(lesson(page)))}
+
+
+def test_lessons_are_short_together():
+    assert sum(words(lesson(page)) for page in LESSONS) <= 28_000
 
 
 @pytest.mark.parametrize("page", WALK)
