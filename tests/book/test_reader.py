@@ -38,7 +38,7 @@ class Known:
 
 
 def plain(text, **glued):
-    return Plain("page", Known(), glued).text(text)
+    return Plain("book/page", Known(), glued).text(text)
 
 
 @pytest.mark.parametrize("source, wanted", [
