@@ -106,7 +106,7 @@ def test_the_sum_over_all_samples_is_the_inertia():
         WeighTheArm({"one": g[0], "other": g}, {"one": np.eye(2), "other": np.eye(2)})
 
 
-@pytest.mark.parametrize("number, right, wrong", [(1, 0.75, 1.5), (3, 99, 100)])
+@pytest.mark.parametrize("number, right, wrong", [(1, 1.5, 3.0), (1, 1.5, 0.75), (3, 99, 100)])
 def test_answers_are_judged(number, right, wrong, capsys):
     for mine, told in ((right, "Right"), (wrong, "Wrong")):
         chapter.check(number, mine, 3.0)

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib import paper
 from ddlib._check import finite_array, shaped
 from ddlib.analysis import DERIVATIVES, classify, decompose, purest, roughness, shares, upright
 from ddlib.figures.style import (
@@ -153,15 +152,6 @@ def _said() -> None:
     lies = odd["Figure 5-4"] > 0.8, odd["Figure 5-5"] < 0.2, 0.3 < odd["Figure 5-6"] < 0.7
     stated("filters-report-lies", all(lies))
     stated("filters-carried-double", str(classify(carried())) == "velocity + acceleration")
-    table, near = results.read("table-4-1")["setups"], []
-    for setup, cells in table.items():
-        off = [
-            np.log(np.median(cells[str(w)]["errors"][what]) / getattr(printed, what))
-            for w, printed in paper.TABLE_4_1.items()
-            for what in ("training", "test")
-        ]
-        near += [setup] * int(np.abs(off).max() < np.log(1.5))
-    stated("filters-table-solver", near == [JOINT_DAMPING.name])
     rough = {k: roughness(f) for k, f in reported().items()}
     small = max(rough[f"Figure 5-{k}"] for k in (4, 5, 6))
     stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)

@@ -37,7 +37,7 @@ def _network():
 
 
 @cache
-def _row() -> np.ndarray:
+def carried_row() -> np.ndarray:
     """The row that is carried through all pictures; `ThrownArm` opens with it."""
     return _network().weights.hidden_weights[both(_network().weights)]
 
@@ -69,7 +69,7 @@ def _window() -> slice:
 
 
 @cache
-def _unrelated() -> np.ndarray:
+def unrelated_row() -> np.ndarray:
     """The same row of a network that learnt torques which were shifted in time."""
     runs, how = JOINT_DAMPING.record()[:5], JOINT_DAMPING
     torque = surrogate("shifted", runs.tau[:, runs.motion]).reshape(-1, 2)
@@ -92,7 +92,7 @@ def _inertias() -> dict[str, float]:
     path = slopes.mean() * model.weights.output_weights[0, unit]
     scale = model.inputs.gain[joint] / model.outputs.gain[0]
     whole = trial.gains_of(model, windows).whole[0, 0, 2]
-    row = gains(path * scale * _row())[2]
+    row = gains(path * scale * carried_row())[2]
     return {"the row": row, "its network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
 
 
@@ -125,7 +125,7 @@ def _recording(axis):
 
 
 def _unit(axis):
-    row = _row()
+    row = carried_row()
     at = np.linspace(0, 1, WIDTH)
     for x, weight in zip(at, row / np.abs(row).max()):
         colour = _ORANGE if weight > 0 else figures.INK
@@ -161,7 +161,7 @@ def _squares(axis):
 
 
 def _folded(axis):
-    row, along = _row(), basis(WIDTH)
+    row, along = carried_row(), basis(WIDTH)
     axis.axhline(0, color=figures.FAINT, lw=0.7)
     axis.vlines(np.arange(WIDTH), 0, row, color=_BLUE, alpha=0.45, lw=1.5)
     axis.plot(row, "o", color=_BLUE, alpha=0.45, ms=3.5)
@@ -171,7 +171,10 @@ def _folded(axis):
 
 def _whose(axis):
     axis.axhline(0, color=figures.FAINT, lw=0.7)
-    for name, row, colour, x in (("A", _row(), _BLUE, 0), ("B", _unrelated(), _PINK, WIDTH + 3)):
+    for name, row, colour, x in (
+        ("A", carried_row(), _BLUE, 0),
+        ("B", unrelated_row(), _PINK, WIDTH + 3),
+    ):
         axis.plot(x + np.arange(WIDTH), row / np.abs(row).max(), "o-", color=colour, ms=2.5, lw=1.2)
         axis.text(x + 1, -0.9, name, fontsize=10, fontweight="bold")
     axis.set(ylim=(-1.1, 1.1))
@@ -179,7 +182,7 @@ def _whose(axis):
 
 def _area(axis):
     along = basis(WIDTH)[2]
-    parabola = along * np.sign(along @ _row())
+    parabola = along * np.sign(along @ carried_row())
     x = np.linspace(0, 1, WIDTH)
     axis.fill_between(x * 8, 4.2, 4.2 + 2.5 * parabola / np.ptp(parabola), color=_GREEN, alpha=0.5)
     for k, (name, value) in enumerate(_inertias().items()):

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from ddlib.analysis import mean_gradient
+from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import IMI_ARM
-from ddlib.figures.style import Illustration
+from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
-from ddlib.setups import INITIAL, split
+from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import excitation, start
 from workshop.chapters.exercises import judge
+from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
+from workshop.report import committed, results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.studies.nulls import TRIAL
@@ -57,8 +62,73 @@ def inertia_beside() -> Illustration:
     return of_torques({"shoulder's inertia, kg m²": inertia}, _arm())
 
 
+@cache
+def paths() -> np.ndarray:
+    """What each path of the landing page's network answers to the shoulder's motion.
+
+    From the shoulder's window to its torque: the direct weights first, then each hidden unit;
+    stiffness (N m/rad), damping (N m s/rad) and inertia (kg m²), shape (path, 3).
+    """
+    model = results.median_network(_WIDTH, JOINT_DAMPING.name)
+    windows, _ = cases(committed.training(JOINT_DAMPING.name), _WIDTH)
+    weights = model.weights
+    hidden, output = weights.activity(model.scaled(windows))
+    bend, slope = hidden * (1 - hidden), output[:, 0] * (1 - output[:, 0])
+    through = slope @ bend / len(windows) * weights.output_weights[0]
+    direct = slope.mean() * weights.direct_weights[:1, 0]
+    filters = np.concatenate([direct, through[:, None] * weights.hidden_weights[:, 0]])
+    return gains(filters * model.inputs.gain[0] / model.outputs.gain[0])
+
+
+def _carried() -> int:
+    """The path of the landing page's row."""
+    unit, joint = both(results.median_network(_WIDTH, JOINT_DAMPING.name).weights)
+    assert joint == 0
+    return 1 + unit
+
+
+def paths_beside() -> Illustration:
+    """Inertia and damping of each path of the landing page's network, and their sum."""
+    each, carried = paths(), _carried()
+    names = ["direct", *(f"unit {k}" for k in range(1, len(each))), "all"]
+    names[carried] += ", the row"
+    colours = [COLOURS[1] if k == carried else COLOURS[0] for k in range(len(each))]
+    friction = JOINT_DAMPING.effects.friction[0].coefficient[0]
+    panels = {"inertia, kg m²": (2, _arm()), "damping, N m s/rad": (1, friction)}
+
+    def draw(figure: Figure):
+        for axis, (label, (k, arm)) in zip(figure.subplots(1, 2, sharey=True), panels.items()):
+            axis.barh(names[:-1], each[:, k], color=colours)
+            axis.barh(names[-1:], each[:, k].sum(), color=INK)
+            axis.plot([arm] * 2, [len(each) - 0.6, len(each) + 0.6], color=COLOURS[2], lw=3)
+            axis.axvline(0, color=INK, lw=0.8)
+            axis.grid(visible=False, axis="y")
+            axis.set(xlabel=label, ylim=(len(names) - 0.4, -0.6))
+
+    alt = (
+        f"Bars for {len(each)} paths, of both signs, and for their sum: inertia "
+        f"{each[:, 2].sum():.1f} kg m², damping {each[:, 1].sum():.0f} N m s/rad."
+    )
+    return illustrate(draw, alt, 7.0, 3.2, narrow_height=6.0)
+
+
 def _arm() -> float:
     return float(trial.arm_gains()[0, 0, 2])
+
+
+def surplus() -> dict[tuple[bool, bool], float]:
+    """Inertia by least squares less the arm's, kg m², by dry friction and encoder, there or not."""
+    over, effects = {}, JOINT_DAMPING.effects
+    for dry, stepped in product((True, False), repeat=2):
+        friction = effects.friction if dry else effects.friction[:1]  # viscous alone
+        present = replace(effects, friction=friction, encoder=effects.encoder if stepped else ())
+        runs = split(replace(JOINT_DAMPING, effects=present).record())[0]
+        windows, torque = cases(runs, _WIDTH)
+        flat = windows.reshape(len(windows), -1)
+        fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque[:, 0], rcond=None)
+        arm = JOINT_DAMPING.arm.mass_matrix(runs.q_true[:, runs.motion])[..., 0, 0].mean()
+        over[dry, stepped] = gains(fit[:_WIDTH])[2] - arm
+    return over
 
 
 def _quoted() -> None:
@@ -75,7 +145,10 @@ def _quoted() -> None:
         half = np.median(excitation.cell(drive, 1.0)["half"])
         quote(name, 1e6 * half)
         quote(name.replace("half", "left"), 100 * half / (half + 1e-5))
-    quote("inertia-lost-error", np.median(lost["descent"]["error"][-1]))
+    row, whole = paths()[_carried()], paths().sum(0)
+    for name, values in {"row": row, "row-network": whole}.items():
+        quote(f"inertia-{name}", values[2])
+        quote(f"inertia-{name}-damping", values[1])
 
 
 def _said() -> None:
@@ -117,6 +190,15 @@ def _said() -> None:
     clear = [start.p_more(TRIAL.name, size, "acceleration") for size in (0.03, 0.3)]
     stated("inertia-acceleration-more", max(clear) < 0.06)
     stated("inertia-least-squares", near[-1])
+    run = np.array(trial.matched(row)["other run"]["gains"])[:, 0, 0, 2]
+    stated("inertia-run-on-line", np.abs(run / arm - 1).min() < 0.02)
+    over = surplus()
+    both_add = min(over[True, False], over[False, True]) > 0.2 and over[True, True] > 0.5
+    stated("inertia-surplus", both_add and abs(over[False, False]) < 0.1)
+    each, whole = paths(), paths().sum(0)
+    stated("inertia-paths-cancel", (np.abs(each).sum(0) > 2 * np.abs(whole))[1:].all())
+    stated("inertia-row-faster", each[_carried(), 1] > 2 * whole[1])
+    stated("inertia-no-path", not (np.abs(each[:, 2] / arm - 1) < 0.05).any())
 
 
 def check(number: int, mine, *given) -> None:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from ddlib.analysis import CLASSES
 from ddlib.dynamics import IMI_ARM
+from ddlib.figures import decomposed
 from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import (
     MATCHED,
@@ -21,9 +22,10 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, split, true_states
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from ddlib.widgets import GuessRound
-from workshop.chapters import start
+from workshop.chapters import index, start
 from workshop.chapters.convolution_filters import _dots
 from workshop.chapters.exercises import judge
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
@@ -164,6 +166,15 @@ def names_beside() -> Illustration:
     })  # fmt: skip
 
 
+def carried_and_unrelated() -> Illustration:
+    """The landing page's row, and such a row of a network that learnt shifted torques."""
+    rows = {
+        "this arm's torques": index.carried_row(),
+        "torques shifted in time": index.unrelated_row(),
+    }
+    return decomposed({name: row / np.abs(row).max() for name, row in rows.items()}, LOG_STEP)
+
+
 def _named(name: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Share of a name in the hidden filters of the trial: the arm's torques, and each null."""
     row = trial.row(_WIDTH)
@@ -193,10 +204,6 @@ def _quoted() -> None:
     study = results.read("filter-trial")
     quote("whose-networks", study["members"])
     quote("whose-draws", study["draws"])
-    elsewhere = 100 * _velocity_elsewhere()
-    quote("whose-elsewhere-own", elsewhere[:, 0].max())
-    quote("whose-elsewhere-least", elsewhere[:, 1:].min())
-    quote("whose-elsewhere-most", elsewhere[:, 1:].max())
     for name, size in (("small", 0.03), ("large", 0.3)):
         quote(f"whose-named-{name}", 100 * start.named(JOINT_DAMPING.name, size).mean())
 
@@ -213,6 +220,8 @@ def _said() -> None:
     stated("whose-acceleration-more", max(chances) < 0.06 and apart)
     places = _velocity_elsewhere()
     stated("whose-velocity-elsewhere", all(min(few) > own for own, *few in places))
+    run = nulls["other run"]
+    stated("whose-run-beyond", run.max() > real.mean() > run.mean())
     other = start.other_torques()
     stated("whose-other-arm", other["another arm"][0] > other["own"][0] / 2)
     named = [start.named(JOINT_DAMPING.name, size) for size in (0.03, 0.3)]
@@ -232,10 +241,11 @@ def check(number: int, mine, given) -> None:
     """Judge an answer: `given` the seconds of a motion, or step times variance by direction."""
     if number == 1:
         slips = (
-            (given / 2, "half a period turns the torque's sign, and nothing else."),
-            (given, "after a whole period it is the old torque again."),
+            (given, "half a period turns the torque's sign, and nothing else."),
+            (2 * given, "after a whole period it is the old torque again."),
+            (given / 4, "out and back is only half a period of the sine."),
         )
-        judge(mine, given / 4, "then the arm's acceleration filter would become a velocity filter.",
+        judge(mine, given / 2, "then the arm's acceleration filter would become a velocity filter.",
               slips, "write the shifted sine as a sum of a sine and a cosine.")  # fmt: skip
     elif number == 2:
         half = np.log(0.5) / np.log1p(-given[4])
