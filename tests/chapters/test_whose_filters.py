@@ -6,13 +6,15 @@ from axe import violations
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, page_of
 
-from ddlib.analysis import CLASSES, gains
-from ddlib.learning import Weights
+from ddlib.analysis import CLASSES, gains, mean_gradient
+from ddlib.learning import Weights, cases
+from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets import GuessRound, WhoseFilters
-from workshop.chapters import whose_filters as chapter
+from workshop.chapters import inertia_in_the_weights, whose_filters as chapter
 from workshop.chapters.widgets.starts import UnitFromFiveStarts
 from workshop.chapters.widgets.weigh import WeighTheArm
+from workshop.report import committed, results
 
 X = np.arange(-10, 11.0)
 PARABOLAS = np.tile(X**2 - (X**2).mean(), (20, 1))
@@ -111,3 +113,21 @@ def test_answers_are_judged(number, right, wrong, capsys):
     for mine, told in ((right, "Right"), (wrong, "Wrong")):
         chapter.check(number, mine, 3.0)
         assert capsys.readouterr().out.startswith(told)
+
+
+def test_inertia_at_a_frequency():
+    second_difference = np.zeros(21)
+    second_difference[9:12] = 2 * np.array([1, -2, 1]) / LOG_STEP**2  # of 2 kg m²
+    assert np.isclose(inertia_in_the_weights.inertia_at(second_difference, 0.2), 2, rtol=1e-4)
+    at = inertia_in_the_weights.inertia_at(second_difference, 10)
+    omega = 20 * np.pi
+    assert np.isclose(at, 4 * (1 - np.cos(omega * LOG_STEP)) / (omega * LOG_STEP) ** 2)
+
+
+def test_paths_add_up_to_the_network():
+    model = results.median_network(21, JOINT_DAMPING.name)
+    windows, _ = cases(committed.training(JOINT_DAMPING.name), 21)
+    whole = gains(mean_gradient(model, windows))
+    each = inertia_in_the_weights.paths()
+    assert each.shape == (11, 3)
+    assert np.allclose(each.sum(0), whole.reshape(-1, 2, 2, 3)[0, 0, 0])

@@ -116,9 +116,20 @@ def _arm() -> float:
     return float(trial.arm_gains()[0, 0, 2])
 
 
-def surplus() -> dict[tuple[bool, bool], float]:
-    """Inertia by least squares less the arm's, kg m², by dry friction and encoder, there or not."""
-    over, effects = {}, JOINT_DAMPING.effects
+SWING = 1.7
+"""Frequency at which the walk's arm swings about its path, Hz."""
+
+
+def inertia_at(f, frequency: float) -> float:
+    """Inertia that a filter has for a sine of a frequency (Hz), kg m²."""
+    omega = 2 * np.pi * frequency
+    x = LOG_STEP * (np.arange(len(f)) - len(f) // 2)
+    return (f.sum() - f @ np.cos(omega * x)) / omega**2
+
+
+def fitted() -> dict[tuple[bool, bool], np.ndarray]:
+    """The shoulder's filter by least squares, N m/rad, with and without dry friction and encoder."""
+    filters, effects = {}, JOINT_DAMPING.effects
     for dry, stepped in product((True, False), repeat=2):
         friction = effects.friction if dry else effects.friction[:1]  # viscous alone
         present = replace(effects, friction=friction, encoder=effects.encoder if stepped else ())
@@ -126,9 +137,8 @@ def surplus() -> dict[tuple[bool, bool], float]:
         windows, torque = cases(runs, _WIDTH)
         flat = windows.reshape(len(windows), -1)
         fit, *_ = np.linalg.lstsq(flat - flat.mean(0), torque[:, 0], rcond=None)
-        arm = JOINT_DAMPING.arm.mass_matrix(runs.q_true[:, runs.motion])[..., 0, 0].mean()
-        over[dry, stepped] = gains(fit[:_WIDTH])[2] - arm
-    return over
+        filters[dry, stepped] = fit[:_WIDTH]
+    return filters
 
 
 def _quoted() -> None:
@@ -192,9 +202,12 @@ def _said() -> None:
     stated("inertia-least-squares", near[-1])
     run = np.array(trial.matched(row)["other run"]["gains"])[:, 0, 0, 2]
     stated("inertia-run-on-line", np.abs(run / arm - 1).min() < 0.02)
-    over = surplus()
-    both_add = min(over[True, False], over[False, True]) > 0.2 and over[True, True] > 0.5
-    stated("inertia-surplus", both_add and abs(over[False, False]) < 0.1)
+    over = {k: np.array([inertia_at(f, hz) for hz in (0.2, SWING, 3.5)]) / arm - 1
+            for k, f in fitted().items()}  # fmt: skip
+    stated("inertia-right-at-swing", all(abs(each[1]) < 0.06 for each in over.values()))
+    impaired = [each for k, each in over.items() if any(k)]
+    stated("inertia-slow-too-much", all(each[0] > 0.04 and each[2] < -0.1 for each in impaired))
+    stated("inertia-level", np.abs(over[False, False]).max() < 0.03)
     each, whole = paths(), paths().sum(0)
     stated("inertia-paths-cancel", (np.abs(each).sum(0) > 2 * np.abs(whole))[1:].all())
     stated("inertia-row-faster", each[_carried(), 1] > 2 * whole[1])
