@@ -128,7 +128,7 @@ def inertia_at(f, frequency: float) -> float:
 
 
 def fitted() -> dict[tuple[bool, bool], np.ndarray]:
-    """The shoulder's filter by least squares, N m/rad, with and without dry friction and encoder."""
+    """The shoulder's filter by least squares, with and without dry friction and encoder."""
     filters, effects = {}, JOINT_DAMPING.effects
     for dry, stepped in product((True, False), repeat=2):
         friction = effects.friction if dry else effects.friction[:1]  # viscous alone
