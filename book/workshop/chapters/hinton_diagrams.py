@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 from math import factorial
 
 import numpy as np
 from matplotlib.gridspec import GridSpec, GridSpecFromSubplotSpec
 
 from ddlib import figures, paper
-from ddlib.analysis import classify, roughness, savitzky_golay
+from ddlib.analysis import classify, mean_gradient, roughness, savitzky_golay
 from ddlib.figures.weights import hinton_on
 from ddlib.learning import INITIAL, TrainingSet, Weights, cases, train_ensemble
 from ddlib.setups import JOINT_DAMPING, SETUPS, STATE_FEEDBACK, WINDOWS, split
@@ -91,25 +92,41 @@ def largest_weights() -> Table:
     return Table(("window, samples", "printed", *ours), rows)
 
 
-def _dots(width: int = 41) -> np.ndarray:
-    """How far the centre's weight is from its neighbours', over all paths: N m/rad.
+@cache
+def _gradients(width: int = 41) -> np.ndarray:
+    """How each joint's torque follows the samples of its own window, over all paths, N m/rad.
 
-    Of each network of the damped arm and each joint's own torque, ``(network, joint)``; in the mean
-    over the windows of the training runs.
+    Of each network of the damped arm, ``(network, joint, sample)``; in the mean over the windows
+    of the training runs.
     """
-    model = results.networks(width, JOINT_DAMPING.name)
     windows = cases(split(JOINT_DAMPING.record())[0], width)[0][::20]
-    centre, shift = width // 2, 1e-4
-    found = []
-    for joint in range(2):
-        slopes = []
-        for sample in (centre - 1, centre, centre + 1):
-            moved = windows.copy()
-            moved[:, joint, sample] += shift
-            change = model.torque(moved) - model.torque(windows)
-            slopes.append(change[..., joint].mean(-1) / shift)
-        found.append(slopes[1] - (slopes[0] + slopes[2]) / 2)
-    return np.stack(found, -1)
+    whole = mean_gradient(results.networks(width, JOINT_DAMPING.name), windows)
+    return np.stack([whole[:, joint, joint] for joint in range(2)], 1)
+
+
+def _dots() -> np.ndarray:
+    """How far the centre is from its neighbours in `_gradients`, ``(network, joint)``."""
+    at = _gradients()
+    centre = at.shape[-1] // 2
+    return at[..., centre] - (at[..., centre - 1] + at[..., centre + 1]) / 2
+
+
+def notch() -> figures.Illustration:
+    """The sum over all paths from each sample, with its notch at the centre."""
+    time = 1000 * LOG_STEP * (np.arange(41) - 20)
+
+    def draw(figure):
+        axes = figure.subplots(1, 2)
+        for joint, axis in enumerate(axes):
+            for one in _gradients()[:, joint]:
+                axis.plot(time, one, color=figures.COLOURS[0], lw=0.6, alpha=0.5)
+            median = np.median(_gradients()[:, joint], 0)
+            axis.plot(time[19:22], median[19:22], "o-", color=figures.COLOURS[1], ms=5, lw=1.5)
+            axis.set(title=figures.JOINTS[joint], xlabel="time from the window's centre, ms")
+        axes[0].set_ylabel("N m/rad")
+
+    alt = "Smooth curves that all have one sharp notch downwards, at the centre of the window."
+    return figures.illustrate(draw, alt, 7.0, 2.6, narrow_height=5.0)
 
 
 def _quoted() -> None:
