@@ -128,8 +128,6 @@ def errors_by_size() -> Illustration:
 
 def _quoted() -> None:
     """Put the book's numbers into the lesson."""
-    for width, error in zip(*_medians("test")):
-        quote(f"size-test-{width}", error)
     sizes, test = _medians("test")
     for width, error in order_medians().items():
         quote(f"size-order-{width}", error)
