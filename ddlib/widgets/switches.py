@@ -105,8 +105,8 @@ class RealArmSwitches(LiveWidget):
             ],
             code=_CODE,
             note=(
-                "Strengths are the shoulder's; the elbow's are 0.3 times as large. Friction is dry "
-                "friction and, at 1 rad/s, as much viscous friction."
+                "The strengths are the shoulder's; the elbow's are 0.3 times as large. Friction is "
+                "dry friction, plus as much viscous friction at 1 rad/s."
             ),
             **options,
         )

@@ -225,21 +225,26 @@ def _said() -> None:
 def check(number: int, mine, *given) -> None:
     """Judge an answer to one of the lesson's exercises, for the reader's own cases."""
     if number == 1:
-        slips = [(1 / np.sqrt(10), "that is what is left."), (0.9, "do deviations add up?")]
-        told, otherwise = (
-            "variances add up, deviations do not.",
-            "what of unrelated signals adds up?",
-        )
+        slips = [
+            (1 / np.sqrt(10), "that is the share that remains, not the share that cancels."),
+            (0.9, "deviations do not add up. What does?"),
+        ]
+        told, otherwise = "variances add up.", "what of unrelated signals adds up?"
         judge(mine, 1 - 1 / np.sqrt(10), told, slips, otherwise)
     elif number == 2:
         units, window = given
         right = "larger" if units > window else "smaller"
         told = f"{units:.3f} from the units alone, {window:.3f} from the window."
-        judge(mine, right, told, otherwise="ten numbers stand for a window.")
+        judge(
+            mine,
+            right,
+            told,
+            otherwise="how many numbers does a window have, and how many units are there?",
+        )
     else:
         errors_with, alone = given
         told = "less error than the window alone has, in training and in the test."
-        otherwise = "one of the two errors is not smaller. Try sizes ten times apart."
+        otherwise = "one of the two errors is not smaller. Try sizes that are ten times apart."
         judge(mine, lambda x: all(np.less(errors_with(x), alone)), told, otherwise=otherwise)
 
 

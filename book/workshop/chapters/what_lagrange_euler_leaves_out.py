@@ -222,13 +222,20 @@ def check(number: int, mine, arm=None, kp=None, other=None, extents=None) -> Non
         return np.abs(late_poles(joints, gain, answer[0], 1.2e-3)).max() >= 1
 
     if number == 1:
-        half = jump(1), "there it balances the friction, at full speed. How far does it swing on?"
-        judge(mine, jump(2), "it overshoots by as much as it was held back.", [half])
+        half = jump(1), "there the joint is at full speed. How far does it swing on?"
+        judge(mine, jump(2), "the joint overshoots by as much as it was held back.", [half])
     elif number == 2:
         ideal, half, whole = map(path, (0.0, 0.5, 1.0))
         share = rms(half - ideal, None) / rms(whole - ideal, None)
-        told = "How wide is the zone that is left?"
-        judge(mine, share, "what is left is a zone half as wide.", (), told, tolerance=0.1)
+        told = "how wide is the dead zone after the correction?"
+        judge(
+            mine,
+            share,
+            "the correction leaves a dead zone of half the width.",
+            (),
+            told,
+            tolerance=0.1,
+        )
     else:
         slips = [
             (lambda m: m[0] < 1.2e-3, "the arithmetic does not fit into the period."),

@@ -212,15 +212,15 @@ def check(number: int, mine, *given) -> None:
         b, d = given[0].b, given[0].d
         shared = (2 * d**2 + b**2 / 2) * np.pi**2 / 3
         right = b**2 * np.pi**4 / 18 / (shared + b**2 * np.pi**4 / 10)
-        slips = [(0.0, "it is true of the velocity. Average over that, and keep the angle."),
+        slips = [(0.0, "so it is for the velocity. Average over that, and keep the angle."),
                  (right * 1.8, "v₁⁴ has the mean π⁴/5, and (v₁²)'s mean is π²/3.")]  # fmt: skip
         judge(mine, right, "the angle alone is worth something, the velocity nothing.", slips)
     elif number == 2:
         turned, before = given
         grown = turned / before
         slips = [
-            (Between(1), "is the torque another one?"),
-            (Between(5e-324, 1), "why less?"),  # above 0
+            (Between(1), "does the torque change when you turn the arm?"),
+            (Between(5e-324, 1), "why should the error get smaller?"),  # above 0
         ]
         judge(mine, Between(grown / 2, 2 * grown), f"it grows {grown:.2f} times.", slips)
     else:

@@ -128,8 +128,6 @@ def errors_by_size() -> Illustration:
 
 def _quoted() -> None:
     """Put the book's numbers into the lesson."""
-    for width, error in zip(*_medians("test")):
-        quote(f"size-test-{width}", error)
     sizes, test = _medians("test")
     for width, error in order_medians().items():
         quote(f"size-order-{width}", error)
@@ -179,10 +177,10 @@ def check(number: int, mine, floor=None) -> None:
         judge(mine, 2**2.5, "times enter twice, the samples by their root.", slips)
     elif number == 2:
         told = "odd powers of s do not touch the middle curvature of a symmetric window."
-        otherwise = "which terms of the sums over s vanish, when s runs from -h to h?"
+        otherwise = "s runs from -h to h. Which sums over powers of s are zero?"
         judge(mine, 1.0, told, otherwise=otherwise, tolerance=1e-3)
     else:
         told = "this one is fine enough, and half a bit less is not."
-        otherwise = "either its floor is above 0.05, or half a bit less would do, too."
+        otherwise = "either its floor is above 0.05, or half a bit less is enough."
         right = fitting(lambda b: floor(b) <= 0.05 < floor(b - 0.5), np.arange(1.5, 40, 0.25))
         judge(mine, right, told, otherwise=otherwise)
