@@ -268,6 +268,7 @@ def _said() -> None:
     }
     stated("real-network-loses", bool(best["network"] > best["ridge"] > best["identified"]))
     stated("real-fewer-names", excess(21).replicates < 0)
+    stated("real-tuned-turns", alike["network"] < alike["linear filter"])
     found = swinging.findings()
     stated("two-equations-win", found["equations win"])
     stated("two-wiggles-cost", found["wiggles cost"])
