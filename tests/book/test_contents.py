@@ -22,6 +22,8 @@ def test_old_names_lead_to_pages_that_there_are():
     found = dd_moved.pages({"book/evidence/start", "book/whose-filters", "book/dynamics"})
     assert found["book/evidence-start"] == "book/evidence/start"
     assert set(found.values()) == {"book/evidence/start", "book/whose-filters"}
+    merged = dd_moved.pages({"book/real-arm", "book/evidence/real-two-link-arm"})
+    assert merged["book/real-two-link-arm"] == "book/real-arm"
 
 
 def test_sections_are_found_where_they_stand_now(tmp_path):

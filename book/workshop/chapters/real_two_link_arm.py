@@ -1,4 +1,4 @@
-"""The lesson *A real two-link arm*: its numbers, figures, tables, and checks."""
+"""The arm that swings in *Real arms*: its measures, numbers, figures and table."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ import numpy as np
 from scipy.stats import t as student
 
 from ddlib import figures, paper
-from ddlib.tables import Table, quote
-from workshop.chapters.exercises import judge
+from ddlib.tables import Table
 from workshop.report import results
-from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, bootstrap
 
 _NAMES = ("a", "b", "d", "g1", "g2", "r", "F_v1", "F_v2", "F_c1", "F_c2", "o1", "o2")
@@ -99,33 +97,24 @@ def elbow_moves() -> Measured:
     return Measured(value, text, bootstrap(least, *each))
 
 
-def _quoted() -> None:
-    """The numbers of the prose."""
+def numbers() -> dict[str, float]:
+    """The numbers of the lesson's prose."""
     short = [_gravity(design, "measured")[0, 0] for design in _designs()]
-    quote("two-short-least", 100 * min(short))
-    quote("two-short-most", 100 * max(short))
-    quote("two-off", inertia_off().value)
-    quote("two-moves", elbow_moves().value)
-    true = [_read(design, 41, "published")[1, 1, 2] for design in _designs()]
-    quote("two-moves-published", min(true[1:]) / true[0])
-    middle = [[np.median(_errors(d, m)) for m in ("network", "equations")] for d in _designs()]
-    network, equations = min(middle)
-    quote("two-network-least", network)
-    quote("two-equations-best", equations)
-    sets = [row["moments"][0][0][2] for row in _designs()["A0"]["predicted"]]
-    quote("two-sets-least", min(sets) / _read("A0", 41, "published")[0, 0, 2])
-    quote("two-sets-most", max(sets) / _read("A0", 41, "published")[0, 0, 2])
-    quote("two-solved-least", 100 * min(_solved("solved", 11)))
-    quote("two-solved-most", 100 * max(_solved("solved", 11)))
-    quote("two-known-least", 100 * min(_solved("solved, known", 11)))
-    quote("two-solver-off", 100 * max(abs(share - 1) for share in _solved("solved", 41)))
-    single = [x[:, 0, 0, 2] / true[0, 0, 2] for x, true in _each_solved("solved", 41)]
-    quote("two-single-off", 100 * max(abs(x - 1).max() for x in single))
-    longer = results.read("two-link-longer")
-    quote("two-apart", longer["apart"][1])
-    needed = [x["needed"][1][0] for x in longer["shaken"].values()]
-    quote("two-needs-least", min(needed))
-    quote("two-needs-most", max(needed))
+    tuned = {"linear": "linear filter", "network": "network", "equations": "equations"}
+    middle = {
+        f"{name}-{design}": np.median(_errors(design, model))
+        for name, model in tuned.items()
+        for design in _designs()
+    }
+    shoulder = _read("A0", 41, "published")[0, 0, 2]
+    sets = [row["moments"][0][0][2] / shoulder for row in _designs()["A0"]["predicted"]]
+    return {
+        "short-most": 100 * max(short),
+        "off": inertia_off().value,
+        "moves": elbow_moves().value,
+        "sets-least": min(sets),
+        "apart": results.read("two-link-longer")["apart"][1],
+    } | middle
 
 
 def _longer(width: str, of) -> list[float]:
@@ -135,43 +124,26 @@ def _longer(width: str, of) -> list[float]:
     return [of(np.array(x[width])[:, 0, 0, 2]) / true[design] for design, x in solved.items()]
 
 
-def _said() -> None:
-    """What stands behind words of the prose."""
-    ours = {m: [_errors(d, m) for d in _designs()] for m in ("network", "equations")}
-    won = [x < y for x, y in zip(ours["equations"], ours["network"])]
-    stated("two-equations-win", np.hstack(won).mean() > 0.95)
-    less = [np.mean(x < _errors(d, "linear filter")) for x, d in zip(ours["network"], _designs())]
-    stated("two-beats-linear", less[0] > 0.6 and less[2] > 0.6 and less[1] < 0.6)
+def findings() -> dict[str, bool]:
+    """Whether what the lesson says of this arm is so."""
+    won = [_errors(d, "equations") < _errors(d, "network") for d in _designs()]
     lost = [1 - _gravity(d, kind)[0, 0] for kind in ("measured", "wiggles") for d in _designs()]
-    stated("two-wiggles-cost", bool((np.array(lost[3:]) > 0.6 * np.array(lost[:3])).all()))
     fast = list(results.read("two-link-longer")["shaken"].values())
-    stated("two-not-rigid", min(x["needed"][1][0] / x["has"][1][0] for x in fast) > 7)
-    error = results.read("two-link-longer")["turns"].index(12)
-    stated("two-encoder", min(x["share"][error] for x in fast[:7]) > 0.2)
-    stated("two-apart-more", results.read("two-link-longer")["apart"][1] > 0.15)
     shorter, longer = _longer("41", np.min), _longer("81", np.max)
-    stated("two-longer-less", bool((np.array(longer) < shorter).all()))
     null = [
         max(np.abs(_nulls(d)[:, k, k, 2]).max() / _inertia()[d][:, k].min() for d in _designs())
         for k in (0, 1)
     ]
-    stated("two-beyond-nulls", null[0] < 1)
-    stated("two-elbow-nulls", null[1] > 1)
-    linear = [_read(d, 41, "linear")[0, 0, 2] / np.median(_inertia()[d][:, 0]) for d in _designs()]
-    stated("two-linear-blind", max(linear) < 0.25)
-    gains = [[np.median(_inertia(w)[d][:, 0]) for w in (11, 21, 41)] for d in _designs()]
-    stated("two-window-matters", bool((np.array(gains)[:, 0] < 0.3 * np.array(gains)[:, 2]).all()))
-
-
-def _each_solved(who: str, width: int) -> list[tuple]:
-    """Moments by the solver, and the published ones, of each design."""
-    return [(_read(d, width, who), _read(d, width, "published")) for d in _designs()]
-
-
-def _solved(who: str, width: int) -> list[float]:
-    """Shoulder's inertia over the published one, by the solver, of each design."""
-    pairs = _each_solved(who, width)
-    return [np.median(found[:, 0, 0, 2]) / true[0, 0, 2] for found, true in pairs]
+    gains = [[np.median(_inertia(w)[d][:, 0]) for w in (11, 41)] for d in _designs()]
+    return {
+        "equations win": bool(np.hstack(won).mean() > 0.95),
+        "wiggles cost": bool((np.array(lost[3:]) > 0.6 * np.array(lost[:3])).all()),
+        "not rigid": min(x["needed"][1][0] / x["has"][1][0] for x in fast) > 7,
+        "longer holds less": bool((np.array(longer) < shorter).all()),
+        "shoulder beyond nulls": bool(null[0] < 1),
+        "elbow like nulls": bool(null[1] > 1),
+        "window matters": bool(all(short < 0.3 * long for short, long in gains)),
+    }
 
 
 def _window_figure() -> figures.Illustration:
@@ -265,24 +237,3 @@ _SHOWN = {"window": _window_figure, "elbow": _elbow_figure, "errors": _errors_ta
 def show(name: str) -> figures.Illustration | Table:
     """A figure or table of the lesson or its evidence page."""
     return _SHOWN[name]()
-
-
-def check(number: int, mine, gravity=None) -> None:
-    """Judge an answer to an exercise of the lesson."""
-    if number == 1:
-        slips = [(0.25, "noise adds to the variance; it is not a share of the sum."),
-                 (3, "the other way round.")]  # fmt: skip
-        judge(mine, 1 / 3, "gravity shrinks with inertia.", slips, "Solve v / (v + n) = 0.75.")
-    elif number == 2:
-        right = gravity(5) / gravity(21)
-        otherwise = "which joint's motor adds less to what gravity does?"
-        judge(mine, right, "that close is no guess.", [], otherwise, 0.2)
-    else:
-
-        def near(pair):
-            off = [np.abs(gravity(*pair, design) - 1).max() for design in ("A0", "C0", "C1")]
-            return max(off) < 0.07
-
-        told = "derivatives may be short if the equations are averaged."
-        otherwise = "some design is more than 7 % off. Which window smooths what?"
-        judge(mine, near, told, [], otherwise)
