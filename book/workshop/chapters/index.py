@@ -192,10 +192,19 @@ def _area(axis):
 _PICTURES = {
     "dynamics": (_dynamics, "An arm in three poses; a part of its hand's path is thick."),
     "feedback": (_feedback, "A wanted angle, and the arm's, which swings around it."),
-    "feedforward": (_feedforward, "A torque that a model predicts, and the torque of the loop as a thin line."),
+    "feedforward": (
+        _feedforward,
+        "A torque that a model predicts; thin, the loop's torque.",
+    ),
     "trajectories-and-recording": (_recording, "Dots: both joints' angles, sample by sample."),
-    "backpropagation": (_unit, "The dots of a window, joined to one unit by thick and thin weights."),
-    "window-networks": (_network_at_work, "A window on a curve of an angle; below, a torque predicted so far."),
+    "backpropagation": (
+        _unit,
+        "A window's dots, joined to one unit by thick and thin weights.",
+    ),
+    "window-networks": (
+        _network_at_work,
+        "A window on an angle; below, a torque predicted so far.",
+    ),
     "hinton-diagrams": (_squares, "Ten rows of black and white squares; one row is framed."),
     "convolution-filters": (_folded, "The framed row as stems, with its line and its parabola."),
     "whose-filters": (_whose, "Two smooth rows, A and B, that look much alike."),
