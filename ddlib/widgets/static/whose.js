@@ -106,7 +106,7 @@ function build({ model, el }) {
     write(score, tried.length ? `${hits} of ${tried.length} right` : "no guess yet");
     const other = SIDES.find((letter) => letter !== right);
     const said = `${right} learnt this arm’s torques, ${other} ${rounds[k].told}.`;
-    const begin = mine === right ? "Right." : "No.";
+    const begin = mine === right ? "Right:" : "No:";
     write(verdict, mine === "-" ? "Which of the two learnt this arm’s torques?" : `${begin} ${said} ${rounds[k].remark}`);
   }
   const shown = make("div", { class: "galleries" }, ...galleries.map((one) => one.el));
