@@ -253,9 +253,9 @@ def _quoted() -> None:
     quote("index-inertia-arm", own)
     off = np.abs(resampled(inertia) / own - 1)
     stated("index-inertia-near", off < 0.25)
-    for width in (11, 41):
-        others = np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2]
-        stated(f"index-inertia-at-{width}", np.abs(resampled(others) / own - 1) > off)
+    others = [np.array(trial.row(width)["real"]["gains"])[:, 0, 0, 2] for width in (11, 41)]
+    nearest = np.min([np.abs(resampled(each) / own - 1) for each in others], 0)
+    stated("index-inertia-other-windows", nearest > off)
     rivals = results.read("tuned")["rivals"]
     network, known = (
         np.array(rivals[name]["errors"]["trajectory 6"])
