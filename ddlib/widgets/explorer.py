@@ -108,19 +108,19 @@ class FilterExplorer(_HintonWidget):
             ],
             title="Filter explorer",
             alt=(
-                "The weights from the shoulder's window to the shoulder torque as stems, their "
-                "constant, even and odd parts, the share of position, velocity, acceleration and "
-                "jerk in their energy, and their gain over frequency."
+                "The weights from the shoulder's window to the shoulder torque as stems. Their "
+                "constant, even and odd parts. The share of position, velocity, acceleration and "
+                "jerk in their energy. Their gain over frequency."
             ),
             depends={
                 "weights of all units": (*(size.name for size in sizes), "seed"),
                 **{end: [size.name for size in sizes] for end in ("first", "last")},
             },
             note=(
-                "Both axes of the gain are logarithmic: a derivative is a straight line. From 1 to "
-                "10 Hz the gain of an ideal velocity filter grows by a factor of 10, that of an "
-                "ideal acceleration filter by a factor of 100. The straight line drawn is that of "
-                "the filter's main derivative, as slow signals have it."
+                "Both axes of the gain are logarithmic, so a derivative is a straight line. The "
+                "line shows the filter's main derivative, as the filter takes it of slow signals. "
+                "From 1 to 10 Hz it rises by a factor of 10 for velocity, and by a factor of 100 "
+                "for acceleration."
             ),
             presets=_named(self._weights, members, bool(sizes)),
             presets_title="Named filters",

@@ -70,7 +70,7 @@ class FeedforwardSwitches(LiveWidget):
             lambda **setting: _kept(arm, **setting),
             [
                 Choice("model", "Model of the arm", _SWITCH, False, "switch"),
-                Parameter("masses", "Masses of the model", 0, 200, 100, "% of the right"),
+                Parameter("masses", "Masses of the model", 0, 200, 100, "% of the arm's"),
                 Choice("known", "The model knows friction", _SWITCH, False, "switch"),
                 Choice("feedback", "Feedback", _SWITCH, True, "switch"),
                 Choice("friction", "Friction in the joints", _SWITCH, True, "switch"),
@@ -79,7 +79,7 @@ class FeedforwardSwitches(LiveWidget):
             [
                 Panel(
                     "Shoulder error, °",
-                    {"shoulder alone": "feedback alone", "shoulder error": "as switched"},
+                    {"shoulder alone": "feedback alone", "shoulder error": "your setting"},
                     "time, s",
                     _TIMES,
                     y_fit=True,
@@ -93,17 +93,17 @@ class FeedforwardSwitches(LiveWidget):
                 ),
             ],
             examples=[{"model": True}, {"feedback": False}],
-            title="Figure 2-1 of the report, to be switched",
+            title="Switch Figure 2-1 of the report",
             alt=(
-                "Error and torque of the shoulder on a smooth motion under feedback alone: the "
+                "Error and torque of the shoulder on a smooth motion with feedback alone. The "
                 "error follows the motion, and all torque comes from feedback."
             ),
             scalars=[
                 *(Scalar(f"{j} RMS", f"{j.title()} error, RMS", "°", 3) for j in JOINTS),
-                Scalar("share", "Both joints, of feedback alone", "%", 1),
+                Scalar("share", "Error of both joints, over feedback alone", "%", 1),
             ],
             code=_CODE,
-            note="Arrows of the diagram are as thick as the shoulder's torque (root mean square).",
+            note="A thick arrow carries much of the shoulder's torque (root mean square).",
             **options,
         )
         loop = {

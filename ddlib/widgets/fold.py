@@ -60,7 +60,7 @@ class FilterFold(CurveWidget):
                           "°/s²", 2),
             ],
             [
-                Panel("What is left of the row", {"left": "weights"}, CENTRE, ms, kind="stems",
+                Panel("What remains of the row", {"left": "weights"}, CENTRE, ms, kind="stems",
                       **whole),
                 Panel("Parts, folded out", ["even", "odd", "constant"], CENTRE, ms,
                       **whole),
@@ -72,8 +72,8 @@ class FilterFold(CurveWidget):
             title="Fold a row of weights",
             alt=(
                 "The weights of one row as stems over the window, half folded out into a constant, "
-                "an even and an odd part; a joint at rest in the window, and bars of what each "
-                "part of the row answers to it."
+                "an even and an odd part. Below, a joint at rest in the window. Bars: how much "
+                "each part of the row adds to what the unit gets."
             ),
             depends={
                 **dict.fromkeys(("left", *_PARTS), ("row", "fold")),

@@ -32,9 +32,9 @@ _STEP = 0.1  # between two shades of the map, RMSS
 _SNAP = 0.035  # a drag that comes so near to a trajectory, as a part of the pad, ends on it
 
 _NOTE = (
-    "Recorded with the simulator, here without noise and quantisation of the sensors. RMSS: root "
-    "mean square error over the standard deviation of the training torques. The shades were "
-    f"computed beforehand, at {_AXIS.size} × {_AXIS.size} places."
+    "The simulator records each trajectory, here with perfect sensors. RMSS is the root mean "
+    "square error over the standard deviation of the training torques. The shades were computed "
+    f"beforehand, at {_AXIS.size} × {_AXIS.size} places."
 )
 
 _MOTION = """\
@@ -196,7 +196,7 @@ class TrajectoryPicker(LiveWidget):
         self._recorded_at = extents_deg  # first, as observers read the recording
         self.recording = recording
         angles = " and ".join(f"{x:.1f}°" for x in self.extents_deg)
-        self._say(f"Recorded {angles}: now in the widget's recording.")
+        self._say(f"Recorded {angles}. Read it from the widget's `recording`.")
         return recording
 
     def _from_parameters(self, _):

@@ -95,8 +95,8 @@ class RealArmSwitches(LiveWidget):
             title="Real-arm switches",
             alt=(
                 "Shoulder error and torque over trajectory 6, and the torque around the turn at "
-                "1.5 s, with friction and quantisation as assumed for the surrogate arm, over the "
-                "ideal arm's."
+                "1.5 s. The arm has friction and quantisation as assumed for the surrogate arm. "
+                "Beside its curves are those of an ideal arm."
             ),
             scalars=[
                 Scalar(f"{joint} {what}", f"{joint.title()} {what} deviation, RMS", unit, digits)
@@ -105,8 +105,8 @@ class RealArmSwitches(LiveWidget):
             ],
             code=_CODE,
             note=(
-                "The strengths are the shoulder's; the elbow's are 0.3 times as large. Friction is "
-                "dry friction, plus as much viscous friction at 1 rad/s."
+                "Strengths are those at the shoulder; at the elbow they are 0.3 times as large. "
+                "Friction has a dry and a viscous part, which are equal at 1 rad/s."
             ),
             **options,
         )

@@ -69,21 +69,21 @@ class _Question:
 
 
 _KINDS = (
-    "It settles, as far as one can see as before.",
+    "It settles as before.",
     "It swings through the whole motion.",
-    "The swing grows until the run is stopped.",
+    "The swing grows until the run stops.",
 )
 
 _QUESTIONS = (
     _Question(
-        "the springs are made twelve times as stiff (proportional gain 9000 N m/rad)",
+        "you make the springs twelve times as stiff (proportional gain 9000 N m/rad)",
         {"kp": 9000.0},
         ("It swings for a shorter time.", _KINDS[1], _KINDS[2]),
         2,
-        "Beyond a limit, stiffness feeds the swing. The page below finds out why.",
+        "Beyond a limit, a stiffer spring feeds the swing. The page below finds out why.",
     ),
     _Question(
-        "the springs are as stiff as that, and a damper of 60 N m s/rad is added",
+        "you keep these stiff springs and add a damper of 60 N m s/rad",
         {"kp": 9000.0, "kd": 60.0},
         _KINDS,
         0,
@@ -95,34 +95,34 @@ _QUESTIONS = (
         {"late": 5},
         _KINDS,
         2,
-        "A late spring pushes along the velocity. That is negative friction, and there is more of "
-        "it than of the joint's own.",
+        "A late spring pushes along the velocity, so it acts as negative friction. Here it is "
+        "stronger than the joint's own friction.",
     ),
     _Question(
-        "every torque comes 10 ms late, and a damper of 60 N m s/rad is added",
+        "every torque comes 10 ms late, and you add a damper of 60 N m s/rad",
         {"kd": 60.0, "late": 5},
         _KINDS,
         0,
-        "The damper leads by more than the delay lags: the phase margin pays for it.",
+        "The damper leads in phase by more than the delay lags. So some phase margin is left.",
         {"late": 5},
     ),
     _Question(
-        "a damper of 100 N m s/rad is added, and every torque comes 40 ms late",
+        "you add a damper of 100 N m s/rad, and every torque comes 40 ms late",
         {"kd": 100.0, "late": 20},
         _KINDS,
         2,
-        "A stronger damper has its crossover at a higher frequency, where the same delay is a "
-        "larger angle.",
+        "With a stronger damper the crossover lies at a higher frequency. There the same delay "
+        "costs a larger angle.",
     ),
     _Question(
-        "an integral gain of 3000 N m/(rad s) is added",
+        "you add an integral gain of 3000 N m/(rad s)",
         {"ki": 3000.0},
         ("The integral ends the swing.", "The swing goes on as it was.", _KINDS[2]),
         2,
-        "An integral answers to errors that have been: it pushes late, and so along the swing.",
+        "An integral adds up past errors. So it pushes late, and a late push feeds the swing.",
     ),
     _Question(
-        "a damper of 60 N m s/rad is made twice as strong",
+        "you make a damper of 60 N m s/rad twice as strong",
         {"kd": 120.0},
         (
             "The first torque stays as it is.",
@@ -130,11 +130,11 @@ _QUESTIONS = (
             "The first torque is halved.",
         ),
         1,
-        "The reference begins with a jump of its velocity, and only the damper looks at velocity.",
+        "The reference begins with a jump of its velocity, and only the damper reacts to velocity.",
         {"kd": 60.0},
     ),
     _Question(
-        "feedforward is added to a damper of 60 N m s/rad",
+        "you add feedforward to a damper of 60 N m s/rad",
         {"kd": 60.0, "feedforward": True},
         (
             "All errors shrink.",
@@ -142,8 +142,8 @@ _QUESTIONS = (
             "The errors stay, the torques change.",
         ),
         1,
-        "The model knows which torque the wanted acceleration needs. It knows nothing of the jump "
-        "at the start, nor of friction.",
+        "The model knows which torque the wanted acceleration needs. But it knows neither the jump "
+        "at the start nor friction.",
         {"kd": 60.0},
     ),
 )
@@ -208,7 +208,7 @@ class PIDTuner(LiveWidget):
                 Scalar("crossover", "Shoulder crossover", "rad/s", 1),
             ],
             code=_CODE,
-            note="The sliders set the shoulder's gains; the elbow's follow in fixed ratio.",
+            note="The sliders set the shoulder's gains. The elbow's follow in a fixed ratio.",
             **options,
         )
         effects = Effects(friction=(ViscousFriction(_VISCOUS),))

@@ -98,7 +98,7 @@ def test_scripts_that_fail_are_told_and_two_views_share_a_model(tmp_path, visit,
 
 # A kernel that answers, one that does not, and one that goes and comes back
 
-SILENCE = "The kernel does not answer: showing baked values."
+SILENCE = "The kernel does not answer, so you see values that were computed beforehand."
 
 
 @pytest.fixture

@@ -214,28 +214,31 @@ def check(number: int, mine, *given) -> None:
             return lambda mine: np.allclose([mine(a) for a in alpha], f(alpha))
 
         slips = [
-            (bound(lambda a: 2 + 0 * a), "that is the bound without momentum."),
-            (bound(lambda a: 1 / (1 - a)), "that is how far repeated steps add up."),
+            (bound(lambda a: 2 + 0 * a), "this is the bound without momentum."),
+            (
+                bound(lambda a: 1 / (1 - a)),
+                "this is how far equal steps add up.",
+            ),
             (bound(lambda a: 2 * (1 - a)), "momentum allows larger steps, not smaller."),
         ]
-        told = "there a root leaves the unit circle, at −1."
-        hint = "Give a function of alpha. For which r does the first root reach size 1?"
+        told = "at this step size a root leaves the unit circle, at −1."
+        hint = "give a function of alpha. For which r does the first root reach size 1?"
         judge(mine, bound(lambda a: 2 * (1 + a)), told, slips, hint)
     elif number == 2:
         misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
         best = min(misses, key=misses.get)
         slips = [
-            (Between(5e-324, best), "so small a change drowns in rounding."),  # above 0
-            (Between(best), "so large a change meets the curvature."),
+            (Between(5e-324, best), "such a small change drowns in rounding."),  # above 0
+            (Between(best), "with such a large change the curvature spoils the slope."),
         ]
         told = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
         judge(mine, Between(best / 11, 11 * best), told, slips)
     else:
         descend, x, d, level = given
         end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])
-        slips = [(lambda mine: end(mine) > 1, "off course, the steps are too large.")]
-        hint = f"the training RMSS has to fall below {level / 2:.2f} in 1,000 epochs."
-        told = "what momentum adds up, patience need not."
+        slips = [(lambda mine: end(mine) > 1, "the descent went astray: the steps are too large.")]
+        hint = f"the training RMSS must fall below {level / 2:.2f} within 1,000 epochs."
+        told = "with momentum many small steps add up, so you need less patience."
         judge(mine, lambda mine: end(mine) < level / 2, told, slips, hint)
 
 

@@ -161,16 +161,16 @@ def check(number: int, mine, window: int) -> None:
     """Judge an answer to an exercise, of a window of so many samples."""
     k = np.arange(window) - window // 2.0
     if number == 1:
-        slips = [(1.0, "that holds in a window of three. In this one the line runs on."),
-                 (4 / (k @ k), "divide by the energy of the difference, too.")]  # fmt: skip
+        slips = [(1.0, "this holds for a window of three. In a longer window the line runs on."),
+                 (4 / (k @ k), "divide by the energy of the difference as well.")]  # fmt: skip
         judge(mine, 2 / (k @ k), "it measures velocity, but from two samples only.", slips,
               "divide the energy along the line by that of the whole filter.")  # fmt: skip
     elif number == 2:
         early = (k - 3) ** 2
         share = shares(early - early.mean())[2]
         judge(mine, Between(share - 0.1, share + 0.1),
-              f"{share:.2f} of its energy is left to acceleration, the rest is velocity.",
-              otherwise="too far off: expand (k - 3)² and compare the parts.")  # fmt: skip
+              f"{share:.2f} of its energy goes to acceleration, and the rest to velocity.",
+              otherwise="this is too far off. Expand (k - 3)² and compare the parts.")  # fmt: skip
     elif number == 3:
         powers = np.stack([k**n / np.linalg.norm(k**n) for n in range(4)])
 
@@ -179,12 +179,12 @@ def check(number: int, mine, window: int) -> None:
             return np.abs(powers @ f) / np.linalg.norm(f) > 1e-6
 
         judge(mine, lambda f: hears(f).tolist() == [False] * 3 + [True],
-              "position, velocity and acceleration come to nothing, and jerk does not.",
-              [(lambda f: np.shape(f) != k.shape, f"it needs {k.size} numbers."),
+              "your filter answers to jerk, and to nothing of lower order.",
+              [(lambda f: np.shape(f) != k.shape, f"your filter needs {k.size} numbers."),
                (lambda f: hears(f).tolist() == [False, True, False, True],
-                "a cubic contains a line, so it answers to velocity, too."),
-               (lambda f: not hears(f)[3], "it does not answer to jerk.")],
-              "take its sum with 1, k and k²: all three must be zero.")  # fmt: skip
+                "a cubic contains a line, so your filter also answers to velocity."),
+               (lambda f: not hears(f)[3], "your filter does not answer to jerk.")],
+              "its sums with 1, k and k² must all be zero.")  # fmt: skip
 
 
 def against_nulls(

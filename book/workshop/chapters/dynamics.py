@@ -71,22 +71,34 @@ def check(number: int, mine, M=None) -> None:
     """Judge an answer to an exercise; the first needs the lesson's mass matrix `M`."""
     if number == 1:
         lag = M(np.zeros(2))[1, 0] / M(np.zeros(2))[1, 1]
-        slips = (lag, "which way?"), (-1.0, "then the forearm would not turn. Does it?")
-        told = "the forearm even turns backwards."
-        judge(mine, -lag, told, slips, "What must the second row of the equation be?")
+        slips = (
+            (lag, "the sign. Which way does the forearm turn?"),
+            (-1.0, "then the forearm would keep its direction. Does it?"),
+        )
+        told = "seen from above, the forearm even turns backwards."
+        judge(
+            mine,
+            -lag,
+            told,
+            slips,
+            "the elbow's torque is zero. What follows from the second row?",
+        )
     elif number == 2:
-        told, unseen = "both torques stay what they are.", MultipleOf((-2.0, 1.0, -1.0))
-        judge(mine, unseen, told, otherwise="Write both torques with the elbow straight.")
+        told, unseen = "this change leaves both torques as they are.", MultipleOf((-2.0, 1.0, -1.0))
+        judge(mine, unseen, told, otherwise="write down both torques with the elbow straight.")
     else:
         size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
         slips = (
-            (lambda x: np.min(x) < 0 or np.max(x) > 45, "extents are between 0 and 45°."),
-            (lambda x: np.isinf(size(x)), "some combination of the three leaves no trace."),
-            (lambda x: size(x) >= 7, "the condition number is not below 7 yet."),
+            (lambda x: np.min(x) < 0 or np.max(x) > 45, "extents must lie between 0 and 45°."),
+            (
+                lambda x: np.isinf(size(x)),
+                "some combination of the three parameters leaves no trace.",
+            ),
+            (lambda x: size(x) >= 7, "the condition number must be below 7, and yours is not yet."),
         )
         right = lambda x: np.min(x) >= 0 and np.max(x) <= 45 and size(x) < 7  # noqa: E731
-        otherwise = "Give two pairs of extents."
-        judge(mine, right, "more data are not always better data.", slips, otherwise)
+        otherwise = "give two pairs of extents."
+        judge(mine, right, "a few well-chosen motions can do better than many.", slips, otherwise)
 
 
 def operations(

@@ -142,8 +142,8 @@ class Waiting:
 
     WORDS = "Put your answer in place of the dots, and run this cell again."
     RUN = (
-        "Only a run can judge this answer: give it in your own copy of the notebook (the arrow "
-        "above the page)."
+        "This answer has to be run before it can be judged. Download your own copy of the notebook "
+        "(the arrow above the page), and answer there."
     )
 
     def __init__(self, cases, otherwise: str, tolerance: float):
@@ -180,7 +180,10 @@ class Waiting:
         kept = ""
         if data:
             packed = base64.b64encode(json.dumps(data).encode()).decode()
-            kept, told = f' data-judge="{packed}"', "The answer is judged here, with a script."
+            kept, told = (
+                f' data-judge="{packed}"',
+                "Switch on scripts, and this page judges your answer.",
+            )
         return (
             f'<div class="exercise-answer"{kept}><span class="lab">{self.WORDS}</span>'
             f'<span class="page" style="display:none">{told}</span></div>'

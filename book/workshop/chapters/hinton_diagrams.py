@@ -32,10 +32,10 @@ def _trained(members: int, initial: float = INITIAL) -> tuple[Weights, Weights]:
 
 
 NOTE = (
-    "Every grey blob is a unit: the two torques on top, the hidden units below. Its upper row "
-    "weights the positions of the shoulder, its lower row those of the elbow; time runs to the "
-    "right. Above the rows are its weights to or from other units, and at the left its bias. Press "
-    "a row, or move to the diagram and use the arrow keys."
+    "Press a row, or move to the diagram and use the arrow keys. Each grey blob is a unit: the two "
+    "torques are on top, the hidden units below. The upper row of a blob weights the positions of "
+    "the shoulder, and the lower row those of the elbow. Time runs to the right. Above the rows "
+    "are the weights to or from other units, and at the left is the bias."
 )
 """What the widget on top of the lesson says of itself."""
 
@@ -176,8 +176,11 @@ def check(number: int, mine, given) -> None:
     """Judge an answer, `given` the hidden units, the window or the kept weights."""
     if number == 1:
         orders, turns = factorial(given), 2**given
-        slips = (orders, "each unit can also be turned."), (turns, "units also change places.")
-        judge(mine, orders * turns, "all orders, and each unit either way round.", slips)
+        slips = (
+            (orders, "each unit can also change its sign."),
+            (turns, "units can also change places."),
+        )
+        judge(mine, orders * turns, "all orders of the units, times both signs of each.", slips)
     elif number == 2:
         s = LOG_STEP * (np.arange(given) - given // 2)
         most = 2 / 3 * np.abs(savitzky_golay(given, 2, LOG_STEP, degree=2)).max()
@@ -187,19 +190,25 @@ def check(number: int, mine, given) -> None:
 
         slips = (
             (lambda f: np.shape(f) != s.shape, f"it must have {given} weights."),
-            (lambda f: not moments(f), "take its sum with 1, s and s²/2: 0, 0 and 1 are wanted."),
+            (lambda f: not moments(f), "its sums with 1, s and s²/2 must be 0, 0 and 1."),
         )
 
         def fits(f):
             return moments(f) and max(abs(f)) <= most
 
-        judge(mine, fits, "in blocks weights are smallest.", slips, "a weight is too large.")
+        judge(
+            mine,
+            fits,
+            "blocks of equal weights keep all small.",
+            slips,
+            "a weight is too large.",
+        )
     else:
         rough = {e: np.median(roughness(w.direct_weights)) for e, w in sorted(given.items())}
         tenth = next((e for e, value in rough.items() if value < 0.1 * rough[0]), np.inf)
-        early = Between(-np.inf, tenth), "too early. How large is the start?"
-        told = f"here it is epoch {tenth:,}."
-        judge(mine, Between(tenth / 2, 2 * tenth), told, [early], "too late.")
+        early = Between(-np.inf, tenth), "this is too early. How large is the start?"
+        told = f"in your network it happened by epoch {tenth:,}."
+        judge(mine, Between(tenth / 2, 2 * tenth), told, [early], "this is too late.")
 
 
 def adjacency(width: int = 11, epochs: int = 100) -> Measured:

@@ -219,17 +219,20 @@ def check(number: int, mine, *given) -> None:
     if number == 1:
         K, M, omega = given
         slips = (
-            (M, "that would be so without stiffness."),
+            (M, "this would be right without stiffness."),
             (
                 M + K / omega**2,
-                "mind the sign: a sine's position is against its acceleration.",
+                "mind the sign: along a sine, acceleration has the opposite sign of position.",
             ),
         )
-        judge(mine, M - K / omega**2, "stiffness lies in inertia's way, most on slow motions.",
+        judge(mine, M - K / omega**2, "stiffness hides inertia, and most of it on slow motions.",
               slips, "put q = sin(ωt) into K q + M q̈ and divide by q̈.")  # fmt: skip
     elif number == 2:
-        slips = ((1 / 3, "at λ½ itself a half is left, not all."), (0.5, "that is at λ½."))
-        judge(mine, 0.25, "and three quarters are hidden behind position.", slips,
+        slips = (
+            (1 / 3, "at λ½ itself half of the inertia is left, not all of it."),
+            (0.5, "this is the share at λ½."),
+        )
+        judge(mine, 0.25, "the other three quarters hide behind position.", slips,
               "put λ = 3 λ½ into the formula of the remaining share.")  # fmt: skip
     else:
         (x,) = given
@@ -240,6 +243,6 @@ def check(number: int, mine, *given) -> None:
             return np.allclose(moments @ np.asarray(g, float), [0, 3, 2], atol=1e-3)
 
         judge(mine, lambda g: fits(g) and np.sum(np.square(g)) < 1.001 * least @ least,
-              "three moments, and no energy to spare.",
-              [(fits, "the moments are right, but a filter of less energy has them, too.")],
-              f"it needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip
+              "your filter has the three moments with the least energy.",
+              [(fits, "the moments are right, but a filter of less energy has them as well.")],
+              f"your filter needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip

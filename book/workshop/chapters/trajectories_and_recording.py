@@ -185,22 +185,25 @@ def check(number: int, mine, motion=None) -> None:
         return np.corrcoef(q[moving], qdd[moving])[0, 1] ** 2, np.abs(qd).max()
 
     if number == 1:
-        slip = 4.0, "at twice the frequency, yes. And how large is the wave of a squared sine?"
-        judge(mine, 2.0, "twice as large, but no jump of velocity.", [slip])
+        slip = (
+            4.0,
+            "that is twice the frequency. But how large is the wave of a squared sine?",
+        )
+        judge(mine, 2.0, "it is twice as large, and in return the velocity does not jump.", [slip])
     elif number == 2:
         draws = random_extents(12_000, seed=3).reshape(2000, 6, 2)
         outside = np.mean([Delaunay(d[:5]).find_simplex(d[5]) < 0 for d in draws])
-        hint = "draw some, and count."
-        judge(mine, outside, "more often than not.", (), hint, tolerance=0.1)
+        hint = "pick many sets of six pairs at random, and count."
+        judge(mine, outside, "the test lies outside more often than not.", (), hint, tolerance=0.1)
     else:
         known, fastest = told, 1.2 * told(0.0)[1] * (1 + 1e-9)  # 20 % is still right
         slow = fitting(lambda x: known(x)[1] <= fastest, shares := np.arange(-500, 501) / 500)
         right = fitting(lambda x: known(x)[0] < 0.1 and known(x)[1] <= fastest, shares)
         slips = [
-            (slow, "position still tells too much of the acceleration."),
-            (Between(-np.inf), "the arm would have to be too fast."),
+            (slow, "you could still predict too much of the acceleration from the position."),
+            (Between(-np.inf), "the arm would have to move too fast."),
         ]
-        judge(mine, right, "told apart.", slips)
+        judge(mine, right, "now the recording tells position and acceleration apart.", slips)
 
 
 # --- what the claims of the chapter measure

@@ -241,8 +241,8 @@ def check(number: int, mine, given) -> None:
     """Judge an answer: `given` the seconds of a motion, or step times variance by direction."""
     if number == 1:
         slips = (
-            (given, "half a period turns the torque's sign, and nothing else."),
-            (2 * given, "after a whole period it is the old torque again."),
+            (given, "a shift of half a period only changes the torque's sign."),
+            (2 * given, "a shift of a whole period gives the old torque again."),
             (given / 4, "out and back is only half a period of the sine."),
         )
         judge(mine, given / 2, "then the arm's acceleration filter would become a velocity filter.",
@@ -250,13 +250,13 @@ def check(number: int, mine, given) -> None:
     elif number == 2:
         half = np.log(0.5) / np.log1p(-given[4])
         slips = (
-            (1 / given[4], "then 37 % are left."),
-            (-np.log(0.5) / given[2], "that is velocity."),
+            (1 / given[4], "after so many steps 37 % of the error are left, not half."),
+            (-np.log(0.5) / given[2], "this is the number for velocity."),
         )
-        judge(mine, half, "so many steps for acceleration.", slips)
+        judge(mine, half, "so many steps bring acceleration half-way.", slips)
     else:
-        slips = ((100, "the arm's network counts as one of the draws, too."),
-                 (given, "that is one in twenty."))  # fmt: skip
-        judge(mine, 99, "one of a hundred, if the arm's network counts as a draw, too.", slips,
-              "count the draws that are as far out, and the arm's own among them.",
+        slips = ((100, "count the arm's own network among them, too."),
+                 (given, "this gives one in twenty."))  # fmt: skip
+        judge(mine, 99, "with the arm's own network there are a hundred, and it is one.", slips,
+              "how many are as far out as the arm's network, itself included?",
               tolerance=1e-6)  # fmt: skip

@@ -251,28 +251,34 @@ def check(number: int, mine, *given) -> None:
         direct, biases = 4 * window, hidden + 2
         right = hidden * (2 * window + 2) + direct
         slips = (
-            (right + biases, "biases were not asked for."),
-            (right - direct, "inputs reach the outputs on a second way, too."),
+            (right + biases, "you counted the biases, too. Leave them out."),
+            (right - direct, "the inputs also lead straight to the outputs."),
             (right - hidden * window - direct // 2, "each joint has a window of its own."),
         )
-        judge(mine, right, "inputs to hidden, hidden to outputs, inputs to outputs.", slips,
-              "Count each of the three bundles of the figure, dots included.", 1e-9)  # fmt: skip
+        judge(mine, right, "inputs to hidden units, these to outputs, inputs to outputs.", slips,
+              "count each of the three bundles of the figure, dots included.", 1e-9)  # fmt: skip
     elif number == 2:
         (left,) = given
         most = paper.TABLE_4_1[21].test
         small = [w for w in range(1, 50, 2) if 2 * (2 * w + 1) < 50]
         right = OneOf(*(w for w in small if left(w) < most))
         slips = (
-            (OneOf(*small), "it is small enough, but too much is left."),
-            (Between(-np.inf), "that is even, or too many weights."),
+            (OneOf(*small), "this window is small enough, but its error is too large."),
+            (Between(-np.inf), "the window must be odd, and its weights must be fewer."),
         )
-        judge(mine, right, "it can only add.", slips, tolerance=1e-9)
+        judge(
+            mine,
+            right,
+            "no hidden unit, and the error is below 0.10.",
+            slips,
+            tolerance=1e-9,
+        )
     else:
         factor = given[0] / given[1]
-        told = f"the error is {factor:.0f} times as large, about that of a guess of the mean."
+        told = f"the error is {factor:.0f} times as large, about as for a guess of the mean."
         word = "larger" if factor > 2 else "smaller" if factor < 0.5 else "alike"
         judge(mine, word, told,
-              otherwise="Along which of the two paths did the measured torque drive?")  # fmt: skip
+              otherwise="along which of the two paths did this torque drive the arm?")  # fmt: skip
 
 
 def intervals(

@@ -27,12 +27,11 @@ _TALL = 0.9  # largest stem of a starting point, of the height there is
 _GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 
 _HINT = (
-    "Drag the dots, or sweep across them in one stroke that begins anywhere (by touch beside the "
-    "dots: sideways); by keyboard the arrow keys go from stem to stem and move it, with Shift "
-    "faster. Only the shape counts: the page multiplies the output by the factor and adds the "
-    "constant that fit best, as the weight and the bias behind a unit would; a noisy output gets "
-    "a small factor. Error: root mean square over the standard deviation of the true "
-    "acceleration. An error of 1 is that of always guessing the mean."
+    "Drag the dots, or sweep across them in one stroke. By touch, begin beside the dots and sweep "
+    "sideways. By keyboard, the arrow keys choose a stem and move it, with Shift faster. Only the "
+    "shape counts, because the page finds the factor and the constant that fit best, as the weight "
+    "and the bias behind a unit would. The error is the root mean square error over the standard "
+    "deviation of the true acceleration: 1 is as bad as always guessing the mean."
 )
 
 
@@ -197,7 +196,7 @@ def _still(time, truth, setup) -> tuple[str, str]:
         ),
     ]  # fmt: skip
     alt = (
-        "A window of 21 weights as stems; its output over the true acceleration of the shoulder "
-        "along trajectory 6; its gain over frequency beside that of an ideal second derivative."
+        "A window of 21 weights as stems. Its output over the true acceleration of the shoulder "
+        "along trajectory 6. Its gain over frequency beside that of an ideal second derivative."
     )
     return still_picture(curves, panels, {}, None, alt), alt

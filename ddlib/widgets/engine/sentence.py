@@ -88,9 +88,9 @@ class TorqueSentence(_LiveSentence):
         data = {"kind": "torque", "arm": plant(CMU_DD_ARM_II, IDEAL)["arm"]}
         super().__init__(
             [
-                "With the elbow bent by ", "{elbow}", ", the shoulder turning at ", "{first}",
-                " and the elbow at ", "{second}", ", neither of them speeding up, the shoulder's "
-                "motor must give ", "<shoulder>", " and the elbow's ", "<forearm>", ".",
+                "Bend the elbow by ", "{elbow}", ". Let the shoulder turn at ", "{first}",
+                " and the elbow at ", "{second}", ", both at constant speed. Then the shoulder's "
+                "motor must give ", "<shoulder>", " and the elbow's motor ", "<forearm>", ".",
             ],
             [
                 Parameter("elbow", "Elbow angle", -180, 180, 90, "°"),
@@ -123,9 +123,9 @@ class LoopSentence(_LiveSentence):
     def __init__(self):
         super().__init__(
             [
-                "With a computer that reads the arm every ", "{period}", ", a spring of ", "{kp}",
-                ", a damper of ", "{kd}", " and, in the joint itself, ", "{friction}",
-                " of friction, the loop is ", "<verdict>", ".",
+                "A computer reads the arm every ", "{period}", ". It acts as a spring of ", "{kp}",
+                " and a damper of ", "{kd}", ". The joint itself has a friction of ", "{friction}",
+                ". Then the loop is ", "<verdict>", ".",
             ],
             [
                 Parameter("period", "Control period", 0.5, 40, 1e3 * CONTROL_STEP, "ms"),

@@ -25,9 +25,8 @@ _TOSS_SECONDS = 0.4  # and for how long
 _PARTS = "constant", "line", "parabola"
 
 _HINT = (
-    "Grab the hand and throw it, or focus it and hold an arrow key. Friction slows the arm; under "
-    "Play a controller drives it along the paper's trajectories. The network never sees the "
-    "torque: from each window of positions it tells the torque at the window's centre."
+    "By keyboard, move the focus to the hand and hold an arrow key. The network predicts the "
+    "torque at the centre of each window."
 )
 
 
@@ -67,7 +66,7 @@ class ThrownArm(_PageWidget):
         span = np.maximum(-model.outputs.low, model.outputs.high)
         still, alt = _still(model, setup)
         spec = {
-            "title": "Throw the arm: a network tells its torque",
+            "title": "Throw the arm: a network predicts its torque",
             "hint": _HINT,
             "code": code,
             "plant": plant(setup.arm, setup.effects),
@@ -155,7 +154,7 @@ def _still(model: TorqueModel, setup: Setup) -> tuple[str, str]:
     joint = JOINTS[unit["joint"]]
     alt = (
         f"The arm along trajectory {TEST_TRAJECTORY}, its joint angles over three seconds and, for "
-        "shoulder and elbow, the true torque and the torque that a network tells from windows of "
+        "shoulder and elbow, the true torque and what a network predicts from windows of "
         f"these angles. Below, the weights of one hidden unit for the {joint}, and their three "
         f"parts: a constant, a line with {part[1]} and a parabola with {part[2]} of their energy."
     )

@@ -37,14 +37,13 @@ _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
 _ERRORS = (0.03, 2.0)  # range of the errors shown
 
 _HINT = (
-    "A network with {hidden} hidden units learns the torques of both joints from windows of "
-    "{width} positions, by the descent of this chapter, in your browser. For speed it sees every "
-    "fifth window of the training runs; its error on trajectory {last} is over all. Other "
-    "trajectories are recorded here, too, with the same controller, friction and encoder; the "
-    "torque sensor repeats its noise. The inertia is the gain on acceleration of the mean "
-    "gradient of the shoulder's torque, over the training windows; the arm's is their mean M₁₁. "
-    "Shifted torques have nothing to do with the motion. A filter's name follows the rule of the "
-    "chapter on convolution filters."
+    "Your browser trains a network with {hidden} hidden units on windows of {width} positions, by "
+    "plain descent. To be fast, it trains on every fifth window; the error on trajectory {last} "
+    "counts all windows. If you change the trajectories, the page records them with the same "
+    "controller, friction, encoder and torque noise. Shifted torques do not belong to the motion. "
+    "The inertia comes from the mean gradient of the shoulder's torque, and the arm's own is the "
+    "mean of M₁₁ over the training windows. The names of filters follow the rule of the lesson "
+    "Convolution filters."
 )
 
 

@@ -316,9 +316,9 @@ function build({ model, el }) {
         : [],
     );
     write(number, plain(own.error));
-    write(times, `${far(own.error)} times the least that 21 stems can have here`);
+    write(times, `${far(own.error)} times the smallest that 21 weights can reach here`);
     const so = Number.isFinite(best) ? ` Your best so far: ${plain(best)}.` : "";
-    const others = `The same motion read with ${own.others.length} other zeros of the encoder: ${range(own.others)}.`;
+    const others = `With ${own.others.length} other zeros of the encoder the error is ${range(own.others)}.`;
     write(elsewhere, `${others}${so}`);
     fill.style.width = `${short((100 * Math.log(own.error)) / Math.log(least))}%`;
     starts.forEach((one, k) => one.setAttribute("aria-pressed", spec.starts[k][0] === start));
@@ -349,7 +349,7 @@ function build({ model, el }) {
     const textbook = spec.starts.slice(0, 4).map(([name, f]) => ({ name, ...scores(f) }));
     const rows = [{ name: "Yours", ...own }, ...textbook, ...rivals];
     const texts = rows.sort((a, b) => a.error - b.error).map((row) => [row.name, plain(row.error), range(row.others)]);
-    table.replaceChildren(tableOf("Errors, least first", ["weights", "here", "with other zeros"], texts));
+    table.replaceChildren(tableOf("Errors, smallest first", ["weights", "here", "with other encoder zeros"], texts));
   }
 
   begin(spec.starts[0][0]);

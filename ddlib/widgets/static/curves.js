@@ -121,7 +121,7 @@ function build({ model, el }) {
   let again = false;
   view.silence = (silent) => {
     note.hidden = !silent;
-    note.textContent = silent ? "The kernel does not answer: showing baked values." : "";
+    note.textContent = silent ? "The kernel does not answer, so you see values that were computed beforehand." : "";
   };
   function ask() {
     if (model.kernelless) return;
@@ -222,18 +222,18 @@ function codeOf(spec, values) {
 }
 
 function footerText(model, spec) {
-  if (spec.live) return "Computed in this page while you move things.";
+  if (spec.live) return "This page computes while you move things.";
   const percent = Number((100 * spec.error).toPrecision(2)) || "below 0.001";
   const points = spec.parameters.map((p) => p.grid).join(" × ");
   const measured = `at most ${percent} % of a curve's range, at ${spec.checks} random settings`;
   if (spec.parameters.every((p) => p.options)) {
     return model.kernelless
       ? `Computed for all ${points} settings when the page was built.`
-      : "Exact values from the kernel; until they come, those computed before.";
+      : "The kernel sends exact values. Until they come, you see values computed beforehand.";
   }
   return model.kernelless
     ? `Interpolated between ${points} settings computed when the page was built. Error: ${measured}.`
-    : `Exact values from the kernel; until they come, interpolated ones. Their error: ${measured}.`;
+    : `The kernel sends exact values. Until they come, you see interpolated ones. Their error: ${measured}.`;
 }
 
 const render = safely(build);

@@ -141,7 +141,7 @@ function picksOf({ extents: known, home, most, runs }, changed) {
   const heads = extents.map((_, run) => (run < runs - 1 ? String(run + 1) : "test"));
   const rows = NAMES.map((name, j) => make("tr", {}, make("th", { scope: "row" }, `${name}, °`), ...cells("td", fields.map((pair) => pair[j]))));
   const table = make("table", {}, make("thead", {}, make("tr", {}, make("td", {}), ...cells("th", heads))), make("tbody", {}, ...rows));
-  const title = make("div", { class: "title" }, `${runs - 1} trajectories to learn from, and one more to be tested on: how far each joint goes`);
+  const title = make("div", { class: "title" }, `How far each joint goes: ${runs - 1} trajectories to learn from, and one to test`);
   const alike = buttonOf(`1 to ${runs - 1} alike`, () => set(extents.flatMap((pair, run) => (run < runs - 1 ? extents[0] : pair))));
   const back = buttonOf(home, () => set(known.flat()));
   const fit = () => JOINTS.every((j) => extents.slice(0, -1).some((pair) => pair[j] >= 1));

@@ -3,7 +3,7 @@
 
 extras.push((view) => {
   const verdict = make("p", { class: "verdict" });
-  const words = () => `By the rule: ${view.model.get("classes")[Math.round(view.curves.class[0])]}`;
+  const words = () => `Name by the rule: ${view.model.get("classes")[Math.round(view.curves.class[0])]}`;
   const presets = view.controls.querySelector(".presets") ?? "";
   view.top.append(make("div", { class: "beside" }, presets, verdict, view.charts[0].el));
   view.top.after(view.controls);

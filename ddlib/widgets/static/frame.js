@@ -84,7 +84,7 @@ function frameOf({ el, key, title, linked, reset, code }) {
       field.setAttribute("aria-label", what);
       field.focus({ preventScroll: true });
       field.select();
-      said.textContent = "The browser does not copy by itself: press Ctrl+C";
+      said.textContent = "Press Ctrl+C: your browser does not copy by itself";
     }
   }
   const button = (text, words, act) => buttonOf(text, act, { "aria-label": words, title: words });
@@ -95,7 +95,7 @@ function frameOf({ el, key, title, linked, reset, code }) {
       for (const { start, restore } of Object.values(parts)) restore(start);
       reset?.();
       changed();
-      said.textContent = "As at the start";
+      said.textContent = "Back at the start";
     }),
     ...(linked ? [button("Link", "Copy link to this state", () => copy(link(), "Link"))] : []),
     ...(code() ? [button("Code", "Copy this state as Python code", () => copy(code(), "Code"))] : []),

@@ -106,7 +106,7 @@ function insideOf(world, spec, id) {
   const words = make("p", { class: "remark", role: "status" });
   // While nothing moves: what one would see, and how to see it.
   const hint = make("p", { class: "remark hint", hidden: "" });
-  hint.append("At rest velocity and acceleration are zero, and so is what a line and a parabola measure. ");
+  hint.append("At rest there is no velocity and no acceleration to measure. ");
   const el = make(
     "div",
     { class: "inside", id: `${id}-inside` },
@@ -137,9 +137,8 @@ function insideOf(world, spec, id) {
     drawing.choose(unit);
     write(
       words,
-      `This row weights the ${net.width} positions of the ${joint} for the marked hidden unit: ${line} of its ` +
-        `energy lies on a straight line, ${parabola} on a parabola. Under a window a line measures ` +
-        `velocity, a parabola acceleration.`,
+      `These weights lead from the ${net.width} positions of the ${joint} to the marked hidden unit. A line ` +
+        `measures velocity: it has ${line} of their energy. A parabola measures acceleration: it has ${parabola}.`,
     );
     set(fold);
   }

@@ -124,7 +124,7 @@ function armOf(view) {
   const ground = make("line", { class: "ground", x1: 0, x2: 244, y1: 0, y2: 0 });
   const base = make("circle", { class: "joint", r: 7 });
   const words =
-    "The arm from above; the dotted line is the path of its hand, pale lines are its paths in the " +
+    "The arm from above. Dotted: the path of its hand. Pale: its paths in the " +
     "trajectories of the recording";
   const svg = make(
     "svg",

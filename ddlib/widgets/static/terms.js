@@ -66,8 +66,8 @@ function turnOf(radius) {
 }
 
 const WHY = {
-  coupling: "the elbow's motor mostly holds the forearm against the acceleration of the other joint, the shoulder",
-  inertial: "on this motion the elbow's motor mostly accelerates its own forearm",
+  coupling: "The elbow's motor mostly carries the forearm along while the shoulder speeds up or slows down.",
+  inertial: "On this motion the elbow's motor mostly accelerates the forearm itself.",
 };
 
 extras.push((view) => {
@@ -79,7 +79,7 @@ extras.push((view) => {
   // The arm, its motion in pale pictures, and the torques as arrows
   const ghosts = [0, 1, 2, 3, 4].map((k) => `ghost g${k}`);
   const box = [-0.12, -0.84, 0.95, 0.13];
-  const stage = armsOf(lengths, [...ghosts, "real"], box, "The arm from above, in pale its whole motion; arrows: the torque of each motor");
+  const stage = armsOf(lengths, [...ghosts, "real"], box, "The arm from above. Pale: its whole motion. Arrows: the torque of each motor");
   const turns = [turnOf(26), turnOf(20)];
   stage.svg.append(...turns.map(({ el }) => el));
   const scale = 300 / (box[2] - box[0]);
@@ -102,7 +102,7 @@ extras.push((view) => {
     make("tr", {}, make("td", {}), ...NAMES.map((joint) => th(`${joint}, N m`, { colspan: 2 }))),
     make("tr", {}, make("td", {}), ...NAMES.flatMap(() => [th("now"), th("RMS")])),
   ];
-  const caption = make("caption", {}, "Now, and root mean square over the motion");
+  const caption = make("caption", {}, "Torque now, and its root mean square (RMS) over the motion");
   const table = make("table", { class: "terms" }, caption, make("thead", {}, ...heads), make("tbody", {}, ...[...rows.values()].map(({ el }) => el)));
 
   let motion = motionOf(view);
@@ -143,17 +143,17 @@ extras.push((view) => {
     if (!first) return "";
     const best = top();
     const right = first === best ? "Yes" : `Not ${first}`;
-    const one = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. So ${WHY[best] ?? "so it is"}.`;
+    const one = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. ${WHY[best] ?? ""}`.trim();
     if (!second) return one;
     const own = second === BETS[1] ? "Yes" : "No";
-    const two = `${own}, the ratio stays: at double speed every term is four times as large, since accelerations and products of two speeds both grow with the square.`;
-    return `${two} Friction does not grow like this: switch it on.`;
+    const two = `${own}, the ratio stays. At double speed every term is four times as large, because accelerations and products of two speeds both grow with the square.`;
+    return `${two} Does friction, too? Switch it on.`;
   }
   function question() {
     const stage = first ? (second ? 2 : 1) : 0;
     const texts = [
-      `Which term is ${LETTERS[four.indexOf(top())]}, the largest at the elbow?`,
-      "Now a bet: at double speed, do centrifugal and Coriolis torque gain on inertial and coupling torque?",
+      `Curve ${LETTERS[four.indexOf(top())]} is the largest at the elbow. Which term is it?`,
+      "Now bet. At double speed, do centrifugal and Coriolis torque gain on the other two?",
       "",
     ];
     write(ask, texts[stage]);

@@ -118,8 +118,8 @@ function build({ model, el }) {
     const [[s, ts], [e, te]] = world.errors();
     write(
       errors,
-      `Root mean square over what is shown: the network is off by ${rounded(s)} N m at the shoulder, ` +
-        `where the torque is ${rounded(ts)}, and by ${rounded(e)} at the elbow, where it is ${rounded(te)}.`,
+      `Error of the network in this picture: ${rounded(s)} N m at the shoulder (torque: ${rounded(ts)}), ` +
+        `${rounded(e)} N m at the elbow (torque: ${rounded(te)}). All are root mean squares.`,
     );
   }
   function say(text) {
@@ -142,7 +142,7 @@ function build({ model, el }) {
     stage.draw();
     for (const place of places) place.draw(world.samples, phase, colours);
     inside.draw(world.samples, phase, colours);
-    write(outside, world.outside() ? "beyond the angles of its training" : "");
+    write(outside, world.outside() ? "The network was not trained on such angles." : "");
   }
   function run(now) {
     frame = 0;
@@ -152,8 +152,8 @@ function build({ model, el }) {
     for (; owed >= spec.step; owed -= spec.step) world.period();
     if (before === "play" && world.mode === "free") {
       if (several) next();
-      else say("The motion has ended.");
-    } else if (before !== world.mode) say("Let go: only friction acts."); // after a toss
+      else say("The motion is over.");
+    } else if (before !== world.mode) say("Now only friction slows the arm."); // after a toss
     show();
     if (now - told > 500) {
       told = now;
@@ -204,7 +204,7 @@ function build({ model, el }) {
   const thrown = () => {
     several = false;
     world.toss();
-    say("Thrown.");
+    say("You threw the arm.");
     start();
   };
   const toss = buttonOf("Throw", thrown);
@@ -255,13 +255,13 @@ function build({ model, el }) {
     several = false;
     const held = world.mode === "held";
     world.hold(pull);
-    if (!held) say("You hold the hand: the network sees only where the joints are.");
+    if (!held) say("You pull the hand. The network sees only the positions of the joints.");
     start();
   };
   const release = () => {
     if (world.mode !== "held") return;
     world.release();
-    say("Let go: only friction acts.");
+    say("You let go. Now only friction slows the arm.");
   };
   handle.addEventListener("pointerdown", (event) => {
     if (event.button) return;
@@ -332,7 +332,7 @@ function build({ model, el }) {
     make("div", { class: "buttons taken" }, ...taken),
   ));
   world.changed = () => frame || draw();
-  say(`Paused on ${named()}. Grab the hand and let go, or press Play.`);
+  say("Grab the hand and throw it, or press Play.");
 
   const resize = new ResizeObserver(() => {
     for (const place of [...places, inside]) place.resize();

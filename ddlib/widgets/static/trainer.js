@@ -349,14 +349,14 @@ function build({ model, el }) {
   const history = [];
   const key = NAMES.map((name, j) => make("span", {}, swatch("line", j ? 2 : 0), `${name}'s window`));
   key[1].querySelector("path").setAttribute("stroke-dasharray", "5 3");
-  const letters = make("span", {}, "bold with a letter: a acceleration, v velocity, j jerk");
+  const letters = make("span", {}, "bold: has a name (a acceleration, v velocity, j jerk)");
   const hands = make("div", { class: "hands" }, make("div", { class: "buttons" }, play, once, anew), status, weighed, list);
   el.replaceChildren(
     frame.el,
     guess,
     make("div", { class: "bench" }, hands, make("div", { class: "results" }, drawn[0].el)),
     said,
-    make("div", { class: "title" }, "Weights over the window's time: the direct ones, then those of the hidden units"),
+    make("div", { class: "title" }, "Weights over the window: the direct ones, then those of the hidden units"),
     make("div", { class: "legend" }, ...key, letters),
     units.el,
     make("div", { class: "charts" }, ...drawn.slice(1).map((one) => one.el)),
@@ -387,8 +387,8 @@ function build({ model, el }) {
     drawn.forEach((one) => one.redraw(curves));
     units.draw(school, colours, over());
     const seen = school.training[Math.floor(school.epoch / spec.check)];
-    const when = over() ? `Training is over, ${spec.epochs} epochs are done.` : `Epoch ${school.epoch}.`;
-    write(status, `${when} Error ${plain(seen)} in training.`);
+    const when = over() ? `Training is over after ${spec.epochs} epochs.` : `Epoch ${school.epoch}.`;
+    write(status, `${when} Training error: ${plain(seen)}.`);
     write(inside, inertia());
     write(error6, plain(error));
     events.forEach(({ output }, k) => write(output, school.events[k] === null ? (over() ? "never" : "not yet") : `epoch ${school.events[k]}`));
@@ -456,7 +456,7 @@ function build({ model, el }) {
     const at = school.events.map((e) => e ?? Infinity);
     const first = Math.min(...at);
     const came = labels.filter((_, k) => at[k] === first).join(" and ");
-    const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `First, at epoch ${first}: ${came}.`;
+    const verdict = first === Infinity ? `None of the three came within ${spec.epochs} epochs.` : `What came first, at epoch ${first}: ${came}.`;
     const mine = state.guess === "" ? "" : `Your guess: ${labels[state.guess]}. `;
     write(said, `${mine}${verdict} ${named("direct")} ${named("hidden")} Inertia in the network: ${inertia()}.`);
   }
@@ -465,7 +465,7 @@ function build({ model, el }) {
     const all = school.names[layer];
     const none = all.filter((k) => SHORT[spec.classes[k]] === undefined).length;
     const some = none === all.length ? "None" : String(all.length - none);
-    const left = none && none < all.length ? `, ${none} ${none === 1 ? "stays" : "stay"} without` : "";
+    const left = none && none < all.length ? `, and ${none} ${none === 1 ? "has" : "have"} none` : "";
     return `${some} of the ${all.length} ${layer} filters ${all.length - none <= 1 ? "has" : "have"} a name at the end${left}.`;
   }
   function restart() {
@@ -487,12 +487,12 @@ function build({ model, el }) {
     });
     for (const one of [play, once, record]) one.disabled = !ready || !picks.fit();
     const kept = own() ? "Recorded in your browser." : `${spec.home}, recorded beforehand.`;
-    write(recorded, !picks.fit() ? "Each joint must move by a degree or more in training." : stale() ? "Changed, and not recorded yet." : kept);
+    write(recorded, !picks.fit() ? "Each joint must move by a degree or more in training." : stale() ? "You changed the trajectories: they are not recorded yet." : kept);
     once.setAttribute("aria-disabled", String(over()));
     write(play, running ? "Pause" : over() ? "Begin anew" : "Train");
     for (const one of menus) one.show();
     seed.value = state.seed;
-    write(drawing, `draw ${state.seed}`);
+    write(drawing, `number ${state.seed}`);
     seed.setAttribute("aria-valuetext", drawing.textContent);
     loop.checked = state.loop === "1";
   }

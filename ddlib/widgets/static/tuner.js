@@ -78,7 +78,7 @@ extras.push((view) => {
   const far = lengths[0] + lengths[1];
   const kinds = ["ghost", "wanted", "now"];
   const box = [-0.06 * far, -0.82 * far, 1.05 * far, 0.36 * far];
-  const stage = armsOf(lengths, kinds, box, "The arm from above, over the arm of the setting before");
+  const stage = armsOf(lengths, kinds, box, "The arm from above. Pale: the arm with your previous setting");
   const end = (loop.periods - 1) * loop.step;
   const clock = clockOf(view, { at: 1, end, step: loop.step * loop.every }, draw, () => (over ? ", stopped" : ""));
   const verdict = make("p", { class: "verdict", role: "status" });
@@ -86,8 +86,8 @@ extras.push((view) => {
   const chapter = "How close to instability?";
   const figure = document.getElementById(BODE)
     ? make("a", { href: `#${BODE}` }, `the Bode plot under “${chapter}”`)
-    : `the Bode plot in the chapter What feedback does, under “${chapter}”`;
-  const pointer = make("p", { class: "remark" }, "What a margin is: ", figure, ".");
+    : `the Bode plot in the lesson Feedback, under “${chapter}”`;
+  const pointer = make("p", { class: "remark" }, "What is a margin? See ", figure, ".");
   const key = (kind, text) => {
     const line = make("path", { class: "links", d: "M2 6H24" });
     const icon = make("svg", { width: 26, height: 12, "aria-hidden": "true" });
@@ -95,7 +95,7 @@ extras.push((view) => {
     return make("span", {}, icon, text);
   };
   const legend = make("div", { class: "legend" });
-  legend.append(key("now", "now"), key("ghost", "the setting before"), key("wanted", "wanted"));
+  legend.append(key("now", "now"), key("ghost", "your previous setting"), key("wanted", "wanted"));
   const row = make("div", { class: "time" }, clock.play, clock.el);
   view.top.append(make("div", { class: "told-so" }, verdict, remedy, pointer));
   view.top.append(make("div", { class: "scene" }, stage.svg, legend, row));
@@ -131,7 +131,7 @@ extras.push((view) => {
         ? `The linear loop is stable: a disturbance halves in ${span(growth)}.`
         : `The linear loop is unstable: a disturbance doubles in ${span(growth)}.`;
     if (log.stopped === null) return linear;
-    return `${linear} Run stopped at ${(log.stopped * seconds).toFixed(2)}\u00a0s: an error passed ${degrees}°.`;
+    return `${linear} The run stopped at ${(log.stopped * seconds).toFixed(2)}\u00a0s: an error passed ${degrees}°.`;
   }
   view.words = () => [words().slice(0, -1), ...(remedy.textContent ? [remedy.textContent.slice(0, -1)] : [])];
 
@@ -145,16 +145,16 @@ extras.push((view) => {
     write(remedy, now.growth < 0 ? "" : (now.remedy ?? `${begin}.`));
     if (now.growth < 0 || now.remedy) return;
     thinking = setTimeout(() => {
-      now.remedy = `${begin}: ${calming(now)}`;
+      now.remedy = `${begin}. ${calming(now)}`;
       write(remedy, now.remedy);
     }, THOUGHT);
   }
   function calming({ calm }) {
     const part = calm();
-    if (part === part) return `to be stable, all three gains would have to fall to ${percent(part)}.`;
+    if (part === part) return `It would be stable if all three gains fell to ${percent(part)}.`;
     const alone = calm(["ki"]);
-    const rest = alone === alone ? `, the integral gain alone would have to fall to ${percent(alone)}.` : ", nor the integral gain alone.";
-    return `lowering all three gains together does not make it stable${rest}`;
+    if (alone === alone) return `Lowering all three gains does not help. The integral gain alone would have to fall to ${percent(alone)}.`;
+    return "Lower gains do not help: neither all three together nor the integral gain alone.";
   }
   const outputs = [...view.numbers.querySelectorAll("output")];
   function numbered() {
@@ -209,7 +209,7 @@ function asking(view, questions, show) {
     if (!chosen) return;
     const good = Number(chosen.value) === right;
     show(settings);
-    write(told, `${good ? "As you said." : "Not what you said."} ${texts[right]} ${why}`);
+    write(told, `${good ? "You were right." : "It comes out differently."} ${texts[right]} ${why}`);
     choices.hidden = true; // the answer stands in its place
     tryIt.disabled = true;
   });
@@ -233,7 +233,7 @@ function asking(view, questions, show) {
     );
   }
   pose();
-  const legend = make("legend", {}, "First predict: what happens if ", question);
+  const legend = make("legend", {}, "Predict first. What happens if ", question);
   const buttons = make("div", { class: "buttons" }, tryIt, next);
   return make("fieldset", { class: "ask" }, legend, choices, told, buttons);
 }

@@ -53,12 +53,12 @@ class UnitFromFiveStarts(CurveWidget):
                 share_panel("Share of the energy", "responds to", _SHARES),
             ],
             **{
-                "alt": "One row of weights before and after training, its even and odd part, and "
-                "which derivatives it responds to, from a random start of one size.",
+                "alt": "One row of weights before and after training, from a start of one size. "
+                "Its even and odd part. The derivatives that it responds to.",
                 "title": "One unit, five starts",
-                "note": "The same random numbers, made larger or smaller; the same recording and "
-                "the same number of epochs. Shares are those of the constant and of the three "
-                "derivatives; the rest follows none of them.",
+                "note": "All starts use the same random numbers, made larger or smaller. The "
+                "recording and the number of epochs stay the same. The last bar is the share that "
+                "follows neither the constant nor one of the three derivatives.",
                 "tolerance": EXACT,
                 **options,
             },

@@ -65,7 +65,7 @@ class WeighTheArm(CurveWidget):
                     **shade,
                 ),
                 Panel(
-                    "What each sample adds: ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
+                    "Each sample adds ½ x² g, kg m²", "parts", CENTRE, time, kind="bars",
                     y_fit=True, **shade,
                 ),
                 Panel(
@@ -76,16 +76,16 @@ class WeighTheArm(CurveWidget):
                 ),
             ],
             **{
-                "alt": "The gradient of the shoulder's torque by its window as stems; what each "
-                "sample adds to its second moment, as bars; and the sum over more and more "
-                "samples beside the arm's own inertia.",
+                "alt": "Stems: the gradient of the shoulder's torque by its window. Bars: how much "
+                "each sample adds to its second moment. A line: the sum over more and more "
+                "samples, beside the arm's own inertia.",
                 "title": "Weigh the arm",
                 "scalars": [
                     Scalar("now", "Sum", "kg m²", 2),
                     Scalar("true", "The arm's own", "kg m²", 2),
                 ],
                 "tolerance": EXACT,
-                "note": "Shaded: the samples that count. Beyond, nothing is added up yet.",
+                "note": "Shaded: the samples that are added up so far.",
                 **options,
             },
         )  # fmt: skip
