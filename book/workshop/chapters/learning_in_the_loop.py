@@ -364,6 +364,11 @@ def _said() -> None:
     brisk = [over(m, "generic terms") for m in motions if "time" in m]
     stated("loop-generic-faster", np.max(brisk, axis=0) < 0.5)
     stated("loop-generic-circle", over("circle", "generic terms") > 0.75)
+    plain = family(PLAIN, _WHEN[0])
+    left = {name: resampled(family(name, _WHEN[0]) / plain) for name in _NOTHING}
+    learnt = [left[name] < 0.5 for name in ("last layer", "linear filter")]
+    slow = [left[name] > 0.5 for name in ("replay", "one pass", "by feedback")]
+    stated("loop-from-nothing", np.all(learnt + slow, axis=0))
 
 
 def check(number: int, mine, *given) -> None:
