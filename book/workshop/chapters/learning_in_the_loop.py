@@ -108,7 +108,7 @@ def _first_figure() -> Illustration:
                 right.plot([ratio.min(), ratio.max()], [place] * 2, color=COLOURS[k], lw=1.2)
                 right.plot(np.median(ratio), place, **look)
         left.set(yscale="log", xlabel="trial of one motion", ylabel="end-point error, mm")
-        right.set(xscale="log", xlabel="then: error over that of the feedback alone")
+        right.set(xscale="log", xlabel="error, over the feedback's alone")
         left.yaxis.set_major_formatter(_PLAIN)
         right.xaxis.set_major_formatter(_PLAIN)
         left.xaxis.set_major_locator(MaxNLocator(integer=True))
