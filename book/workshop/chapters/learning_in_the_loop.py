@@ -5,16 +5,30 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
+from scipy.signal import butter, cont2discrete, lfilter, sosfiltfilt
 
-from ddlib.dynamics import PUMA_560, count, newton_euler
+from ddlib.dynamics import CMU_DD_ARM_II, PUMA_560, count, newton_euler
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
-from ddlib.tables import quote, spread
+from ddlib.setups import KD, KP
+from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
+from ddlib.tables import Table, quote, significant, spread
+from ddlib.trajectories import APPENDIX_I
 from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 
 PLAIN = "no feedforward"  # the feedback alone, as the study calls it
+
+# The shoulder of the stretched arm under state feedback, and a memory that learns its torque
+_INERTIA = CMU_DD_ARM_II.mass_matrix([0.0, 0.0])[0, 0]  # kg m^2
+_SPRING, _DAMPER, _FRICTION = KP[0], KD[0], 0.5  # N m/rad, N m s/rad
+_RATE = 0.3
+_MEMORIES = {  # lead in control periods, cut-off of the Q-filter in rad/s
+    "no lead": (0, None),
+    "lead of 50 ms": (25, None),
+    "lead and Q-filter": (25, 40.0),
+}
 
 _MARKERS = "os^DvPX"
 _PLAIN = FuncFormatter(lambda value, place: f"{value:g}")
@@ -94,7 +108,7 @@ def _first_figure() -> Illustration:
                 right.plot([ratio.min(), ratio.max()], [place] * 2, color=COLOURS[k], lw=1.2)
                 right.plot(np.median(ratio), place, **look)
         left.set(yscale="log", xlabel="trial of one motion", ylabel="end-point error, mm")
-        right.set(xscale="log", xlabel="then: error over that of the feedback alone")
+        right.set(xscale="log", xlabel="error, over the feedback's alone")
         left.yaxis.set_major_formatter(_PLAIN)
         right.xaxis.set_major_formatter(_PLAIN)
         left.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -158,7 +172,57 @@ def _rates_figure() -> Illustration:
     return _by_trial(panels, labels, alt, x_log=True)
 
 
+def _missing(lead: int, cut: float | None) -> np.ndarray:
+    """Missing torque by trial, N m RMS, while the shoulder alone learns one motion by a memory."""
+    held = cont2discrete(
+        ([_DAMPER, _SPRING], [_INERTIA, _FRICTION + _DAMPER, _SPRING]), CONTROL_STEP
+    )
+    answer = held[0].ravel(), held[1]  # from the torque that is missing to the feedback's
+    motion = smooth_pick_and_place(APPENDIX_I[0], np.arange(1500) * CONTROL_STEP)
+    rubbing = 0.5 * np.tanh(motion.qd[:, 0] / 0.05)
+    needed = _INERTIA * motion.qdd[:, 0] + _FRICTION * motion.qd[:, 0] + rubbing
+    stored, left = 0 * needed, []
+    for _ in range(100):
+        left.append(np.sqrt(((needed - stored) ** 2).mean()))
+        feedback = lfilter(*answer, needed - stored)
+        stored[: len(stored) - lead] += _RATE * feedback[lead:]
+        if cut:
+            low = butter(2, cut * CONTROL_STEP / np.pi, output="sos")
+            stored = sosfiltfilt(low, stored)
+    return np.array(left)
+
+
+def _converges_figure() -> Illustration:
+    """What a trial multiplies a missing torque with, over its frequency; and a hundred trials."""
+    omega = np.geomspace(1, 200, 400)
+    factor, left = {}, {}
+    for name, (lead, cut) in _MEMORIES.items():
+        spring = _SPRING + 1j * omega * _DAMPER
+        answer = spring / (spring - _INERTIA * omega**2 + 1j * omega * _FRICTION)
+        size = abs(1 - _RATE * answer * np.exp(1j * omega * lead * CONTROL_STEP))
+        factor[name] = size / (1 + (omega / cut) ** 4) if cut else size  # there and back
+        left[name] = _missing(lead, cut)
+
+    def draw(figure: Figure):
+        over, course = figure.subplots(1, 2)
+        for k, name in enumerate(_MEMORIES):
+            over.plot(omega, factor[name], color=COLOURS[k], label=name)
+            course.plot(1 + np.arange(100), left[name], color=COLOURS[k])
+        over.axhline(1.0, color=INK, ls="--", lw=1.2)
+        over.axvline(np.sqrt(_SPRING / _INERTIA), color=FAINT, ls=":", lw=1.2)
+        over.set(xscale="log", xlabel="frequency, rad/s", ylabel="factor of a trial")
+        course.set(yscale="log", xlabel="trial", ylabel="missing torque, N m RMS")
+        for axis in (over.xaxis, course.yaxis):
+            axis.set_major_formatter(_PLAIN)
+        legend_above(figure, *over.get_legend_handles_labels())
+
+    told = "; ".join(f"{n} {y.min():.2g} at best, {y[-1]:.2g} at last" for n, y in left.items())
+    alt = f"Factor of a trial over frequency, and the missing torque over 100 trials, N m: {told}."
+    return illustrate(draw, alt, 7.2, 2.9)
+
+
 _SHOWN = {"motions": _first_figure, "course": _course_figure, "rates": _rates_figure}
+_SHOWN["converges"] = _converges_figure
 
 
 def show(name: str) -> Illustration:
@@ -248,27 +312,44 @@ def affordable(learner: str) -> Measured:
     return Measured(total / could, f"{total:,.0f} of {could:,.0f} in 2 ms")
 
 
+def asked() -> Table:
+    """Median errors on a faster motion and on a circle, after ten trials of another motion."""
+    names = {"feedback alone": PLAIN} | {n: n for n in ("exact terms", "generic terms", "memory")}
+    rows = [
+        (name, *(significant(np.median(on(m, key)), 2) for m in ("in half the time", "circle")))
+        for name, key in names.items()
+    ]
+    practised = results.read("loop-conditions")["practised"]["joint damping"]["in step"]
+    scaled = significant(np.median(practised["in half the time"]["memory, scaled"]), 2)
+    rows.append(("memory, multiplied by four (other draws)", scaled, "–"))
+    return Table(("learner", "in half the time, mm", "on a circle, mm"), rows)
+
+
+def courses() -> Table:
+    """Median errors in the first trial, and on the family before, with and after the load."""
+    names = {"feedback alone": PLAIN, "network's last layer": "last layer"}
+    names |= {n: n for n in ("linear filter", "by feedback")}
+    names |= {f"trained off-line, {n}": n_ for n, n_ in _TRAINED.items() if n != "replay"}
+    rows = []
+    for name, key in names.items():
+        first = np.median(part("family")["practice"][key][0])
+        cells = [first, *(np.median(family(key, when)) for when in _WHEN)]
+        rows.append((name, *(significant(cell, 2) for cell in cells)))
+    heads = "first trial", "ten trials later", "load comes", "ten trials later", "load goes"
+    return Table(("error, mm", *heads), rows)
+
+
 def _quoted() -> None:
     """The numbers of the prose."""
-    quote("loop-load", results.read("learning-in-the-loop")["load"])
     quote("loop-seeds", on("the same", PLAIN).size)
-    names = dict(exact="exact terms", generic="generic terms", layer="network, last layer")
-    names |= dict(linear="linear filter", memory="memory", none=PLAIN)
-    for short, name in names.items():
-        quote(f"loop-{short}-fast", np.median(on("in half the time", name)))
-        quote(f"loop-{short}-circle", np.median(on("circle", name)))
-    places = dict(plain=PLAIN, layer="last layer", linear="linear filter", feedback="by feedback")
-    places |= dict(kept="off-line, as it is", on="off-line, last layer")
-    for short, name in places.items():
-        for when, word in zip(_WHEN, ("before", "loaded", "end", "without")):
-            quote(f"loop-{short}-{word}", np.median(family(name, when)))
-        quote(f"loop-{short}-before-pd", np.median(family(name, _WHEN[0], "state feedback")))
-        quote(f"loop-{short}-shock", np.median(part("family")["practice"][name][0]))
+    quote("loop-none-circle", np.median(on("circle", PLAIN)))
+    quote("loop-linear-circle", np.median(on("circle", "linear filter")))
     practised = results.read("loop-conditions")["practised"]["joint damping"]
     quote("loop-step", np.median(practised["out of step"]["circle"]["linear filter"]))
-    quote("loop-step-alone", np.median(practised["out of step"]["circle"]["none"]))
-    quote("loop-scaled", np.median(practised["in step"]["in half the time"]["memory, scaled"]))
     quote("loop-layer-affordable", affordable("last layer").value)
+    share = _DAMPER * (_FRICTION + _DAMPER) / (_SPRING * _INERTIA)
+    quote("loop-real-share", share)
+    quote("loop-real-until", 1 / np.sqrt(1 - share))
 
 
 def _said() -> None:
@@ -283,6 +364,11 @@ def _said() -> None:
     brisk = [over(m, "generic terms") for m in motions if "time" in m]
     stated("loop-generic-faster", np.max(brisk, axis=0) < 0.5)
     stated("loop-generic-circle", over("circle", "generic terms") > 0.75)
+    plain = family(PLAIN, _WHEN[0])
+    left = {name: resampled(family(name, _WHEN[0]) / plain) for name in _NOTHING}
+    learnt = [left[name] < 0.5 for name in ("last layer", "linear filter")]
+    slow = [left[name] > 0.5 for name in ("replay", "one pass", "by feedback")]
+    stated("loop-from-nothing", np.all(learnt + slow, axis=0))
 
 
 def check(number: int, mine, *given) -> None:
