@@ -121,7 +121,7 @@ def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
     here = opened(tmp_path, visit, widget)
     page = here.page
     assert_shown(page, pair, "shoulder torque", "shoulder", False)
-    page.locator('[role=gridcell][aria-label="hidden 2, elbow\'s window"]').click(force=True)
+    page.locator('[role=gridcell][aria-label="hidden 3, elbow\'s window"]').click(force=True)
     assert_shown(page, pair, "hidden 2", "elbow", False)
     switch = page.get_by_label("Subtract the start")
     switch.press(" ")
