@@ -39,8 +39,8 @@ class WeightReader(_HintonWidget):
     step : float
         Sampling period, s.
     unit, joint : str, optional
-        The row that is shown first: of which unit (its key, "hidden 0" is the first hidden unit), from
-        whose window. Default: the shoulder's row of the shoulder torque.
+        The row that is shown first: of which unit ("hidden 0" is the first hidden one), from whose
+        window. Default: the shoulder's row of the shoulder torque.
     **options
         Passed on to `CurveWidget`.
     """

@@ -10,10 +10,11 @@ from scipy.signal import freqz
 from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
+from ddlib.learning import Weights
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import _FLOOR, _FREQUENCIES, FilterExplorer
-from ddlib.widgets.hinton import _diagram
+from ddlib.widgets.hinton import _diagram, unit_names
 from workshop.report import results
 
 CELLS = "weights of all units"

@@ -175,7 +175,7 @@ _STEADY = 1.02  # a curve that never rises by more over its least value so far
 
 
 def _rise(errors: np.ndarray) -> np.ndarray:
-    """The largest rise of each curve over its least value so far, as a factor; (epochs, members)."""
+    """The largest rise of each curve over its least value so far, as a factor."""
     return (errors / np.minimum.accumulate(errors)).max(0)
 
 
@@ -233,7 +233,7 @@ def _steepest(width: int, every: int = 50) -> tuple[np.ndarray, np.ndarray]:
 
 
 def unsteady() -> Illustration:
-    """Training at window 11, at the lesson's step and at a quarter of it; its steepest curvature."""
+    """Training at window 11, at the lesson's step and at a quarter; its steepest curvature."""
     parts = {"the lesson's step": 1.0, "a quarter": 0.25}
     model, epochs, errors = _schooled(11, tuple(parts.values()))
     longer = {w: _schooled(w) for w in (21, 41)}
@@ -246,9 +246,8 @@ def unsteady() -> Illustration:
     stated("window-longer-fall", bool(np.max(others) < _STEADY))
     stated("window-quarter", bool(_rise(quarter).max() < _STEADY))
     stated("window-quarter-behind", bool(np.median(quarter[-1]) > 0.5))
-    stated(
-        "window-steeper", bool(steep[at <= 500].max() < 0.8 * bound < 0.97 * bound < steep.max())
-    )
+    early = steep[at <= 500].max() / bound
+    stated("window-steeper", bool(early < 0.8 and steep.max() > 0.97 * bound))
     test = split(JOINT_DAMPING.record())[1]
 
     def activity(model, width):
@@ -307,7 +306,7 @@ def _events(row: str) -> dict[str, np.ndarray]:
 
 
 def _named_shifted() -> np.ndarray:
-    """Share of hidden filters with a name after the full training, for each shift of the torques."""
+    """Share of hidden filters with a name after the full training, for each shift."""
     shifted = filter_trial.row(21)["nulls"]["shifted"]
     return 1 - filter_trial.share(shifted, "hidden", ["not analysable"])
 
