@@ -89,7 +89,7 @@ class FilterExplorer(_HintonWidget):
             [
                 *sizes,
                 Choice("seed", "Network", {k: f"seed {k}" for k in members}, members[0]),
-                Choice("unit", "Unit", unit_names(some[0]), unit_names(some[0])[0]),
+                Choice("unit", "Unit", unit_names(some[0]), next(iter(unit_names(some[0])))),
                 Choice("joint", "Window of", JOINTS, JOINTS[0]),
             ],
             [
@@ -129,7 +129,7 @@ class FilterExplorer(_HintonWidget):
 
     def _filter(self, seed, unit, joint, width):
         weights = self._weights[width][seed]
-        return weight_functions(weights)[unit_names(weights).index(unit), JOINTS.index(joint)]
+        return weight_functions(weights)[list(unit_names(weights)).index(unit), JOINTS.index(joint)]
 
     def _curves(self, seed, unit, joint, width=None) -> dict:
         width = width or next(iter(self._weights))

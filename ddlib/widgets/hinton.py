@@ -20,10 +20,14 @@ EXACT = 1e-4  # tolerance of widgets that bake every choice: what int16 can hold
 CENTRE = "time from the centre, ms"
 
 
-def unit_names(weights: Weights) -> tuple[str, ...]:
-    """Names of a network's units: the outputs, then the hidden ones, counted from 0."""
+def unit_names(weights: Weights) -> dict[str, str]:
+    """A network's units, outputs first: key of each -> what the page calls it.
+
+    Keys stand in readers' links and count hidden units from 0; the page counts them from 1.
+    """
     outputs = [f"{joint} torque" for joint in JOINTS]
-    return (*outputs, *(f"hidden {k}" for k in range(weights.hidden_bias.shape[-1])))
+    hidden = range(weights.hidden_bias.shape[-1])
+    return dict(zip(outputs, outputs)) | {f"hidden {k}": f"hidden {k + 1}" for k in hidden}
 
 
 def weight_functions(weights: Weights) -> np.ndarray:
@@ -61,11 +65,11 @@ def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
     return dict(models)
 
 
-def width_choice(sizes) -> Choice:
-    """The menu of window sizes; the middle one is chosen at the start."""
+def width_choice(sizes, first: int | None = None) -> Choice:
+    """The menu of window sizes; `first`, or else the middle one, is chosen at the start."""
     sizes = sorted(sizes)
     labels = {width: f"{width} samples" for width in sizes}
-    return Choice("width", "Window size", labels, sizes[len(sizes) // 2])
+    return Choice("width", "Window size", labels, first or sizes[len(sizes) // 2])
 
 
 def share_panel(title: str, x_label: str, parts: Mapping[float, str]) -> Panel:
@@ -112,8 +116,10 @@ class _HintonWidget(CurveWidget):
 
     def __init__(self, weights: Weights, reach: int, *args, largest: str = "now", **options):
         one_of("largest", largest, ("now", "ever"))
+        names = unit_names(weights)
         layout = {
-            "units": list(unit_names(weights)),
+            "units": list(names),
+            "names": list(names.values()),
             "outputs": weights.output_bias.shape[-1],
             "joints": list(JOINTS),
             "reach": reach,

@@ -67,7 +67,8 @@ class TrainingPlayer(_HintonWidget):
         self._weights = model.weights[:, member]
         every = errors(model[:, member], recording).named()
         self._errors = {name: every[name] for name in _ERRORS}
-        self._names = unit_names(self._weights[0])
+        names = unit_names(self._weights[0])
+        self._names = list(names)
         self._reach = self._weights.width // 2
         self._functions = weight_functions(self._weights)
         begin = int(epochs[_moved(self._weights)])
@@ -81,7 +82,7 @@ class TrainingPlayer(_HintonWidget):
             self._reach,
             self._curves,
             [
-                Choice("unit", "Unit", self._names, self._names[0]),
+                Choice("unit", "Unit", names, self._names[0]),
                 Choice(
                     "epoch",
                     "Epoch",

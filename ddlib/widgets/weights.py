@@ -39,8 +39,8 @@ class WeightReader(_HintonWidget):
     step : float
         Sampling period, s.
     unit, joint : str, optional
-        The row that is shown first: of which unit ("hidden 3"), from whose window. Default: the
-        shoulder's row of the shoulder torque.
+        The row that is shown first: of which unit ("hidden 0" is the first hidden one), from whose
+        window. Default: the shoulder's row of the shoulder torque.
     **options
         Passed on to `CurveWidget`.
     """
@@ -63,7 +63,8 @@ class WeightReader(_HintonWidget):
             raise ValueError(f"start and trained must be one network, got {start!r}, {trained!r}")
         parts = [getattr(trained, f.name) - getattr(start, f.name) for f in fields(Weights)]
         self._shown = {False: trained, True: Weights(*parts)}
-        self._names = names = unit_names(trained)
+        names = unit_names(trained)
+        self._names = list(names)
         reach, half = trained.width // 2, step * 1e3
         time = np.arange(-reach, reach + 1) * half
         scales = {False: "row", True: "network"}
@@ -72,7 +73,8 @@ class WeightReader(_HintonWidget):
             for subtract, weights in self._shown.items()
             for common, scale in scales.items()
         }
-        unit = names[0] if unit is None else unit
+        unit = self._names[0] if unit is None else unit
+        told = names.get(unit, unit)
         rows = {name: f"the {name}'s" for name in JOINTS}
         each = {False: "each row has its own", True: "as in the report"}
         done = {False: "as trained", True: "what training added"}
@@ -99,7 +101,7 @@ class WeightReader(_HintonWidget):
             title="Read the weights",
             alt=(
                 f"All weights of a trained network as squares, in {len(names)} grey blobs, one "
-                f"for each unit; and a row of the unit {unit}, from the {joint}'s window, as "
+                f"for each unit; and a row of the unit {told}, from the {joint}'s window, as "
                 "squares above and as a curve below."
             ),
             scalars=[
@@ -149,7 +151,7 @@ class WeightReader(_HintonWidget):
             dots(squares, row, 0, 0, 1, 1, np.abs(row).max())
             ends = -0.5, row.size - 0.5
             squares.set(xlim=ends, ylim=(-0.7, 0.7), aspect="equal")
-            squares.set_title(f"{self.unit}, {self.joint}'s window")
+            squares.set_title(f"{unit_names(weights)[self.unit]}, {self.joint}'s window")
             squares.axis("off")
             curve.vlines(time, 0, row, color=COLOURS[0])
             curve.plot(time, row, "o", ms=4, color=COLOURS[0])

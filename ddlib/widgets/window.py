@@ -30,6 +30,8 @@ class SlidingWindow(LiveWidget):
         Window size -> `TorqueModel` of one network; two sizes or more.
     recording : Recording
         One run, with rests long enough for the largest window.
+    first : int, optional
+        The window size that is shown first. Default: the middle one.
     **options
         Passed on to `LiveWidget`.
     """
@@ -41,7 +43,13 @@ class SlidingWindow(LiveWidget):
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)
 
-    def __init__(self, models: Mapping[int, TorqueModel], recording: Recording, **options):
+    def __init__(
+        self,
+        models: Mapping[int, TorqueModel],
+        recording: Recording,
+        first: int | None = None,
+        **options,
+    ):
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
@@ -57,12 +65,12 @@ class SlidingWindow(LiveWidget):
             self._activity[width] = np.hstack(model.weights.activity(model.scaled(windows)))
             self._torque[width] = model.torque(windows)
         hidden = self._activity[max(models)].shape[-1] - len(JOINTS)
-        units = [*map(str, range(hidden)), *(joint[0] for joint in JOINTS)]
+        units = [*map(str, range(1, hidden + 1)), *(joint[0] for joint in JOINTS)]
         centre = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
         super().__init__(
             self._curves,
             [
-                width_choice(models),
+                width_choice(models, first),
                 Choice(
                     "sample",
                     "Centre of the window",

@@ -10,10 +10,11 @@ from scipy.signal import freqz
 from widget_pages import NEXT_FRAME, page_of, settings
 
 from ddlib.analysis import CLASSES, classify, savitzky_golay
+from ddlib.learning import Weights
 from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
 from ddlib.widgets.explorer import _FLOOR, _FREQUENCIES, FilterExplorer
-from ddlib.widgets.hinton import _diagram
+from ddlib.widgets.hinton import _diagram, unit_names
 from workshop.report import results
 
 CELLS = "weights of all units"
@@ -105,13 +106,14 @@ def test_diagram_holds_every_weight_once(models):
 
 # In a page without a kernel
 
+SHOWN = unit_names(Weights.random(1, 11)[0])  # hidden units are counted from 1
 CHOSEN = "document.querySelector('.hinton [aria-selected=true]').getAttribute('aria-label')"
 
 
 def assert_shown(page, explorer, models, **values):
     page.evaluate(NEXT_FRAME)
     f = weights_of(models, **values)
-    assert page.evaluate(CHOSEN) == f"{values['unit']}, {values['joint']}'s window"
+    assert page.evaluate(CHOSEN) == f"{SHOWN[values['unit']]}, {values['joint']}'s window"
     assert page.locator(".verdict").inner_text().endswith(f": {classify(f)}")
     cells = explorer.interpolate(**values)[CELLS]
     paths = [page.locator(f"svg.hinton .{sign}").get_attribute("d") for sign in SIGNS]
@@ -135,7 +137,7 @@ def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
         assert_shown(page, explorer, models, **values)
 
     def place(unit, joint):
-        label = f"{unit}, {joint}'s window"
+        label = f"{SHOWN[unit]}, {joint}'s window"
         box = page.locator(f'[role=gridcell][aria-label="{label}"]').bounding_box()
         return box["x"] + 0.3 * box["width"], box["y"] + 0.6 * box["height"]
 
@@ -157,7 +159,7 @@ def test_pointer_keys_menus_and_names_choose(tmp_path, visit, explorer, models):
 
     page.get_by_label("Window size").select_option(label="41 samples")
     page.get_by_label("Network").select_option(label="seed 6")
-    page.get_by_label("Unit", exact=True).select_option(label="hidden 9")
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 10")
     shows(width=41, seed=6, unit="hidden 9")
     for name, named in explorer.spec["presets"]["options"]:
         page.get_by_role("button", name=name, exact=True).click()

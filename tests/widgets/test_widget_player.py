@@ -111,7 +111,7 @@ def test_slider_diagram_and_menu(tmp_path, visit, player, model, rmss):
     shows(5, 3)
     page.locator("svg.hinton").press("ArrowDown")
     shows(5, 5)
-    page.get_by_label("Unit", exact=True).select_option(label="hidden 8")
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 9")
     shows(5, 8)
     assert not opened.problems
 

@@ -121,7 +121,7 @@ def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
     here = opened(tmp_path, visit, widget)
     page = here.page
     assert_shown(page, pair, "shoulder torque", "shoulder", False)
-    page.locator('[role=gridcell][aria-label="hidden 2, elbow\'s window"]').click(force=True)
+    page.locator('[role=gridcell][aria-label="hidden 3, elbow\'s window"]').click(force=True)
     assert_shown(page, pair, "hidden 2", "elbow", False)
     switch = page.get_by_label("Subtract the start")
     switch.press(" ")
@@ -138,7 +138,7 @@ def test_press_a_row_and_subtract_the_start(tmp_path, visit, widget, pair):
 @pytest.mark.browser
 def test_the_start_leaves_slowly(tmp_path, visit, widget, pair):
     page = visit(page_of(tmp_path / "page.html", widget)).page
-    page.get_by_label("Unit", exact=True).select_option(label="hidden 0")
+    page.get_by_label("Unit", exact=True).select_option(label="hidden 1")
     assert_shown(page, pair, "hidden 0", "shoulder", False)
     before = squares(page)
     page.get_by_label("Subtract the start").press(" ")

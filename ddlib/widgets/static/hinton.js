@@ -5,7 +5,7 @@ const BLOB = { width: 240, height: 62, gap: 8, side: 13 }; // of a unit, and its
 const CELLS = "weights of all units";
 
 function hintonOf(view) {
-  const { units, outputs, joints, reach, largest } = view.model.get("hinton");
+  const { units, names, outputs, joints, reach, largest } = view.model.get("hinton");
   const has = (name) => view.spec.parameters.some((p) => p.name === name);
   const rows = has("joint") ? joints : [""]; // what is chosen within a unit
   const samples = 2 * reach + 1;
@@ -28,7 +28,7 @@ function hintonOf(view) {
       ? { x: blob.x, y: blob.y + 24 + 18 * j, width: BLOB.width, height: 20 }
       : { x: blob.x, y: blob.y, width: BLOB.width, height: BLOB.height };
   const id = (k, j) => `${view.id}-unit-${k}-${j}`;
-  const words = (k, j) => (rows[j] ? `${units[k]}, ${rows[j]}'s window` : units[k]);
+  const words = (k, j) => (rows[j] ? `${names[k]}, ${rows[j]}'s window` : names[k]);
   const options = blobs.map((blob, k) =>
     rows.map((_, j) =>
       make("rect", { ...stripe(blob, j), id: id(k, j), class: "option", role: "gridcell", "aria-label": words(k, j) }),

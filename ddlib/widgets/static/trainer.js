@@ -145,7 +145,7 @@ function unitSheet(spec) {
   const cells = [...NAMES.map((name) => `${name} torque`), ...units];
   const place = sheet(0);
   const { el, pen } = place;
-  const [TALL, LOW, FOOT] = [150, 104, 16];
+  const [TALL, LOW, FOOT] = [160, 114, 16];
   const columns = () => (el.clientWidth < 480 ? 2 : 5);
   const boxOf = (c) => {
     const across = c < 2 ? 2 : columns();
@@ -179,7 +179,7 @@ function unitSheet(spec) {
     pen.textBaseline = "middle";
     cells.forEach((cell, c) => {
       const { left, top, wide, high } = boxOf(c);
-      const [first, last] = [top + 20, top + high - FOOT - 4];
+      const [first, last] = [top + 32, top + high - FOOT - 4]; // above: a name, the scale
       const middle = (first + last) / 2;
       const tallest = JOINTS.reduce((most, j) => all[2 * c + j].reduce((a, w) => Math.max(a, Math.abs(w)), most), 1e-9);
       pen.font = "13px system-ui, sans-serif";
@@ -209,11 +209,7 @@ function unitSheet(spec) {
         stroke(pen, colour, named ? 2.6 : 1.3, j ? [5, 3] : []);
       }
       pen.setLineDash([]);
-      pen.strokeStyle = colours.paper;
-      pen.lineWidth = 4;
-      pen.textAlign = "left";
-      pen.strokeText(`±${size}`, left + 3, first + 6); // upon curves
-      write(`±${size}`, left + 3, first + 6, "left", colours.ink);
+      write(`±${size}`, left, top + 24, "left", colours.soft);
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
     el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
