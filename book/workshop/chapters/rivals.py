@@ -310,11 +310,11 @@ def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988
 def _quoted() -> None:
     """The numbers of the prose."""
     study, untuned = results.read("tuned"), row("network of 1988", size=10)
-    named = {"network": study["reference"], "linear": "linear filter", "filters": study["own"],
-             "rubbing": _RUBBING, "planes": "local planes",
-             "identified": "identified", "recurrent": "recurrent"}  # fmt: skip
-    for short, name in named.items():
+    for short, name in (("network", study["reference"]), ("recurrent", "recurrent")):
         quote(f"rivals-{short}", np.median(_errors(name)))
+    medians = {name: np.median(_errors(name)) for name in _tuned()}
+    quote("rivals-ahead-all", sum(x < medians[study["reference"]] for x in medians.values()))
+    quote("rivals-identified-numbers", int(np.median(_tuned()["identified"]["count"])))
     for end, value in (("least", np.min), ("most", np.max)):
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
         quote(f"rivals-linear-{end}", value(_over("linear filter")))
@@ -323,7 +323,8 @@ def _quoted() -> None:
     quote("rivals-lagrangian-days", len(won))
     quote("rivals-recurrent-training", np.median(_errors("recurrent", "training")))
     quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
-    for short, name in (("identified", "identified"), ("nearest", "nearest case")):
+    named = {"identified": "identified", "nearest": "nearest case", "rubbing": _RUBBING}
+    for short, name in named.items():
         quote(f"rivals-ratio-{short}", np.median(_over(name)))
     quote("rivals-times-nearest", np.median(_tuned()["nearest case"]["count"]) / study["budget"])
     for part in ("inside", "outside"):
@@ -338,6 +339,8 @@ def _said() -> None:
     """What stands behind words of the prose."""
     study = results.read("tuned")
     stated("rivals-equations-ahead", _over("identified").max() < 0.8)
+    less = _over(study["own"], against="identified")
+    stated("rivals-filters-ahead", np.median(less) < 1)
     draw = _over("linear filter")
     stated("rivals-linear-draws", draw.min() < 1 < draw.max())
     hull = [_over("linear filter", part).max() for part in ("inside", "outside")]
