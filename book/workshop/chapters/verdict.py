@@ -108,9 +108,9 @@ def _names() -> Table:
                 found = start.shares_beside(reading, size, name)
                 own, *others = (100 * x.mean() for x in found.values())
                 shares += [f"{own:.0f}", " and ".join(f"{x:.0f}" for x in others)]
-            rows.append((f"{reading}, ±{size:g}", *shares))
-    heads = "acceleration", "by unrelated torques", "velocity", "by unrelated torques"
-    return Table(("reading and start", *heads), rows)
+            rows.append((reading, f"±{size:g}", *shares))
+    heads = "acceleration, %", "by unrelated torques", "velocity, %", "by unrelated torques"
+    return Table(("reading", "start", *heads), rows)
 
 
 def _inertias() -> Table:
@@ -343,7 +343,7 @@ def changed_by_reading() -> Measured:
     return Measured(changed / len(groups), f"{changed} of {len(groups)} sentences")
 
 
-def carriedover(arm: str) -> Measured:
+def carried_over(arm: str) -> Measured:
     """Chance that shuffled verdicts agree as often as those on two arms do."""
     found = _agreement(_pairs_on(arm))
     text = f"{found.same} of {found.pairs} alike, {found.expected:.1f} by chance"
