@@ -52,6 +52,9 @@ _LISTED = {
     "not testable": "no measurement here could decide, or an assumed parameter does",
 }
 
+BOTH = {"cells of Table 4-1": "Table 4-1", "largest weights": "largest weight has"}
+"""Two kinds of printed numbers, and words of their cards."""
+
 _SETS = ("random set A", "random set B", "trajectory 6")  # The data sets of Table 6-1
 
 
@@ -105,6 +108,22 @@ def counts() -> Table:
     rows["methods of others"] = tally(methods, Claim.judge)
     cells = [(name, sum(found.values()), *found.values()) for name, found in rows.items()]
     return Table(("cards", "all", *WORDS), cells)
+
+
+def findings() -> Table:
+    """How many findings of this book held, failed and are open."""
+    found = [card.word(Claim.judge).partition(" (")[0] for card in of_kind("own")]
+    words = "held", "failed", "open"
+    return Table(("findings", *words), [(len(found), *map(found.count, words))])
+
+
+def both() -> Table:
+    """How many cells of Table 4-1 and largest weights each reading reproduces."""
+    rows = []
+    for name, words in BOTH.items():
+        total, held = cells_by_reading(words)
+        rows.append((name, total, *held.values()))
+    return Table(("reproduced", "printed", *SETUPS), rows)
 
 
 def cells_by_reading(words: str) -> tuple[int, dict[str, int]]:

@@ -300,7 +300,7 @@ def parity_drawn() -> Illustration:
     return illustrate(draw, alt, 6.6, 2.5)
 
 
-def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988") -> np.ndarray:
+def over(name: str, part: str = "trajectory 6", against: str = "network of 1988") -> np.ndarray:
     """A rival's error over another's, day by day."""
     a, b = _errors(name, part), _errors(against, part)
     days = min(len(a), len(b))
@@ -310,24 +310,25 @@ def _over(name: str, part: str = "trajectory 6", against: str = "network of 1988
 def _quoted() -> None:
     """The numbers of the prose."""
     study, untuned = results.read("tuned"), row("network of 1988", size=10)
-    named = {"network": study["reference"], "linear": "linear filter", "filters": study["own"],
-             "rubbing": _RUBBING, "planes": "local planes",
-             "identified": "identified", "recurrent": "recurrent"}  # fmt: skip
-    for short, name in named.items():
+    for short, name in (("network", study["reference"]), ("recurrent", "recurrent")):
         quote(f"rivals-{short}", np.median(_errors(name)))
+    medians = {name: np.median(_errors(name)) for name in _tuned()}
+    quote("rivals-ahead-all", sum(x < medians[study["reference"]] for x in medians.values()))
+    quote("rivals-identified-numbers", int(np.median(_tuned()["identified"]["count"])))
     for end, value in (("least", np.min), ("most", np.max)):
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
-        quote(f"rivals-linear-{end}", value(_over("linear filter")))
-    won = _over("Lagrangian network") < 1
+        quote(f"rivals-linear-{end}", value(over("linear filter")))
+    won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))
     quote("rivals-recurrent-training", np.median(_errors("recurrent", "training")))
     quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
-    for short, name in (("identified", "identified"), ("nearest", "nearest case")):
-        quote(f"rivals-ratio-{short}", np.median(_over(name)))
+    named = {"identified": "identified", "nearest": "nearest case", "rubbing": _RUBBING}
+    for short, name in named.items():
+        quote(f"rivals-ratio-{short}", np.median(over(name)))
     quote("rivals-times-nearest", np.median(_tuned()["nearest case"]["count"]) / study["budget"])
     for part in ("inside", "outside"):
-        quote(f"rivals-{part}", np.median(_over("linear filter", part)))
+        quote(f"rivals-{part}", np.median(over("linear filter", part)))
     for part in _PARTS:
         fewer, all_of_them = better(part).text.split(":")[0].split(" of ")
         quote(f"rivals-better-{part}" if part != "trajectory 6" else "rivals-better", int(fewer))
@@ -337,29 +338,31 @@ def _quoted() -> None:
 def _said() -> None:
     """What stands behind words of the prose."""
     study = results.read("tuned")
-    stated("rivals-equations-ahead", _over("identified").max() < 0.8)
-    draw = _over("linear filter")
+    stated("rivals-equations-ahead", over("identified").max() < 0.8)
+    less = over(study["own"], against="identified")
+    stated("rivals-filters-ahead", np.median(less) < 1)
+    draw = over("linear filter")
     stated("rivals-linear-draws", draw.min() < 1 < draw.max())
-    hull = [_over("linear filter", part).max() for part in ("inside", "outside")]
+    hull = [over("linear filter", part).max() for part in ("inside", "outside")]
     stated("rivals-linear-hull", max(hull) < 1)
-    stated("rivals-memory-behind", _over("nearest case").min() > 1)
+    stated("rivals-memory-behind", over("nearest case").min() > 1)
     within = [n for n, one in _tuned().items() if one["within"] and n != study["own"]]
-    clear = {name for name in within if _over(name).max() < 1}
+    clear = {name for name in within if over(name).max() < 1}
     stated("rivals-clearly", clear == {"identified", "table of configurations", _RUBBING})
-    stated("rivals-rubbing-ahead", max(_over(_RUBBING, part).max() for part in _PARTS) < 0.9)
-    stated("rivals-planes-ahead", _over("local planes").max() < 1)
-    networks = {name for name in within if np.median(_over(name)) < 1} & {
+    stated("rivals-rubbing-ahead", max(over(_RUBBING, part).max() for part in _PARTS) < 0.9)
+    stated("rivals-planes-ahead", over("local planes").max() < 1)
+    networks = {name for name in within if np.median(over(name)) < 1} & {
         "on states",
         "second-order steps",
     }
     stated("rivals-networks-among", len(networks) == 2)
     cells = [setting[1] for setting in _tuned()["table of configurations"]["setting"]]
     stated("rivals-one-cell", set(cells) == {1})
-    stated("rivals-recurrent-behind", _over("recurrent").min() > 1)
+    stated("rivals-recurrent-behind", over("recurrent").min() > 1)
     turned = [better(part).value > better().value for part in ("inside", "outside")]
     stated("rivals-square-turns", all(turned))
     others = [name for name in within if name != study["reference"] and name not in clear]
-    stated("rivals-others-not", all(_over(name).max() > 1 for name in others))
+    stated("rivals-others-not", all(over(name).max() > 1 for name in others))
 
 
 def tested(rival: str, part: str = "torque", split: str = "loader") -> np.ndarray:
