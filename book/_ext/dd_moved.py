@@ -15,7 +15,10 @@ from pathlib import Path
 import yaml
 
 OLD = Path(__file__).with_name("old_anchors.yml")
-PAGES = {"book/why-smooth-filters": "book/whose-filters"}  # and evidence-NAME: evidence/NAME
+PAGES = {
+    "book/why-smooth-filters": "book/whose-filters",
+    "book/joints-three-and-four": "book/evidence/joints-three-and-four",
+}  # and evidence-NAME: evidence/NAME
 STUB = (
     '<!doctype html><html lang="en"><meta charset="utf-8"><title>This page has moved</title>'
     '<link rel="icon" href="../_static/favicon.svg">'

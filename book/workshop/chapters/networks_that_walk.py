@@ -1,4 +1,4 @@
-"""The lesson *Networks that make robots walk*: its numbers, first figure, widget, and checks."""
+"""The lesson *Motor models of walking robots*: its numbers, figure of copies, widget, checks."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def _quoted() -> None:
 
 
 def by_lag() -> figures.Illustration:
-    """The first figure: answers to the error by its age, of both networks."""
+    """Answers to the error by its age, of both networks and of copies."""
     own, memory = _own("copies"), _of_memory(*_SMALL).mean(0)
     age = 1e3 * STEP * np.arange(_REACH)
     lines = {
@@ -243,7 +243,10 @@ def check(number: int, mine, left: float | None = None) -> None:
         slips = [(85 / 0.011, "divide or multiply?"), (85 * 11, "the delay is in milliseconds.")]
         judge(mine, 85 * 0.011, "stiffness times delay.", slips, "Expand the late error in d.")
     elif number == 2:
-        slips = [(Between(0, left), "more is left."), (Between(left, 1), "too much.")]
+        slips = [
+            (Between(0, left), "the share is larger."),
+            (Between(left, 1), "the share is smaller."),
+        ]
         judge(mine, left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2)
     else:
 
@@ -264,15 +267,15 @@ class LateSpring(CurveWidget):
         super().__init__(
             _jumped,
             [
-                Choice("robot", "Network", ["Go1", "ANYmal"], "Go1"),
+                Choice("robot", "Network of", ["Go1", "ANYmal"], "Go1"),
                 Choice(
-                    "old", "The jump is so old", {n: f"{5 * n} ms" for n in range(25)}, 4, "slider"
+                    "old", "Age of the jump", {n: f"{5 * n} ms" for n in range(25)}, 0, "slider"
                 ),
                 Choice("size", "Size of the jump", {s: f"{s:g} rad" for s in _SIZES}, 0.1),
             ],
             [
                 Panel(
-                    "Error by its age, rad",
+                    "Position error, by how old it is, rad",
                     ("error",),
                     "age, ms",
                     age,
@@ -283,15 +286,21 @@ class LateSpring(CurveWidget):
                     "Torque since the jump, N m", {"torque": "so far"}, "time, ms", age, y_fit=True
                 ),
                 Panel(
-                    "Answer by age, N m/rad", ("answer",), "age, ms", age, kind="stems", y_fit=True
+                    "What the torque listens to, N m/rad",
+                    ("answer",),
+                    "age, ms",
+                    age,
+                    kind="stems",
+                    y_fit=True,
                 ),
             ],
             **{
-                "title": "A spring that is late",
+                "title": "A target jumps",
                 "alt": "The error's history, the torque since it jumped, and the share of each "
                 "sample in the answer.",
-                "note": "Positive torque turns the joint towards its target. The joint is held. "
-                "What comes after the jump's age is not known yet: the line is level there.",
+                "note": "The joint is held. Positive torque would turn it towards its target. "
+                "The line is level from the jump's age on, because the future is not known yet. "
+                "Bars on the right: by how much the torque would change with an error of that age.",
                 **options,
             },
         )
