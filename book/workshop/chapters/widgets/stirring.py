@@ -40,8 +40,8 @@ _ARM = JOINT_DAMPING.arm
 _NOTE = (
     "The bars show how far off the hand is (RMS over three seconds, mm). Each bar is for other "
     "torques sent in advance: none, those of the arm's exact equations, or those of a network that "
-    "learnt pick-and-place, circles or both. The hand starts at the far point and goes round "
-    "counter-clockwise; a proportional controller corrects it."
+    "learnt pick-and-place, circles or both (the median of ten, trained by the book's solver). The "
+    "hand starts at the far point and goes round counter-clockwise; a controller corrects it."
 )
 
 
