@@ -18,6 +18,7 @@ OLD = Path(__file__).with_name("old_anchors.yml")
 PAGES = {  # and evidence-NAME: evidence/NAME
     "book/why-smooth-filters": "book/whose-filters",
     "book/real-two-link-arm": "book/real-arm",
+    "book/joints-three-and-four": "book/evidence/joints-three-and-four",
 }
 STUB = (
     '<!doctype html><html lang="en"><meta charset="utf-8"><title>This page has moved</title>'

@@ -1,4 +1,4 @@
-"""*Joints three and four*: the lesson's numbers, figure, judges; errors, growth and filters."""
+"""*Joints three and four*, an evidence page: errors of arms of more joints, growth and filters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ddlib.dynamics import DD_ARM_II_IN_SPACE, locked, regressor
 from ddlib.figures import (
     COLOURS,
     DASHES,
@@ -20,8 +19,7 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
-from ddlib.tables import quote, significant
-from workshop.chapters.exercises import judge
+from ddlib.tables import Table, quote, significant, spread
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured, bootstrap, judged, median
@@ -95,11 +93,6 @@ def gains_by_torque(inertia, real, unrelated, label: str, alt: str) -> Illustrat
         legend_above(figure, *axes[0].get_legend_handles_labels())
 
     return illustrate(draw, alt, 6.4, 2.7)
-
-
-def states(joints: int, samples: int, units: int = 10) -> np.ndarray:
-    """Test errors on random states, one for each seed."""
-    return np.array(_row("random states", joints=joints, units=units, samples=samples)["test"])
 
 
 def two_joints(reading: str, motions: int, kind: str = "closed loop", taps: int = 5) -> np.ndarray:
@@ -213,12 +206,30 @@ def _spread(x) -> str:
     return f"{significant(float(np.median(x)), 2)} ({min(x):.2g} to {max(x):.2g})"
 
 
-# --- the lesson -----------------------------------------------------------------------------
+# --- the page's numbers and figure ---------------------------------------------------------
 
 
-def _further(each) -> float:
-    """Error of joints 3 and 4 together, in the median of the draws of errors by joint."""
-    return float(np.median(np.sqrt(np.square(each)[:, 2:].mean(1))))
+def _further(each) -> np.ndarray:
+    """Errors of joints 3 and 4 together, from errors by joint, one for each draw."""
+    return np.sqrt(np.square(each)[:, 2:].mean(1))
+
+
+def four_joints_table() -> Table:
+    """Errors of four joints, median and range: by training, and of rivals on the same draws."""
+    by_joint = {
+        "as in the report": _row(_DAMPED, joints=4, motions=5)["by joint"],
+        "training chosen": results.read("joints-chosen")["by joint"],
+        "twenty motions": _row(_DAMPED, joints=4, motions=20)["by joint"],
+    }
+    rows = [
+        (name, spread(each), spread(_further(by_joint[name])) if name in by_joint else "")
+        for name, each in _draws().items()
+    ]
+    others = results.read("loop-conditions")["windows"]
+    for windows in (750, 300):
+        found = spread(others[f"{windows} of twenty"])
+        rows.append((f"twenty motions, {windows} windows, other draws", found, ""))
+    return Table(("four joints, error in the test", "all joints", "joints 3 and 4"), rows)
 
 
 def _draws() -> dict[str, np.ndarray]:
@@ -235,28 +246,10 @@ def _draws() -> dict[str, np.ndarray]:
 def _quoted() -> None:
     """The numbers of the prose."""
     quote("joints-owed-joint-4", 100 * _read("interactions")["4"][3])
-    for n in (2, 4):
-        draw = np.random.default_rng(1).uniform(-3, 3, (3, 60, n))
-        matrix = regressor(locked(DD_ARM_II_IN_SPACE, n), *draw)
-        quote(f"joints-rank-{n}", int(np.linalg.matrix_rank(matrix.reshape(-1, 10 * n))))
     quote("joints-seeds", _read("seeds"))
-    for what in ("training", "test", "linear"):
-        quote(f"joints-{what}-4-5", np.median(errors(4, 5, what)))
-    for n, m in ((7, 5), (7, 80), (2, 80)):
-        quote(f"joints-test-{n}-{m}", np.median(errors(n, m)))
-    chosen = results.read("joints-chosen")
-    for name, statistic in (("", np.median), ("-least", min), ("-most", max)):
-        quote(f"joints-again{name}", statistic(chosen["test"]))
-    quote("joints-again-ahead", int((chosen["test"] < errors(4, 5, "linear")).sum()))
-    quote("joints-again-further", _further(chosen["by joint"]))
-    for m in (5, 20):
-        row = _row(_DAMPED, joints=4, motions=m)
-        quote(f"joints-further-{m}", _further(row["by joint"]))
-    others = results.read("loop-conditions")["windows"]
-    quote("joints-plain", np.median(others["as it is"]))
-    quote("joints-chosen", np.median(others["chosen"]))
-    quote("joints-known-4-5", np.median(_draws()["equations"]))
-    quote("joints-tied", couplings().value)
+    quote("joints-test-7-5", np.median(errors(7, 5)))
+    chosen = results.read("joints-chosen")["test"]
+    quote("joints-again-ahead", int((chosen < errors(4, 5, "linear")).sum()))
     costs = _read("costs")[-1]
     quote("joints-cost-network", costs["network"])
     quote("joints-cost-general", costs["Newton-Euler, general"])
@@ -273,7 +266,12 @@ def _said() -> None:
     stated("joints-again-helps", resampled(chosen / plain) < 1)
     by_joint = results.read("joints-chosen")["by joint"]
     twenty = _row(_DAMPED, joints=4, motions=20)["by joint"]
-    stated("joints-again-short", bool(_further(by_joint) > 0.22 > _further(twenty)))
+    stated(
+        "joints-again-short",
+        bool(np.median(_further(by_joint)) > 0.22 > np.median(_further(twenty))),
+    )
+    few, many = (np.median(others[f"{n} of twenty"]) for n in (300, 750))
+    stated("joints-few-windows", bool(few > 2 * many))
     stated("joints-linear-first", resampled(plain / draws["linear filter"]) > 1)
     stated("joints-breaks-at-seven", errors(7, 5) > 1)
     stated("joints-known-less", bool(np.median(draws["equations"]) < np.median(chosen)))
@@ -307,27 +305,5 @@ def _answer_figure() -> Illustration:
 
 
 def show(name: str) -> Illustration:
-    """A figure of the lesson."""
+    """The first figure, "answer"."""
     return {"answer": _answer_figure}[name]()
-
-
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
-    if number == 1:
-        slips = [((7, 28), "the constant is missing in the linear one."),
-                 ((8, 57), "each product counts once: of 1 and 2, and of 2 and 1.")]  # fmt: skip
-        judge(mine, (8, 36), "and five equations are few.", slips, "Count products.", 0.001)
-    elif number == 2:
-        held = DD_ARM_II_IN_SPACE.inverse_dynamics(*np.zeros((3, 7)))
-        right = 1 + np.abs(held).argmax(), (np.abs(held) < 1e-9).sum()
-        judge(mine, right, "axes that lie level.", [], "About which axes does gravity turn?", 0.001)
-    else:
-        tried, drawn = given
-
-        def good(extents):
-            extents = np.asarray(extents, float)
-            if extents.shape != drawn(5, 0).shape or extents.min() < 0 or extents.max() > 45:
-                return False
-            return sum(tried(extents) < tried(drawn(5, seed)) for seed in range(1, 11)) >= 9
-
-        judge(mine, good, "five corners span the cube.", [], "Too many random draws do better.")

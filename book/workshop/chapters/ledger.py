@@ -34,7 +34,7 @@ from workshop.report.evidence.cards import (
 )
 from workshop.report.evidence.claims import Claim, load
 from workshop.report.evidence.verdicts import DECIDED, share_told
-from workshop.report.evidence.wall import Tiles, mark, window
+from workshop.report.evidence.wall import Tiles, home, mark, window
 
 _FILE = BOOK / "errata.yml"  # Where the errata are kept
 
@@ -349,7 +349,7 @@ def nearest_the_edge(claims: Iterable[Claim], count: int = 10) -> Table:
     )
     rows = [
         (
-            f"{claim.claim} ({{doc}}`{claim.chapter}`)",
+            f"{claim.claim} ({{doc}}`{home(claim)}`)",
             worded(claim, claim.judge()),
             worded(claim, ", ".join(f"{share_told(x)} {name}" for name, x in shares.items())),
         )

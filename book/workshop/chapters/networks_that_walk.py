@@ -1,4 +1,4 @@
-"""The lesson *Networks that make robots walk*: its numbers, first figure, widget, and checks."""
+"""The lesson *Motor models of walking robots*: its numbers, figure of copies, widget, checks."""
 
 from __future__ import annotations
 
@@ -146,27 +146,15 @@ def _middle(g) -> np.ndarray:
 
 def _quoted() -> None:
     """The numbers of the lesson's prose."""
-    quote("walk-copy-off", 100 * moments_agree().value)
-    middle, late = _middle(_rows("copies")), _named(_rows("fixed"))["delay"]
-    quote("walk-copy-least", 100 * middle.min())
-    quote("walk-copy-most", 100 * middle.max())
-    for kind in ("longer", "held"):
-        quote(f"walk-{kind}-off", 100 * np.abs(_middle(_rows(kind)) - _middle(_own(kind))).max())
-    slow = _middle(_rows("slow"))
-    quote("walk-slow-least", 100 * slow.min())
-    quote("walk-slow-most", 100 * slow.max())
-    quote("walk-fixed-least", late.min())
-    quote("walk-fixed-most", late.max())
     quote("walk-fixed-off", 100 * moments_agree("fixed", ["stiffness", "net damping"]).value)
-    for name, of, speed in (("go1", _of_go1, -15.0), ("anymal", _of_memory, 8.0)):
-        quote(f"walk-quick-{name}", _moments(of(0.02, 2.0, speed).mean(0))[0])
+    quote("walk-quick-go1", _moments(_of_go1(0.02, 2.0, -15.0).mean(0))[0])
     shuffled = _rows("shuffled")[:, :3]
     quote("walk-null-bar", np.abs(shuffled).max())
     quote("walk-null-stiffness", np.abs(shuffled.sum(1)).max())
 
 
 def by_lag() -> figures.Illustration:
-    """The first figure: answers to the error by its age, of both networks."""
+    """Answers to the error by its age, of both networks and of copies."""
     own, memory = _own("copies"), _of_memory(*_SMALL).mean(0)
     age = 1e3 * STEP * np.arange(_REACH)
     lines = {
@@ -211,6 +199,22 @@ def over_sizes() -> tuple[Sequence[str], list]:
     return (*heads, "damping, N m s/rad"), rows
 
 
+def shares() -> tuple[Sequence[str], list]:
+    """Table of the middle bar's share, stiffness and delay: the network, and ranges of copies."""
+    rows = [("network", *_ends(_own("copies")[None]))]
+    for kind, name in list(_KINDS.items())[:-1]:
+        rows.append((name, *_ends(_rows(kind))))
+    heads = ("the Go1's network and its copies", "middle bar, % of K", "K, N m/rad")
+    return (*heads, "d, ms"), rows
+
+
+def _ends(g) -> list[str]:
+    values = (100 * _middle(g), 0), *((part, 1) for part in _moments(g).T[:2])
+    told = [[f"{x:.{n}f}" for x in (v.min(), v.max())] for v, n in values]
+    cells = (low if low == high else f"{low} to {high}" for low, high in told)
+    return [cell.replace("-", "−") for cell in cells]
+
+
 def copies() -> tuple[Sequence[str], list]:
     """Table of the network, and of the ranges of its copies and of the nulls."""
     study = _study()
@@ -243,7 +247,10 @@ def check(number: int, mine, left: float | None = None) -> None:
         slips = [(85 / 0.011, "divide or multiply?"), (85 * 11, "the delay is in milliseconds.")]
         judge(mine, 85 * 0.011, "stiffness times delay.", slips, "Expand the late error in d.")
     elif number == 2:
-        slips = [(Between(0, left), "more is left."), (Between(left, 1), "too much.")]
+        slips = [
+            (Between(0, left), "the share is larger."),
+            (Between(left, 1), "the share is smaller."),
+        ]
         judge(mine, left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2)
     else:
 
@@ -264,15 +271,15 @@ class LateSpring(CurveWidget):
         super().__init__(
             _jumped,
             [
-                Choice("robot", "Network", ["Go1", "ANYmal"], "Go1"),
+                Choice("robot", "Network of", ["Go1", "ANYmal"], "Go1"),
                 Choice(
-                    "old", "The jump is so old", {n: f"{5 * n} ms" for n in range(25)}, 4, "slider"
+                    "old", "Age of the jump", {n: f"{5 * n} ms" for n in range(25)}, 0, "slider"
                 ),
                 Choice("size", "Size of the jump", {s: f"{s:g} rad" for s in _SIZES}, 0.1),
             ],
             [
                 Panel(
-                    "Error by its age, rad",
+                    "Position error, by how old it is, rad",
                     ("error",),
                     "age, ms",
                     age,
@@ -280,25 +287,35 @@ class LateSpring(CurveWidget):
                     y_range=(0.0, 0.8),
                 ),
                 Panel(
-                    "Torque since the jump, N m", {"torque": "so far"}, "time, ms", age, y_fit=True
+                    "Torque, % of that 120 ms after the jump",
+                    {"torque": "so far"},
+                    "time, ms",
+                    age,
+                    y_range=(-10.0, 140.0),
                 ),
                 Panel(
-                    "Answer by age, N m/rad", ("answer",), "age, ms", age, kind="stems", y_fit=True
+                    "What the torque listens to, N m/rad",
+                    ("answer",),
+                    "age, ms",
+                    age,
+                    kind="stems",
+                    y_fit=True,
                 ),
             ],
             **{
-                "title": "A spring that is late",
+                "title": "A target jumps",
                 "alt": "The error's history, the torque since it jumped, and the share of each "
                 "sample in the answer.",
-                "note": "Positive torque turns the joint towards its target. The joint is held. "
-                "What comes after the jump's age is not known yet: the line is level there.",
+                "note": "The joint is held. Positive torque would turn it towards its target. "
+                "The line is level from the jump's age on, because the future is not known yet. "
+                "Bars below: by how much the torque would change with an error of that age.",
                 **options,
             },
         )
 
 
 def _jumped(robot: str, old: int, size: float) -> dict[str, np.ndarray]:
-    """The error by age, the torque since the jump, and the gradient by age."""
+    """The error by age, the torque since the jump (%), and the gradient by age."""
     reach = _JUMPS + 1
     error = np.where(np.arange(reach) <= old, size, 0.0)
     steps = np.concatenate([np.zeros(reach + 16), np.full(reach, size)])
@@ -318,5 +335,6 @@ def _jumped(robot: str, old: int, size: float) -> dict[str, np.ndarray]:
             _remembered(np.stack([now + s * push, np.zeros_like(push)], -1))[:, -1] for s in (1, -1)
         ]
         answer = (ends[0] - ends[1]) / 2e-5
+    told = 100 * told / told[-1]
     so_far = np.where(np.arange(reach) <= old, told, np.nan)
     return {"error": error, "torque": np.nan_to_num(so_far, nan=told[old]), "answer": answer}

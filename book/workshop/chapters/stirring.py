@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from ddlib.dynamics import reach
 from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
-from ddlib.tables import quote
+from ddlib.tables import Table, quote, spread
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from workshop.beyond.studies.loop.run_time_parts import exact
 from workshop.chapters.exercises import judge
@@ -26,9 +25,13 @@ _DOTS = {
 }
 
 
+_BY_DESCENT = "network: pick-and-place, by descent"
+
+
 def _traded() -> Illustration:
     """The hand's errors on one family against those on the other: a dot for each network."""
     points = {told: [hand(name, m) for m in _FAMILIES] for name, told in _DOTS.items()}
+    points[_BY_DESCENT] = [np.array(_descended()[m]["network"]) for m in _FAMILIES]
     nothing = [hand("none", m)[0] for m in _FAMILIES]
 
     def draw(figure: Figure):
@@ -36,7 +39,7 @@ def _traded() -> Illustration:
         axis.set(xscale="log", yscale="log")
         axis.axvline(nothing[0], color=FAINT, ls="--", lw=1)
         axis.axhline(nothing[1], color=FAINT, ls="--", lw=1)
-        for (name, pair), colour, marker in zip(points.items(), COLOURS, "os^D"):
+        for (name, pair), colour, marker in zip(points.items(), COLOURS, "os^DX"):
             look = {"color": colour, "ls": "", "ms": 6, "mew": 0, "alpha": 0.85}
             axis.plot(*pair, marker, label=name, **look)
         axis.set(xlabel="error of the hand on pick-and-place, mm", ylabel="on circles, mm")
@@ -59,8 +62,38 @@ def _traded() -> Illustration:
 
 
 def show(name: str) -> Illustration:
-    """The lesson's first figure, "traded"."""
+    """The lesson's figure of ten days, "traded"."""
     return {"traded": _traded}[name]()
+
+
+def hands_table() -> Table:
+    """Errors of the hand on both families, by what gave the torques in advance."""
+    rows = [("none", *(f"{hand('none', motion)[0]:.1f}" for motion in _FAMILIES[::-1]))]
+    filters = {"linear filter, pick and place": "linear filter: pick-and-place"}
+    for name, told in (_DOTS | filters).items():
+        rows.append((told, *(spread(hand(name, motion)) for motion in _FAMILIES[::-1])))
+    of_descent = [_descended()[motion]["network"] for motion in _FAMILIES[::-1]]
+    rows.append((_BY_DESCENT, *map(spread, of_descent)))
+    return Table(("torques in advance", "on circles, mm", "on pick-and-place, mm"), rows)
+
+
+def stopped_table() -> Table:
+    """Errors of the hand with networks that stopped early, and after 60 steps."""
+    rows = []
+    for name, told in (("none", "none"), ("chosen", "stopped early"), ("60", "after 60 steps")):
+        cells = [np.median(_stopped()["hands"][motion][name]) for motion in _FAMILIES[::-1]]
+        rows.append((told, *(f"{x:.1f}" for x in cells)))
+    return Table(("torques in advance", "on circles, mm", "on pick-and-place, mm"), rows)
+
+
+def _descended() -> dict:
+    """The hand's errors with networks of pick-and-place by the report's descent."""
+    return results.read("stirring-descent")["hands"]
+
+
+def _stopped() -> dict:
+    """What the study of early stopping found under joint damping."""
+    return results.read("loop-conditions")["stopped"]["joint damping"]
 
 
 def error(
@@ -105,40 +138,26 @@ def _median(learnt: str, asked: str, rival: str = "network") -> float:
 
 def _quoted() -> None:
     """The numbers of the prose."""
-    for key, name in zip(("pick", "circles", "both", "known"), _DOTS):
-        for short, motion in zip(("pick", "circles"), _FAMILIES):
-            quote(f"stir-hand-{key}-{short}", np.median(hand(name, motion)))
     nothing = [float(hand("none", motion)[0]) for motion in _FAMILIES]
-    quote("stir-hand-none-pick", nothing[0])
-    quote("stir-hand-none-circles", nothing[1])
     worse = hand("network, pick and place", "circles") > nothing[1]
     quote("stir-worse-count", int(worse.sum()))
-    quote("stir-worse-of", len(worse))
-    covered = _row()["coverage"]
-    for key, family in zip(("pick", "circles"), _FAMILIES):
-        for part in ("all", "velocities"):
-            for kind, short in (("other family", "share"), ("same family", "same")):
-                share = covered[part][family][kind]["shared"]
-                quote(f"stir-{short}-{key}-{part}", 100 * share)
+    shared = _row()["coverage"]["all"]["circles"]
+    for kind, short in (("other family", "share"), ("same family", "same")):
+        quote(f"stir-{short}-circles-all", 100 * shared[kind]["shared"])
     for rival in ("network", "identified"):
-        for key, (learnt, asked) in {"": _FAMILIES, "-back": _FAMILIES[::-1]}.items():
-            ratio = _median(learnt, asked, rival) / _median(asked, asked, rival)
-            quote(f"stir-ratio-{rival}{key}", ratio)
+        ratio = _median(*_FAMILIES, rival) / _median(*_FAMILIES[1:] * 2, rival)
+        quote(f"stir-ratio-{rival}", ratio)
     quote("stir-ratio-both", _median("both", "circles") / _median(*_FAMILIES[1:] * 2))
     quote("stir-ratio-both-back", _median("both", "pick and place") / _median(*_FAMILIES[:1] * 2))
     quote("stir-network-circles", _median(*_FAMILIES))
     quote("stir-network-small", _median("pick and place", "small circles"))
     quote("stir-both-small", _median("both", "small circles"))
-    hands = results.read("loop-conditions")["stopped"]["joint damping"]["hands"]
-    for key, model in (("chosen", "chosen"), ("sixty", "60")):
-        for short, motion in zip(("pick", "circles"), _FAMILIES):
-            quote(f"stir-{key}-{short}", np.median(hands[motion][model]))
     quote("stir-steps", JOINT_DAMPING.steps)
-    quote("stir-stop-none", np.median(hands["circles"]["none"]))
-    quote("stir-twenty", np.median(hands["circles"]["twenty circles"]))
-    quote("stir-twenty-known", np.median(hands["circles"]["identified"]))
-    quote("stir-reach-low", reach(JOINT_DAMPING.arm)[0])
-    quote("stir-reach-high", reach(JOINT_DAMPING.arm)[1])
+    quote("stir-twenty", np.median(_stopped()["hands"]["circles"]["twenty circles"]))
+    helping = np.array(_descended()["circles"]["network"]) < nothing[1]
+    quote("stir-descent-count", int(helping.sum()))
+    for key, name in (("five", ""), ("twenty", "-more-motions")):
+        quote(f"stir-joints-{key}", claims.measured(f"joints-three-and-four{name}").value)
 
 
 def _said() -> None:
@@ -151,10 +170,12 @@ def _said() -> None:
     of_pick = resampled(hand("network, pick and place"))
     stated("stir-worse-than-none", of_pick > hand("none")[0])
     known, own = hand("identified, pick and place"), hand("network, circles")
-    stated("stir-carries", resampled(known) < resampled(own))
+    descended = _descended()["circles"]
+    others = resampled(own), resampled(descended["network"])
+    stated("stir-carries", resampled(known) < np.minimum(*others))
     stopped = claims.measured("stirring-hand-worse-stopped").replicates
     stated("stir-stopped-helps", stopped < 1)
-    kept = results.read("loop-conditions")["stopped"]["joint damping"]
+    kept = _stopped()
     stated("stir-never-sixty", 60 not in kept["steps"])
     early, late = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
     stated("stir-stopped-loses-nothing", early < 1.1 * late)
@@ -166,6 +187,14 @@ def _said() -> None:
     small = draws(pick, "small circles")
     stated("stir-small-known", 2 * small < draws(pick, circles))
     stated("stir-small-worse", small > 1.5 * draws("both", "small circles"))
+    stated("stir-descent-helps", others[1] < descended["none"][0])
+    linear = np.median(hand("linear filter, pick and place"))
+    stated("stir-descent-linear", (0.8 * linear < others[1]) & (others[1] < 1.25 * linear))
+    five, twenty = (
+        claims.measured(f"joints-three-and-four{name}").replicates for name in ("", "-more-motions")
+    )
+    stated("stir-joints-fail", five > 0.22)
+    stated("stir-joints-do", twenty < 0.22)
     covered = _row()["coverage"]
     shared = {
         (part, family): [
@@ -176,7 +205,7 @@ def _said() -> None:
     }
     stated("stir-apart", all(shared["all", f][0] < 0.1 * shared["all", f][1] for f in _FAMILIES))
     new, old = (shared["velocities", family] for family in (circles, pick))
-    stated("stir-velocities-new", new[0] < 0.6 * new[1])
+    stated("stir-velocities-new", new[0] < 0.5 and new[0] < 0.6 * new[1])
     stated("stir-velocities-back", old[0] > 0.8 * old[1])
 
 

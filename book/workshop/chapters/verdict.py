@@ -24,7 +24,7 @@ from workshop.report.evidence.cards import by_reading, of_kind, tally, worded
 from workshop.report.evidence.claims import SECTIONS, Claim, load
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
-from workshop.report.evidence.wall import window
+from workshop.report.evidence.wall import home, window
 
 # How a bar's parts look, in the order of the words
 _LOOKS = (
@@ -241,7 +241,7 @@ def _chosen(ids: Iterable[str]) -> Table:
         told = rf"(window|at) {width}\b|\b{width} samples"
         if width and not re.search(told, f"{claim.claim} {found}"):
             found += f" (window {width})"
-        sentence = f"{claim.claim} ({{doc}}`{claim.chapter}`)"
+        sentence = f"{claim.claim} ({{doc}}`{home(claim)}`)"
         rows.append((sentence, claim.as_printed(), found, worded(claim, claim.sure()), claim.why))
     header = ("claim", "printed", "here", "verdict", "why")
     return Table(header, [tuple(map(typeset, row)) for row in rows])

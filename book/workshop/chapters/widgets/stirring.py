@@ -38,11 +38,10 @@ _BOX = (-0.35, -1.0, 0.95, 0.35)  # what is drawn: left, bottom, right, top, m f
 _ARM = JOINT_DAMPING.arm
 
 _NOTE = (
-    "The hand goes round counter-clockwise for three seconds, from the point farthest from the "
-    "shoulder. Torques are feedforward torques from windows of the desired motion; the equations "
-    "are exact and see the same windows. Bars: RMS error of the hand under joint damping with "
-    "no feedforward, the exact equations, and a network that learnt pick-and-place, circles or "
-    "both."
+    "The bars show how far off the hand is (RMS over three seconds, mm). Each bar is for other "
+    "torques sent in advance: none, those of the arm's exact equations, or those of a network that "
+    "learnt pick-and-place, circles or both (the median of ten, trained by the book's solver). The "
+    "hand starts at the far point and goes round counter-clockwise; a controller corrects it."
 )
 
 
@@ -83,7 +82,7 @@ class StirringPicker(CurveWidget):
             Panel(
                 "Error of the hand, mm",
                 {"hand": "RMS over the motion"},
-                "feedforward",
+                "torques sent in advance",
                 np.arange(len(_BARS)),
                 kind="bars",
                 ticks=list(enumerate(_BARS.values())),
@@ -102,8 +101,8 @@ class StirringPicker(CurveWidget):
             panels,
             **{
                 "alt": "Joint angles and torques of a circle of the hand over three seconds; "
-                "below, bars with the error of the hand for five kinds of feedforward.",
-                "title": "Stirring picker",
+                "below, bars with the error of the hand for five kinds of torques sent in advance.",
+                "title": "A circle for the hand",
                 "note": _NOTE,
                 **options,
             },

@@ -247,6 +247,12 @@ def _bounds(bounds: Mapping) -> str:
 _BEHIND = {"whose-filters": "why-smooth-filters"}  # a lesson's evidence page of another name
 
 
+def home(claim: Claim) -> str:
+    """The page of a claim's chapter, as ``{doc}`` takes it: a lesson, or evidence that has none."""
+    lesson = any((_FILE.parent / f"{claim.chapter}.{end}").is_file() for end in ("ipynb", "md"))
+    return claim.chapter if lesson else f"/book/evidence/{claim.chapter}"
+
+
 def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
     behind = _BEHIND.get(claim.chapter, claim.chapter)
