@@ -63,6 +63,9 @@ RIVALS = {
 }
 """The same set wherever the book compares controllers for an unknown load."""
 
+POSITION_ALONE = Rival(_NOTHING, (1e-6, 1e-6), tuple(np.divide(JOINT_DAMPING.controller.kp, 1e-6)))
+"""The feedback of `JOINT_DAMPING`, which sees no velocity: all damping is the joints' own."""
+
 
 def _regressor(q, qd, v, a) -> np.ndarray:
     """Y with ``Y @ numbers = M(q) a + C(q, qd) v + friction(v)``, shape (..., 2, 7)."""
@@ -99,7 +102,9 @@ def _accelerations(numbers, q, qd, torque) -> np.ndarray:
     gained = torque + _free(numbers, q, qd)
     turned = numbers[..., 1] * np.sin(q[..., 1]) * w2  # less dM/dt times qd
     f1, f2 = gained[..., 0] + turned * (2 * w1 + w2), gained[..., 1] + turned * w1
-    return np.stack([m22 * f1 - m12 * f2, m11 * f2 - m12 * f1], -1) / (m11 * m22 - m12**2)[..., None]
+    return (
+        np.stack([m22 * f1 - m12 * f2, m11 * f2 - m12 * f1], -1) / (m11 * m22 - m12**2)[..., None]
+    )
 
 
 class _Batch:
