@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -18,7 +20,8 @@ from ddlib.figures import (
     legend_above,
 )
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
-from ddlib.tables import quote
+from ddlib.tables import Table, quote, significant
+from workshop.beyond.studies.loop import fair_rivals
 from workshop.beyond.studies.loop.runs.adaptive import _FULL
 from workshop.chapters.exercises import judge
 from workshop.report import results
@@ -155,6 +158,12 @@ def _quoted() -> None:
                 found = np.median(_again(seconds, setup, law), -1)
                 quote(f"adaptive-{key}-{tail}-{plan}", found[3])
                 quote(f"adaptive-{key}-{tail}-{plan}-load", found[7])
+    found, coarse = _fair(), _fair(12.5)
+    for name, key in _FAIR.items():
+        for k, when in ((0, "first"), (3, "empty"), (4, "load-first"), (7, "load")):
+            quote(f"fair-{key}-{when}", found[name][k])
+        quote(f"fair-{key}-margin", 1e3 * fair_rivals.delay_margin(fair_rivals.RIVALS[name]))
+        quote(f"fair-{key}-encoder", coarse[name][3])
     excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
     quote("adaptive-five-a", 100 * abs(kept("excitation", "estimate")[4][0] - 1))
     quote("adaptive-five-old", excited["not learning"][-1, 4])
@@ -176,9 +185,11 @@ def _said() -> None:
     )  # fmt: skip
     stated("adaptive-few", max(*few, *slow) < 0.06)
     stated("adaptive-heavy", min(heavy) > 2 * max(slow))
-    settled = [kept("same motions", "0", s)["settled"]["with friction"] for s in _SETUPS.values()]
-    first, second = (np.median(_finite(x), -1) for x in settled)
-    stated("adaptive-back", first[7] < 1.5 * first[3] and second[7] > 1.5 * second[3])
+    found = _fair()
+    held, watched, learnt = (found[n] for n in list(_FAIR)[3:6])
+    stated("adaptive-held-empty", held[3] < 0.6 * learnt[3])
+    stated("adaptive-pays", learnt[7] < 0.3 * watched[7] and learnt[7] < 0.1 * held[7])
+    stated("adaptive-observer-at-once", watched[4] < 0.5 * learnt[4])
     excited = {n: np.array(x, float) for n, x in kept("excitation", "settled").items()}
     stated("adaptive-five-fell", excited["learning"][-1, 4] < excited["not learning"][-1, 4])
 
@@ -199,7 +210,64 @@ def _rounded_figure() -> Illustration:
     return _courses(panels, 4, "5 kg", "end-point error, mm", alt)
 
 
-_SHOWN = {"rounded": _rounded_figure, "courses": _courses, "map": _stops_map}
+# --- the same set of rivals ------------------------------------------------------------------
+
+_FAIR = {
+    "PD, the book's gains": "pd",
+    "PD, ten times as stiff": "stiff",
+    "PD and a disturbance observer": "observer",
+    "identified numbers, held": "held",
+    "identified numbers, and an observer": "observed",
+    "adaptive (Slotine & Li)": "learnt",
+    "all of them 10 % too large": "wrong",
+}
+
+
+@cache
+def _fair(bits: float | None = None, filtered: float = 0.0) -> dict[str, np.ndarray]:
+    return fair_rivals.errors(bits=bits, filtered=filtered)
+
+
+def _fair_figure() -> Illustration:
+    """A row for each rival: its first and its last error with an empty hand, and with a load."""
+    found, last = _fair(), fair_rivals.TRIALS - 1
+    pairs = (("empty hand", 0, last, "o"), ("5 kg in the hand", last + 1, 2 * last + 1, "D"))
+
+    def draw(figure: Figure):
+        axis, rows = figure.subplots(), np.arange(len(found))[::-1]
+        for k, (_, first, final, mark) in enumerate(pairs):
+            ends = np.array([[e[first], e[final]] for e in found.values()])
+            height, look = rows + (0.16, -0.16)[k], {"color": COLOURS[k], "ls": "", "ms": 6}
+            axis.hlines(height, *ends.T, color=COLOURS[k], lw=1.2)
+            axis.plot(ends[:, 0], height, mark, mfc="none", **look)
+            axis.plot(ends[:, 1], height, mark, **look)
+        axis.set(xscale="log", ylim=(-0.6, len(found) - 0.4))
+        axis.set_yticks(rows, list(found))
+        axis.set_xlabel(check_label("end-point error, mm"))
+        names = [f"{told}, {when}" for told, *_ in pairs for when in ("1st motion", "4th motion")]
+        legend_above(figure, axis.lines, names)
+
+    told = "; ".join(
+        f"{name} {e[last]:.2g}, then {e[last + 1]:.2g} and {e[-1]:.2g}" for name, e in found.items()
+    )
+    alt = f"Errors in the fourth motion, then in the first and fourth with 5 kg, mm: {told}."
+    return illustrate(draw, alt, 7.0, 3.6)
+
+
+def fair_table() -> Table:
+    """The same set in numbers, with other sensors and with delay margins."""
+    sensors = [_fair(), _fair(16.0), _fair(12.5), _fair(12.5, 0.01)]
+    rows = []
+    for name, rival in fair_rivals.RIVALS.items():
+        errors = [significant(float(sensors[0][name][k]), 2) for k in (0, 3, 4, 7)]
+        others = [significant(float(found[name][3]), 2) for found in sensors[1:]]
+        rows.append((name, f"{1e3 * fair_rivals.delay_margin(rival):.0f}", *errors, *others))
+    heads = ("delay margin, ms", "1st", "4th", "5 kg: 1st", "5 kg: 4th")
+    heads += ("16 bits alone", "12.5 bits alone", "12.5 bits, filtered")
+    return Table(("error, mm", *heads), rows)
+
+
+_SHOWN = {"fair": _fair_figure, "rounded": _rounded_figure, "courses": _courses, "map": _stops_map}
 
 
 def show(name: str, *what, **how) -> Illustration:

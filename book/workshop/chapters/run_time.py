@@ -15,9 +15,11 @@ from ddlib.figures import (
     legend_above,
     plain_ticks,
 )
-from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
+from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_VISCOUS, STATE_FEEDBACK
+from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
 from workshop.beyond.figures import maps
+from workshop.beyond.studies.loop import fair_rivals
 from workshop.chapters.exercises import judge
 from workshop.report import results
 from workshop.report.evidence import claims
@@ -186,7 +188,13 @@ def _quoted() -> None:
     """The numbers of the prose."""
     for tail, setup in zip(("", "-sf"), _SETUPS):
         found, copies = _reading(setup), results.read("loop-conditions")["copies"][setup]
-        for line, name in (("none", "none"), (NETWORK, "network"), ("exact", "exact")):
+        lines = {
+            "none": "none",
+            NETWORK: "network",
+            "exact": "exact",
+            "exact, window 21": "exact-21",
+        }
+        for line, name in lines.items():
             quote(f"run-time-{name}{tail}", _median(line, setup))
         quote(f"run-time-copy-slow{tail}", np.median(copies["0.1"]))
         for line in ("exact", "network"):
@@ -197,6 +205,11 @@ def _quoted() -> None:
         stopped = np.array(found["inside"]["network, 5"]["stopped"])
         quote(f"run-time-late-stopped{tail}", 100 * np.mean(stopped[:, one]))
         quote(f"run-time-bound-share{tail}", 100 * np.max(found["bound"]["share"]))
+    pole = _reading()["inside"]["network, 5"]["poles"][0][0]
+    quote("run-time-doubling", CONTROL_STEP * np.log(2) / np.log(pole))
+    soft = JOINT_DAMPING_VISCOUS[0] / JOINT_DAMPING.controller.kp[0]
+    quote("run-time-limit-shoulder", 1e3 * (soft - CONTROL_STEP / 2))
+    quote("run-time-limit-both", 1e3 * fair_rivals.delay_margin(fair_rivals.POSITION_ALONE))
     quote("run-time-members", len(errors()))
     quote("run-time-runs", results.read("run-time")["points"] ** 2)
     for line in ("identified", "Lagrangian network"):
@@ -217,6 +230,9 @@ def _said() -> None:
     stated("run-time-helps", both(NETWORK, "none", 0.5))
     stated("run-time-equations-do-not", both("none", "exact", 2.0))
     stated("run-time-behind", both(NETWORK, "exact", 1.0))
+    windowed, network = ([_median(x, s) for s in _SETUPS] for x in ("exact, window 21", NETWORK))
+    equal = 0.8 < windowed[0] / network[0] < 1.25
+    stated("run-time-same-window", equal and windowed[1] < 0.5 * network[1])
     known = [both(line, NETWORK, 1.0) for line in ("identified", "Lagrangian network")]
     stated("run-time-structure-wins", np.all(known, 0))
     names = ("run-time-copy", "run-time-copy-state-feedback")

@@ -20,10 +20,9 @@ _MOST_ERROR = 20.0  # mm, the largest that is shown; a run that the guard stoppe
 _BOUNDS = (-2.0, 6.0)  # smallest and largest multiple of a true value that is shown
 
 _NOTE = (
-    "Damped joints, an encoder of 12.5 bits, a tachometer; it begins with the base parameters of "
-    "the arm without a load, and no friction. The hand's error is its root mean square over a "
-    "motion, without the first third. A triangle: the error is larger, or the guard stopped the "
-    "motion, or the estimate has left the chart."
+    "Damped joints, an encoder of 12.5 bits and a tachometer. The learner begins with the numbers "
+    "of an empty hand, and no friction. The error leaves out the first third of each motion. A "
+    "triangle: the value is off the chart, or the guard stopped the motion."
 )
 
 
