@@ -273,11 +273,12 @@ def _row_and_parts(axis: Axes, parts, step: float, room: float) -> None:
     ticks = MaxNLocator(5).tick_values(low, high)
     axis.set_yticks([tick for tick in ticks if low <= tick <= high])
     axis.set_ylim(low, low + (high - low) / 0.8)
-    axis.set_xlim(x[0] - step, x[-1] + step)
+    left, right = x[0] - 1.8 * step, x[-1] + 1.8 * step  # grey beyond the squares at the ends
+    axis.set_xlim(left, right)
     across = axis.get_xaxis_transform()  # x in ms, y in parts of the panel's height
-    axis.add_patch(Rectangle((x[0] - step, 0.84), x[-1] - x[0] + 2 * step, 0.16,
+    axis.add_patch(Rectangle((left, 0.84), right - left, 0.16,
                              transform=across, facecolor="#8c8c8c", lw=0, zorder=3))  # fmt: skip
-    side = min(0.95 * room / (f.size + 1), 17.0)  # points
+    side = min(0.95 * room / (f.size + 2.6), 17.0)  # points
     area = side**2 * np.abs(f) / (np.abs(f).max() or 1.0)
     colours = np.where(f > 0, "#ffffff", "#000000")
     look = {"marker": "s", "transform": across, "lw": 0, "zorder": 4}

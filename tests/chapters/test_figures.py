@@ -34,7 +34,7 @@ LOGARITHMIC = {
     **dict.fromkeys(("curves", "side_by_side, log"), "xy"),
     **dict.fromkeys(("ladders", "growth", "against", "traded"), "xy"),
     **dict.fromkeys(("families", "rmss_by_window", "operations", "courses", "by_trial"), "y"),
-    **dict.fromkeys(("ranking", "intervals", "by_motion", "four_directions", "dots"), "x"),
+    **dict.fromkeys(("ranking", "intervals", "by_motion", "dots"), "x"),
 }
 
 

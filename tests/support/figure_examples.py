@@ -26,7 +26,6 @@ from workshop.chapters import (
     verdict,
     what_lagrange_euler_leaves_out as left_out,
     whole_state_space as states,
-    why_smooth_filters as smooth,
     window_networks as windows,
 )
 
@@ -143,7 +142,6 @@ EXAMPLES = {
         filters.by_explained, NULLS["hidden"], {"mixed": GROUPS},
         ("share of the filters", "share explained"), "Two panels.",
     ),
-    "four_directions": smooth.four_directions,
     "hinton_states": lambda: states.hinton_states(Weights.random(1, 3)[0]),
     "torque_along": partial(states._torque_along, T, EXACT, NETWORKS),
 

@@ -160,6 +160,23 @@ def by_range() -> figures.Illustration:
     return figures.illustrate(draw, f"Four panels over the range of the start. {told}", 7.0, 2.6)
 
 
+def lazy_table() -> Table:
+    """By range: hidden filters with a name, and how far rows and tangent kernel move."""
+    rows = []
+    for size in RANGES:
+        shares = (
+            100 * np.mean([named(r, size, scaling=scaling).mean() for r in SETUPS])
+            for scaling in (PRINTED, "-1 to 1")
+        )
+        moved = (
+            np.median(values(STATE_FEEDBACK.name, size, 21, what)) for what in ("turn", "kernel")
+        )
+        told = (*(f"{x:.0f} %" for x in shares), *(f"{x:.2f}" for x in moved))
+        rows.append((f"±{size:g}", *told))
+    heads = ("named, inputs 0 to 1", "named, inputs −1 to 1", "turn, state feedback")
+    return Table(("start", *heads, "kernel's change, state feedback"), rows)
+
+
 # --- beside unrelated torques -----------------------------------------------------------------
 
 
@@ -223,6 +240,29 @@ def beside_unrelated() -> figures.Illustration:
         f"middle 90 % of networks. Acceleration: {'; '.join(told)}."
     )
     return figures.illustrate(draw, alt, 7.0, 4.0)
+
+
+def velocity_table() -> Table:
+    """Mean share of velocity filters in hidden units, by the torques, over readings and ranges."""
+    sizes = results.read("start-nulls")["ranges"]
+    rows = []
+    for kind, label in _KINDS.items():
+        shares = [shares_beside(r, s, "velocity")[kind].mean() for r in SETUPS for s in sizes]
+        rows.append((label, f"{100 * np.mean(shares):.0f} %"))
+    return Table(("torques", "velocity filters, of the hidden ones"), rows)
+
+
+def torques_table() -> Table:
+    """The walk's network by the torques it learns: acceleration filters, and its inertia."""
+    this, other = results.read("excitation")["cells"][0]["arm"], f"{other_inertia():.1f}"
+    whose = {"own": ("this arm's", f"{this:.1f}"), "another arm": ("another arm's", other)}
+    whose["exchanged"] = "this arm's, joints exchanged", "–"
+    rows = [
+        (whose[kind][0], f"{100 * share:.0f} %", f"{np.median(inertia):.1f}", whose[kind][1])
+        for kind, (share, inertia) in other_torques().items()
+    ]
+    heads = ("acceleration filters", "shoulder in the network, kg m²", "in that arm, kg m²")
+    return Table(("torques, 8 networks each", *heads), rows)
 
 
 @cache
@@ -365,24 +405,9 @@ def _by_reading(told) -> str:
 
 def _quoted() -> None:
     """The numbers of the page's prose."""
-    best, scores = chosen(cells())
+    best = chosen(cells())[0]
     quote("start-chosen", f"{best:g}")
     quote("start-initial", f"{INITIAL:g}")
-    quote("start-score", scores[best])
-    quote("start-score-old", scores[0.3])
-    for what in ("turn", "kernel"):
-        for name, size in (("small", best), ("large", 1.0)):
-            quote(
-                f"start-{what}-{name}",
-                float(np.median(values(STATE_FEEDBACK.name, size, 21, what))),
-            )
-    for name, size in (("small", best), ("large", 0.3)):
-        shares = [named(r, size, scaling="-1 to 1").mean() for r in SETUPS]
-        quote(f"start-centred-{name}", 100 * float(np.mean(shares)))
-    quote("start-named-old", 100 * float(np.mean([named(r, 0.3).mean() for r in SETUPS])))
-    for name, size in (("small", best), ("large", 0.3)):
-        epochs = np.median(values(STATE_FEEDBACK.name, size, 21, "until half"))
-        quote(f"start-wait-{name}", float(epochs))
     walk = results.read("filter-trial")["windows"]["21"]
     unnamed = np.mean(walk["real"]["hidden"]["classes"]["not analysable"])
     quote("start-walk-named", 100 * (1 - unnamed))
@@ -400,11 +425,6 @@ def _quoted() -> None:
         f"{told} fewer than one in twenty of the unrelated networks have as many acceleration "
         "filters as the real ones have on average.",
     )
-    other = other_torques()
-    for name, key in (("own", "own"), ("another arm", "arm"), ("exchanged", "exchanged")):
-        quote(f"start-torques-{key}", 100 * other[name][0])
-    quote("start-torques-inertia", float(np.median(other["another arm"][1])))
-    quote("start-torques-inertia-arm", other_inertia())
     direct = shares_beside(STATE_FEEDBACK.name, best, "acceleration", "direct")
     unrelated = np.concatenate([direct[kind] for kind in ("shifted", "phases")])
     quote("start-direct-unrelated", 100 * unrelated.mean())
@@ -413,9 +433,6 @@ def _quoted() -> None:
     null = np.concatenate([*inertia["shifted"], *inertia["phases"]])
     quote("start-inertia-null", float(np.median(null)))
     quote("start-inertia-arm", results.read("excitation")["cells"][0]["arm"])
-    for kind in _KINDS:
-        shares = [shares_beside(*place, "velocity")[kind].mean() for place in places]
-        quote(f"start-velocity-{kind}", 100 * float(np.mean(shares)))
 
 
 def _said() -> None:

@@ -1,28 +1,22 @@
-"""What the evidence page *Why the filters are smooth* shows and quotes; its widget."""
+"""The widget of the evidence page *Why the filters are smooth*."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from ddlib._check import integer
 from ddlib.analysis import content
-from ddlib.figures import curves
-from ddlib.figures.style import COLOURS, NARROW, Illustration, illustrate
-from ddlib.learning import Directions, TrainingSet, Weights, train_ensemble
-from ddlib.setups import JOINT_DAMPING, WINDOWS
+from ddlib.learning import Directions, TrainingSet
+from ddlib.setups import WINDOWS
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import quote
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.hinton import CENTRE, EXACT, JOINTS, share_panel, width_choice, zero_padded
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
 from workshop.report import results
-from workshop.report.evidence.statements import resampled
-from workshop.report.studies.span import LAZY, READINGS
+from workshop.report.studies.span import READINGS
 
 _WHO = ("measured", "predicted")
 _FLOOR = -8.0  # lowest change shown, as a power of ten of the random start
@@ -47,142 +41,6 @@ cell = next(
 place, direction = study["epochs"].index({epoch}), {direction} - 1
 for who in ("measured", "predicted"):
     print(who, cell[who]["change over start"][place][direction])"""
-
-
-def _windows() -> tuple[TrainingSet, np.ndarray, np.ndarray]:
-    """The walk's training set on centred windows, their variances, and their directions."""
-    data = TrainingSet.from_recording(JOINT_DAMPING.record()[:5], 21, scaling=(-1, 1))
-    data = replace(data, x=data.x - data.x.mean(0))
-    _, values, axes = np.linalg.svd(data.x.reshape(len(data.x), -1), full_matrices=False)
-    return data, values**2 / len(data.x), axes
-
-
-def four_directions() -> Illustration:
-    """Directions of three kinds and of noise, and what descent leaves of the error along them."""
-    _, variance, axes = _windows()
-    filters, steps = axes.reshape(-1, 2, 21), np.geomspace(1, 1e5, 200)
-    named = {"position": 0, "velocity": 2, "acceleration": 4, "noise": 41}
-
-    def draw(figure):
-        axis, columns = figure.subplots(), 4 if figure.get_figwidth() > NARROW else 2
-        for place, (name, k) in enumerate(named.items()):
-            row, column = divmod(place, columns)
-            colour, shape = COLOURS[place], filters[k, (filters[k] ** 2).sum(-1).argmax()]
-            corner = 0.01 + column / columns, (0.66 if columns == 4 else 0.8) - 0.27 * row
-            inset = axis.inset_axes([*corner, 0.88 / columns, 0.24 if columns == 4 else 0.14])
-            inset.plot(shape * np.sign(shape[-1]), color=colour)
-            inset.set(title=name, ylim=(-0.6, 0.6), xticks=[], yticks=[])
-            axis.semilogx(steps, (1 - variance[k] / (2 * variance[0])) ** steps, color=colour)
-        axis.set(xlabel="steps of descent", ylabel="error left, share")
-        axis.set(ylim=(-0.05, 1.8 if columns == 4 else 2.2))
-        axis.set_yticks([0, 0.5, 1])
-
-    alt = "A flat filter, a line, a parabola and noise; their errors go in this order, noise last."
-    return illustrate(draw, alt, 7.0, 3.0, narrow_height=4.2)
-
-
-def _quoted() -> None:
-    """When errors along directions are halved, and how far the tangent is off, in the study."""
-    for name, half in _halves().items():
-        quote(f"smooth-{name}", round(float(np.exp(np.median(half))), -1))
-    study = results.read("span")
-    factors = study["cells"][WINDOWS.index(21)]["factor"]
-    quote("smooth-factor", float(np.median(factors, 0)[-1]))
-    for size, cell in zip(study["ranges"], study["by range"]):
-        way = [cell[who]["moved"][-1] for who in _WHO]
-        name = {0.03: "rich", LAZY: "lazy"}.get(size)
-        if name:
-            quote(f"smooth-{name}", way[0] / way[1])
-
-
-def _halves() -> dict[str, np.ndarray]:
-    """Logarithms of the epochs at which networks have halved the error along two directions."""
-    cell = results.read("span")["cells"][WINDOWS.index(21)]
-    half = np.log(np.array(cell["measured"]["halves"], dtype=float))
-    return {"velocity": half[:, 3:5].mean(1), "acceleration": half[:, 5:7].mean(1)}
-
-
-def said_of_descent() -> dict[str, np.ndarray | bool]:
-    """What is said of networks: of the book's, and of eight that are trained for it."""
-    velocity, acceleration = _halves().values()
-    ways = results.read("whitening")["directions"]
-    directions = len(ways["plain"]["change over start"])
-    learnt = {way: resampled(found["learnt"]) / directions for way, found in ways.items()}
-    solvers = np.min([learnt["whitened"], learnt["plain"]], 0)
-    further = [
-        np.divide(*(cell[who]["moved"][-1] for who in _WHO))
-        for cell in results.read("span")["by range"]
-    ]
-    ratio = _moved(8, ["plain"])["plain"].direct
-    return {
-        "velocity first": resampled(acceleration - velocity) > 0,
-        "solvers all": (solvers > 0.9) & (learnt["descent"] < 0.5),
-        "rich beyond": further[0] > 4 * further[2],
-        "flat stay": resampled(np.median(ratio[:, 12:], 1)) < 0.2,
-        "acceleration most": resampled(ratio[:, 4:6].min(1) / ratio[:, :4].max(1)) > 1,
-    }
-
-
-class _Ways(NamedTuple):
-    """How far training moved weights along each direction, over their start, by network."""
-
-    direct: np.ndarray
-    hidden: np.ndarray
-
-
-def _whiten(variance, axes) -> np.ndarray:
-    return axes.T @ np.diag(1 / np.sqrt(variance)) @ axes
-
-
-def _moved(members: int, kinds: Sequence[str]) -> dict[str, _Ways]:
-    """Networks trained for 2,000 epochs from ±0.3 on centred windows, plain or whitened."""
-    data, variance, axes = _windows()
-    start = Weights.random(members, 21, initial=LAZY)
-    how = {"momentum": 0.98, "warm_up": 500, "epochs": 2000, "progress": False}
-    found = {}
-    for kind in kinds:
-        given = data
-        if kind == "whitened":
-            seen = data.x.reshape(len(data.x), -1) @ _whiten(variance, axes)
-            given = replace(data, x=seen.reshape(data.x.shape))
-        after = train_ensemble(start, given, **how)[0].weights
-        ratios = []
-        for name in ("direct_weights", "hidden_weights"):
-            before, trained = (
-                getattr(w, name).reshape(members, -1, 42) @ axes.T for w in (start, after)
-            )
-            ratios.append(np.sqrt(((trained - before) ** 2).sum(1) / (before**2).sum(1)))
-        found[kind] = _Ways(*ratios)
-    return found
-
-
-def directions_moved(members: int = 3) -> Illustration:
-    """How far training moves weights along each direction, on windows as they are and whitened."""
-    numbers, panel = np.arange(1, 43), {}
-    for kind, (direct, hidden) in _moved(members, ["plain", "whitened"]).items():
-        told = "as they are" if kind == "plain" else kind
-        panel[f"outputs, {told}"] = np.sqrt((direct**2).mean(0))
-        panel[f"hidden, {told}"] = np.sqrt((hidden**2).mean(0))
-    panel["as large as the start"] = np.ones(42)
-    alt = "Changes of weights over directions of the windows, plain and whitened; a line at 1."
-    return curves(
-        numbers, {"change over start": panel}, "direction, number", alt, height=2.6, y_log=True
-    )
-
-
-def whitened_filters(target: int = 0) -> Illustration:
-    """A linear filter after plain steps, and after one step on whitened windows."""
-    data, variance, axes = _windows()
-    x, y = data.x.reshape(len(data.x), -1), data.y[:, target] - data.y[:, target].mean()
-    along = axes @ (x.T @ y) / len(x) / variance  # of the least-squares filter
-    learnt = {"one whitened step": along @ axes}
-    for steps in (10_000, 1_000_000):
-        gone = 1 - (1 - variance / (2 * variance[0])) ** steps
-        learnt[f"{steps:,} plain steps"] = gone * along @ axes
-    shown = {name: f.reshape(2, 21)[target] / y.std() for name, f in learnt.items()}
-    time = 1000 * LOG_STEP * np.arange(-10, 11)
-    alt = "Three filters: after two numbers of plain steps, and after one whitened step."
-    return curves(time, {"weight": shown}, "time from the centre, ms", alt, height=2.2)
 
 
 def explorer() -> _SpectrumExplorer:
