@@ -382,11 +382,11 @@ def check(number: int, mine, *asked) -> None:
     if number == 1:
         slips = [(0.2, "that is the share that is lost."),
                  (0.25, "that is the penalty over the variance.")]  # fmt: skip
-        judge(mine, 0.8, "small inputs lose most.", slips, "Set the slope in w' to zero.")
+        judge(mine, 0.8, "small variances lose most.", slips, "Set the slope in w' to zero.")
     elif number == 2:
         near = Between(0.5 * np.array(asked), 2 * np.array(asked))
-        told = "form carries over what free weights cannot know."
-        judge(mine, near, told, [], "one of them hardly minds, the other is lost.")
+        told = "a known form carries over, free weights do not."
+        judge(mine, near, told, [], "one error hardly grows, the other one grows a lot.")
     else:
         (with_these,) = asked
 
