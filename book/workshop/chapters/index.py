@@ -237,7 +237,7 @@ def station(lesson: str) -> figures.Illustration:
 
 def _quoted() -> None:
     """The numbers of *What comes out*, and what its comparisons rest on."""
-    tried = cards.of_kind("system", "methods")  # as the page *Verdict* counts
+    tried = cards.of_kind("system")  # as the page *Verdict* counts
     quote("index-sentences", len(tried))
     quote("index-reproduced", cards.tally(tried)["reproduced"])
     at = trial.row(WIDTH)
