@@ -42,7 +42,7 @@ def test_pd_is_that_of_ddlib_with_and_without_the_load(monkeypatch):
 
 def test_an_observer_has_nothing_to_add_to_right_numbers(monkeypatch):
     monkeypatch.setattr(study, "TRIALS", 1)
-    names = ("identified numbers, held", "identified numbers, and an observer")
+    names = ("exact numbers, held", "exact numbers, and an observer")
     held, observed = study.errors({n: study.RIVALS[n] for n in names}).values()
     assert observed[0] == pytest.approx(held[0], rel=0.1)
     assert observed[1] < 0.3 * held[1]  # a load is what it is there for

@@ -11,9 +11,21 @@ from matplotlib.patches import Circle, FancyBboxPatch
 
 from ddlib.control import PID, ComputedTorque, Feedforward, pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, PUMA_560_ROTORS
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects
+from ddlib.effects import (
+    CMU_DD_ARM_II_EFFECTS,
+    IDEAL,
+    CoulombFriction,
+    Effects,
+    ViscousFriction,
+)
 from ddlib.figures.style import COLOURS, FAINT, INK, NARROW, Illustration, illustrate
-from ddlib.setups import KD, KP
+from ddlib.setups import (
+    JOINT_DAMPING_COULOMB,
+    JOINT_DAMPING_KP,
+    JOINT_DAMPING_VISCOUS,
+    KD,
+    KP,
+)
 from ddlib.simulation import (
     CONTROL_STEP,
     LOG_STEP,
@@ -23,10 +35,26 @@ from ddlib.simulation import (
     run_system,
     smooth_pick_and_place,
 )
-from ddlib.tables import scientific, significant
-from ddlib.trajectories import APPENDIX_I, pick_and_place
+from ddlib.tables import quote, scientific, significant
+from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 from workshop.chapters.exercises import judge
 from workshop.report.evidence.verdicts import Measured
+
+
+def _quoted() -> None:
+    """The numbers of the prose: the lesson's motion with joints that turn against each other."""
+    t = np.arange(0, 3, CONTROL_STEP)[:, None]
+    size, w = -np.deg2rad((45.0, -45.0)) / 2, 2 * np.pi / 3
+    wanted = size * (1 - np.cos(w * t)), size * w * np.sin(w * t), size * w**2 * np.cos(w * t)
+    springs = np.array(JOINT_DAMPING_KP)
+    laws = {
+        "ahead": Feedforward(ARM, pd(springs, (0, 0))),
+        "computed": ComputedTorque(ARM, tuple(springs / _OWN), (0, 0)),
+    }
+    rubs = Effects((ViscousFriction(JOINT_DAMPING_VISCOUS), CoulombFriction(JOINT_DAMPING_COULOMB)))
+    for name, law in laws.items():
+        run = follow(ARM, law, Trajectory(*wanted), t[:, 0], effects=rubs, log_every=1)
+        quote(f"ff-opposed-{name}", np.rad2deg(_rms(run.tracking_error)))
 
 
 def feedforward_loop() -> Illustration:

@@ -217,6 +217,7 @@ def _quoted() -> None:
     for line in ("network", "none", "exact, window, knows"):
         heavy = np.median(_reading()["changed"]["load"]["10"][line])
         quote(f"run-time-load-{line.split()[-1]}", heavy)
+    quote("run-time-inside-onset", np.median(onsets()[0]))
     quote("run-time-rank", predicts(width=21).value)
 
 

@@ -55,9 +55,9 @@ RIVALS = {
     "PD, the book's gains": Rival(_NOTHING),
     "PD, ten times as stiff": Rival(_NOTHING, _STIFF_DAMPING, _STIFF / _STIFF_DAMPING),
     "PD and a disturbance observer": Rival(_NOTHING, observer=60.0, inertia=_INERTIA),
-    "identified numbers, held": Rival(_KNOWN),
+    "exact numbers, held": Rival(_KNOWN),
     "all of them 10 % too large": Rival(1.1 * _KNOWN),
-    "identified numbers, and an observer": Rival(_KNOWN, observer=50.0),
+    "exact numbers, and an observer": Rival(_KNOWN, observer=50.0),
     "adaptive (Slotine & Li)": Rival(_HALF, learns=True),
     "adaptive, desired motion in Y": Rival(_HALF, learns=True, desired=True),
 }
