@@ -148,6 +148,9 @@ def _quoted() -> None:
     """The numbers of the lesson's prose."""
     quote("walk-fixed-off", 100 * moments_agree("fixed", ["stiffness", "net damping"]).value)
     quote("walk-quick-go1", _moments(_of_go1(0.02, 2.0, -15.0).mean(0))[0])
+    for robot in ("Go1", "ANYmal"):
+        told = _jumped(robot, _JUMPS, _SIZES[1])["torque"]
+        quote(f"walk-half-{robot.lower()}", round(1e3 * STEP * np.argmax(told >= 50)))
     shuffled = _rows("shuffled")[:, :3]
     quote("walk-null-bar", np.abs(shuffled).max())
     quote("walk-null-stiffness", np.abs(shuffled.sum(1)).max())
@@ -158,7 +161,7 @@ def by_lag() -> figures.Illustration:
     own, memory = _own("copies"), _of_memory(*_SMALL).mean(0)
     age = 1e3 * STEP * np.arange(_REACH)
     lines = {
-        "brief copies": _rows("copies"),
+        "trained briefly": _rows("copies"),
         "longer, or jumps": np.concatenate([_rows("longer"), _rows("held")]),
     }
     (go1, late, _), (anymal, later, _) = _moments(own), _moments(memory)

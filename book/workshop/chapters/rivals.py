@@ -22,7 +22,7 @@ from ddlib.figures import (
 from ddlib.figures.style import DASHES, INK, JOINTS, NARROW
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import quote
+from ddlib.tables import Table, quote
 from workshop.beyond._measures.rivals import better, row
 from workshop.beyond.rivals.bases import Polynomial
 from workshop.beyond.rivals.cmac import CMAC
@@ -36,6 +36,15 @@ from workshop.report.evidence.statements import stated
 from workshop.report.parity import parity, patterns
 
 _RUBBING, _PARTS = "linear filter with friction", ("trajectory 6", "inside", "outside")
+_BESIDE = {
+    "nearest case": "most similar cases",
+    "local planes": "plane through the nearest third",
+    "linear filter": "linear filter",
+    _RUBBING: "filter with friction",
+    "identified": "equations",
+    "filters and equations": "equations with learnt filters",
+    "network of 1988": "network of 1988",
+}
 _TOLD = {
     "identified": "equations",
     "filters and equations": "learnt filters",
@@ -91,8 +100,23 @@ def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
     return np.array(_tuned()[name]["errors"][part])
 
 
-def show(_name: str = "errors") -> Illustration:
-    """Error on trajectory 6 and stored numbers of every rival, tuned alike."""
+def _ratios() -> Table:
+    """Errors of some rivals over the network's, on trajectory 6 and on the square, and counts."""
+    rows = []
+    for name, told in _BESIDE.items():
+        cells = []
+        for part in _PARTS:
+            found = over(name, part)
+            cells.append(f"{np.median(found):.2f} ({found.min():.2f} to {found.max():.2f})")
+        rows.append((told, *cells, f"{np.median(_tuned()[name]['count']):,.0f}"))
+    heads = "trajectory 6", "square, in the hull", "outside the hull", "numbers stored"
+    return Table(("rival", *heads), rows)
+
+
+def show(name: str = "errors") -> Illustration | Table:
+    """Errors of every rival, tuned alike, and stored numbers; or the table of "ratios"."""
+    if name == "ratios":
+        return _ratios()
     marked = results.read("tuned")["reference"]
     shown = {}
     for name, one in _tuned().items():
@@ -314,25 +338,21 @@ def _quoted() -> None:
         quote(f"rivals-{short}", np.median(_errors(name)))
     medians = {name: np.median(_errors(name)) for name in _tuned()}
     quote("rivals-ahead-all", sum(x < medians[study["reference"]] for x in medians.values()))
-    quote("rivals-identified-numbers", int(np.median(_tuned()["identified"]["count"])))
     for end, value in (("least", np.min), ("most", np.max)):
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
-        quote(f"rivals-linear-{end}", value(over("linear filter")))
     won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))
     quote("rivals-recurrent-training", np.median(_errors("recurrent", "training")))
     quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
-    named = {"identified": "identified", "nearest": "nearest case", "rubbing": _RUBBING}
-    for short, name in named.items():
-        quote(f"rivals-ratio-{short}", np.median(over(name)))
-    quote("rivals-times-nearest", np.median(_tuned()["nearest case"]["count"]) / study["budget"])
-    for part in ("inside", "outside"):
-        quote(f"rivals-{part}", np.median(over("linear filter", part)))
-    for part in _PARTS:
-        fewer, all_of_them = better(part).text.split(":")[0].split(" of ")
-        quote(f"rivals-better-{part}" if part != "trajectory 6" else "rivals-better", int(fewer))
-    quote("rivals-within", int(all_of_them))
+    ahead = [better(part).text.split(":")[0].split(" of ") for part in _PARTS]
+    (six, every), (inside, _), (outside, _) = ahead
+    quote("rivals-better", int(six))
+    quote("rivals-within", int(every))
+    elsewhere = "as well as outside" if inside == outside else f"and {outside} outside"
+    quote(
+        "rivals-better-square", f"{inside} of these {every} are ahead inside the hull, {elsewhere}"
+    )
 
 
 def _said() -> None:

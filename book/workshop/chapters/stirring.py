@@ -153,7 +153,6 @@ def _quoted() -> None:
     quote("stir-network-small", _median("pick and place", "small circles"))
     quote("stir-both-small", _median("both", "small circles"))
     quote("stir-steps", JOINT_DAMPING.steps)
-    quote("stir-twenty", np.median(_stopped()["hands"]["circles"]["twenty circles"]))
     helping = np.array(_descended()["circles"]["network"]) < nothing[1]
     quote("stir-descent-count", int(helping.sum()))
     for key, name in (("five", ""), ("twenty", "-more-motions")):

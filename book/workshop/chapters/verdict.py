@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -11,6 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
+from ddlib.figures.style import NARROW
 from ddlib.setups import SETUPS, WINDOWS
 from ddlib.tables import Table, quote, typeset
 from workshop.beyond._measures import rivals
@@ -40,7 +42,7 @@ _DIGIT = 5.4  # Width of a digit in a bar, points
 _SHUFFLES = 10_000  # permutations that stand for chance
 
 # Cards of the first figure, one for each word while it has that word
-_EXAMPLES = ("table-general", "figure-4-1", "test-21", "tradeoff", "conventional-filters")
+_EXAMPLES = ("speed", "figure-4-1", "test-21", "strikingly-asymmetric", "conventional-filters")
 
 # Rows of the ledger that the verdict sums up
 _SUMMED = (
@@ -202,18 +204,22 @@ def _sentences() -> Illustration:
     best, under = next(iter(by_reading(found).items()))
 
     def draw(figure: Figure):
-        axis = figure.subplots()
+        axis, wide = figure.subplots(), figure.get_figwidth() > NARROW
         places, most = range(len(counts)), max(*counts.values(), *under.values())
+        high = 1.0 if wide else 0.5  # a narrow page has the sentences below the bars
         for place, (word, number), look in zip(places, counts.items(), _LOOKS):
-            axis.barh(place - 0.16, number, height=0.4, **look)
-            axis.barh(place + 0.2, under[word], height=0.18, color=FAINT)
-            axis.text(number + 0.4, place - 0.16, str(number), size=9, va="center", weight="bold")
-            axis.text(under[word] + 0.4, place + 0.2, str(under[word]), size=7, va="center")
-            says = axis.text(1.3 * most, place, chosen[word], size=8, va="center")
+            upper, lower = place - 0.16 * high, place + 0.2 * high
+            axis.barh(upper, number, height=0.4 * high, **look)
+            axis.barh(lower, under[word], height=0.18 * high, color=FAINT)
+            axis.text(number + 0.4, upper, str(number), size=9, va="center", weight="bold")
+            axis.text(under[word] + 0.4, lower, str(under[word]), size=8, va="center")
+            told = textwrap.fill(chosen[word], 50 if wide else 30)
+            at = (1.3 * most, place) if wide else (0, place + 0.2)
+            says = axis.text(*at, told, size=9.5, va="center" if wide else "top")
             says.set_in_layout(False)
         axis.set_yticks(places, list(counts))
-        axis.invert_yaxis()
-        axis.set_xlim(0, 5.4 * most)
+        axis.set_ylim(len(counts) - (0.5 if wide else 0.15), -0.4)
+        axis.set_xlim(0, (5.4 if wide else 1.5) * most)
         axis.set_xticks([])
         axis.spines[["left", "bottom"]].set_visible(False)
         axis.tick_params(left=False)
@@ -222,7 +228,8 @@ def _sentences() -> Illustration:
     told = "; ".join(
         f"{n} {word}, {under[word]} with {best}, like: {chosen[word]}" for word, n in counts.items()
     )
-    return illustrate(draw, f"Sentences of the report by verdict. {told}.", 7.2, 2.3)
+    alt = f"Sentences of the report by verdict. {told}."
+    return illustrate(draw, alt, 7.2, 2.6, narrow_height=4.8)
 
 
 def _by_section() -> dict[str, dict[str, int]]:

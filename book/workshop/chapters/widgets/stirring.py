@@ -93,9 +93,9 @@ class StirringPicker(CurveWidget):
             self._curves,
             [
                 _steps("distance", "Distance of the centre", " m"),
-                _steps("bearing", "Direction of the centre", "°"),
+                _steps("bearing", "Direction of the centre", "°", 1),
                 _steps("radius", "Radius", " m", 2),
-                _steps("period", "Time of a turn", " s", 1),
+                _steps("period", "Time of a turn", " s"),
                 Choice("elbow", "Elbow angle", PLACES["elbow"], "negative"),
             ],
             panels,
