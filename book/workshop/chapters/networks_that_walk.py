@@ -311,7 +311,7 @@ class LateSpring(CurveWidget):
                 "sample in the answer.",
                 "note": "The joint is held. Positive torque would turn it towards its target. "
                 "The line is level from the jump's age on, because the future is not known yet. "
-                "What the torque listens to: by how much an error of that age would change it.",
+                "What the torque listens to: how much it would change with an error of that age.",
                 **options,
             },
         )
