@@ -25,6 +25,7 @@ flows, and each may import those above it, none below it::
     effects           what the rigid body leaves out: friction, motors, encoders
     control           controllers, and the linear analysis of their loops
     simulation        arm, controller and sensors together: recordings
+    logs              files of a reader's own arm: read, resampled, checked
     identification    parameters of an arm from recordings
     learning          windows, networks and their training (needs PyTorch)
     analysis          what weights do and what data allow: filters, hidden units, noise

@@ -6,6 +6,7 @@ from . import (
     figures as figures,
     identification as identification,
     learning as learning,
+    logs as logs,
     metrics as metrics,
     paper as paper,
     setups as setups,

@@ -13,7 +13,8 @@ from book_pages import ROOT
 
 DDLIB = (
     *("_check", "paper", "metrics", "tables", "trajectories", "dynamics", "effects", "control"),
-    *("simulation", "identification", "learning", "setups", "analysis", "figures", "widgets"),
+    *("simulation", "logs", "identification", "learning", "setups", "analysis", "figures"),
+    "widgets",
 )
 WORKSHOP = ("report", "beyond", "chapters")
 ORDER = (

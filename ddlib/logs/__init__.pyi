@@ -1,0 +1,5 @@
+from .log import (
+    Log as Log,
+    LoggedRecording as LoggedRecording,
+    LoggedRun as LoggedRun,
+)
