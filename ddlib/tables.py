@@ -61,6 +61,11 @@ def spread(values, digits: int = 2) -> str:
     return "{} ({} to {})".format(*parts)
 
 
+def how_many(count: int, total: int) -> str:
+    """A count for a sentence: ``all 25``, ``none of 25``, ``3 of 25``."""
+    return f"all {total}" if count == total else f"{count or 'none'} of {total}"
+
+
 def quote(name: str, value) -> None:
     """Keep a computed number under a name, for the prose of the page to quote."""
     from IPython.display import display

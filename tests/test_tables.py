@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 
-from ddlib.tables import Table, quote, scientific, significant, spread, typeset
+from ddlib.tables import Table, how_many, quote, scientific, significant, spread, typeset
 
 
 def test_three_significant_digits():
@@ -105,3 +105,7 @@ def test_rows_may_come_once_and_have_the_length_of_the_header():
     for rows in ([(1,)], [(1, 2), (1, 2, 3)], [()]):
         with pytest.raises(ValueError, match="rows must have 2 cells like the header"):
             Table(("a", "b"), rows)
+
+
+def test_a_count_reads_as_a_sentence_would_say_it():
+    assert [how_many(n, 25) for n in (0, 3, 25)] == ["none of 25", "3 of 25", "all 25"]

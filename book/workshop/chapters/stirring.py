@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
-from ddlib.tables import Table, quote, spread
+from ddlib.tables import Table, how_many, quote, spread
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from workshop.beyond.studies.loop.run_time_parts import exact
 from workshop.chapters.exercises import judge
@@ -140,7 +140,7 @@ def _quoted() -> None:
     """The numbers of the prose."""
     nothing = [float(hand("none", motion)[0]) for motion in _FAMILIES]
     worse = hand("network, pick and place", "circles") > nothing[1]
-    quote("stir-worse-count", int(worse.sum()))
+    quote("stir-worse-count", how_many(int(worse.sum()), len(worse)))
     shared = _row()["coverage"]["all"]["circles"]
     for kind, short in (("other family", "share"), ("same family", "same")):
         quote(f"stir-{short}-circles-all", 100 * shared[kind]["shared"])

@@ -29,7 +29,7 @@ from ddlib.learning import (
 )
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
-from ddlib.tables import Table, quote, significant
+from ddlib.tables import Table, how_many, quote, significant
 from ddlib.widgets import HiddenTorque
 from workshop.chapters.exercises import Between, OneOf, judge
 from workshop.report import results
@@ -314,8 +314,8 @@ def _named_shifted() -> np.ndarray:
 def _quoted() -> None:
     """Numbers of the lesson's prose."""
     live, seen, off = results.read("page-training"), _events("as printed"), _factors()
-    quote("window-live-networks", live["members"])
-    quote("window-live-first", int((seen["direct"] < seen["error"]).sum()))
+    first = int((seen["direct"] < seen["error"]).sum())
+    quote("window-live-first", how_many(first, live["members"]))
     quote("window-live-level", live["level"])
     quote("window-live-shifted", np.median(live["rows"]["as printed, shifted"]["test"]))
     bends, torque = _bends()
