@@ -10,7 +10,6 @@ import numpy as np
 
 from ddlib._check import finite_array, integer, non_negative, shaped
 from ddlib.learning import TrainingSet
-from ddlib.simulation import LOG_STEP
 
 
 def ridge_filters(data: TrainingSet, penalties) -> np.ndarray:
@@ -54,16 +53,23 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     Parameters
     ----------
     data : TrainingSet
-        Scaled windows.
+        Scaled windows, with their sampling period (`step` of `TrainingSet.from_arrays`).
     states : array_like, shape (cases, joint, 3)
         Position, velocity and acceleration at their centres, as of `ddlib.setups.true_states`.
     joint : int
         Whose inertia.
+
+    Raises
+    ------
+    ValueError
+        If the windows' sampling period is not known.
     """
+    if data.step is None:
+        raise ValueError("data must know its step: give TrainingSet.from_arrays a step, in s")
     states = shaped("states", finite_array("states", states), f"({len(data.x)}, joint, 3)")
     integer("joint", joint, 0, states.shape[1] - 1)
     width = data.x.shape[-1]
-    x = (data.step or LOG_STEP) * (np.arange(width) - width // 2)
+    x = data.step * (np.arange(width) - width // 2)
     length = data.inputs.gain[joint] * np.linalg.norm(x**2 / 2 - (x**2 / 2).mean())
     q, qdd = states[..., 0], states[:, joint, 2]
     known = np.column_stack([q, np.ones(len(q))])

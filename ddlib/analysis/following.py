@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from ddlib._check import finite_array, number, shaped
 from ddlib.analysis.filters import DERIVATIVES, _odd_width
 from ddlib.learning import TorqueModel
-from ddlib.simulation import LOG_STEP
 
 QUANTITIES = DERIVATIVES[:3]
 """What outputs are compared with: position, velocity, acceleration."""
@@ -81,8 +81,21 @@ def followed(f, windows, states) -> _Responses:
     )
 
 
-def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
-    """Mean gradient of networks' torques, N m/rad, shape ``(..., output, joint, width)``."""
+def mean_gradient(model: TorqueModel | Callable, windows) -> np.ndarray:
+    """Mean gradient of networks' torques, N m/rad, shape ``(..., output, joint, width)``.
+
+    Parameters
+    ----------
+    model : TorqueModel, torch.nn.Module or callable
+        A module takes a tensor ``(cases, joint, width)`` in rad and returns torques ``(...,
+        cases, output)`` in N m, each case by itself; its gradient comes from autograd. Any other
+        callable does the same with arrays; its gradient comes from central differences, so it must
+        be smooth (no trees), and it is called twice for each sample of a window.
+    windows : array_like, shape (cases, joint, width)
+        Positions, rad, over which the mean is taken.
+    """
+    if not isinstance(model, TorqueModel):
+        return _of_any(model, windows)
     weights = model.weights
     hidden, output = weights.activity(model.scaled(windows))
     hidden, output = hidden * (1 - hidden), output * (1 - output)  # slopes of the sigmoids
@@ -94,10 +107,55 @@ def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
     return (direct + indirect) * (model.inputs.gain[:, None] / model.outputs.gain[:, None, None])
 
 
-def gains(f, step: float = LOG_STEP) -> np.ndarray:
+def _of_any(model: Callable, windows) -> np.ndarray:
+    """`mean_gradient` of a PyTorch module or another callable."""
+    if not callable(model):
+        raise TypeError(f"model must be a TorqueModel, a module or callable, got {model!r:.60}")
+    if any(kind.__module__.startswith("torch.nn.") for kind in type(model).__mro__):
+        from ddlib.learning import module_gradient
+
+        return module_gradient(model, windows)
+    windows = np.array(shaped("windows", windows, "(cases, joint, width)"))
+
+    def torque() -> np.ndarray:
+        told = np.asarray(model(windows.copy()))
+        if told.ndim < 2 or told.shape[-2] != len(windows):
+            shape = f"(..., {len(windows)}, output)"
+            raise ValueError(f"model must return torques of shape {shape}, got {told.shape}")
+        return told
+
+    told = torque()
+    rounding = np.finfo(told.dtype if told.dtype.kind == "f" else float).eps
+    reach = np.cbrt(rounding) * np.maximum(
+        np.abs(windows - windows.mean((0, 2))[:, None]).max((0, 2)), 1e-3
+    )
+    found = np.empty((*windows.shape[1:], *told.shape[:-2], told.shape[-1]))
+    for joint, sample in np.ndindex(windows.shape[1:]):
+        before, ends = windows[:, joint, sample].copy(), []
+        for sign in (1, -1):
+            windows[:, joint, sample] = before + sign * reach[joint]
+            ends.append(torque().astype(float).mean(-2))
+        windows[:, joint, sample] = before
+        found[joint, sample] = (ends[0] - ends[1]) / (2 * reach[joint])
+    return finite_array("gradient of model", np.moveaxis(found, (0, 1), (-2, -1)))
+
+
+def gains(f, step: float) -> np.ndarray:
     """Gains of filters on position, velocity and acceleration: moments of a Taylor expansion.
 
     For the gradient of a torque: stiffness (N m/rad), damping (N m s/rad), inertia (kg m^2).
+
+    Parameters
+    ----------
+    f : array_like, shape (..., width)
+        Filters of odd width, oldest sample first.
+    step : float
+        Sampling period of their windows, s: 0.010 (`ddlib.simulation.LOG_STEP`) of the book's
+        recordings, else that of your log. An inertia goes with its square.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
     """
     f = _odd_width(f)
     number("step", step, 0.0, open_low=True)

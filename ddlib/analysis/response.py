@@ -63,11 +63,14 @@ class _Calibrated(NamedTuple):
     whole: np.ndarray  # through all of the network, averaged over cases
 
 
-def calibrated(model: TorqueModel, windows) -> _Calibrated:
-    """Gains of networks in physical units, from their torques' gradient averaged over windows."""
+def calibrated(model: TorqueModel, windows, step: float) -> _Calibrated:
+    """Gains of networks in physical units, from their torques' gradient averaged over windows.
+
+    `step` is the sampling period of the windows, s.
+    """
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs
     scale = model.inputs.gain[:, None] / model.outputs.gain[:, None, None]
     direct = slope[..., None, None] * weights.direct_weights * scale
-    return _Calibrated(gains(direct), gains(mean_gradient(model, windows)))
+    return _Calibrated(gains(direct, step), gains(mean_gradient(model, windows), step))

@@ -12,9 +12,11 @@ import html
 import io
 import itertools
 import re
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 import matplotlib as mpl
 from matplotlib import ticker
@@ -24,6 +26,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from ddlib._check import one_of
 from ddlib.tables import _SUPERSCRIPT
 
 _FONT = "'DejaVu Sans',Verdana,sans-serif"
@@ -97,12 +100,29 @@ class Illustration:
     draw, height
         What `illustrate` drew it from, and the height of its narrow form in inches, before
         its panels are put one below the other.
+    size : tuple of float
+        Width and height, inches.
     """
 
     svg: str
     alt: str
     draw: Callable[[Figure], None] | None = field(default=None, compare=False, repr=False)
     height: float = field(default=0.0, compare=False, repr=False)
+    size: tuple[float, float] = field(default=(0.0, 0.0), compare=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"Illustration({textwrap.shorten(self.alt, 60, placeholder=' ...')!r})"
+
+    @cached_property
+    def figure(self) -> Figure:
+        """The matplotlib figure, drawn anew; what you change in it, its own `savefig` writes."""
+        if self.draw is None:
+            raise ValueError("an Illustration without `draw` has no matplotlib figure")
+        with mpl.rc_context(_RC):
+            figure = Figure(figsize=self.size)
+            self.draw(figure)
+            _lay_out(figure)
+        return figure
 
     @cached_property
     def narrow(self) -> str:
@@ -118,8 +138,27 @@ class Illustration:
             f'<div class="narrow" hidden>{self.narrow}</div></div>'
         )
 
-    def save(self, path) -> None:
-        """Write the picture to an ``.svg`` file, dark on white."""
+    def save(self, path, dpi: float = 200) -> None:
+        """Write the picture to an ``.svg``, ``.png`` or ``.pdf`` file, dark on white.
+
+        Parameters
+        ----------
+        path : str or path
+            Its suffix decides.
+        dpi : float
+            Dots per inch of a ``.png`` file.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is another one.
+        """
+        suffix = one_of("suffix of path", Path(path).suffix.lower(), (".svg", ".png", ".pdf"))
+        if suffix != ".svg":
+            undated = {"CreationDate": None} if suffix == ".pdf" else None
+            with mpl.rc_context({**_RC, "figure.constrained_layout.use": False}):
+                self.figure.savefig(path, dpi=dpi, facecolor="white", metadata=undated)
+            return
         svg = self.svg.replace("currentColor", "#1a1a1a")
         svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
         with open(path, "w", encoding="utf-8") as file:
@@ -155,7 +194,7 @@ def illustrate(
         draw(figure)
         _lay_out(figure)
         svg = _written(figure)
-    return Illustration(_inline(svg, alt), alt, draw, narrow_height or height)
+    return Illustration(_inline(svg, alt), alt, draw, narrow_height or height, (width, height))
 
 
 class _Powers(ticker.LogFormatterSciNotation):

@@ -5,4 +5,15 @@ Only `autograd`, `descent`, `levenberg_marquardt` and `gauss_newton` need PyTorc
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_loaded, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name):
+    try:
+        return _loaded(name)
+    except ModuleNotFoundError as error:
+        if error.name != "torch":
+            raise
+        raise ImportError(
+            f'ddlib.learning.{name} needs PyTorch: pip install "ddlib[learning]"', name="torch"
+        ) from None

@@ -1,5 +1,7 @@
 from .autograd import (
+    TorqueNetwork as TorqueNetwork,
     WindowNetwork as WindowNetwork,
+    module_gradient as module_gradient,
     train as train,
 )
 from .descent import (
@@ -39,6 +41,7 @@ from .training import (
     WARM_UP_MOMENTUM as WARM_UP_MOMENTUM,
     History as History,
     TrainingDiverged as TrainingDiverged,
+    TrainingInterrupted as TrainingInterrupted,
     TrainingSet as TrainingSet,
     WorseThanMean as WorseThanMean,
     cases as cases,

@@ -7,8 +7,8 @@ import torch
 from torch import nn
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array
-from ddlib.learning.network import _FIELDS, INITIAL, Weights
+from ddlib._check import finite_array, shaped
+from ddlib.learning.network import _FIELDS, INITIAL, TorqueModel, Weights
 from ddlib.learning.training import (
     History,
     TrainingDiverged,
@@ -16,6 +16,9 @@ from ddlib.learning.training import (
     _check_points,
     _warn_if_worse_than_mean,
 )
+from ddlib.learning.windows import Scaler
+
+_BLOCK = 4096  # cases whose gradients are held at once
 
 
 class WindowNetwork(nn.Module):
@@ -38,6 +41,102 @@ class WindowNetwork(nn.Module):
     def weights(self) -> Weights:
         """The weights as plain arrays."""
         return Weights(*(getattr(self, name).detach().numpy().copy() for name in _FIELDS))
+
+
+class TorqueNetwork(nn.Module):
+    """A `TorqueModel` as a PyTorch module: windows in rad to torques in N m.
+
+    The scaling is inside, in buffers, so that ``state_dict()``, ``torch.export.export`` and
+    ``torch.jit.script`` take it along. Numbers are float64, with the torques of
+    `TorqueModel.torque`; ``.float()`` makes them float32.
+
+    Parameters
+    ----------
+    model : TorqueModel
+        One network, or an ensemble with leading axes.
+    """
+
+    def __init__(self, model: TorqueModel):
+        super().__init__()
+        for name in _FIELDS:
+            array = np.array(getattr(model.weights, name), float)
+            self.register_parameter(name, nn.Parameter(torch.from_numpy(array)))
+        for name in ("inputs", "outputs"):
+            scaler = getattr(model, name)
+            for part in ("low", "high", "target"):
+                array = np.array(getattr(scaler, part), float)
+                self.register_buffer(f"{name}_{part}", torch.from_numpy(array))
+        self.step = model.step
+
+    def forward(self, windows):
+        """Torques, N m, ``(..., output)``, for windows, rad, ``(..., joint, width)``.
+
+        The networks of an ensemble come first, in the axes in front.
+        """
+        low, target = self.inputs_low.unsqueeze(-1), self.inputs_target
+        span = self.inputs_high.unsqueeze(-1) - low
+        x = target[0] + (windows.to(low.dtype) - low) * ((target[1] - target[0]) / span)
+        cases = x.shape[:-2]
+        x = x.reshape(-1, x.shape[-2] * x.shape[-1])
+        rows = self.hidden_weights.flatten(-2).transpose(-1, -2)
+        hidden = torch.sigmoid(x @ rows + self.hidden_bias.unsqueeze(-2))
+        net = x @ self.direct_weights.flatten(-2).transpose(-1, -2)
+        net = net + hidden @ self.output_weights.transpose(-1, -2)
+        output = torch.sigmoid(net + self.output_bias.unsqueeze(-2))
+        target, span = self.outputs_target, self.outputs_high - self.outputs_low
+        torque = self.outputs_low + (output - target[0]) * (span / (target[1] - target[0]))
+        return torque.reshape(torque.shape[:-2] + cases + torque.shape[-1:])
+
+    def model(self) -> TorqueModel:
+        """The way back, after more training in PyTorch, say."""
+
+        def plain(name):
+            return getattr(self, name).detach().cpu().double().numpy().copy()
+
+        scalers = (
+            Scaler(plain(f"{name}_low"), plain(f"{name}_high"), tuple(plain(f"{name}_target")))
+            for name in ("inputs", "outputs")
+        )
+        return TorqueModel(Weights(*map(plain, _FIELDS)), *scalers, self.step)
+
+
+def module_gradient(module: nn.Module, windows) -> np.ndarray:
+    """Mean gradient of a module's torques, ``(..., output, joint, width)``, by autograd.
+
+    The module is asked in its ``eval`` mode, in its own precision and on its own device.
+
+    Parameters
+    ----------
+    module : torch.nn.Module
+        Takes windows ``(cases, joint, width)`` and returns torques ``(..., cases, output)``, each
+        case by itself.
+    windows : array_like, shape (cases, joint, width)
+        Over which the mean is taken.
+    """
+    windows = shaped("windows", windows, "(cases, joint, width)")
+    some = next(
+        (x for x in (*module.parameters(), *module.buffers()) if x.is_floating_point()), None
+    )
+    kind = {} if some is None else {"dtype": some.dtype, "device": some.device}
+    modes = {part: part.training for part in module.modules()}
+    total = 0.0
+    module.eval()
+    try:
+        for start in range(0, len(windows), _BLOCK):
+            x = torch.tensor(windows[start : start + _BLOCK], **kind).requires_grad_()
+            torque = module(x)
+            if not isinstance(torque, torch.Tensor) or torque.shape[-2:-1] != x.shape[:1]:
+                got = getattr(torque, "shape", type(torque).__name__)
+                raise ValueError(
+                    f"model must return torques of shape (..., {len(x)}, output), got {got}"
+                )
+            sums = torque.sum(-2)
+            each = [torch.autograd.grad(y, x, retain_graph=True)[0].sum(0) for y in sums.flatten()]
+            total = total + torch.stack(each).double().reshape(*sums.shape, *x.shape[1:])
+    finally:
+        for part, mode in modes.items():
+            part.training = mode
+    return finite_array("gradient of model", total.cpu().numpy() / len(windows))
 
 
 def train(

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 import platform
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from threading import Event
 
 import numpy as np
 import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, shaped
+from ddlib.learning._threads import in_threads
 from ddlib.learning.network import TorqueModel, Weights, _from_rows, rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
     History,
     TrainingDiverged,
+    TrainingInterrupted,
     TrainingSet,
     _check_descent,
     _check_points,
@@ -87,6 +89,11 @@ def train_ensemble(
     tuple of TorqueModel, History and dict
         The trained ensemble, the errors of every member, and weights by epoch. If no error is
         finite: a `TrainingDiverged` error; if all of several end above 1: `WorseThanMean`.
+
+    Raises
+    ------
+    TrainingInterrupted
+        On Ctrl-C or the kernel's stop, within one epoch; it holds the networks as they are then.
     """
     members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
@@ -103,27 +110,31 @@ def train_ensemble(
     count = _WORKERS * math.ceil(members / (_WORKERS * _BLOCK))
     blocks = np.array_split(np.arange(members), min(count, members))
     bar = tqdm(total=epochs * members, desc=label, disable=not progress, mininterval=0.5)
+    stop = Event()
 
     def work(block):
         y = data.y if targets is None else targets[block]
         start = weights[block]
         descent = Descent(start, data.x, y, rate[block] / len(data.x), momentum[block])
-        return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar)
+        return _train_block(descent, start, data, test, epochs, warm_up, snapshots, bar, stop)
 
     threads = torch.get_num_threads()
     torch.set_num_threads(1)  # one core for each block: no waiting at every product
     try:
-        with ThreadPoolExecutor(min(_WORKERS, len(blocks))) as pool:
-            parts = list(pool.map(work, blocks))
+        parts, interrupted = in_threads(work, blocks, _WORKERS, stop)
     finally:
         torch.set_num_threads(threads)
         bar.close()
     trained, histories, kept = zip(*parts)
-    history = History(
-        histories[0].epochs,
-        np.hstack([h.training for h in histories]),
-        np.hstack([h.test for h in histories]),
-    )
+    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
+    history = _side_by_side(histories)
+    kept = {
+        epoch: Weights.concatenate([part[epoch] for part in kept])
+        for epoch in sorted(set.intersection(*map(set, kept)))
+    }
+    if interrupted:
+        reached = np.repeat([h.epochs[-1] for h in histories], [len(w) for w in trained])
+        raise TrainingInterrupted(model, history, reached, epochs, kept)
     if not np.isfinite(history.training[-1]).any():
         raise TrainingDiverged(
             f"no member's error is finite after {epochs} epochs: lower the rate ({rate.min():g})",
@@ -131,8 +142,19 @@ def train_ensemble(
         )
     if targets is None and members > 1:  # a few networks saturate early at any rate
         _warn_if_worse_than_mean(history, rate.min())
-    model = TorqueModel(Weights.concatenate(trained), data.inputs, data.outputs, data.step)
-    return model, history, {e: Weights.concatenate([k[e] for k in kept]) for e in sorted(kept[0])}
+    return model, history, kept
+
+
+def _side_by_side(histories) -> History:
+    """One history of several blocks; those that were stopped earlier keep their last errors."""
+    longest = max(histories, key=lambda history: history.epochs[-1])
+    points = len(longest.epochs)
+
+    def joined(errors):
+        return np.hstack([np.pad(e, ((0, points - len(e)), (0, 0)), "edge") for e in errors])
+
+    training, test = [h.training for h in histories], [h.test for h in histories]
+    return History(longest.epochs, joined(training), joined(test) if len(test[0]) else test[0])
 
 
 def _per_member(rate, momentum, epochs, members):
@@ -146,8 +168,8 @@ def _per_member(rate, momentum, epochs, members):
     return [np.broadcast_to(array, members) for array in arrays]
 
 
-def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
-    """Train some members in this thread; `bar` is told how far they are."""
+def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar, stop):
+    """Train some members in this thread until `stop`; `bar` is told how far they are."""
     torch.set_num_threads(1)
     history, points = History(), set(_check_points(epochs))
     kept = {0: initial} if 0 in snapshots else {}
@@ -164,10 +186,14 @@ def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
         if np.isfinite(training).any():
             bar.set_postfix(median_rmss=f"{np.nanmedian(training):.3f}", refresh=False)
 
+    reached = 0
     for epoch in range(1, epochs + 1):
+        if stop.is_set():
+            break
         due = epoch - 1 in points  # the errors after one step show in the next one
         test_square = [descent.mean_square(*test_cases)] if due and test is not None else []
         square = descent.epoch(due, WARM_UP_MOMENTUM if epoch <= warm_up else 1.0)
+        reached = epoch
         if due:
             note(epoch - 1, square, test_square)
         if epoch in snapshots:
@@ -176,7 +202,7 @@ def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar):
             with bar.get_lock():
                 bar.update((epoch % 50 or 50) * descent.members)
     test_square = [descent.mean_square(*test_cases)] if test is not None else []
-    note(epochs, descent.mean_square(descent.inputs, descent.targets), test_square)
+    note(reached, descent.mean_square(descent.inputs, descent.targets), test_square)
     return descent.weights(), history, kept
 
 

@@ -9,8 +9,8 @@ damping mu follows Nielsen (1999). Near the end all second derivatives take the 
 from __future__ import annotations
 
 import warnings
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
+from threading import Event
 from typing import NamedTuple
 
 import numpy as np
@@ -18,10 +18,11 @@ import torch
 from tqdm.auto import tqdm
 
 from ddlib._check import finite_array, integer, number, shaped
+from ddlib.learning._threads import in_threads
 from ddlib.learning.descent import _WORKERS
 from ddlib.learning.gauss_newton import _Objective
 from ddlib.learning.network import TorqueModel, Weights
-from ddlib.learning.training import History, TrainingSet
+from ddlib.learning.training import History, TrainingInterrupted, TrainingSet
 
 _DAMPING = 0.1  # first mu, in units of the largest diagonal element of J'J
 _NEAR = 1e-2  # the measure of `tolerance` from which all second derivatives are used
@@ -44,6 +45,10 @@ class Solution(NamedTuple):
     gradient: np.ndarray  # what `tolerance` is compared with, at the end
     steps: np.ndarray  # how many were taken
     ended: np.ndarray  # why
+
+    def __repr__(self) -> str:
+        reasons = ", ".join(sorted(set(self.ended)))
+        return f"Solution({self.model!r}, {self.steps.max()} steps, ended by {reasons})"
 
     @property
     def converged(self) -> np.ndarray:
@@ -95,6 +100,8 @@ def solve(
     ------
     TypeError
         If `whiten` is neither True nor False.
+    TrainingInterrupted
+        On Ctrl-C or the kernel's stop, within one step; it holds the networks as they are then.
     """
     if not isinstance(whiten, bool):
         raise TypeError(f"whiten must be True or False, got {whiten!r}")
@@ -107,6 +114,7 @@ def solve(
     single = weights.hidden_bias.ndim == 1
     members = [weights] if single else [weights[k] for k in range(len(weights))]
     bar = tqdm(total=steps * len(members), desc=label, disable=not progress, mininterval=0.5)
+    stop = Event()
 
     def tell(count: int, error: float) -> None:
         with bar.get_lock():
@@ -114,20 +122,22 @@ def solve(
             bar.update(count)
 
     def work(member: Weights):
+        if stop.is_set():
+            return member, _End(None, [(np.nan, np.nan)], np.nan, np.nan, "interrupted")
         torch.set_num_threads(1)  # of this thread: one core for each member
         objective = _Objective(member, data, decay, test, whiten)
-        end = _descend(objective, objective.pack(member), steps, tolerance, target_rmss, tell)
+        start = objective.pack(member)
+        end = _descend(objective, start, steps, tolerance, target_rmss, tell, stop)
         tell(steps + 1 - len(end.path), end.path[-1][0])
         return objective.unpack(end.vector), end
 
     threads = torch.get_num_threads()
-    pool = ThreadPoolExecutor(min(_WORKERS, len(members)))
     try:
-        solved, ends = zip(*pool.map(work, members))
+        parts, interrupted = in_threads(work, members, _WORKERS, stop)
     finally:
-        pool.shutdown(cancel_futures=True)
         torch.set_num_threads(threads)
         bar.close()
+    solved, ends = zip(*parts)
     solution = Solution(
         TorqueModel(
             solved[0] if single else Weights.stack(solved), data.inputs, data.outputs, data.step
@@ -138,6 +148,8 @@ def solve(
         np.array([len(end.path) - 1 for end in ends]),
         np.array([end.reason for end in ends]),
     )
+    if interrupted:
+        raise TrainingInterrupted(solution.model, solution.history, solution.steps, steps)
     left = np.flatnonzero(~solution.converged)
     if len(left):
         warnings.warn(
@@ -160,7 +172,7 @@ class _End(NamedTuple):
     reason: str
 
 
-def _descend(objective, vector, steps, tolerance, target, tell) -> _End:
+def _descend(objective, vector, steps, tolerance, target, tell, stop) -> _End:
     """Minimise one member's objective from `vector`; `tell` hears of each step."""
     value, error = objective.value(vector)
     if not (np.isfinite(value) and torch.isfinite(vector).all()):
@@ -176,6 +188,8 @@ def _descend(objective, vector, steps, tolerance, target, tell) -> _End:
             reason = "target"
         elif len(path) > steps:
             reason = "steps"
+        elif stop.is_set():
+            reason = "interrupted"
         else:
             mu = _DAMPING * float(matrix.diagonal().max()) if mu is None else mu
             step = _step(objective, vector, value, matrix, gradient, mu, exact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import io
 import os
 from dataclasses import dataclass, fields, replace
@@ -167,6 +168,21 @@ class TorqueModel:
     def torque(self, windows) -> np.ndarray:
         """Torques, N m, ``(..., cases, joint)``, for windows, rad, ``(cases, joint, width)``."""
         return self.outputs.unscale(self.weights.activity(self.scaled(windows))[1])
+
+    def __repr__(self) -> str:
+        period = "" if self.step is None else f", {self.step:g} s apart"
+        return f"TorqueModel({repr(self.weights)[8:-1]}{period})"
+
+    def module(self):
+        """The same as a `ddlib.learning.TorqueNetwork`, a PyTorch module with the scaling inside.
+
+        Raises
+        ------
+        ImportError
+            Without PyTorch.
+        """
+        # asked for by name: no result hangs on what the module looks like
+        return importlib.import_module("ddlib.learning").TorqueNetwork(self)
 
     def __getitem__(self, index) -> TorqueModel:
         """The model(s) at `index` of the ensemble."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,19 +34,31 @@ class TrainingSet:
     outputs: Scaler  #: N m to `y`.
     step: float | None = None  #: Sampling period of the windows, s, if known.
 
+    def __repr__(self) -> str:
+        cases, joints, width = self.x.shape
+        period = "" if self.step is None else f", {self.step:g} s apart"
+        return f"TrainingSet({cases} cases, {joints} joints, window of {width} samples{period})"
+
     @classmethod
-    def from_arrays(cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0)) -> TrainingSet:
-        """Scale windows ``(cases, joint, width)``, rad, to `scaling`, torques, N m, to `target`."""
+    def from_arrays(
+        cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0), *, step=None
+    ) -> TrainingSet:
+        """Scale windows ``(cases, joint, width)``, rad, to `scaling`, torques, N m, to `target`.
+
+        `step` is the windows' sampling period, s: networks trained on the set keep it, and what
+        reads masses from weights or draws them over time asks for it.
+        """
         windows = shaped("windows", windows, "(cases, joint, width)")
         torque = shaped("torque", torque, f"({len(windows)}, joint)")
+        if step is not None:
+            number("step", step, 0.0, open_low=True)
         inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
-        return cls(inputs.scale(windows, -2), outputs.scale(torque), inputs, outputs)
+        return cls(inputs.scale(windows, -2), outputs.scale(torque), inputs, outputs, step)
 
     @classmethod
     def from_recording(cls, recording: Recording, width: int, *options, **named) -> TrainingSet:
         """All windows of the motions of a recording, runs joined; options of `from_arrays`."""
-        made = cls.from_arrays(*cases(recording, width), *options, **named)
-        return replace(made, step=recording.step)
+        return cls.from_arrays(*cases(recording, width), *options, **named, step=recording.step)
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
@@ -125,6 +137,32 @@ class TrainingDiverged(RuntimeError):
     def __init__(self, message: str, history: History):
         super().__init__(message)
         self.history = history
+
+
+class TrainingInterrupted(KeyboardInterrupt):
+    """Ctrl-C, or the kernel's stop, cut a training short; what was reached is kept.
+
+    Attributes
+    ----------
+    model : TorqueModel
+        The networks as they were; those that had not begun have their initial weights.
+    history : History
+        Errors until then. The last ones are those of `model`; NaN if they were not computed.
+    epochs : ndarray, shape (members,)
+        Epochs of descent, or steps of `solve`, that each network had taken.
+    snapshots : dict
+        Weights by epoch, of those epochs that all networks had reached.
+    """
+
+    def __init__(self, model, history: History, epochs: np.ndarray, wanted: int, snapshots=None):
+        least, most = int(np.min(epochs)), int(np.max(epochs))
+        reached = f"{most:,}" if least == most else f"{least:,} to {most:,}"
+        super().__init__(
+            f"interrupted after {reached} of {wanted:,} steps; the networks so far are this "
+            "error's `model` (in a notebook: import sys; model = sys.last_value.model)"
+        )
+        self.model, self.history, self.epochs = model, history, epochs
+        self.snapshots = snapshots or {}
 
 
 class WorseThanMean(UserWarning):

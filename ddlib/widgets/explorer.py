@@ -21,7 +21,6 @@ from ddlib.analysis import (
 )
 from ddlib.analysis.filters import _NAMED_CLASSES
 from ddlib.learning import TorqueModel, Weights
-from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, module
 from ddlib.widgets.hinton import (
     CENTRE,
@@ -30,6 +29,7 @@ from ddlib.widgets.hinton import (
     _check_models,
     _diagram,
     _HintonWidget,
+    common_step,
     share_panel,
     unit_names,
     weight_functions,
@@ -38,7 +38,7 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
-_FREQUENCIES = np.geomspace(0.5, 20.0, 31)  # where the gain is shown, Hz
+_FREQUENCIES = np.geomspace(0.005, 0.2, 31)  # where the gain is shown, over the sampling rate
 _FLOOR = 1e-3  # lowest gain shown, as a part of the largest: a zero of the response has none
 
 
@@ -55,6 +55,8 @@ class FilterExplorer(_HintonWidget):
         Window size -> `TorqueModel` of an ensemble; with one size there is no menu of sizes.
     members : sequence of int
         Which networks of each ensemble can be chosen, by their seed; two or more.
+    step : float, optional
+        Sampling period of the windows, s. Default: the one that the models know.
     **options
         Passed on to `CurveWidget`.
     """
@@ -65,17 +67,22 @@ class FilterExplorer(_HintonWidget):
     classes = t.List(list(CLASSES), read_only=True, help="names by the rule").tag(sync=True)
 
     def __init__(
-        self, models: Mapping[int, TorqueModel], members: Sequence[int] = (0, 1, 2), **options
+        self,
+        models: Mapping[int, TorqueModel],
+        members: Sequence[int] = (0, 1, 2),
+        *,
+        step: float | None = None,
+        **options,
     ):
-        self._weights = {
-            width: model.weights for width, model in _check_models(models, 1, 1).items()
-        }
+        models = _check_models(models, 1, 1)
+        self._step = step = common_step(models.values(), step)
+        self._weights = {width: model.weights for width, model in models.items()}
         for weights in self._weights.values():
             for member in members:
                 integer("members", member, 0, len(weights) - 1)
         some = next(iter(self._weights.values()))
         self._reach = reach = max(self._weights) // 2
-        time = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
+        time = np.arange(-reach, reach + 1) * step * 1e3
         parts = {name: name for name in ("even", "odd", "constant")}
         energy = dict(enumerate(("pos.", "vel.", "acc.", "jerk", "rest")))
         gains = {"gain": "whole", "gain, varying": "without its constant"}
@@ -100,7 +107,7 @@ class FilterExplorer(_HintonWidget):
                     "Gain",
                     gains,
                     "frequency, Hz",
-                    _FREQUENCIES,
+                    _FREQUENCIES / step,
                     x_scale="log",
                     y_scale="power",
                     y_range=("lowest gain", "highest gain"),
@@ -135,13 +142,13 @@ class FilterExplorer(_HintonWidget):
         width = width or next(iter(self._weights))
         f = self._filter(seed, unit, joint, width)
         parts = decompose(f)
-        half = (width // 2 + 0.5) * LOG_STEP * 1e3
+        half = (width // 2 + 0.5) * self._step * 1e3
         constant = np.broadcast_to(parts.constant, f.shape)
         filters = {"weights": f, "constant": constant, "even": parts.even, "odd": parts.odd}
         return {
             **{name: zero_padded(part, self._reach) for name, part in filters.items()},
             "shares": shares(f),
-            **_gains(f),
+            **_gains(f, self._step),
             "class": CLASSES.index(classify(f)),
             "first": -half,
             "last": half,
@@ -168,15 +175,16 @@ def _named(weights: Mapping[int, Weights], members: Sequence[int], sized: bool) 
     return presets
 
 
-def _gains(f) -> dict[str, np.ndarray]:
+def _gains(f, step: float) -> dict[str, np.ndarray]:
     """Gains as powers of ten: of a filter, of its varying part, of its main derivative; ends."""
-    gain = np.abs(frequency_response([f, f - f.mean()], _FREQUENCIES, LOG_STEP))
+    frequencies = _FREQUENCIES / step
+    gain = np.abs(frequency_response([f, f - f.mean()], frequencies, step))
     highest = gain.max()
     gain = np.log10(np.maximum(gain, _FLOOR * highest))
     main = 1 + np.argmax(np.abs(content(f)[1:]))
     samples = np.arange(f.size) - f.size // 2
-    moment = (samples * LOG_STEP) ** main @ basis(f.size)[main] * content(f)[main]
-    ideal = np.abs(moment) / math.factorial(main) * (2 * np.pi * _FREQUENCIES) ** main
+    moment = (samples * step) ** main @ basis(f.size)[main] * content(f)[main]
+    ideal = np.abs(moment) / math.factorial(main) * (2 * np.pi * frequencies) ** main
     return {
         **dict(zip(("gain", "gain, varying"), gain)),
         "gain, ideal": np.log10(np.maximum(ideal, _FLOOR * highest)),

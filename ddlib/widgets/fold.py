@@ -8,7 +8,6 @@ import numpy as np
 
 from ddlib._check import integer, number, shaped
 from ddlib.analysis import decompose
-from ddlib.simulation import LOG_STEP
 from ddlib.widgets.base import CurveWidget, Panel
 from ddlib.widgets.hinton import CENTRE
 from ddlib.widgets.parts.parameters import Choice, Parameter
@@ -28,12 +27,12 @@ class FilterFold(CurveWidget):
         Label -> weight function ``(width,)`` per radian, oldest sample first; two or more, of one
         odd width.
     step : float
-        Sampling period, s.
+        Sampling period of the rows, s; `ddlib.simulation.LOG_STEP` of the book's recordings.
     **options
         Passed on to `CurveWidget`.
     """
 
-    def __init__(self, rows: Mapping[str, np.ndarray], step: float = LOG_STEP, **options):
+    def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
         number("step", step, 0.0, open_low=True)
         if not isinstance(rows, Mapping) or len(rows) < 2:
             raise TypeError(f"rows must map two labels or more to weights, got {rows!r}")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import traitlets as t
 
-from ddlib._check import one_of
+from ddlib._check import number, one_of
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
@@ -63,6 +63,20 @@ def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
                 f"{shape} for {width!r}"
             )
     return dict(models)
+
+
+def common_step(models, step: float | None = None) -> float:
+    """The sampling period of models, s: `step`, or what they say themselves; an error in doubt."""
+    told = [model.step for model in models if model.step is not None]
+    if step is not None:
+        number("step", step, 0.0, open_low=True)
+    elif not told:
+        raise ValueError("models do not know their sampling period: give step, in s")
+    else:
+        step = told[0]
+    if not np.allclose(told, step, rtol=1e-6, atol=0.0):
+        raise ValueError(f"models must have a sampling period of {step:g} s, got {told}")
+    return float(step)
 
 
 def width_choice(sizes, first: int | None = None) -> Choice:

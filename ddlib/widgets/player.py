@@ -8,7 +8,7 @@ import traitlets as t
 from ddlib._check import finite_array, integer
 from ddlib.learning import TorqueModel
 from ddlib.setups import errors
-from ddlib.simulation import LOG_STEP, Recording
+from ddlib.simulation import Recording
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
     CENTRE,
@@ -16,6 +16,7 @@ from ddlib.widgets.hinton import (
     JOINTS,
     _diagram,
     _HintonWidget,
+    common_step,
     unit_names,
     weight_functions,
 )
@@ -71,6 +72,8 @@ class TrainingPlayer(_HintonWidget):
         self._names = list(names)
         self._reach = self._weights.width // 2
         self._functions = weight_functions(self._weights)
+        period = common_step([model], recording.step)
+        time = np.arange(-self._reach, self._reach + 1) * period * 1e3
         begin = int(epochs[_moved(self._weights)])
         self.set_trait("begin", begin)
         places = np.log10(np.maximum(epochs, 1))
@@ -96,7 +99,7 @@ class TrainingPlayer(_HintonWidget):
                     "Weights of the unit",
                     {f"{joint} weights": f"from the {joint}'s window" for joint in JOINTS},
                     CENTRE,
-                    np.arange(-self._reach, self._reach + 1) * LOG_STEP * 1e3,
+                    time,
                     y_range=("lowest", "highest"),
                 ),
                 Panel(

@@ -12,7 +12,6 @@ from ddlib.analysis import roughness
 from ddlib.figures import COLOURS, illustrate
 from ddlib.figures.weights import dots, hinton_on, relative_weights
 from ddlib.learning import Weights
-from ddlib.simulation import LOG_STEP
 from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import SCRIPT, STYLE, Panel, Scalar, module
 from ddlib.widgets.hinton import (
@@ -37,7 +36,7 @@ class WeightReader(_HintonWidget):
     start, trained : Weights
         One network before and after training.
     step : float
-        Sampling period, s.
+        Sampling period of the windows, s; `ddlib.simulation.LOG_STEP` of the book's recordings.
     unit, joint : str, optional
         The row that is shown first: of which unit ("hidden 0" is the first hidden one), from whose
         window. Default: the shoulder's row of the shoulder torque.
@@ -52,7 +51,7 @@ class WeightReader(_HintonWidget):
         self,
         start: Weights,
         trained: Weights,
-        step: float = LOG_STEP,
+        step: float,
         *,
         unit: str | None = None,
         joint: str = JOINTS[0],

@@ -10,11 +10,11 @@ import traitlets as t
 from ddlib._check import finite_array
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.learning.windows import check_width
-from ddlib.simulation import LOG_STEP, Recording
+from ddlib.simulation import Recording
 from ddlib.widgets.base import SCRIPT, Panel, Scalar, module
 from ddlib.widgets.engine._live import LiveWidget
 from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, networks
-from ddlib.widgets.hinton import JOINTS, _check_models, width_choice
+from ddlib.widgets.hinton import JOINTS, _check_models, common_step, width_choice
 from ddlib.widgets.parts.parameters import Choice
 
 
@@ -54,6 +54,7 @@ class SlidingWindow(LiveWidget):
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
         models = _check_models(models, 0)
+        self._step = common_step(models.values(), recording.step)
         self._measured = recording.tau[recording.motion]
         reach = max(models) // 2
         self._time = recording.t[recording.motion]
@@ -66,7 +67,7 @@ class SlidingWindow(LiveWidget):
             self._torque[width] = model.torque(windows)
         hidden = self._activity[max(models)].shape[-1] - len(JOINTS)
         units = [*map(str, range(1, hidden + 1)), *(joint[0] for joint in JOINTS)]
-        centre = np.arange(-reach, reach + 1) * LOG_STEP * 1e3
+        centre = np.arange(-reach, reach + 1) * self._step * 1e3
         super().__init__(
             self._curves,
             [
@@ -138,7 +139,7 @@ class SlidingWindow(LiveWidget):
         return {name: (x.min(), x.max()) for name, x in ranges.items()}
 
     def _curves(self, width, sample) -> dict:
-        half = (width // 2 + 0.5) * LOG_STEP
+        half = (width // 2 + 0.5) * self._step
         torque, now = self._torque[width], self._time[sample]
         curves = {"activity": self._activity[width][sample]}
         for j, joint in enumerate(JOINTS):
@@ -180,11 +181,12 @@ class HiddenTorque(LiveWidget):
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
         check_width(width)
+        self._step = recording.step
         self._half, self._time = width // 2, recording.t[recording.motion]
         self._windows = np.degrees(sliding_windows(recording.q, width, recording.motion))
         self._torque = recording.tau[recording.motion]
         start = {"joint": JOINTS[0], "sample": len(self._time) // 5, "shown": False}
-        around = np.arange(-self._half, self._half + 1) * LOG_STEP * 1e3
+        around = np.arange(-self._half, self._half + 1) * self._step * 1e3
         span = {"x_label": "time, s", "x": self._time, "cursor": ("from", "to")}
         inside = {"inside": "position", "chord": "straight line"}
         super().__init__(
@@ -229,7 +231,7 @@ class HiddenTorque(LiveWidget):
         most = 1.1 * np.abs(torque).max()
         if not shown:
             torque[max(1, sample - self._half + 1) :] = np.nan
-        reach = (self._half + 0.5) * LOG_STEP
+        reach = (self._half + 0.5) * self._step
         ends = np.clip([time[sample] - reach, time[sample] + reach], time[0], time[-1])
         return {
             "position": self._windows[:, j, self._half],

@@ -19,7 +19,7 @@ def swung(swing, rate=6.0):
     q[:, 1], qdd[:, 1] = 0.7 * np.cos(1.3 * TIME), -0.7 * 1.69 * np.cos(1.3 * TIME)
     x, inside = sliding_windows(q, 21), slice(10, -10)
     states = np.stack([q, np.gradient(q, LOG_STEP, axis=0), qdd], -1)[inside]
-    return TrainingSet.from_arrays(x, MASS * qdd[inside], scaling=(-1.0, 1.0)), states
+    return TrainingSet.from_arrays(x, MASS * qdd[inside], scaling=(-1, 1), step=LOG_STEP), states
 
 
 def test_ridge_solves_the_least_squares_problem_with_the_penalty_as_rows():
@@ -38,7 +38,7 @@ def test_half_of_the_mass_is_left_where_theory_says(swing):
     data, states = swung(swing)
     half = half_penalty(data, states)
     penalties = half * np.array([1 / 30, 1 / 3, 1.0, 3.0, 30.0])
-    mass = gains(ridge_filters(data, penalties))[:, 0, 0, 2] / MASS
+    mass = gains(ridge_filters(data, penalties), LOG_STEP)[:, 0, 0, 2] / MASS
     assert np.allclose(mass, [30 / 31, 3 / 4, 1 / 2, 1 / 4, 1 / 31], atol=0.09)
 
 

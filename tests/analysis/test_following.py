@@ -66,5 +66,5 @@ def test_the_mean_gradient_is_that_of_the_torque():
 
 def test_gains_of_textbook_filters_are_one():
     np.testing.assert_allclose(gains(TAPS, STEP), np.eye(3), atol=1e-9)
-    assert gains(np.zeros((4, 2, 2, 21))).shape == (4, 2, 2, 3)
+    assert gains(np.zeros((4, 2, 2, 21)), STEP).shape == (4, 2, 2, 3)
     np.testing.assert_allclose(gains([0.0, 0.0, 1.0], 0.5), [1.0, 0.5, 0.125])

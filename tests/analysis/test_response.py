@@ -61,7 +61,7 @@ def test_gains_of_a_linear_network_are_the_planted_inertia_and_friction():
     weights.direct_weights[:] = 4 * filters / gain  # the slope of a sigmoid at 0 is a quarter
     centre = model.inputs.unscale(np.zeros((1, 2, 1)), -2)
     windows = centre + small * RNG.normal(size=(50, 2, 21))
-    found = calibrated(model, windows)
+    found = calibrated(model, windows, LOG_STEP)
     assert np.allclose(found.direct, wanted, rtol=1e-6, atol=1e-9)
     assert np.allclose(found.whole, wanted, rtol=1e-6, atol=1e-9)
 

@@ -5,6 +5,7 @@ import pytest
 from pictures import check_sound
 
 from ddlib.analysis import gains
+from ddlib.simulation import LOG_STEP
 from workshop.chapters import excitation
 from workshop.chapters.excitation import MassAndPenalty
 from workshop.report import results
@@ -69,7 +70,7 @@ def test_widget_shows_the_mass_going(widget):
     widget.set_trait("penalty", 1e-3)
     shown = widget.curves
     assert shown["now"] < 0.1 < 6 < shown["mass"][0]
-    assert np.isclose(gains(shown["filter"])[2], shown["now"])
+    assert np.isclose(gains(shown["filter"], LOG_STEP)[2], shown["now"])
     assert 1e-7 < 10 ** shown["half"] < 1e-5
 
 

@@ -98,7 +98,7 @@ def test_the_sum_over_all_samples_is_the_inertia():
     widget = WeighTheArm({"one": g, "other": 2 * g}, {"one": np.eye(2), "other": 3 * np.eye(2)})
     widget.reach, widget.learnt, widget.entry = 10, "other", "coupling"
     shown = widget.curves
-    assert np.isclose(shown["now"], gains(2 * g)[0, 1, 2]) and shown["true"] == 0
+    assert np.isclose(shown["now"], gains(2 * g, LOG_STEP)[0, 1, 2]) and shown["true"] == 0
     assert np.isclose(shown["sum"][-1], shown["now"])
     widget.reach = 1
     inner = (LOG_STEP**2 / 2 * 2 * g[0, 1, [9, 11]]).sum()
@@ -127,7 +127,7 @@ def test_inertia_at_a_frequency():
 def test_paths_add_up_to_the_network():
     model = results.median_network(21, JOINT_DAMPING.name)
     windows, _ = cases(committed.training(JOINT_DAMPING.name), 21)
-    whole = gains(mean_gradient(model, windows))
+    whole = gains(mean_gradient(model, windows), LOG_STEP)
     each = inertia_in_the_weights.paths()
     assert each.shape == (11, 3)
     assert np.allclose(each.sum(0), whole.reshape(-1, 2, 2, 3)[0, 0, 0])

@@ -4,6 +4,7 @@ import numpy as np
 
 from ddlib.analysis import LAYERS, gains, mean_gradient, savitzky_golay
 from ddlib.learning import Scaler, TorqueModel, Weights
+from ddlib.simulation import LOG_STEP
 from workshop.report.studies._harmonics import _summary
 
 STEP, WIDTH = 0.01, 11
@@ -29,4 +30,4 @@ def test_a_summary_counts_network_by_network():
     for layer in LAYERS:
         np.testing.assert_allclose(sum(found[layer]["classes"].values()), 1)
         assert found[layer]["unique"].shape == (3, 3)
-    np.testing.assert_allclose(found["gains"], gains(mean_gradient(model, windows)))
+    np.testing.assert_allclose(found["gains"], gains(mean_gradient(model, windows), LOG_STEP))

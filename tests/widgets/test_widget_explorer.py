@@ -43,7 +43,7 @@ def weights_of(models, width, seed, unit, joint) -> np.ndarray:
 
 
 def gain_of(f) -> np.ndarray:
-    return np.abs(freqz(f, worN=_FREQUENCIES, fs=1 / LOG_STEP)[1])
+    return np.abs(freqz(f, worN=_FREQUENCIES / LOG_STEP, fs=1 / LOG_STEP)[1])
 
 
 def test_truths_of_every_filter(explorer, models):
@@ -85,7 +85,7 @@ def test_gains_are_scipys(explorer, models):
         textbook = savitzky_golay(len(f), order, LOG_STEP, degree=order)
         scale = np.sqrt(shown["shares"][order] * (f @ f) / (textbook @ textbook))
         if shown["shares"][order] > 0.01:
-            expected = np.log10(scale * (2 * np.pi * _FREQUENCIES) ** order)
+            expected = np.log10(scale * (2 * np.pi * _FREQUENCIES / LOG_STEP) ** order)
             got, shown_ = shown["gain, ideal"], expected > np.log10(lowest)
             np.testing.assert_allclose(got[shown_], expected[shown_], atol=0.01)
 

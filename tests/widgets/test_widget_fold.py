@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from widget_pages import NEXT_FRAME, PATHS, opened, settings
 
+from ddlib.simulation import LOG_STEP
 from ddlib.widgets.fold import FilterFold
 
 S = np.arange(-7, 8)
@@ -16,7 +17,7 @@ PARTS = ("constant", "even", "odd")
 
 @pytest.fixture(scope="module")
 def widget():
-    return FilterFold(ROWS)
+    return FilterFold(ROWS, LOG_STEP)
 
 
 def test_truths_of_any_state(widget):
@@ -63,7 +64,7 @@ def test_refusals():
         ({"a": S[:-1], "b": S[:-1]}, ValueError, "odd"),
     ):
         with pytest.raises(error, match=message):
-            FilterFold(rows)
+            FilterFold(rows, LOG_STEP)
     with pytest.raises(ValueError, match="step must"):
         FilterFold(ROWS, 0.0)
 

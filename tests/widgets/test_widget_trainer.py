@@ -16,6 +16,7 @@ from ddlib.effects import IDEAL
 from ddlib.learning import Descent, TorqueModel, cases, default_rate
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING
+from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import NetworkTrainer
 from ddlib.widgets.engine import trainer
@@ -105,7 +106,7 @@ def test_the_course_is_ddlibs(evaluate, widget, monkeypatch, inputs, shift, mome
     # the inertia, by the mean gradient over the windows that the network has seen
     windows = data.inputs.unscale(data.x, -2)
     model = TorqueModel(weights, data.inputs, data.outputs)
-    inertia = gains(mean_gradient(model, windows))[0, 0, 2]
+    inertia = gains(mean_gradient(model, windows), LOG_STEP)[0, 0, 2]
     assert page["inertia"] == pytest.approx(inertia, rel=1e-4)
     own = JOINT_DAMPING.arm.mass_matrix(windows[..., 10])[:, 0, 0].mean()
     assert page["arm"] == pytest.approx(own, rel=1e-9)

@@ -11,6 +11,7 @@ from scipy.stats import linregress
 from widget_pages import NEXT_FRAME, opened, page_of, settings
 
 from ddlib.learning import Weights
+from ddlib.simulation import LOG_STEP
 from ddlib.widgets import WeightReader
 
 WIDTH, HIDDEN = 11, 5
@@ -35,7 +36,7 @@ def pair():
 
 @pytest.fixture(scope="module")
 def widget(pair):
-    return WeightReader(*pair)
+    return WeightReader(*pair, LOG_STEP)
 
 
 def row_of(weights: Weights, unit: str, joint: str) -> np.ndarray:
@@ -82,9 +83,9 @@ def test_it_refuses_networks_that_are_no_pair(pair):
     other = Weights.random(1, WIDTH + 2, HIDDEN)[0]
     for wrong in ((other, trained), (Weights.random(2, WIDTH), Weights.random(2, WIDTH))):
         with pytest.raises(ValueError, match="start and trained must be one network"):
-            WeightReader(*wrong)
+            WeightReader(*wrong, LOG_STEP)
     with pytest.raises(ValueError, match="unit must be one of"):
-        WeightReader(start, trained, unit="hidden 9")
+        WeightReader(start, trained, LOG_STEP, unit="hidden 9")
 
 
 # In a page without a kernel

@@ -80,7 +80,7 @@ def foretold_over_found(recording: Recording, setup: Setup, width: int = 21) -> 
     data = TrainingSet.from_recording(training, width, scaling=TRIAL.scaling)
     states = true_states(training, setup)
     arm = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
-    mass = gains(ridge_filters(data, results.read("excitation")["penalties"]))[:, 0, 0, 2]
+    mass = gains(ridge_filters(data, results.read("excitation")["penalties"]), LOG_STEP)[:, 0, 0, 2]
     half = half_penalty(data, states.reshape(-1, 2, 3))
     return half / float(half_measured({"ridge": [mass], "arm": arm})[0])
 
@@ -171,7 +171,7 @@ class MassAndPenalty(CurveWidget):
                 recording = later(whole, seconds)
                 data, states = training_set(recording), true_states(split(recording)[0], setup)
                 arm = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
-                curve = gains(ridge_filters(data, penalties))[:, 0, 0, 2]
+                curve = gains(ridge_filters(data, penalties), LOG_STEP)[:, 0, 0, 2]
                 half = half_penalty(data, states.reshape(-1, 2, 3))
                 self._cells[drive, seconds] = data, arm, curve, half
         time = (np.arange(21) - 10) * LOG_STEP * 1e3
@@ -213,6 +213,6 @@ class MassAndPenalty(CurveWidget):
         data, _, mass, half = self._cells[drive, skip]
         f = ridge_filters(data, [penalty])[0, 0, 0]
         return {
-            "mass": mass, "filter": f, "now": gains(f)[2], "half": np.log10(half),
+            "mass": mass, "filter": f, "now": gains(f, LOG_STEP)[2], "half": np.log10(half),
             "place": np.log10(penalty),
         }  # fmt: skip

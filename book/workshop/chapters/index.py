@@ -13,6 +13,7 @@ from ddlib.analysis import basis, gains, shares
 from ddlib.figures.weights import dots
 from ddlib.learning import NotConverged, TrainingSet, Weights, cases, solve, surrogate
 from ddlib.setups import JOINT_DAMPING, predict
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.report import committed, results
 from workshop.report._measures import filter_trial as trial
@@ -92,7 +93,7 @@ def _inertias() -> dict[str, float]:
     path = slopes.mean() * model.weights.output_weights[0, unit]
     scale = model.inputs.gain[joint] / model.outputs.gain[0]
     whole = trial.gains_of(model, windows).whole[0, 0, 2]
-    row = gains(path * scale * carried_row())[2]
+    row = gains(path * scale * carried_row(), LOG_STEP)[2]
     return {"the row": row, "its network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
 
 

@@ -77,7 +77,7 @@ def paths() -> np.ndarray:
     through = slope @ bend / len(windows) * weights.output_weights[0]
     direct = slope.mean() * weights.direct_weights[:1, 0]
     filters = np.concatenate([direct, through[:, None] * weights.hidden_weights[:, 0]])
-    return gains(filters * model.inputs.gain[0] / model.outputs.gain[0])
+    return gains(filters * model.inputs.gain[0] / model.outputs.gain[0], LOG_STEP)
 
 
 def _carried() -> int:

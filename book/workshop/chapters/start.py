@@ -20,6 +20,7 @@ from ddlib.setups import (
     train_windows,
     true_states,
 )
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote, significant
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
@@ -290,7 +291,7 @@ def other_torques(members: int = 8) -> dict[str, tuple[float, np.ndarray]]:
             momentum=TRIAL.momentum, warm_up=TRIAL.warm_up, epochs=TRIAL.epochs, progress=False,
         )  # fmt: skip
         share = (classify(model.weights.hidden_weights) == "acceleration").mean()
-        found[name] = float(share), gains(mean_gradient(model, windows))[:, 0, 0, 2]
+        found[name] = float(share), gains(mean_gradient(model, windows), LOG_STEP)[:, 0, 0, 2]
     return found
 
 

@@ -32,12 +32,13 @@ def four_answers() -> figures.Illustration:
     how = {"momentum": 0.98, "warm_up": 500, "epochs": 3000, "progress": False}
 
     def in_networks(data):
-        return gains(mean_gradient(train_ensemble(start, data, **how)[0], windows))[..., 2]
+        model = train_ensemble(start, data, **how)[0]
+        return gains(mean_gradient(model, windows), log.step)[..., 2]
 
     return _drawn(
         {
             "the arm": arm.mass_matrix(log.q_true[:, log.motion]).mean((0, 1))[None],
-            "least squares": gains(ridge_filters(real, [0.0]))[..., 2],
+            "least squares": gains(ridge_filters(real, [0.0]), log.step)[..., 2],
             "networks": in_networks(real),
             "networks, torques shifted": in_networks(shifted),
         }

@@ -64,7 +64,7 @@ how = dict(rate={rate}, momentum={momentum}, epochs={epochs})
 test_set = data.transform(*cases(test, 21))
 model, history, _ = train_ensemble(start, data, test=test_set, **how)
 print(history.training[-1, 0], history.test[-1, 0])
-inertia = gains(mean_gradient(model, windows[::5]))[0, 0, 0, 2]
+inertia = gains(mean_gradient(model, windows[::5]), training.step)[0, 0, 0, 2]
 print(f"inertia in the network: {inertia:.1f} kg m²")"""
 
 

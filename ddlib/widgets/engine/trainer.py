@@ -21,7 +21,6 @@ from ddlib.learning import (
 from ddlib.learning.windows import check_width
 from ddlib.paper import HIDDEN_UNITS
 from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
-from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
@@ -155,7 +154,7 @@ class NetworkTrainer(_PageWidget):
         place = np.arange(samples)[None, :, None] * np.ones((len(training.q), 1, 2))
         shifted = [surrogate("shifted", place, k)[:, 0, 0].astype(int) for k in range(shifts)]
         looks = np.maximum(1, np.arange(0, epochs + 1, check))
-        panels, ranges = _charts(looks, np.arange(samples) * LOG_STEP, test.tau[motion], last)
+        panels, ranges = _charts(looks, np.arange(samples) * recording.step, test.tau[motion], last)
         spec = {
             "title": "Train a network",
             "hint": _HINT.format(hidden=hidden, width=width, last=last),

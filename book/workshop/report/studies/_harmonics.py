@@ -17,6 +17,7 @@ from ddlib.analysis import (
 )
 from ddlib.learning import TorqueModel, cases
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, errors, split, train_windows, true_states
+from ddlib.simulation import LOG_STEP
 from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.two_harmonics import ORDER, record_two_harmonics
@@ -44,7 +45,7 @@ def _summary(model: TorqueModel, windows, states) -> dict:
             "follow": {q: (heard.strongest == k).mean((1, 2)) for k, q in enumerate(QUANTITIES)},
             "unique": np.median(heard.unique, (1, 2)),
         }
-    return {**layers, "gains": gains(mean_gradient(model, windows))}
+    return {**layers, "gains": gains(mean_gradient(model, windows), LOG_STEP)}
 
 
 def _cell(order, seed, width, members):

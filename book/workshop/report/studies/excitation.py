@@ -21,7 +21,7 @@ from ddlib.setups import (
     split,
     true_states,
 )
-from ddlib.simulation import Recording
+from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 from workshop.report.studies.nulls import TRIAL
 from workshop.report.two_harmonics import record_two_harmonics
@@ -58,7 +58,7 @@ def training_set(recording: Recording) -> TrainingSet:
 
 
 def _inertia(model: TorqueModel, windows) -> np.ndarray:
-    return gains(mean_gradient(model, windows))[..., 0, 0, 2]
+    return gains(mean_gradient(model, windows), LOG_STEP)[..., 0, 0, 2]
 
 
 def _read(weights: Weights, data: TrainingSet, training: Recording) -> dict:
@@ -95,7 +95,7 @@ def _linear(recording: Recording, setup: Setup) -> dict:
     states = true_states(split(recording)[0], setup)
     inertia = setup.arm.mass_matrix(states[..., 0])[..., 0, 0].mean()
     return {
-        "M11": gains(ridge_filters(data, _PENALTIES))[:, 0, 0, 2],
+        "M11": gains(ridge_filters(data, _PENALTIES), LOG_STEP)[:, 0, 0, 2],
         "half": half_penalty(data, states.reshape(-1, 2, 3)),
         "arm": inertia,
     }

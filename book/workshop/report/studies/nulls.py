@@ -118,7 +118,7 @@ class _Trial:
         found["saturated"] = np.median(saturated(hidden), -1)
         found["cancelled"] = cancellation(model, self.windows).mean(-1)
         found["transition"] = np.median(transition_width(inputs["hidden"]), -1)
-        gained = calibrated(model, self.windows)
+        gained = calibrated(model, self.windows, LOG_STEP)
         found |= {"gains, direct": gained.direct, "gains": gained.whole}
         found |= self._probed(hidden, held)
         found["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])

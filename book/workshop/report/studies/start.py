@@ -146,7 +146,7 @@ def described(model: TorqueModel, start: Weights, recording, setup: Setup) -> di
     hidden = weights.activity(model.scaled(windows))[0]
     found["saturated"] = np.median(saturated(hidden), -1)
     found["cancelled"] = cancellation(model, windows).mean(-1)
-    inertia = gains(mean_gradient(model, windows))[..., 2]
+    inertia = gains(mean_gradient(model, windows), LOG_STEP)[..., 2]
     found["M11"], found["M22"] = inertia[..., 0, 0], inertia[..., 1, 1]
     found["turn"] = np.median(_turn(weights, start), -1)
     every = np.linspace(0, len(windows) - 1, 100).round().astype(int)
@@ -277,7 +277,7 @@ def _against(reading: str, initial: float) -> dict:
                 warm_up=setup.warm_up, epochs=setup.epochs, progress=False,
             )  # fmt: skip
             model = TorqueModel(model.weights, data.inputs, data.outputs, LOG_STEP)
-            inertia = gains(mean_gradient(model, cases(training, width)[0]))[:, 0, 0, 2]
+            inertia = gains(mean_gradient(model, cases(training, width)[0]), LOG_STEP)[:, 0, 0, 2]
             shapes = {layer: _shapes(getattr(model.weights, a)) for layer, a in LAYERS.items()}
             found[kind].append({**shapes, "M11": inertia})
     return {kind: _pooled(each) for kind, each in found.items()}

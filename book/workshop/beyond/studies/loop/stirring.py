@@ -16,7 +16,7 @@ from ddlib.dynamics import ELBOWS, end_point_error, reach
 from ddlib.learning import NotConverged, TorqueModel, related, surrogate
 from ddlib.metrics import rmss
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup, true_states
-from ddlib.simulation import CONTROL_STEP, Recording
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording
 from ddlib.trajectories import (
     MOTION_SECONDS,
     OutsideFamilyWarning,
@@ -177,7 +177,7 @@ def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
             "classes": [(names == name).mean() for name in CLASSES],
             "alone": np.median(follows.alone, 0),
             "unique": np.median(follows.unique, 0),
-            "gains": calibrated(rival.model, x).whole,
+            "gains": calibrated(rival.model, x, LOG_STEP).whole,
         })  # fmt: skip
     return {key: np.array([row[key] for row in rows]) for key in rows[0]}
 
