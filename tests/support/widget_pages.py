@@ -289,15 +289,18 @@ def linked(browser, url, widget):
 
     def receive(sent):
         raw = {n: memoryview(bytes(v["bytes"])) for n, v in sent.items() if _packed(v)}
+        received.update(sent)
         widget.set_state({**sent, **raw})
+        received.clear()
 
     def send(change):
-        # as a comm would, after the change's other observers
         state = json.loads(json.dumps(widget.get_state([change["name"]])))
+        if state.items() <= received.items():
+            return  # as with a comm: what was received does not go back
         code = "(state) => { receiving = true; models[0].set(state); receiving = false; }"
         waiting.append((code, state))
 
-    waiting = []
+    waiting, received = [], {}
     names = [name for name in widget.keys if not name.startswith("_")]
     plain = [n for n in names if not isinstance(getattr(widget, n), (bytes, dict))]
 
