@@ -21,7 +21,8 @@ _STATIC = Path(__file__).with_name("static")
 # Files of the folder `static`, in their order: what every widget has, what a `CurveWidget` has, and
 # its style sheet. A class of its own kind adds its own after them.
 _FRAME = ("elements.js", "frame.js")
-SCRIPT = ("baked.js", *_FRAME, "reading.js", "charts.js", "dragging.js", "controls.js", "curves.js")
+SCRIPT = ("baked.js", *_FRAME, "reading.js", "charts.js", "dragging.js", "kernel.js")
+SCRIPT += ("controls.js", "curves.js")
 STYLE = ("curves.css",)
 _CHECKS = 200  # random settings at which the interpolation is compared with the function
 

@@ -6,6 +6,7 @@ import ast
 import copy
 import json
 import re
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -235,3 +236,94 @@ LIVE = """<script>
 }
 </script>"""
 """A kernel that answers if `kernel.alive`: the same script with a live model, for `extra`."""
+
+BRIDGE = """<script>
+{
+  window.models = [];
+  window.early = window.early ?? (() => {});
+  const blob = Blob;
+  window.Blob = class extends blob {
+    constructor([text], options) {
+      const watched = text.replace("export default { render };", `
+      export default { render({ model, el }) {
+        const kept = {};
+        if (window.toPython) {
+          delete model.kernelless;
+          const set = model.set;
+          model.set = (name, value) => {
+            const changes = typeof name === "string" ? { [name]: value } : name;
+            if (!window.receiving) Object.assign(kept, changes);
+            set.call(model, changes);
+          };
+          model.save_changes = () => {
+            const sent = { ...kept };
+            for (const name of Object.keys(kept)) delete kept[name];
+            for (const [name, value] of Object.entries(sent)) {
+              if (value instanceof DataView) {
+                sent[name] = { bytes: [...new Uint8Array(value.buffer)] };
+              }
+            }
+            window.toPython(sent);
+          };
+        }
+        window.models.push(model);
+        const stop = render({ model, el });
+        window.early(model);
+        return stop;
+      } };`);
+      super([watched], options);
+    }
+  };
+}
+</script>"""
+"""Models in `models`, and `early(model)` called before anything is laid out; for `extra`. With a
+function `toPython`, a kernel gets what the page sets: see `linked`."""
+
+
+@contextmanager
+def linked(browser, url, widget):
+    """A page, made with BRIDGE, whose first widget and `widget` of this process are one."""
+    page = browser.new_page(viewport={"width": 1280, "height": 800}, **CALM)
+    problems = []
+    page.on("pageerror", lambda error: problems.append(str(error)))
+
+    def receive(sent):
+        raw = {n: memoryview(bytes(v["bytes"])) for n, v in sent.items() if _packed(v)}
+        received.update(sent)
+        widget.set_state({**sent, **raw})
+        received.clear()
+
+    def send(change):
+        state = json.loads(json.dumps(widget.get_state([change["name"]])))
+        if state.items() <= received.items():
+            return  # as with a comm: what was received does not go back
+        code = "(state) => { receiving = true; models[0].set(state); receiving = false; }"
+        waiting.append((code, state))
+
+    waiting, received = [], {}
+    names = [name for name in widget.keys if not name.startswith("_")]
+    plain = [n for n in names if not isinstance(getattr(widget, n), (bytes, dict))]
+
+    def settle(condition, seconds=60):
+        """Let messages pass in both directions until a condition holds in Python."""
+        end = time.monotonic() + seconds
+        while True:
+            while waiting:
+                page.evaluate(*waiting.pop(0))
+            if condition():
+                return
+            assert time.monotonic() < end, "still waiting"
+            page.wait_for_timeout(20)
+
+    page.expose_function("toPython", receive)
+    page.goto(url)
+    page.wait_for_selector(".ddlib-widget")
+    widget.observe(send, plain)
+    yield page, settle
+    widget.unobserve(send, plain)
+    page.close()
+    assert not problems
+
+
+def _packed(value) -> bool:
+    return isinstance(value, dict) and set(value) == {"bytes"}

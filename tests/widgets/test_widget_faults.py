@@ -147,6 +147,15 @@ def test_kernel_that_is_silent_and_then_answers(live):
     assert answers(live)
 
 
+def test_a_kernel_that_is_busy_is_called_so(live):
+    live.evaluate("kernel.model.widget_manager.kernel.status = 'busy'")
+    live.get_by_label("Gain").press("ArrowRight")
+    live.wait_for_selector(".note:not([hidden])", timeout=5000)
+    assert live.locator(".note").inner_text() == SILENCE.replace("does not answer", "is busy")
+    assert usable(live)
+    assert answers(live)
+
+
 def test_a_kernel_that_goes_is_noted_without_a_move(live):
     assert answers(live)
     tell = "([which, ...status]) => kernel.watchers[which].forEach((f) => f(null, ...status))"

@@ -209,5 +209,29 @@ def test_recording_asks_the_kernel(tmp_path, visit, picker):
     assert button.is_enabled() and said.inner_text() == "Recorded."
     page.evaluate("kernel.closed = true")
     button.click()
-    assert said.inner_text() == "The kernel does not answer: nothing was recorded."
+    assert said.inner_text() == "The kernel is gone. Nothing was recorded."
     assert button.is_enabled() and not opened.problems
+
+
+@browser_test
+def test_a_busy_kernel_is_waited_for(tmp_path, visit, picker):
+    opened = visit(page_of(tmp_path / "page.html", picker, extra=LIVE))
+    page = opened.page
+    button, said = page.locator(".record button"), page.locator(".record p")
+    page.clock.install()
+    page.evaluate("kernel.model.widget_manager.kernel.status = 'busy'")
+    button.click()
+    page.clock.run_for(60_000)
+    assert said.inner_text() == "The kernel is busy. It records as soon as it is free."
+    assert button.is_disabled() and len(page.evaluate("kernel.sent")) == 1
+    page.evaluate("kernel.model.set('record_status', {text: 'Recorded.', count: 1})")
+    assert said.inner_text() == "Recorded." and button.is_enabled()
+    page.clock.run_for(10_000)
+    assert said.inner_text() == "Recorded."
+    page.evaluate("kernel.model.widget_manager.kernel.status = 'unknown'")
+    button.click()  # no word of the kernel: it may be busy or gone
+    page.clock.run_for(10_000)
+    assert said.inner_text() == "The kernel has not answered yet." and button.is_enabled()
+    page.evaluate("kernel.watchers[0].forEach((f) => f(null, 'dead'))")
+    assert said.inner_text() == "The kernel is gone. Nothing was recorded."
+    assert not opened.problems

@@ -8,7 +8,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from widget_pages import code_of, copied, drag, flat, functions, opened, write
+from traitlets import TraitError, link
+from widget_pages import (
+    BRIDGE,
+    code_of,
+    copied,
+    drag,
+    flat,
+    functions,
+    linked,
+    opened,
+    page_of,
+    write,
+)
 
 from ddlib.analysis import CLASSES, classify, gains, mean_gradient
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
@@ -179,6 +191,8 @@ def test_names_follow_the_rule(evaluate, widget):
     assert got == wanted and len(set(wanted)) >= 6
 
 
+LOCKED = "Train (guess first)"
+
 # In a page without a kernel
 
 
@@ -186,7 +200,7 @@ def test_names_follow_the_rule(evaluate, widget):
 def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     here = opened(tmp_path, visit, widget)
     page = here.page
-    for name in ("Train", "Step"):
+    for name in (LOCKED, "Step"):
         assert page.get_by_role("button", name=name, exact=True).is_disabled()
     page.wait_for_timeout(300)
     assert page.evaluate(STATE)["epoch"] == 0
@@ -201,7 +215,7 @@ def test_nothing_moves_before_a_guess(tmp_path, visit, widget):
     assert page.evaluate(STATE)["epoch"] == paused["epoch"] + 1
     page.get_by_label("Torques").select_option("shifted")
     assert page.evaluate(STATE)["epoch"] == 0
-    assert page.get_by_role("button", name="Train", exact=True).is_disabled()
+    assert page.get_by_role("button", name=LOCKED, exact=True).is_disabled()
     assert not here.problems
 
 
@@ -237,7 +251,7 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     drag(page, page.locator(".pad .frame").bounding_box(), (20.9 / 45, 1), (0.5, 0.5))
     assert page.get_by_label("elbow in trajectory 4").input_value() == "22.5"
     assert "not recorded" in recorded.inner_text()
-    page.get_by_role("button", name="Direct weights measure").click()
+    page.get_by_role("button", name="Record and train").click()  # without a guess
     page.wait_for_function(REACHED % 400)
     assert recorded.inner_text() == "Recorded in your browser."
     exec(copied(page), {})
@@ -265,3 +279,115 @@ def test_a_readers_own_experiment(tmp_path, visit, capsys):
     again.wait_for_function(REACHED % 400)
     assert "Appendix I" in again.locator(".recorded").inner_text()
     assert not here.problems
+
+
+# Driven from Python
+
+
+@pytest.fixture(scope="module")
+def driven(browser, tmp_path_factory):
+    """A widget, its page, and a function that lets messages pass until something holds."""
+    trainer_ = NetworkTrainer(epochs=60, code=CODE)
+    url = page_of(tmp_path_factory.mktemp("driven") / "page.html", trainer_, extra=BRIDGE)
+    with linked(browser, url, trainer_) as (page, settle):
+        yield trainer_, page, settle
+
+
+def test_there_are_no_results_before_a_page_has_computed_them(widget):
+    traits = ("weights", "model", "error", "training_error", "inertia")
+    assert [getattr(widget, name) for name in traits] == [None] * 5
+    for name in traits:
+        with pytest.raises(TraitError, match="read-only"):
+            setattr(widget, name, None)
+
+
+@pytest.mark.browser
+def test_python_sets_the_choices_and_reads_what_comes_out(driven):
+    """Weights of the same descent by ddlib; error and inertia of the model that is handed out."""
+    own, page, settle = driven
+    settle(lambda: own.weights is not None)
+    np.testing.assert_array_equal(flat(own.weights), flat(trainer.first_weights(1)[0]))
+    seen = []
+    own.observe(lambda change: seen.append(change["new"]), "error")
+    own.seed, own.inputs, own.momentum, own.epoch = 7, "centred", 0.9, 40
+    assert own.error is None and own.model is None  # not yet computed
+    settle(lambda: own.error is not None)
+    assert page.evaluate(STATE)["epoch"] == own.epoch == 40 and seen[-1] == own.error
+    data, _ = study._page_set(trainer._SCALINGS["centred"], None)
+    descent = Descent(trainer.first_weights(7), data.x, data.y, default_rate(21) / len(data.x), 0.9)
+    for _ in range(40):
+        descent.epoch()
+    np.testing.assert_allclose(flat(own.weights), flat(descent.weights()[0]), atol=2e-5)
+    recording = JOINT_DAMPING.record(APPENDIX_I)
+    windows, torque = cases(recording[-1], 21)
+    apart = (own.model.torque(windows) - torque) / torque.std(0)
+    assert own.error == pytest.approx(np.sqrt((apart**2).mean()), rel=1e-3)
+    seen_in_training = data.inputs.unscale(data.x, -2)
+    inertia = gains(mean_gradient(own.model, seen_in_training))[0, 0, 2]
+    assert own.inertia == pytest.approx(inertia, rel=1e-3)
+    assert own.training_error == pytest.approx(page.evaluate(TRAINED))
+
+
+TRAINED = """() => document.querySelector(".ddlib-trainer").school.trained()"""
+
+
+@pytest.mark.browser
+def test_python_sets_extents_and_the_page_records_them(driven):
+    own, page, settle = driven
+    other = APPENDIX_I.copy()
+    other[[0, 5]] = [(12.5, 40), (30, 25.5)]
+    own.epoch = 20
+    own.extents_deg = other
+    settle(lambda: own.error is not None)
+    assert "Recorded in your browser." in page.locator(".recorded").inner_text()
+    assert page.get_by_label("shoulder in trajectory 1").input_value() == "12.5"
+    assert page.evaluate(STATE)["epoch"] == 20
+    recording = JOINT_DAMPING.record(other)
+    high = recording[:-1].q[:, recording.motion.start - 10 : recording.motion.stop + 10].max((0, 1))
+    np.testing.assert_allclose(own.model.inputs.high, high, atol=2e-4)
+
+
+@pytest.mark.browser
+def test_python_hears_what_the_reader_does(driven):
+    own, page, settle = driven
+    settle(lambda: own.weights is not None)
+    other = NetworkTrainer(epochs=60)
+    with_other = link((own, "seed"), (other, "seed"))
+    page.get_by_role("button", name="New weights").click()
+    settle(lambda: own.weights is not None and own.epoch == 0)
+    assert other.seed == own.seed
+    page.get_by_role("button", name="Record and train").click()
+    settle(lambda: own.epoch == 60 and own.error is not None)
+    write(page.get_by_label("elbow in trajectory 2"), "20.5")
+    settle(lambda: own.extents_deg[1][1] == 20.5)
+    assert own.error is None and own.weights is None  # of other motions
+    page.get_by_role("button", name="Record and train").click()
+    settle(lambda: own.epoch == 60 and own.error is not None)
+    page.get_by_role("button", name="Reset").click()
+    settle(lambda: own.epoch == 0 and own.weights is not None)
+    assert own.seed == other.seed == 1 and own.extents_deg == tuple(map(tuple, APPENDIX_I))
+    with_other.unlink()
+
+
+@pytest.mark.parametrize(
+    "name, value, says",
+    [
+        ("seed", 51, "seed must be an integer from 1 to 50, got 51"),
+        ("epoch", 2001, "epoch must be an integer from 0 to 2000, got 2001"),
+        ("inputs", "wide", "printed"),
+        ("step_size", 3.0, "0.25"),
+        ("momentum", 0.7, "0.995"),
+        ("extents_deg", [(1, 2)], r"extents_deg must have shape \(6, 2\), got \(1, 2\)"),
+        ("extents_deg", [(46, 2)] * 6, r"extents_deg must lie in \[0, 45\] degrees, got 2 to 46"),
+        (
+            "extents_deg",
+            [(9, 0.5)] * 5 + [(9, 9)],
+            r"elbow in extents_deg .*\[1, inf\], got 0.5",
+        ),
+    ],
+)
+def test_a_choice_outside_its_range_is_refused(widget, name, value, says):
+    before = getattr(widget, name)
+    with pytest.raises(TraitError, match=says):
+        setattr(widget, name, value)
+    assert getattr(widget, name) == before

@@ -6,11 +6,12 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import integer, one_of, shaped
+from ddlib._check import integer, number, one_of, shaped
 from ddlib.analysis import CLASSES, basis
 from ddlib.figures import JOINTS
 from ddlib.learning import (
     TARGET_RANGE,
+    Scaler,
     TorqueModel,
     TrainingSet,
     Weights,
@@ -33,7 +34,11 @@ _EVERY = 5  # of the training windows the page shows every fifth; of trajectory 
 _SCALINGS = {"centred": (-1.0, 1.0), "printed": (0.0, 1.0)}  # ranges of the inputs
 _STEPS = (0.25, 0.5, 1.0, 2.0, 4.0)  # step sizes, over `ddlib.learning.default_rate`
 _MOMENTA = (0.0, 0.5, 0.9, 0.95, 0.98, 0.995)
+_SEEDS = 50  # sets of initial weights that can be chosen
 _ERRORS = (0.03, 2.0)  # range of the errors shown
+
+_CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
+_NUMBERS = ("error", "training_error", "inertia")
 
 _HINT = (
     "Your browser trains a network with {hidden} hidden units on windows of {width} positions, by "
@@ -57,13 +62,7 @@ def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Wei
         Samples of the window; hidden units.
     """
     state, joints = integer("seed", seed, 0, 2**32 - 1), len(JOINTS)
-    shapes = {
-        "hidden_weights": (hidden, joints, width),
-        "hidden_bias": (hidden,),
-        "output_weights": (joints, hidden),
-        "direct_weights": (joints, joints, width),
-        "output_bias": (joints,),
-    }
+    shapes = _shapes(hidden, joints, joints, width)
     parts = {}
     for name in _FIELDS:
         draws = np.empty(int(np.prod(shapes[name])))
@@ -74,17 +73,33 @@ def first_weights(seed: int, width: int = 21, hidden: int = HIDDEN_UNITS) -> Wei
     return Weights(**parts)
 
 
+def _shapes(hidden: int, outputs: int, joints: int, width: int) -> dict[str, tuple]:
+    return {
+        "hidden_weights": (hidden, joints, width),
+        "hidden_bias": (hidden,),
+        "output_weights": (outputs, hidden),
+        "direct_weights": (outputs, joints, width),
+        "output_bias": (outputs,),
+    }
+
+
 def _mixed(state: int) -> int:
     x = ((state ^ state >> 15) * (state | 1)) % 2**32
     x ^= (x + (x ^ x >> 7) * (x | 61)) % 2**32
     return x ^ x >> 14
 
 
+def _bytes(value, _):
+    return bytes(value)
+
+
 class NetworkTrainer(_PageWidget):
     """Record trajectories in the page, train a window network on them, read the inertia in it.
 
     Errors, torques and the filters of all units are seen on the way. Everything is computed in the
-    page, with a kernel and without.
+    page, with a kernel and without. With a kernel the reader's choices are traits to set, observe
+    and link: a page that shows the widget then records and trains anew, up to `epoch`. Until it
+    has, and as long as no page shows the widget, the results are None.
 
     Parameters
     ----------
@@ -92,7 +107,8 @@ class NetworkTrainer(_PageWidget):
         Arm, effects and PID whose recordings it learns from. The page's engine knows viscous and
         Coulomb friction, saturation, and quantisation, here of 5e-5 rad or more.
     extents_deg : array_like, shape (runs, 2)
-        Of four trajectories or more at the start, degrees; the last one is the test.
+        Of four trajectories or more at the start, degrees; the last one is the test. Later settings
+        have as many; their largest is `MAX_EXTENT_DEG`, or that of the start if it is larger.
     width, hidden : int
         Samples of the window, odd; hidden units.
     epochs, check : int
@@ -106,6 +122,47 @@ class NetworkTrainer(_PageWidget):
     code : str
         What *Code* copies; ``{extents}``, ``{scaling}``, ``{shifted}``, ``{seed}``, ``{rate}``,
         ``{momentum}`` and ``{epochs}`` stand for the reader's choices.
+
+    Attributes
+    ----------
+    extents_deg : tuple of pairs
+        Choice: extents of shoulder and elbow in each trajectory, degrees. In training each joint
+        must move by a degree or more.
+    seed : int
+        Choice: number of the initial weights, 1 to 50, see `first_weights`.
+    inputs : str
+        Choice: range of the scaled inputs, "printed" for 0 to 1 or "centred" for -1 to 1.
+    shifted : bool
+        Choice: torques that are shifted in time, so that they do not belong to the motion.
+    step_size : float
+        Choice: 0.25, 0.5, 1, 2 or 4 times the step size of `default_rate`.
+    momentum : float
+        Choice: acceleration of the descent, as above.
+    epoch : int
+        Epochs trained so far, 0 to `epochs`. Set it, and the page trains up to it.
+    weights : Weights or None
+        Result, read only: the network's weights after `epoch` epochs.
+    model : TorqueModel or None
+        Result, read only: the same network with its scaling, from positions in rad to N m.
+    error : float or None
+        Result, read only: RMSS on all windows of the last trajectory.
+    training_error : float or None
+        Result, read only: RMSS on the windows that the page trains on, every fifth one.
+    inertia : float or None
+        Result, read only: the inertia at the shoulder in the network, kg m².
+
+    Raises
+    ------
+    traitlets.TraitError
+        If a trait is set to a value outside its range.
+
+    Examples
+    --------
+    Shown in JupyterLab, it tells the error after 400 epochs from other initial weights::
+
+        trainer = NetworkTrainer()
+        trainer.observe(lambda change: print(trainer.seed, change["new"]), "error")
+        trainer.seed, trainer.epoch = 2, 400
     """
 
     _esm = lean(
@@ -120,6 +177,22 @@ class NetworkTrainer(_PageWidget):
     torques.tag(sync=True)
     noise = t.Bytes(help="the torque sensor's noise in them, N m as float32", read_only=True)
     noise.tag(sync=True)
+    extents_deg = t.Any(help="extents of each trajectory, degrees").tag(sync=True)
+    seed = t.Int(1, help="number of the initial weights").tag(sync=True)
+    inputs = t.Enum(tuple(_SCALINGS), "printed", help="range of the inputs").tag(sync=True)
+    shifted = t.Bool(False, help="whether torques are shifted in time").tag(sync=True)
+    step_size = t.Enum(_STEPS, 1.0, help="times the step size of `default_rate`").tag(sync=True)
+    momentum = t.Enum(_MOMENTA, 0.98, help="acceleration of the descent").tag(sync=True)
+    epoch = t.Int(0, help="epochs trained").tag(sync=True)
+    reached = t.Dict(help="the page's last results, and the choices behind them", read_only=True)
+    reached.tag(sync=True)
+    weight_bytes = t.Bytes(help="the page's last weights as float64", read_only=True)
+    weight_bytes.tag(sync=True, from_json=_bytes)
+    weights = t.Instance(Weights, allow_none=True, read_only=True)
+    model = t.Instance(TorqueModel, allow_none=True, read_only=True)
+    error = t.Float(None, allow_none=True, read_only=True)
+    training_error = t.Float(None, allow_none=True, read_only=True)
+    inertia = t.Float(None, allow_none=True, read_only=True)
 
     def __init__(
         self,
@@ -177,6 +250,7 @@ class NetworkTrainer(_PageWidget):
             "most": widest,
             "shifts": [shift.tolist() for shift in shifted],
             "initial": INITIAL,
+            "seeds": _SEEDS,
             "rate": default_rate(width),
             "steps": list(_STEPS),
             "momenta": list(_MOMENTA),
@@ -200,7 +274,62 @@ class NetworkTrainer(_PageWidget):
             still=still,
             still_alt=alt,
         )
-        super().__init__()
+        super().__init__(extents_deg=extents.tolist(), momentum=momentum)
+        self.observe(self._follow, [*_CHOICES, "epoch", "reached"])
+
+    @t.validate("extents_deg")
+    def _check_extents(self, proposal):
+        runs, most = self.spec["runs"], self.spec["most"]
+        try:
+            extents = shaped("extents_deg", proposal["value"], (runs, 2))
+            low, high = extents.min(), extents.max()
+            if low < 0 or high > most:
+                raise ValueError(
+                    f"extents_deg must lie in [0, {most:g}] degrees, got {low:g} to {high:g}"
+                )
+            for joint, largest in zip(JOINTS, extents[:-1].max(0)):
+                number(f"largest training extent of the {joint} in extents_deg", largest, 1.0)
+        except (TypeError, ValueError) as error:
+            raise t.TraitError(str(error)) from None
+        return tuple(map(tuple, extents.tolist()))
+
+    @t.validate("seed", "epoch")
+    def _check_whole(self, proposal):
+        name = proposal["trait"].name
+        low, high = {"seed": (1, _SEEDS), "epoch": (0, self.spec["epochs"])}[name]
+        try:
+            return integer(name, proposal["value"], low, high)
+        except ValueError as error:
+            raise t.TraitError(str(error)) from None
+
+    def _follow(self, _=None):
+        """Results belong to the choices and the epoch as they stand, or there are none."""
+        told, now = self.reached, {name: getattr(self, name) for name in (*_CHOICES, "epoch")}
+        now["extents_deg"] = [list(pair) for pair in self.extents_deg]
+        found = dict.fromkeys(("weights", "model", *_NUMBERS))
+        if told and all(told[name] == value for name, value in now.items()):
+            found |= {name: told[name] for name in _NUMBERS}
+            found["weights"] = weights = _weights(self.weight_bytes, self.spec["layout"])
+            scaling = told["scaling"]
+            ranges = _SCALINGS[self.inputs], TARGET_RANGE
+            made = (_scaler(scaling[name], to) for name, to in zip(("inputs", "outputs"), ranges))
+            found["model"] = TorqueModel(weights, *made, LOG_STEP)
+        with self.hold_trait_notifications():
+            self._keep(**found)
+
+
+def _weights(content: bytes, layout: dict) -> Weights:
+    """One network from the page's bytes."""
+    shapes = _shapes(**layout)
+    ends = np.cumsum([np.prod(shapes[name]) for name in _FIELDS])
+    parts = np.split(np.frombuffer(content, "<f8"), ends[:-1])
+    return Weights(**{name: part.reshape(shapes[name]) for name, part in zip(_FIELDS, parts)})
+
+
+def _scaler(told: dict, target) -> Scaler:
+    """A scaling as the page has it: from `low` on, with a gain."""
+    low = np.array(told["low"])
+    return Scaler(low, low + (target[1] - target[0]) / np.array(told["gain"]), tuple(target))
 
 
 def _charts(epochs, time, torque, last: int) -> tuple[list[Panel], dict]:

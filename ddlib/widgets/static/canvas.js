@@ -5,6 +5,8 @@ function sheet(height, label = "") {
   const el = make("canvas", { role: "img", "aria-label": label, style: `height: ${height}px` });
   const pen = el.getContext("2d");
   const place = { el, pen, width: 0, height };
+  // What draws on it, which nothing does while it has no width.
+  place.drawnBy = (draw) => (place.draw = (...given) => place.width && draw(...given));
   place.resize = () => {
     const ratio = window.devicePixelRatio || 1;
     place.width = el.clientWidth;

@@ -247,6 +247,7 @@ function chart(view, panel) {
 
   function redraw(all) {
     shown = all;
+    if (!x) return; // not laid out yet
     const [a, b] = presentRange(all);
     if (a !== low || b !== high) {
       [low, high] = a < b ? [a, b] : [a - 1, a + 1];

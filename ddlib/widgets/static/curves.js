@@ -2,7 +2,6 @@
 // widget's module. With a kernel the exact curves replace the interpolated ones.
 
 const PATIENCE = 2000; // ms to wait for a kernel
-const GONE = ["dead", "terminating", "restarting", "autorestarting"]; // states of a kernel
 const QUIET = 700; // ms without a change after which the figure is described anew
 
 // Functions of the view, for widgets with more to show; each may return one that cleans up.
@@ -85,6 +84,7 @@ function build({ model, el }) {
   view.after = [];
   let due = 0;
   let speaking = 0;
+  let laid = false; // a value may be set before there is a size, or in a tab that is not shown
   // Everything but the charts.
   function update() {
     due = 0;
@@ -100,6 +100,7 @@ function build({ model, el }) {
   }
   function redraw() {
     update();
+    if (!laid) return;
     view.charts.forEach((c) => c.redraw(view.curves));
     view.after.forEach((callback) => callback(view.curves));
     clearTimeout(speaking);
@@ -119,22 +120,20 @@ function build({ model, el }) {
   // One request at a time; what changes meanwhile goes with the next one.
   let waiting = 0;
   let again = false;
+  const kernel = kernelOf(model);
   view.silence = (silent) => {
     note.hidden = !silent;
-    note.textContent = silent ? "The kernel does not answer, so you see values that were computed beforehand." : "";
+    const why = kernel.busy() ? "The kernel is busy" : "The kernel does not answer";
+    note.textContent = silent ? `${why}, so you see values that were computed beforehand.` : "";
   };
   function ask() {
     if (model.kernelless) return;
-    if (spec.live) return void model.save_changes();
+    if (spec.live) return void kernel.send(() => model.save_changes());
     again = Boolean(waiting);
     if (waiting) return;
     model.set("request", model.get("request") + 1);
     waiting = setTimeout(unanswered, PATIENCE);
-    try {
-      model.save_changes();
-    } catch {
-      unanswered(); // the connection is closed
-    }
+    if (!kernel.send(() => model.save_changes())) unanswered();
   }
   function unanswered() {
     clearTimeout(waiting);
@@ -170,6 +169,7 @@ function build({ model, el }) {
   const stops = extras.map((extra) => extra(view));
   const size = new ResizeObserver(
     guarded(() => {
+      laid = true;
       view.charts.forEach((c) => c.resize());
       cancelAnimationFrame(due);
       redraw(); // in the same frame: axes and curves never differ
@@ -177,19 +177,14 @@ function build({ model, el }) {
   );
   size.observe(el);
 
-  // JupyterLab's kernel tells when it goes; elsewhere the next request finds out.
-  const { statusChanged, disposed } = model.widget_manager?.kernel ?? {};
-  const watch = (_, status) => {
-    if (status === undefined || GONE.includes(status)) unanswered();
-  };
-  for (const signal of [statusChanged, disposed]) signal?.connect(watch);
+  kernel.watch(unanswered);
 
   function stop() {
     for (const [event, callback] of events) model.off(event, callback);
     stops.forEach((clean) => clean?.());
     frame.stop();
     size.disconnect();
-    for (const signal of [statusChanged, disposed]) signal?.disconnect(watch);
+    kernel.leave();
     cancelAnimationFrame(due);
     clearTimeout(waiting);
     clearTimeout(speaking);

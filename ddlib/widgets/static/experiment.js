@@ -116,9 +116,13 @@ function picksOf({ extents: known, home, most, runs }, changed) {
   function set(flat) {
     const fits = flat.length === 2 * runs && flat.every((x) => x >= 0 && x <= most);
     if (!fits) throw new Error("no such extents");
-    extents.forEach((pair, run) => pair.splice(0, 2, ...flat.slice(2 * run, 2 * run + 2)));
-    show();
+    lay(extents.map((_, run) => flat.slice(2 * run, 2 * run + 2)));
     changed();
+  }
+  // The same, in pairs and without a call of changed().
+  function lay(pairs) {
+    extents.forEach((pair, run) => pair.splice(0, 2, ...pairs[run]));
+    show();
   }
   let held = 0;
   const move = (event) => {
@@ -146,5 +150,5 @@ function picksOf({ extents: known, home, most, runs }, changed) {
   const back = buttonOf(home, () => set(known.flat()));
   const fit = () => JOINTS.every((j) => extents.slice(0, -1).some((pair) => pair[j] >= 1));
   show();
-  return { extents, svg, title, table, buttons: make("div", { class: "buttons" }, alike, back), set, fit };
+  return { extents, svg, title, table, buttons: make("div", { class: "buttons" }, alike, back), set, lay, fit };
 }

@@ -181,26 +181,35 @@ extras.push((view) => {
   // The button that records
   const said = make("p", { id: `${view.id}-said`, role: "status" });
   let waiting = 0;
+  const kernel = kernelOf(model);
   function done() {
     clearTimeout(waiting);
+    waiting = 0;
     record.disabled = false;
     said.textContent = model.get("record_status").text;
   }
   const ask = () => {
     record.disabled = true;
     said.textContent = "Recording…";
-    waiting = setTimeout(unanswered, 20000);
-    try {
-      model.send({ type: "record", extents_deg: view.values });
-    } catch {
-      unanswered(); // the connection is closed
-    }
+    waiting = setTimeout(late, PATIENCE);
+    if (!kernel.send(() => model.send({ type: "record", extents_deg: view.values }))) gone();
   };
   const record = buttonOf("Record this trajectory", ask, { "aria-describedby": said.id });
-  function unanswered() {
-    done();
-    said.textContent = "The kernel does not answer: nothing was recorded.";
+  // The request waits in the kernel's queue: its answer may come at any time.
+  function late() {
+    waiting = setTimeout(late, PATIENCE);
+    if (kernel.busy()) said.textContent = "The kernel is busy. It records as soon as it is free.";
+    else {
+      record.disabled = false; // it may have been lost
+      said.textContent = "The kernel has not answered yet.";
+    }
   }
+  function gone() {
+    if (!waiting) return;
+    done();
+    said.textContent = "The kernel is gone. Nothing was recorded.";
+  }
+  kernel.watch(gone);
   model.on("change:record_status", done);
 
   const goTo = view.controls.querySelector(".presets");
@@ -222,6 +231,7 @@ extras.push((view) => {
   return () => {
     clock.pause();
     clearTimeout(waiting);
+    kernel.leave();
     model.off("change:record_status", done);
   };
 });

@@ -21,7 +21,7 @@ function roundStep(range, count) {
 function timeChart({ height, label, low, high, lines, bottom = false }) {
   const place = sheet(height, label);
   const { pen } = place;
-  place.draw = (samples, phase, colours) => {
+  place.drawnBy((samples, phase, colours) => {
     const { width } = place;
     const [top, floor] = [6, height - (bottom ? 34 : 8)];
     const first = Math.max(0, samples.length - SHOWN - 1);
@@ -78,7 +78,7 @@ function timeChart({ height, label, low, high, lines, bottom = false }) {
       stroke(pen, colours[colour], wide, dash);
     }
     pen.restore();
-  };
+  });
   return place;
 }
 
@@ -87,7 +87,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
   const place = sheet(height, label);
   const { pen } = place;
   const format = (x) => `${Math.round((x * 180) / Math.PI)}°`.replace("-", "−");
-  place.draw = (samples, phase, colours) => {
+  place.drawnBy((samples, phase, colours) => {
     const { width } = place;
     const [left, right] = [4, width - 14];
     const count = samplesInWindow * 2 + 1;
@@ -140,7 +140,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
       const [low, high] = ranges[j].map((x) => format(x));
       pen.fillText(`${j ? "elbow" : "shoulder"}, ${low} to ${high}`, 0, 8 + (j * height) / 2);
     });
-  };
+  });
   return place;
 }
 
@@ -149,7 +149,7 @@ function strip({ height, label, width: samplesInWindow, lows, highs }) {
 function stems({ height, label, colour }) {
   const place = sheet(height, label);
   const { pen } = place;
-  place.draw = (values, largest, colours, pale = []) => {
+  place.drawnBy((values, largest, colours, pale = []) => {
     const { width } = place;
     const pitch = (width - 16) / (values.length - 1);
     const y = (value) => height / 2 - (value / largest) * (height / 2 - 5);
@@ -174,6 +174,6 @@ function stems({ height, label, colour }) {
     pale.forEach(each);
     pen.globalAlpha = 1;
     values.forEach(each);
-  };
+  });
   return place;
 }

@@ -3,9 +3,9 @@
 
 const BUDGET = 7; // ms of a frame that may be spent on epochs
 const REST = 2500; // ms between two runs of the loop
+const OFTEN = 500; // ms between two reports to the kernel of a run that goes on
 const SPEEDS = { slow: [10, "10 epochs a second"], even: [60, "60 epochs a second"], fast: [1e9, "as fast as it goes"] };
 const SHORT = { velocity: "v", acceleration: "a", jerk: "j", "velocity + acceleration": "v+a", "acceleration + jerk": "a+j", "other mix": "mix" };
-const SEEDS = 50; // sets of initial weights that can be chosen
 
 // Numbers between 0 and 1, the same for the same seed: the generator mulberry32.
 function uniform(seed) {
@@ -109,6 +109,7 @@ function schoolOf(spec, choice, cases) {
   school.training = new Float64Array(looks).fill(NaN);
   school.test = new Float64Array(looks).fill(NaN);
   school.judge = () => judged(net, test);
+  school.trained = () => judged(net, training).error;
   school.inertia = () => accelerationGain(meanGradient(model, training.windows, 0, 0), spec.loop.step * spec.loop.every);
   school.look = () => {
     const at = school.epoch / spec.check;
@@ -116,7 +117,7 @@ function schoolOf(spec, choice, cases) {
     const named = (list) => list.map((f) => classOf(f, spec.basis));
     school.names = { direct: named(direct), hidden: named(hidden) };
     if (at !== Math.floor(at)) return;
-    school.training[at] = judged(net, training).error;
+    school.training[at] = school.trained();
     school.test[at] = school.judge().error;
     const acceleration = spec.classes.indexOf("acceleration");
     const none = spec.classes.indexOf("not analysable");
@@ -171,7 +172,7 @@ function unitSheet(spec) {
     pen.lineTo(x1, y1);
     stroke(pen, colour, 1);
   };
-  place.draw = (school, colours, over) => {
+  place.drawnBy((school, colours, over) => {
     const { direct, hidden } = filtersOf(school.net);
     const all = [...direct, ...hidden];
     const names = [...school.names.direct, ...school.names.hidden];
@@ -213,7 +214,7 @@ function unitSheet(spec) {
     });
     const named = cells.map((cell, c) => `${cell}: ${JOINTS.map((j) => spec.classes[names[2 * c + j]]).join(" and ")}`);
     el.setAttribute("aria-label", `Weights from each joint's window. ${named.join("; ")}`);
-  };
+  });
   return place;
 }
 
@@ -224,7 +225,14 @@ function build({ model, el }) {
   dress(el, spec.title, "ddlib-trainer");
 
   const start = { seed: 1, torques: "real", inputs: "printed", step: "1", momentum: String(spec.momentum), speed: "fast", loop: "", guess: "" };
-  const state = { ...start };
+  const asked = () => ({
+    seed: model.get("seed"),
+    torques: model.get("shifted") ? "shifted" : "real",
+    inputs: model.get("inputs"),
+    step: String(model.get("step_size")),
+    momentum: String(model.get("momentum")),
+  });
+  const state = { ...start, ...asked() };
   const shift = () => (state.torques === "real" ? null : state.seed % spec.shifts.length);
   let school;
   let recording = { ...book, key: String(spec.extents) };
@@ -232,8 +240,9 @@ function build({ model, el }) {
   const view = { id: freshId(), spec: { curves: spec.curves } };
   const picks = picksOf(spec, () => {
     show();
-    frame.changed();
+    changed();
   });
+  picks.lay(model.get("extents_deg"));
   const stale = () => picks.fit() && recording.key !== String(picks.extents);
   const own = () => recording.key !== String(spec.extents);
   const enrol = () => {
@@ -246,11 +255,29 @@ function build({ model, el }) {
     if (!cases.has(key)) cases.set(key, casesOf(spec, recording, choice));
     Object.assign(choice, { seed: state.seed, step: Number(state.step), momentum: Number(state.momentum) });
     school = schoolOf(spec, choice, cases.get(key));
+    school.choices = choices();
     el.school = school; // for tests
   };
+  // The choices under the names of the widget's traits.
+  const choices = () => ({
+    extents_deg: picks.extents.map((pair) => [...pair]),
+    seed: state.seed,
+    shifted: state.torques === "shifted",
+    inputs: state.inputs,
+    step_size: Number(state.step),
+    momentum: Number(state.momentum),
+  });
   enrol();
 
-  const frame = frameOf({ el, key: "trainer", title: spec.title, linked: Boolean(model.kernelless), reset: restart, code });
+  const frame = frameOf({ el, key: "trainer", title: spec.title, linked: Boolean(model.kernelless), reset: back, code });
+  function back() {
+    restart();
+    tell();
+  }
+  function changed() {
+    frame.changed();
+    tell();
+  }
   function code() {
     const rate = Number((spec.rate * state.step).toPrecision(12));
     const scaling = `(${spec.ranges[state.inputs].join(", ")})`;
@@ -266,16 +293,16 @@ function build({ model, el }) {
     buttonOf(text, () => {
       state.guess = String(k);
       go();
-      frame.changed();
+      changed();
     }),
   );
   const guess = make("div", { class: "guess", role: "group", "aria-label": "Guess first" }, make("span", {}, "Guess to begin. What comes first?"), ...guessed);
   const play = buttonOf("Train", () => (running ? pause() : go()));
   const record = buttonOf("Record and train", () => {
     restart();
-    go();
+    go(true);
     hands.scrollIntoView({ block: "nearest" });
-    frame.changed();
+    changed();
   });
   const recorded = make("p", { class: "recorded", id: `${view.id}-recorded`, role: "status" });
   record.setAttribute("aria-describedby", recorded.id);
@@ -288,17 +315,17 @@ function build({ model, el }) {
     show();
     draw();
     told();
-    frame.changed();
+    changed();
   });
-  const anew = buttonOf("New weights", () => seeded((state.seed % SEEDS) + 1));
-  const seed = make("input", { id: `${view.id}-seed`, type: "range", min: 1, max: SEEDS, step: 1 });
+  const anew = buttonOf("New weights", () => seeded((state.seed % spec.seeds) + 1));
+  const seed = make("input", { id: `${view.id}-seed`, type: "range", min: 1, max: spec.seeds, step: 1 });
   const drawing = make("output", { for: seed.id });
   seed.addEventListener("input", () => seeded(Number(seed.value)));
   const first = make("div", { class: "slider" }, make("label", { for: seed.id }, "Random initial weights"), drawing, seed);
   function seeded(value) {
     state.seed = value;
     restart();
-    frame.changed();
+    changed();
   }
   const menus = [];
   const menu = (name, label, options) => {
@@ -309,7 +336,7 @@ function build({ model, el }) {
       state[name] = select.value;
       if (name === "torques") state.guess = ""; // another question
       if (name !== "speed") restart();
-      frame.changed();
+      changed();
     });
     menus.push({ name, fits, show: () => (select.value = state[name]) });
     return make("div", { class: "menu choice" }, make("label", { for: id }, label), select);
@@ -326,7 +353,7 @@ function build({ model, el }) {
   loop.addEventListener("input", () => {
     state.loop = loop.checked ? "1" : "";
     if (loop.checked && over()) later();
-    frame.changed();
+    changed();
   });
   settings.push(make("div", { class: "switch choice" }, make("label", { for: loop.id }, "Loop, with new weights"), loop));
 
@@ -368,7 +395,9 @@ function build({ model, el }) {
   let waiting = 0;
   let last = 0;
   let owed = 0;
+  let sent = 0;
   const over = () => school.epoch >= spec.epochs;
+  const ready = () => state.guess !== "" || school.epoch > 0;
   const plain = (x) => (Number.isFinite(x) ? x.toFixed(x < 0.0995 ? 3 : 2) : "none");
   function draw() {
     const { outputs, error } = school.judge();
@@ -404,10 +433,14 @@ function build({ model, el }) {
     owed = Math.min(owed, 2);
     if (!more || over()) return ended();
     draw();
+    if (now - sent > OFTEN) {
+      sent = now;
+      tell();
+    }
     due = requestAnimationFrame(run);
   }
-  function go() {
-    if (state.guess === "" || goal) return;
+  function go(unasked = false) {
+    if (!(unasked || ready()) || goal) return;
     if (over() || stale()) restart();
     running = true;
     owed = 1;
@@ -420,11 +453,12 @@ function build({ model, el }) {
   function pause() {
     running = false;
     clearTimeout(waiting);
+    [goal, waiting] = [0, 0];
     cancelAnimationFrame(due);
     due = 0;
     show();
     draw();
-    frame.changed();
+    changed();
   }
   function ended() {
     pause();
@@ -476,16 +510,17 @@ function build({ model, el }) {
     draw();
   }
   function show() {
-    const ready = state.guess !== "";
     guessed.forEach((one, k) => {
       one.setAttribute("aria-pressed", String(k) === state.guess);
-      one.disabled = ready && school.epoch > 0;
+      one.disabled = school.epoch > 0;
     });
-    for (const one of [play, once, record]) one.disabled = !ready || !picks.fit();
+    const open = ready() || running;
+    for (const one of [play, once]) one.disabled = !open || !picks.fit();
+    record.disabled = !picks.fit();
     const kept = own() ? "Recorded in your browser." : `${spec.home}, recorded beforehand.`;
     write(recorded, !picks.fit() ? "Each joint must move by a degree or more in training." : stale() ? "You changed the trajectories: they are not recorded yet." : kept);
     once.setAttribute("aria-disabled", String(over()));
-    write(play, running ? "Pause" : over() ? "Begin anew" : "Train");
+    write(play, running ? "Pause" : over() ? "Begin anew" : open ? "Train" : "Train (guess first)");
     for (const one of menus) one.show();
     seed.value = state.seed;
     write(drawing, `number ${state.seed}`);
@@ -504,44 +539,92 @@ function build({ model, el }) {
     draw();
   };
 
+  // A part of the state in the address; Reset goes back to the start.
+  const keep = (name, read, write, first) => frame.keep(name, read, write, model.kernelless ? read() : first);
   const part = (name, fits) =>
-    frame.keep(name, () => String(state[name]), (text) => {
+    keep(name, () => String(state[name]), (text) => {
       if (!fits(text)) throw new Error("no such choice");
       state[name] = name === "seed" ? Number(text) : text;
-    });
-  part("seed", (text) => /^[1-9]\d?$/.test(text) && Number(text) <= SEEDS);
+    }, String(start[name]));
+  part("seed", (text) => /^[1-9]\d?$/.test(text) && Number(text) <= spec.seeds);
   for (const { name, fits } of menus) part(name, fits);
   part("loop", (text) => ["", "1"].includes(text));
   part("guess", (text) => ["", "0", "1", "2"].includes(text));
-  frame.keep("extents", () => picks.extents.flat().join("_"), (text) => picks.set(text.split("_").map(Number)));
+  let goal = model.get("epoch"); // reached without a show
+  let silent = false; // while one side takes over what the other has set
+  keep("extents", () => picks.extents.flat().join("_"), (text) => picks.set(text.split("_").map(Number)), spec.extents.flat().join("_"));
   enrol();
   truth = measured();
-  // A link restores the epoch, too: it is reached again without a show.
-  let goal = 0;
   frame.keep("epoch", () => String(school.epoch), (text) => {
     const epoch = Math.round(Number(text));
     if (!(epoch >= 0)) throw new Error("no such epoch");
     goal = Math.min(spec.epochs, epoch);
-  });
+  }, String(goal));
+
+  // The kernel hears what was reached, and with which choices; what it sets is trained anew, to the
+  // epoch that it asks for.
+  function tell() {
+    if (model.kernelless || silent || goal) return;
+    silent = true;
+    const { inputs, outputs } = school.model;
+    const found = { error: school.judge().error, training_error: school.trained(), inertia: school.inertia() };
+    const reached = { ...school.choices, epoch: school.epoch, scaling: { inputs, outputs }, ...found };
+    model.set("weight_bytes", new DataView(Float64Array.from(school.net.all).buffer));
+    model.set("reached", reached);
+    for (const [name, value] of Object.entries({ ...choices(), epoch: school.epoch })) {
+      if (String(model.get(name)) !== String(value)) model.set(name, value);
+    }
+    try {
+      model.save_changes();
+    } catch {
+      // the kernel is gone: the page goes on by itself
+    }
+    silent = false;
+  }
+  function heed() {
+    if (silent) return;
+    const before = String(Object.values(choices()));
+    const wanted = model.get("epoch");
+    silent = true;
+    Object.assign(state, asked());
+    picks.lay(model.get("extents_deg"));
+    const other = before !== String(Object.values(choices()));
+    if (other || (wanted !== school.epoch && wanted !== goal)) {
+      if (other || wanted < school.epoch || stale()) restart();
+      running = false;
+      cancelAnimationFrame(due);
+      clearTimeout(waiting);
+      goal = wanted;
+      waiting = goal ? setTimeout(reach, 0) : 0;
+    }
+    silent = false;
+    tell();
+  }
+  const heard = [...Object.keys(choices()), "epoch"].map((name) => `change:${name}`);
   function reach() {
     const end = performance.now() + 30;
     while (school.epoch < goal && performance.now() < end) school.advance();
     school.look();
     draw();
     show();
+    waiting = 0;
     if (school.epoch < goal) waiting = setTimeout(reach, 0);
     else {
       goal = 0;
       told();
+      show();
+      tell();
     }
   }
   show();
+  if (goal) waiting = setTimeout(reach, 0);
+  else tell();
+  heard.forEach((event) => model.on(event, heed));
 
   const resize = new ResizeObserver(() => {
     drawn.forEach((one) => one.resize());
     units.resize();
     recolour();
-    if (goal && !waiting) reach();
   });
   resize.observe(el);
   const stopRecolouring = onRecolour(recolour);
@@ -550,6 +633,7 @@ function build({ model, el }) {
   return () => {
     cancelAnimationFrame(due);
     clearTimeout(waiting);
+    heard.forEach((event) => model.off(event, heed));
     frame.stop();
     stopRecolouring();
     for (const observer of [resize, sight]) observer.disconnect();

@@ -1,0 +1,93 @@
+"""Traits that are set before a widget has a size, and widgets in a tab that is not shown."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from widget_pages import BRIDGE, CALM, NEXT_FRAME, page_of
+from widget_samples import make, make_kinds
+
+from ddlib import widgets as room
+from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.setups import STATE_FEEDBACK, split
+from workshop.chapters.widgets.weight import OneWeight
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+HIDE = "<style>main > div { display: none }</style>"
+SHOW = "document.querySelectorAll('main > div').forEach((el) => (el.style.display = 'block'))"
+EMPTY = """[...document.querySelectorAll(".chart > svg")]
+  .filter((svg) => !svg.querySelector(".curve[d^=M]")).length"""
+# Every choice at the other end of its range, as Python could set it at once.
+CHANGES = """
+window.early = (model) => {
+  const spec = model.get("spec");
+  for (const p of spec.parameters ?? []) {
+    const other = p.options ? p.options.map(([key]) => key) : [p.low, p.high];
+    model.set(p.name, other.find((value) => value !== model.get(p.name)) ?? model.get(p.name));
+  }
+  if (spec.seeds) { model.set("seed", 2); model.set("epoch", 5); }
+  if (spec.rounds) model.set("round", 1);
+  for (const { name, high } of spec.numbers?.slice?.(0, 1) ?? []) {
+    model.set("values", { ...model.get("values"), [name]: high });
+  }
+};
+"""
+
+
+@pytest.fixture(scope="module")
+def every():
+    """One of each public widget, and two plain ones."""
+    recording = STATE_FEEDBACK.record()
+    data = TrainingSet.from_recording(split(recording)[0], 7)
+    ensemble = TorqueModel(Weights.random(3, 7, hidden=4), data.inputs, data.outputs)
+    wide = TorqueModel(Weights.random(3, 11, hidden=4), data.inputs, data.outputs)
+    single, (start, trained) = ensemble[0], Weights.random(2, 7, hidden=3)
+    film = TorqueModel(
+        Weights.stack([Weights.random(2, 7, hidden=4, seed=k) for k in (1, 2, 3)]),
+        *(data.inputs, data.outputs),
+    )
+    rows = np.random.default_rng(0).normal(size=(2, 5, 9))
+    rounds = [room.GuessRound(*rows, "learnt noise", "A remark.")] * 2
+    made = {
+        "FilterBuilder": lambda: room.FilterBuilder(np.arange(-10, 11.0) ** 2),
+        "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1)),
+        "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}),
+        "FeedforwardSwitches": lambda: room.FeedforwardSwitches(),
+        "HiddenTorque": lambda: room.HiddenTorque(split(recording)[1]),
+        "LoopSentence": lambda: room.LoopSentence(),
+        "NetworkTrainer": lambda: room.NetworkTrainer(),
+        "PIDTuner": lambda: room.PIDTuner(),
+        "RealArmSwitches": lambda: room.RealArmSwitches(),
+        "SlidingWindow": lambda: room.SlidingWindow({7: single, 11: wide[0]}, split(recording)[1]),
+        "ThrownArm": lambda: room.ThrownArm(single),
+        "TorqueSentence": lambda: room.TorqueSentence(),
+        "TorqueTerms": lambda: room.TorqueTerms(),
+        "TrainingPlayer": lambda: room.TrainingPlayer([0, 10, 20], film, recording, member=1),
+        "TrajectoryPicker": lambda: room.TrajectoryPicker(),
+        "WeightReader": lambda: room.WeightReader(start, trained),
+        "WhoseFilters": lambda: room.WhoseFilters(rounds),
+        "CurveWidget": make,
+        "LiveWidget": OneWeight,
+        "kinds": make_kinds,
+    }
+    public = {n for n in dir(room) if hasattr(getattr(room, n), "_esm")}
+    assert public - {"CurveWidget", "LiveWidget"} <= set(made), "a widget without a sample"
+    return [maker() for maker in made.values()]
+
+
+@pytest.mark.parametrize("hidden", [False, True], ids=["shown", "in a tab behind"])
+def test_a_trait_may_be_set_before_there_is_a_size(tmp_path, visit, every, hidden):
+    extra = f"{HIDE if hidden else ''}<script>{CHANGES}</script>{BRIDGE}"
+    here = visit(page_of(tmp_path / "page.html", *every, extra=extra), **CALM)
+    page = here.page
+    if hidden:
+        page.wait_for_timeout(300)
+        page.evaluate(SHOW)
+    page.evaluate(NEXT_FRAME)
+    page.wait_for_timeout(300)
+    assert not page.locator(".ddlib-widget-error").all_inner_texts()
+    assert page.locator("main > div.ddlib-widget").count() == len(every)
+    assert page.evaluate(EMPTY) == 0 and page.locator(".chart > svg").count() > 20
+    assert page.evaluate("document.querySelector('.ddlib-trainer').school.epoch") == 5
+    assert not here.problems
