@@ -11,8 +11,9 @@ import multiprocessing
 import multiprocessing.forkserver
 import os
 import sys
+import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -22,6 +23,7 @@ from types import ModuleType
 TIMEOUT = 600  # seconds for one cell, as in _config.yml
 HERE = os.pathsep.join(map(str, Path(__file__).parents[:2]))
 PATHS = "PYTHONPATH"
+PAUSE = 10  # seconds between two lines of progress
 FEW = 4  # notebooks, for which a process to fork from is not worth its start
 PRELOADED = (
     "ipykernel.kernelapp",
@@ -38,7 +40,7 @@ PRELOADED = (
 )
 
 
-def execute(cache, paths: list[Path]) -> tuple[list[Path], list[Path]]:
+def execute(cache, paths: list[Path], say=print) -> tuple[list[Path], list[Path]]:
     """Execute those notebooks, in their order, that the cache does not know, and keep them there.
 
     Parameters
@@ -46,6 +48,8 @@ def execute(cache, paths: list[Path]) -> tuple[list[Path], list[Path]]:
     cache : jupyter_cache.base.JupyterCacheAbstract
     paths : list of Path
         Of notebooks.
+    say : callable
+        Called with a line of progress every `PAUSE` seconds or so, and at the end.
 
     Returns
     -------
@@ -57,28 +61,42 @@ def execute(cache, paths: list[Path]) -> tuple[list[Path], list[Path]]:
     from jupyter_cache.base import CacheBundleIn
     from jupyter_cache.executors.utils import single_nb_execution
 
+    running = []
+
     def run(path: Path):
+        running.append(path.stem)
         notebook = nbformat.read(path, as_version=4)
         try:
             return path, single_nb_execution(notebook, str(path.parent), TIMEOUT, False)
         except Exception as error:  # the kernel died: whatever this is, the build goes on
             print(f"{path}: {error!r}", file=sys.stderr)
             return path, None
+        finally:
+            running.remove(path.stem)
 
     known = {Path(record.uri) for record in map(cache.add_nb_to_project, map(str, paths))}
     known -= {Path(record.uri) for record in cache.list_unexecuted()}
     todo = [path for path in paths if path not in known]
     done, ended = [], []
+    begun = said = time.monotonic()
     # one more than cores: a kernel that starts or ends mostly waits
     with forked_kernels(len(todo) > FEW), ThreadPoolExecutor(os.cpu_count() + 1) as pool:
-        for path, result in pool.map(run, todo):
-            if result is None:
-                ended.append(path)
-            elif result.err is None:
-                spent = {"execution_seconds": result.time}
-                bundle = CacheBundleIn(result.nb, str(path), data=spent)
-                cache.cache_notebook_bundle(bundle, check_validity=False, overwrite=True)
-                done.append(path)
+        left = {pool.submit(run, path) for path in todo}
+        while left:
+            over, left = wait(left, PAUSE, FIRST_COMPLETED)
+            for path, result in (task.result() for task in over):
+                if result is None:
+                    ended.append(path)
+                elif result.err is None:
+                    spent = {"execution_seconds": result.time}
+                    bundle = CacheBundleIn(result.nb, str(path), data=spent)
+                    cache.cache_notebook_bundle(bundle, check_validity=False, overwrite=True)
+                    done.append(path)
+            now = time.monotonic()
+            if now - said >= PAUSE or not left:
+                said, count = now, len(todo) - len(left)
+                at = f": {', '.join(running)}" if left else ""
+                say(f"    {count} of {len(todo)} notebooks after {now - begun:.0f} s{at}")
     return done, ended
 
 

@@ -103,7 +103,7 @@ def execute_ahead(root: Path, folder: Path) -> list[str]:
     pages = yaml.safe_load((root / "_toc.yml").read_text(encoding="utf-8"))
     paths = [root / f"{page}.ipynb" for page in listed(pages)]  # the ledger after the chapters
     with errors_into(log(root)):
-        done, ended = execute(get_cache(str(folder)), [path for path in paths if path.is_file()])
+        done, ended = execute(get_cache(str(folder)), [p for p in paths if p.is_file()], progress)
     print(f"==> Executed {len(done)} notebooks", flush=True)
     return [path.relative_to(root).with_suffix("").as_posix() for path in ended]
 
@@ -128,6 +128,11 @@ def errors_into(path: Path) -> Iterator[None]:
         finally:
             os.dup2(kept, 2)
             os.close(kept)
+
+
+def progress(text: str) -> None:
+    """On standard output, also where that is no terminal, at once."""
+    print(text, flush=True)
 
 
 def say(text: str) -> None:

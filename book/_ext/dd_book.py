@@ -21,7 +21,12 @@ from sphinx.util.parallel import make_chunks
 sys.path.insert(0, str(Path(__file__).parents[1]))  # for the workshop of the book
 
 MATHJAX = "tex-svg-full.js"
-SKIP = {"__pycache__", ".ipynb_checkpoints"}
+# Kinds of files that notebooks or pages are made from; what tools leave behind is of no such kind,
+# or lies in a folder whose name begins with a dot.
+KINDS = {
+    *(".py", ".pyi", ".ipynb", ".md", ".bib", ".yml", ".toml", ".txt", ".json", ".csv", ".npz"),
+    *(".js", ".mjs", ".css", ".svg", ".png"),
+}
 KEPT_CACHES = 3
 SMALL = 1  # a batch has the root of so many times the pages that fall to a process
 
@@ -33,15 +38,18 @@ PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "
 
 
 def digest(root: Path, patterns: tuple[str, ...]) -> str:
-    """Hash of all files that the patterns name, folders included: see `workshop.report.results`.
-
-    What Python and Jupyter leave behind does not count.
-    """
-    tops = [top for pattern in patterns for top in root.glob(pattern)]
-    found = {path for top in tops for path in (top, *top.rglob("*")) if path.is_file()}
-    named = {path.relative_to(root): path for path in found}
-    read = {n.as_posix(): p.read_bytes() for n, p in named.items() if not SKIP & {*n.parts}}
+    """Hash of all sources that the patterns name: see `workshop.report.results`."""
+    read = {name: path.read_bytes() for name, path in sources(root, patterns).items()}
     return joblib.hash((sys.version_info[:2], read), hash_name="sha1")[:16]
+
+
+def sources(root: Path, patterns: tuple[str, ...]) -> dict[str, Path]:
+    """Files of `KINDS` that the patterns name, by their paths below the root."""
+    tops = [top for pattern in patterns for top in root.glob(pattern)]
+    found = {path for top in tops for path in (top, *top.rglob("*")) if path.suffix in KINDS}
+    named = {path.relative_to(root): path for path in found if path.is_file()}
+    hidden = {name for name in named if any(part.startswith(".") for part in name.parts)}
+    return {name.as_posix(): path for name, path in named.items() if name not in hidden}
 
 
 def cache_path(root: Path, build: Path) -> Path:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import time
+from types import SimpleNamespace
 
 import nbformat
 import pytest
 from book_pages import ROOT
 from bs4 import BeautifulSoup
+from jupyter_cache import get_cache
 
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
-from dd_book import CELL_INPUTS, PAGE_INPUTS, digest
+import ahead
+from dd_book import CELL_INPUTS, PAGE_INPUTS, digest, sources
 
 STAMP = "_build/html/.built-from"
 COUNTING = "from pathlib import Path\n\nwith Path('runs').open('a') as file:\n    file.write('x')"
@@ -75,14 +80,21 @@ MATTERS = [
     (PAGE_INPUTS, "book/index.ipynb", True),
     (PAGE_INPUTS, "book/_static/book.css", True),
     (PAGE_INPUTS, "_config.yml", True),
+    (PAGE_INPUTS, "book/data/motions.csv", True),
     (PAGE_INPUTS, "book/.ipynb_checkpoints/index.ipynb", False),
+    (PAGE_INPUTS, "book/.ruff_cache/0.14.0/1234567", False),
+    (CELL_INPUTS, "book/workshop/.ruff_cache/CACHEDIR.TAG", False),
+    (CELL_INPUTS, "book/workshop/.mypy_cache/3.11/ddlib.data.json", False),
+    (CELL_INPUTS, "ddlib/arm.py~", False),
+    (CELL_INPUTS, "ddlib/.arm.py.swp", False),
+    (CELL_INPUTS, "ddlib/arm.py.orig", False),
 ]
 
 
 def test_digest_sees_what_matters(tiny):
     for inputs, path, changes in MATTERS:
         before, target = digest(tiny, inputs), tiny / path
-        target.parent.mkdir(exist_ok=True)
+        target.parent.mkdir(exist_ok=True, parents=True)
         target.write_text(target.read_text() + "\n# more" if target.exists() else "more")
         assert (digest(tiny, inputs) != before) is changes, path
     before = digest(tiny, CELL_INPUTS)
@@ -90,10 +102,48 @@ def test_digest_sees_what_matters(tiny):
     assert digest(tiny, CELL_INPUTS) != before
 
 
+def test_the_digest_sees_every_file_that_is_kept(tmp_path):
+    """Of any kind: by the list of git, but for licences, from which nothing is made."""
+    try:
+        command = ["git", "-C", str(ROOT), "ls-files", "-z", *PAGE_INPUTS]
+        told = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("this is no clone")
+    unread = re.compile(r".*/(LICENSE-[\w-]+|py\.typed)")
+    kept = {name for name in told.split("\0") if name and not unread.fullmatch(name)}
+    assert len(kept) > 400 and not kept - set(sources(ROOT, PAGE_INPUTS))
+
+
 def test_digest_does_not_see_where_the_folder_lies(tiny, tmp_path_factory):
     away = tmp_path_factory.mktemp("away") / "__pycache__" / "b [1]"
     shutil.copytree(tiny, away)
     assert digest(away, PAGE_INPUTS) == digest(tiny, PAGE_INPUTS)
+
+
+def test_progress_is_told_in_lines(monkeypatch, tmp_path):
+    """What runs and how much is done, every while and at the end; what fails counts as done."""
+    monkeypatch.setattr(ahead, "PAUSE", 0.1)
+    monkeypatch.setattr("os.cpu_count", lambda: 1)  # two at a time
+
+    def executed(notebook, folder, *options):
+        time.sleep(0.45)
+        if not notebook.cells:
+            raise RuntimeError("the kernel died")
+        return SimpleNamespace(nb=notebook, err=None, time=0.45)
+
+    monkeypatch.setattr("jupyter_cache.executors.utils.single_nb_execution", executed)
+    (tmp_path / "book").mkdir()
+    for name in "abcd":
+        write_page(tmp_path, "# Title", name=name)
+    nbformat.write(nbformat.v4.new_notebook(), tmp_path / "book" / "d.ipynb")
+    paths = [tmp_path / "book" / f"{name}.ipynb" for name in "abcd"]
+    lines = []
+    done, ended = ahead.execute(get_cache(str(tmp_path / "cache")), paths, lines.append)
+    assert {path.stem for path in done} == set("abc") and ended == paths[3:]
+    assert len(lines) >= 5 and re.fullmatch(r" +0 of 4 notebooks after \d+ s: a, b", lines[0])
+    counts = [int(line.split()[0]) for line in lines]
+    assert counts == sorted(counts) and re.fullmatch(r" +4 of 4 notebooks after \d+ s", lines[-1])
+    assert ahead.execute(get_cache(str(tmp_path / "cache")), paths[:3], lines.append) == ([], [])
 
 
 DRAWN = "import matplotlib.pyplot as plt\n\nplt.plot([1, 2])\nplt.show()"
