@@ -63,14 +63,19 @@ class Check:
         return "\n".join(lines)
 
     def _repr_markdown_(self) -> str:
-        """The same as a table of a notebook."""
-        header = ("", "where", "finding", "seen", "what it does", "what to do")
-        rows = [
-            (found.severity, place(found, runs), found.kind, f"{found.what} {_rows(found, runs)}",
-             found.effect, found.advice)
-            for found, runs in self._groups()
-        ]  # fmt: skip
-        return Table(header, rows or [("", "", "nothing found", "", "", "")])._repr_markdown_()
+        """The same as a list of a notebook."""
+        lines = [f"**{self._title()}.**", ""]
+        for found, runs in self._groups():
+            head = f"- **{found.severity.capitalize()}: {found.kind}, {place(found, runs)}.**"
+            told = f"{found.what} {_rows(found, runs)}".strip()
+            lines.append(f"{head} {told} {found.effect} *{found.advice}*")
+        return "\n".join(lines)
+
+    def _title(self) -> str:
+        samples = sum(run.t.size for run in self.runs)
+        counts = [sum(f.severity == severity for f in self.findings) for severity in SEVERITIES]
+        told = ", ".join(f"{count} {name}" for count, name in zip(counts, SEVERITIES))
+        return f"{len(self.runs)} runs, {samples:,} samples: {told}"
 
     def _groups(self) -> list[tuple[Finding, list]]:
         """The findings, those of one kind and joint in several runs together, by their first."""
