@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import number
-from ddlib.logs import text_files, units as known_units
+from ddlib.logs import _text_files as text_files, _units as known_units
+from ddlib.logs._text_files import Table, fault, listed, shown
 from ddlib.logs.log import Log, LoggedRecording, LoggedRun
 from ddlib.logs.resampling import LogWarning, resampled
-from ddlib.logs.text_files import Table, fault, listed, shown
 from ddlib.simulation import Recording
 
 _ANGLES, _TORQUES = ("q1", "q2"), ("tau1", "tau2")
@@ -83,6 +83,7 @@ def read_log(
     OSError
         If a file cannot be read.
     """
+    _check_layout(separator, decimal, encoding)
     wanted = _wanted(columns, rate, run)
     units, factors = _by_column("units", units), _by_column("factors", factors)
     if rate is not None:
@@ -169,7 +170,7 @@ def write_csv(path, recording: Recording) -> None:
 
 def _wanted(columns, rate, run) -> dict:
     """The head or place of each quantity: as given, else its own name."""
-    columns = dict(columns or {})
+    columns = _mapping("columns", columns)
     for name in columns:
         if name not in _QUANTITIES:
             raise fault(
@@ -191,10 +192,31 @@ def _wanted(columns, rate, run) -> dict:
     return wanted
 
 
+def _mapping(name: str, given) -> dict:
+    if given is not None and not isinstance(given, Mapping):
+        example = {"columns": "its head", "units": "deg", "factors": 0.7}[name]
+        raise fault(
+            f"{name} must be a dictionary, like {{'q1': {example!r}}}, got {shown(repr(given))}",
+            TypeError,
+        )
+    return dict(given or {})
+
+
+def _check_layout(separator, decimal, encoding) -> None:
+    """Refuse what no file can have."""
+    for name, value in {"separator": separator, "decimal": decimal, "encoding": encoding}.items():
+        if not isinstance(value, str | None):
+            raise TypeError(f"{name} must be text, got {shown(repr(value))}")
+    if separator not in (None, r"\s+") and (len(separator) != 1 or separator in '"\n'):
+        raise fault(f"separator must be one character, like ';', got {shown(repr(separator))}")
+    if decimal not in (None, ".", ","):
+        raise fault(f"decimal must be '.' or ',', got {shown(repr(decimal))}")
+
+
 def _by_column(name: str, given) -> dict:
     """A mapping by quantity; "q" and "tau" stand for both joints."""
     found = {}
-    for key, value in dict(given or {}).items():
+    for key, value in _mapping(name, given).items():
         both = {"q": _ANGLES, "tau": _TORQUES}.get(key, (key,))
         for quantity in both:
             if quantity not in _QUANTITIES[:-1]:
@@ -291,11 +313,10 @@ class _Reader:
                 f'columns by their places, counted from 0, like columns={{"time": 0, "q1": 1}}'
             )
         if missing:
-            way = "rate=, in Hz, if it has no time" if missing == ["time"] else "columns="
+            rate = ", or give rate=, in Hz" if missing == ["time"] else ""
             raise fault(
                 f"{self.name}, line {self.table.head_line}: no column {listed(missing, 60)} in "
-                f"{listed(heads, 90)}; name them by columns={{...}}"
-                + (", or give rate=, in Hz" if way.startswith("rate") else "")
+                f"{listed(heads, 90)}; name what it is called by columns={{...}}{rate}"
             )
         seen = {}
         for name, place in places.items():
@@ -342,8 +363,8 @@ class _Reader:
             head = self.table.heads[place] if self.table.heads else f"{place} ({name})"
             text = shown(text_files.cell(self.table, k, place), 40)
             raise fault(
-                f"{self.name}, line {self.table.numbers[k]}, column {shown(head)}: must be a finite "
-                f"number, got {text!r}; skip_bad=True leaves such lines out"
+                f"{self.name}, line {self.table.numbers[k]}, column {shown(head)}: must be a "
+                f"finite number, got {text!r}; skip_bad=True leaves such lines out"
             )
         return values
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ddlib._check import number
-from ddlib.logs.text_files import fault, listed, shown
+from ddlib.logs._text_files import fault, listed, shown
 
 # Units in SI; what is above 1 divides, so that 17 ms are .017 s to the last digit
 _KNOWN = {
@@ -64,7 +64,7 @@ def in_head(head: str, quantity: str) -> tuple[str, str | None]:
 def factor(quantity: str, unit) -> tuple[float, str]:
     """SI units in a unit, and the kind of it; a ValueError lists those that are known."""
     if not isinstance(unit, str):
-        return number(f"units of {quantity}", unit), kind_of(quantity)[0]
+        return number(f"units of {quantity}", unit, 0.0, open_low=True), kind_of(quantity)[0]
     for kind in kind_of(quantity):
         if spelled(unit) in _KNOWN[kind]:
             return _KNOWN[kind][spelled(unit)], kind
@@ -121,6 +121,6 @@ def check_angle(values: np.ndarray, place: str, quantity: str, lines) -> None:
     if abs(values[k]) > _TURNS:
         raise fault(
             f"{place}: {quantity} goes to {values[k]:g} (line {lines[k]}): degrees, or radians of "
-            f'a joint that turns on? Say which by units={{"{quantity}": "deg"}} or "rad", or '
-            f"radians in a count"
+            f'a joint that turns on? Say which by units={{"{quantity}": "deg"}} or '
+            f'{{"{quantity}": "rad"}}; or is that sample wrong?'
         )
