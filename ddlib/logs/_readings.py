@@ -34,12 +34,12 @@ def readings(k: int, run: LoggedRun) -> Iterator[Finding]:
         lost = dropouts(whole, q, run.t)
         yield from _dropouts(k, j, run, q, lost)
         mended = _without(whole, lost)
-        yield from _spikes(k, j, run, mended)
+        yield from _spikes(k, j, run, mended, lost)
         yield from _held_torque(k, j, run, q, tau)
         yield from _limit(k, j, run, tau)
 
 
-def _spikes(k, j, run, q):
+def _spikes(k, j, run, q, lost):
     """Single wrong angles, those that matter apart from those that hardly do."""
     rows, sizes = spikes(q)
     steps = np.diff(run.t)
@@ -57,7 +57,7 @@ def _spikes(k, j, run, q):
         if chosen.any():
             yield found(
                 run, "spike", severity, (k, j), rows[chosen],
-                f"{count(chosen.sum(), 'angle')} alone beside the neighbours, by up to "
+                f"Beside what the neighbours say: {count(chosen.sum(), 'angle')}, by up to "
                 f"{sizes[chosen].max():.3g} rad of a range of {spread:.3g} rad.",
                 "An acceleration sees a spike first: one of half a radian can make an inertia a "
                 "tenth of what it is.",
@@ -75,6 +75,8 @@ def _filled(x):
 def unwrapped(q) -> np.ndarray:
     """Angles without jumps of a turn, in rad; only jumps are taken that a turn explains."""
     jumps = np.diff(q)
+    if not jumps.size:
+        return q
     turns = np.where(wrapped(jumps), np.round(jumps / TURN), 0.0)
     return q - TURN * np.concatenate([[0.0], np.cumsum(turns)])
 
@@ -242,7 +244,7 @@ def _held_torque(k, j, run, q, tau):
             )  # fmt: skip
         return
     usual, low, high = np.median(np.abs(steps)), tau.min(), tau.max()
-    span = 0.3 * tau.std()
+    span, zero_steps = 0.3 * tau.std(), np.count_nonzero(steps == 0)
     held, zeros = [], []
     for b, n in zip(begin, length):
         e = b + n
@@ -252,7 +254,10 @@ def _held_torque(k, j, run, q, tau):
         if tau[b] == 0 and min(jumps) > max(span, 5 * usual):
             zeros.append((b, e))
         elif (
-            tau[b] != 0 and n >= 10 and np.ptp(q[b:e]) > 0.01 * np.ptp(q) and (jumps[1] > 3 * usual)
+            tau[b] != 0
+            and n >= 10
+            and np.ptp(q[b:e]) > 0.01 * np.ptp(q)
+            and (jumps[1] > 3 * usual or zero_steps - n < 0.02 * steps.size)
         ):
             held.append((b, e))
     for stretches, what, value in (

@@ -9,7 +9,6 @@ import numpy as np
 
 from ddlib.logs.log import Log, LoggedRun
 from ddlib.simulation import Recording
-from ddlib.tables import Table
 
 SEVERITIES = ("wrong", "doubtful", "note")
 """What a finding may be, the worst first."""
@@ -49,13 +48,9 @@ class Check:
         return tuple(found for found in self.findings if found.kind == kind)
 
     def __repr__(self):
-        samples = sum(run.t.size for run in self.runs)
-        counts = [sum(f.severity == severity for f in self.findings) for severity in SEVERITIES]
-        told = ", ".join(f"{n} {name}" for n, name in zip(counts, SEVERITIES))
-        title = f"{count(len(self.runs), 'run')}, {count(samples, 'sample')}: {told}"
         groups = self._groups()
         heads = [f"{found.severity:8s}  {place(found, runs)}" for found, runs in groups]
-        lines = [title]
+        lines = [self._title()]
         for head, (found, runs) in zip(heads, groups):
             lines += ["", f"{head}: {found.kind}"[:_ADVICE]]
             for text in (f"{found.what} {_rows(found, runs)}", found.effect, f"Do: {found.advice}"):
@@ -74,8 +69,8 @@ class Check:
     def _title(self) -> str:
         samples = sum(run.t.size for run in self.runs)
         counts = [sum(f.severity == severity for f in self.findings) for severity in SEVERITIES]
-        told = ", ".join(f"{count} {name}" for count, name in zip(counts, SEVERITIES))
-        return f"{len(self.runs)} runs, {samples:,} samples: {told}"
+        told = ", ".join(f"{n} {name}" for n, name in zip(counts, SEVERITIES))
+        return f"{count(len(self.runs), 'run')}, {count(samples, 'sample')}: {told}"
 
     def _groups(self) -> list[tuple[Finding, list]]:
         """The findings, those of one kind and joint in several runs together, by their first."""
