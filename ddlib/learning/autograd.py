@@ -46,8 +46,8 @@ class WindowNetwork(nn.Module):
 class TorqueNetwork(nn.Module):
     """A `TorqueModel` as a PyTorch module: windows in rad to torques in N m.
 
-    The scaling is inside, in buffers, so that ``state_dict()``, ``torch.export.export`` and
-    ``torch.jit.script`` take it along. Numbers are float64, with the torques of
+    The scaling is inside, in buffers, so that ``state_dict()`` and ``torch.export.export`` take it
+    along. Numbers are float64, with the torques of
     `TorqueModel.torque`; ``.float()`` makes them float32.
 
     Parameters

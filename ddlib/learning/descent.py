@@ -203,7 +203,7 @@ def _train_block(descent, initial, data, test, epochs, warm_up, snapshots, bar, 
                 bar.update((epoch % 50 or 50) * descent.members)
     test_square = [descent.mean_square(*test_cases)] if test is not None else []
     note(reached, descent.mean_square(descent.inputs, descent.targets), test_square)
-    return descent.weights(), history, kept
+    return descent.weights() if reached else initial, history, kept
 
 
 class Descent:

@@ -1,5 +1,7 @@
 """What ridge regression leaves of an inertia, against least squares and signals made for it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,22 @@ def test_refusals_name_the_argument():
         half_penalty(data, states[1:])
     with pytest.raises(ValueError, match="joint must"):
         half_penalty(data, states, joint=2)
+    with pytest.raises(ValueError, match="data must know its step"):
+        half_penalty(replace(data, step=None), states)
+
+
+@pytest.mark.parametrize("step", [0.002, 0.004, 0.02])
+def test_the_penalty_is_that_of_the_datas_own_step(step):
+    """Of one motion, a window of as many seconds has nearly the same parabola."""
+    t = np.arange(-2.0, 8.0, step)
+    q = np.stack([0.3 * np.sin(3 * t) + 0.2 * np.sin(7 * t), 0.3 * np.sin(2 * t)], -1)
+    qdd = -np.stack([2.7 * np.sin(3 * t) + 9.8 * np.sin(7 * t), 1.2 * np.sin(2 * t)], -1)
+    width = round(0.2 / step) + 1
+    half = width // 2
+    x = sliding_windows(q, width)
+    states = np.stack([q, 0 * q, qdd], -1)[half:-half]
+    data = TrainingSet.from_arrays(x, MASS * states[..., 2], scaling=(-1, 1), step=step)
+    assert data.step == step
+    given = [1e-30, half_penalty(data, states)]
+    mass = gains(ridge_filters(data, given), step)[:, 0, 0, 2] / MASS
+    np.testing.assert_allclose(mass, [1.0, 0.5], atol=0.1)

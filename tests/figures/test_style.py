@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from pictures import SVG, black_or_white, check_sound, drawn, ids, size, words
 from PIL import Image
+from pypdf import PdfReader
 
 from ddlib.figures import COLOURS, DASHES, FAINT, illustrate, style
 
@@ -244,6 +245,40 @@ def test_a_saved_file_has_its_own_colours(tmp_path):
     assert "background:#ffffff" in root.attrib["style"]
     assert "max-width:100%" in root.attrib["style"]
     assert "currentColor" not in text and "#1a1a1a" in text
+
+
+def test_the_suffix_decides_what_is_saved(tmp_path):
+    made = illustrate(draw, "A curve.", 4.0, 2.0)
+    for suffix in (".png", ".PDF", ".svg"):
+        made.save(str(tmp_path / f"curve{suffix}"))
+    with Image.open(tmp_path / "curve.png") as picture:
+        assert picture.format == "PNG" and picture.size == (800, 400)
+        assert picture.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
+        assert np.asarray(picture.convert("L")).min() < 100  # something is drawn
+    (page,) = PdfReader(tmp_path / "curve.PDF").pages
+    assert [float(x) for x in page.mediabox[2:]] == pytest.approx([4 * 72, 2 * 72])
+    assert ET.parse(tmp_path / "curve.svg").getroot().tag == f"{SVG}svg"
+    before = sorted(tmp_path.iterdir())
+    for name in ("curve.jpg", "curve", "curve.svg.txt"):
+        with pytest.raises(ValueError, match=re.escape("suffix of path must be one of '.svg'")):
+            made.save(tmp_path / name)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_the_matplotlib_figure_is_within_reach(tmp_path):
+    made = illustrate(draw, "A curve.", 4.0, 2.0)
+    assert made.figure.get_size_inches() == pytest.approx([4, 2])
+    (axis,) = made.figure.axes
+    axis.set_title("Changed")
+    made.figure.savefig(tmp_path / "mine.svg")
+    assert "Changed" in (tmp_path / "mine.svg").read_text(encoding="utf-8")
+    with pytest.raises(ValueError, match="no matplotlib figure"):
+        _ = style.Illustration(made.svg, made.alt).figure
+
+
+def test_a_figure_is_one_line_in_words():
+    assert repr(illustrate(draw, "A curve.")) == "Illustration('A curve.')"
+    assert len(repr(illustrate(draw, "many words " * 40))) < 90
 
 
 @pytest.mark.parametrize("names", [["a", "b"], ["training", "test, after 20,000 epochs"] * 3])

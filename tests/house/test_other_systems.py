@@ -69,7 +69,7 @@ def test_the_environment_declares_what_is_imported():
 
 
 def test_the_pins_lie_in_the_packages_ranges():
-    for name, wanted in {**OWN, **EXTRAS["dask"]}.items():
+    for name, wanted in {**OWN, **EXTRAS["dask"], **EXTRAS["learning"]}.items():
         given = PINS[name]
         if name == "torch":  # a range in both, on purpose
             assert given.specifier == wanted.specifier

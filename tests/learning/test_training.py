@@ -151,3 +151,17 @@ def test_a_far_too_large_rate_is_told(data):
         warnings.simplefilter("error")
         train_ensemble(start, data, rate=[1e6, 1e6, 3.0], **options)
         train_ensemble(start, data, rate=1e6, targets=targets, **options)
+
+
+def test_what_prints_is_one_short_line():
+    rng = np.random.default_rng(1)
+    windows, torque = rng.normal(size=(40, 2, 5)), rng.normal(size=(40, 2))
+    data = TrainingSet.from_arrays(windows, torque, step=0.004)
+    assert repr(data) == "TrainingSet(40 cases, 2 joints, window of 5 samples, 0.004 s apart)"
+    assert "apart" not in repr(TrainingSet.from_arrays(windows, torque))
+    model, _, _ = train_ensemble(Weights.random(2, 5), data, epochs=2, rate=0.1, progress=False)
+    wanted = "TorqueModel(2 networks, 10 hidden units, 2 joints, window 5, 0.004 s apart)"
+    assert model.step == 0.004 and repr(model) == wanted
+    for step in (0.0, -1.0, np.nan):
+        with pytest.raises(ValueError, match="step"):
+            TrainingSet.from_arrays(windows, torque, step=step)

@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from traitlets import TraitError
 from widget_samples import T, make, oscillation
 
-from ddlib.widgets import Choice, CurveWidget, Pad, Panel, Parameter, Scalar
+from ddlib.learning import TorqueModel, TrainingSet, Weights
+from ddlib.setups import STATE_FEEDBACK
+from ddlib.simulation import record
+from ddlib.trajectories import APPENDIX_I
+from ddlib.widgets import (
+    Choice,
+    CurveWidget,
+    FilterExplorer,
+    HiddenTorque,
+    Pad,
+    Panel,
+    Parameter,
+    Scalar,
+    SlidingWindow,
+    TrainingPlayer,
+)
 
 
 def test_parameters_are_traits_and_the_page_is_answered():
@@ -75,3 +92,34 @@ def test_what_does_not_fit_is_refused_by_name():
                 kind(**{**given, **changes})
     with pytest.raises(TraitError, match=r"gain must lie in \[1, 100\], got 101"):
         make().gain = 101
+
+
+def test_widgets_keep_to_the_recordings_step():
+    """At 4 ms: windows, cursors and gains in the recording's own time."""
+    setup, step = STATE_FEEDBACK, 0.004
+    log = record(setup.arm, setup.controller, APPENDIX_I, log_step=step, rest=0.2)
+    data = {w: TrainingSet.from_recording(log, w) for w in (11, 21)}
+    models = {
+        w: TorqueModel(Weights.random(2, w), x.inputs, x.outputs, x.step) for w, x in data.items()
+    }
+    single = {w: model[0] for w, model in models.items()}
+    sliding = SlidingWindow(single, log[5], first=21)
+    assert sliding.curves["last"] == pytest.approx(1e3 * step * 10.5)
+    hidden = HiddenTorque(log[5], 21)
+    explorer = FilterExplorer(models, (0, 1))
+    moved = [Weights.random(2, 21, seed=k) for k in range(3)]
+    course = replace(models[21], weights=Weights.stack(moved))
+    player = TrainingPlayer([0, 1, 2], course, log)
+    for widget, panel in ((sliding, 0), (hidden, 1), (explorer, 0), (player, 0)):
+        times = widget._panels[panel].x
+        np.testing.assert_allclose(np.diff(times), 1e3 * step, rtol=1e-6)
+    (gain,) = (p for p in explorer._panels if p.y_label == "Gain")
+    assert max(gain.x) == pytest.approx(0.2 / step)
+    unknown = {w: replace(model, step=None) for w, model in models.items()}
+    with pytest.raises(ValueError, match="give step, in s"):
+        FilterExplorer(unknown, (0, 1))
+    assert FilterExplorer(unknown, (0, 1), step=step)._step == step
+    with pytest.raises(ValueError, match=r"sampling period of 0\.01 s"):
+        FilterExplorer(models, (0, 1), step=0.01)
+    with pytest.raises(ValueError, match="sampling period"):
+        SlidingWindow(single, setup.record()[5])

@@ -92,7 +92,7 @@ def _inertias() -> dict[str, float]:
     slopes = (hidden * (1 - hidden))[:, unit] * (output * (1 - output))[:, 0]
     path = slopes.mean() * model.weights.output_weights[0, unit]
     scale = model.inputs.gain[joint] / model.outputs.gain[0]
-    whole = trial.gains_of(model, windows).whole[0, 0, 2]
+    whole = trial.gains_of(model, windows, LOG_STEP).whole[0, 0, 2]
     row = gains(path * scale * carried_row(), LOG_STEP)[2]
     return {"the row": row, "its network": whole, "the arm": trial.arm_gains()[0, 0, 2]}
 

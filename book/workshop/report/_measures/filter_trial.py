@@ -14,6 +14,7 @@ import numpy as np
 from ddlib.analysis import calibrated as gains_of
 from ddlib.learning import MATCHED, cases, p_value
 from ddlib.setups import JOINT_DAMPING, SETUPS, true_states
+from ddlib.simulation import LOG_STEP
 from workshop.report import committed, results
 from workshop.report.evidence.verdicts import Measured, judged
 
@@ -81,7 +82,7 @@ def off_singly(what: str = "inertia", width: int = 21) -> np.ndarray:
 def calibrated_networks(width: int = 21, setup: str = JOINT_DAMPING.name) -> Measured:
     """How far the inertia in the networks of Table 4-1 is from the arm's: the worst entry."""
     windows, _ = cases(committed.training(setup), width)
-    found = gains_of(committed.networks(width, setup), windows).whole
+    found = gains_of(committed.networks(width, setup), windows, LOG_STEP).whole
     real, true, told = _entries("inertia", found, arm_gains(setup))
     return judged(lambda each: _off(each, true), real, text=f"{told} {_UNITS['inertia']}")
 
