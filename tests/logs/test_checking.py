@@ -343,7 +343,7 @@ def test_a_spike_is_told_with_its_line_and_drawn():
     text = repr(check)
     assert "(line 539)" in text and "run 2, shoulder: spike" in text
     assert max(map(len, text.splitlines())) <= 100
-    assert check._repr_markdown_().count("\n") == 1 + len(check._groups())
+    assert check._repr_markdown_().count("\n- ") == len(check._groups())
     order = [SEVERITIES.index(f.severity) for f in check.findings]
     assert order == sorted(order)
     assert figures.checked(check).alt.endswith("run 2. Marked: spike.")
