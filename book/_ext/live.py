@@ -83,7 +83,7 @@ def read(mirror: str, name: str) -> bytes | None:
         return None
     except OSError as error:  # no network, no such host, or a break on the way
         why = getattr(error, "reason", error)
-        raise Unreachable(f"{mirror} cannot be reached ({why})") from None
+        raise Unreachable(f"{mirror} cannot be reached ({why})") from error
 
 
 def take(entries: list[dict], mirror: str, kept: Path) -> None:
@@ -106,8 +106,8 @@ def take(entries: list[dict], mirror: str, kept: Path) -> None:
             content = read(source, name)
         except Unreachable as error:
             raise Refused(
-                f"{files} of Pyodide {VERSION}, {name} first, must be had from {PUBLIC} or by "
-                f"MIRROR= from a folder or an address that has them, but {error}"
+                f"no {files} of Pyodide {VERSION}: {error}. Name a folder or an address that has "
+                f"them by MIRROR=, or try again with a way to {PUBLIC}."
             ) from None
         if content is None:
             problems.append(f"{name} is missing")
