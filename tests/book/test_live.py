@@ -78,7 +78,9 @@ def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, m
     with pytest.raises(live.Refused) as refusal:
         live.take([entry("numpy"), entry("sympy")], "", kept)
     said = str(refusal.value)
-    assert said.startswith("no sympy of Pyodide") and "MIRROR=" in said and "cannot be reached" in said
+    assert (
+        said.startswith("no sympy of Pyodide") and "MIRROR=" in said and "cannot be reached" in said
+    )
     assert len(said.splitlines()) == 1 and len(said) <= 300
 
 

@@ -72,7 +72,7 @@ def _fitted(f, zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
 
 
 def score(f, zero: float = 0.0) -> float:
-    """RMSS of `_fitted` against the true acceleration: 1 is a constant guess, 0 no error."""
+    """RMSS of its fitted output against the true acceleration: 1 is a constant guess."""
     return float(rmss(_fitted(f, zero)[:, None], readings()[1][:, None]))
 
 
@@ -84,7 +84,7 @@ def _least_squares(setup: Setup = JOINT_DAMPING) -> np.ndarray:
 
 
 def starts() -> dict[str, np.ndarray]:
-    """Starting points by name, each with a largest weight of `_TALL`, shape (21,) each."""
+    """Starting points by name, shape (21,) each, with a largest weight of 0.9."""
     filters = {
         "Second difference": _textbook(3),
         "Savitzky–Golay, 5": _textbook(5),
