@@ -29,9 +29,8 @@ _GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 _HINT = (
     "Drag the dots, or sweep across them in one stroke. By touch, begin beside the dots and sweep "
     "sideways. By keyboard, the arrow keys choose a stem and move it, with Shift faster. Only the "
-    "shape counts, because the page finds the factor and the constant that fit best, as the weight "
-    "and the bias behind a unit would. The error is the root mean square error over the standard "
-    "deviation of the true acceleration: 1 is as bad as always guessing the mean."
+    "shape counts: the page finds the best factor and constant. An error of 1 is as bad as always "
+    "guessing the mean."
 )
 
 
