@@ -102,7 +102,9 @@ pages: $(READY)
 	  $(PYTEST) --last-failed --last-failed-no-failures none $(PAGE_TESTS); }
 
 SOURCES ?=
-LAB = $(WORKSHOP) -m jupyterlab $(if $(filter 0,$(shell id -u)),--allow-root)
+# No news and no look for updates of JupyterLab's own: it starts on the notebooks, and asks nobody.
+QUIET = --LabApp.news_url=None --LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate
+LAB = $(WORKSHOP) -m jupyterlab $(QUIET) $(if $(filter 0,$(shell id -u)),--allow-root)
 lab: $(READY)  ## JupyterLab on the readers' notebooks; SOURCES=1: on the book's own
 ifeq ($(SOURCES),)
 	@$(BIN)/python book/_ext/build.py
@@ -117,7 +119,7 @@ assignment: $(READY)  ## a folder to hand out, without solutions: LESSON=feedbac
 	@$(BIN)/python book/_ext/assignment.py "$(LESSON)"
 
 MIRROR ?=
-live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: Pyodide's packages
+live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whence packages come
 	@$(BIN)/python book/_ext/build.py
 	@$(BIN)/python book/_ext/live.py --mirror "$(MIRROR)"
 

@@ -1,9 +1,10 @@
-"""*Run this page*: `python book/_ext/live.py --mirror FOLDER_OR_ADDRESS`.
+"""*Run this page*: `python book/_ext/live.py [--mirror FOLDER_OR_ADDRESS]`.
 
 Copies the built site and adds to its lessons what runs their open cells in the browser: Pyodide's
-core from npm, and from the mirror the wheels that its `pyodide-lock.json` names, each by its
-SHA-256. `ddlib`, the workshop and two pure packages come from here. The site that `make book`
-writes stays as it is; what a page loads, it loads on a click and from its own site.
+core from npm, and from the mirror, or Pyodide's own public address, the wheels that its
+`pyodide-lock.json` names, each by its SHA-256; they are kept for the next time. `ddlib`, the
+workshop and two pure packages come from here. The site that `make book` writes stays as it is; what
+a page loads, it loads on a click and from its own site.
 """
 
 from __future__ import annotations
@@ -38,7 +39,8 @@ VERSION = "314.0.3"
 TARBALL = "sK40My6m8tmBUYtYH9au9rXUeh9x0wfahtHdOlGmJxZDsKBGKtP6KznyFB2+u/klbQTdDionR0uaVd176zVQzQ=="
 CORE = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
 LOCK = "pyodide-lock.json"
-WHEELS = ("numpy", "scipy", "sympy", "matplotlib")  # and what these depend on
+PUBLIC = f"https://cdn.jsdelivr.net/pyodide/v{VERSION}/full"  # where Pyodide keeps its wheels
+WHEELS = ("numpy", "scipy", "sympy", "matplotlib", "pandas")  # and what these depend on
 PURE = {"lazy-loader": [], "control": ["numpy", "scipy", "matplotlib"]}  # from this environment
 FIRST = ("numpy", "ddlib", "lazy-loader")  # before the first cell
 STILL = "ddlib/widgets"  # figures to handle stay as they were built
@@ -47,6 +49,10 @@ DATA = re.compile(r"""["']data/([\w.-]+)["']""")
 
 class Refused(RuntimeError):
     """Something is missing, or is not as its hash says."""
+
+
+class Unreachable(RuntimeError):
+    """An address does not answer at all."""
 
 
 def sha256(content: bytes) -> str:
@@ -75,16 +81,34 @@ def read(mirror: str, name: str) -> bytes | None:
             return opened.read()
     except urllib.error.HTTPError:
         return None
+    except OSError as error:  # no network, no such host, or a break on the way
+        why = getattr(error, "reason", error)
+        raise Unreachable(f"{mirror} cannot be reached ({why})") from error
 
 
 def take(entries: list[dict], mirror: str, kept: Path) -> None:
     """Wheels of a lock into a folder: all of them, or none that is not as the lock says."""
+    lacking = [
+        entry
+        for entry in entries
+        if not (kept / entry["file_name"]).is_file()
+        or sha256((kept / entry["file_name"]).read_bytes()) != entry["sha256"]
+    ]
+    if not lacking:
+        return
+    source = mirror or PUBLIC
+    files = f"{len(lacking)} wheels" if len(lacking) > 1 else lacking[0]["file_name"]
+    print(f"==> Taking {files} of Pyodide {VERSION} from {source}", flush=True)
     problems, taken = [], {}
-    for entry in entries:
+    for entry in lacking:
         name, wanted = entry["file_name"], entry["sha256"]
-        if (kept / name).is_file() and sha256((kept / name).read_bytes()) == wanted:
-            continue
-        content = read(mirror, name) if mirror else None
+        try:
+            content = read(source, name)
+        except Unreachable as error:
+            raise Refused(
+                f"no {files} of Pyodide {VERSION}: {error}. Name a folder or an address that has "
+                f"them by MIRROR=, or try again with a way to {PUBLIC}."
+            ) from None
         if content is None:
             problems.append(f"{name} is missing")
         elif sha256(content) != wanted:
@@ -92,9 +116,8 @@ def take(entries: list[dict], mirror: str, kept: Path) -> None:
         else:
             taken[name] = content
     if problems:
-        where = f"MIRROR={mirror}" if mirror else "no MIRROR is set"
         wanted = f"a folder or an address with the packages of Pyodide {VERSION} is needed"
-        raise Refused("\n    ".join([f"{where}: {wanted}.", *problems]))
+        raise Refused("\n    ".join([f"MIRROR={source}: {wanted}.", *problems]))
     kept.mkdir(parents=True, exist_ok=True)
     for name, content in taken.items():
         part = kept / f"{name}.part"
@@ -289,7 +312,9 @@ def write(root: Path, site: Path, mirror: str, kept: Path, out: Path) -> list[st
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
-    parser.add_argument("--mirror", default="", help="folder or address with Pyodide's packages")
+    parser.add_argument(
+        "--mirror", default="", help=f"folder or address with Pyodide's packages, or {PUBLIC}"
+    )
     parser.add_argument("--html", default=BUILD / "html", type=Path, help="the site as built")
     parser.add_argument("--out", default=BUILD / "live", type=Path, help="where the new one goes")
     options = parser.parse_args()

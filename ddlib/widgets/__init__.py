@@ -5,7 +5,7 @@
   ``hinton``: the diagram that three of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
-- ``parts``: parameters, panels, pads; ``_baking``: values and a still for pages without a kernel
+- ``parts``: parameters, panels, pads
 - ``static``: the page's half: scripts that all widgets share (``curves.js``, ...), and one more for
   each that draws something of its own (``picker.js``)
 """

@@ -155,7 +155,7 @@ class PIDTuner(LiveWidget):
     The sliders set the shoulder's gains; the elbow's are in the ratio of `JOINT_DAMPING_KP`, its
     derivative gain a fifth. The arm is rigid, with viscous friction and exact sensors;
     feedforward uses the rigid arm as its model, without friction. The page computes everything by
-    the live engine. A run is stopped where a joint's error passes `_MOST_DEG`. Growth and margins
+    the live engine. A run is stopped where a joint's error passes 30 degrees. Growth and margins
     are those of the sampled linear loop at the stretched arm, margins with the loop cut open at one
     joint's torque while the other joint's is closed.
 

@@ -3,8 +3,16 @@
 from __future__ import annotations
 
 import re
+import sys
+from types import SimpleNamespace
 
+import pytest
 from book_pages import API, ROOT, source
+
+from ddlib import control, effects, learning
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import dd_api
 
 PACKAGE = ROOT / "ddlib"
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -40,3 +48,32 @@ def test_every_module_is_documented_once_on_the_page_of_its_package():
     headed = [pair for text in texts.values() for pair in re.findall(heads, text, re.M)]
     assert len(headed) > 30
     assert not [pair for pair in headed if pair[1].split(".")[-1] != pair[0].split(".")[-1]]
+
+
+@pytest.mark.parametrize(
+    "obj, told, left",
+    [
+        (effects.Saturation, {"limit": "tuple"}, {}),  # its field has an entry of its own
+        (learning.TorqueModel, {"weights": "Weights", "step": "float"}, {}),
+        (control.margins, {"loop": "lti", "return": "_Margins"}, {"loop": "lti"}),
+        (control.margins, {"return": "tuple[_Margins, ...]"}, {}),
+        (learning.solve, {"data": "TrainingSet", "return": "Weights"}, None),
+    ],
+)
+def test_types_that_say_nothing_are_left_out(obj, told, left):
+    env = SimpleNamespace(temp_data={"annotations": {"name": dict(told)}})
+    dd_api.forget_types(SimpleNamespace(env=env), "", "name", obj, None, None, None)
+    assert env.temp_data["annotations"]["name"] == (told if left is None else left)
+
+
+@pytest.mark.built
+@pytest.mark.parametrize("page", [page for page in API[1:] if "workshop" not in page])
+def test_no_field_stands_twice_and_no_type_is_private(parsed, page):
+    article = parsed(page).select_one("article")
+    for one in article.select("dl.class"):
+        own = ":scope > dd > "
+        entries = {dt["id"].split(".")[-1] for dt in one.select(f"{own}dl.attribute > dt[id]")}
+        listed = {name.get_text() for name in one.select(f"{own}dl.field-list dd strong")}
+        assert not entries & listed, one.dt["id"]
+    text = article.get_text(" ")
+    assert not re.findall(r"(?<![\w.-])_[A-Z]\w+", text)

@@ -53,8 +53,39 @@ def test_only_what_the_lock_names_is_taken_and_nothing_is_left_half_done(tmp_pat
     assert [path.read_text() for path in tmp_path.glob("live*/*")] == ["in live"]
     live.take([entry("numpy")], str(tmp_path), kept)
     (kept / "numpy").write_text("changed since")
-    with pytest.raises(live.Refused, match=r"no MIRROR is set(?s:.*)numpy is missing"):
-        live.take([entry("numpy")], "", kept)
+    with pytest.raises(live.Refused, match=r"needed.\n +numpy is missing"):
+        live.take([entry("numpy")], str(out), kept)
+
+
+def test_without_a_mirror_wheels_come_from_pyodides_address_and_stay(tmp_path, monkeypatch, capsys):
+    """With a server of this machine in its place."""
+    served, kept = tmp_path / "served", tmp_path / "kept"
+    served.mkdir()
+    for name in ("numpy", "scipy"):
+        (served / name).write_text(name)
+    with chromium.serve(served) as address:
+        monkeypatch.setattr(live, "PUBLIC", address)
+        live.take([entry("numpy"), entry("scipy")], "", kept)
+        assert capsys.readouterr().out.rstrip().endswith(f"Pyodide {live.VERSION} from {address}")
+        assert {path.name for path in kept.iterdir()} == {"numpy", "scipy"}
+        (served / "sympy").write_text("tampered")
+        with pytest.raises(live.Refused, match=r"sympy has SHA-256 .* the lock wants"):
+            live.take([entry("sympy")], "", kept)
+        with pytest.raises(live.Refused, match="pandas is missing"):
+            live.take([entry("pandas")], "", kept)
+    live.take([entry("numpy"), entry("scipy")], "", kept)  # the server is gone, and not asked
+    assert "wheels" not in capsys.readouterr().out
+    with pytest.raises(live.Refused) as refusal:
+        live.take([entry("numpy"), entry("sympy")], "", kept)
+    said = str(refusal.value)
+    assert (
+        said.startswith("no sympy of Pyodide") and "MIRROR=" in said and "cannot be reached" in said
+    )
+    assert len(said.splitlines()) == 1 and len(said) <= 300
+
+
+def test_pyodides_address_has_its_version():
+    assert re.fullmatch(rf"https://\S+/v{re.escape(live.VERSION)}/full", live.PUBLIC)
 
 
 def plain(page: str) -> str:

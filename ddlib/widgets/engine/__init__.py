@@ -1,8 +1,6 @@
 """Widgets that compute in the page, and the live engine that they share.
 
-- ``_plain``: arm, effects, controller and network as the plain data that the engine takes
-- ``_live``: `CurveWidget` without a table: its script computes the curves
-- ``_loops``: PID loops with a late torque: runs that are stopped, growth and margins
+- `LiveWidget`: a `CurveWidget` without a table, whose script computes the curves
 - ``sentence``: sentences whose numbers the reader moves, and whose end is computed
 - ``throw``: the arm that the reader throws, with a window network that tells its torque
 - ``builder``: a window whose weights the reader draws, to measure acceleration

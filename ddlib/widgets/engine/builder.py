@@ -29,9 +29,8 @@ _GAINS = (1.0, 2e5)  # range of the gains shown, 1/s^2
 _HINT = (
     "Drag the dots, or sweep across them in one stroke. By touch, begin beside the dots and sweep "
     "sideways. By keyboard, the arrow keys choose a stem and move it, with Shift faster. Only the "
-    "shape counts, because the page finds the factor and the constant that fit best, as the weight "
-    "and the bias behind a unit would. The error is the root mean square error over the standard "
-    "deviation of the true acceleration: 1 is as bad as always guessing the mean."
+    "shape counts: the page finds the best factor and constant. An error of 1 is as bad as always "
+    "guessing the mean."
 )
 
 
@@ -72,7 +71,7 @@ def _fitted(f, zero: float = 0.0, setup: Setup = JOINT_DAMPING) -> np.ndarray:
 
 
 def score(f, zero: float = 0.0) -> float:
-    """RMSS of `_fitted` against the true acceleration: 1 is a constant guess, 0 no error."""
+    """RMSS of its fitted output against the true acceleration: 1 is a constant guess."""
     return float(rmss(_fitted(f, zero)[:, None], readings()[1][:, None]))
 
 
@@ -84,7 +83,7 @@ def _least_squares(setup: Setup = JOINT_DAMPING) -> np.ndarray:
 
 
 def starts() -> dict[str, np.ndarray]:
-    """Starting points by name, each with a largest weight of `_TALL`, shape (21,) each."""
+    """Starting points by name, shape (21,) each, with a largest weight of 0.9."""
     filters = {
         "Second difference": _textbook(3),
         "Savitzky–Golay, 5": _textbook(5),

@@ -41,13 +41,9 @@ _CHOICES = ("extents_deg", "seed", "inputs", "shifted", "step_size", "momentum")
 _NUMBERS = ("error", "training_error", "inertia")
 
 _HINT = (
-    "Your browser trains a network with {hidden} hidden units on windows of {width} positions, by "
-    "plain descent. To be fast, it trains on every fifth window; the error on trajectory {last} "
-    "counts all windows. If you change the trajectories, the page records them with the same "
-    "controller, friction, encoder and torque noise. Shifted torques do not belong to the motion. "
-    "The inertia comes from the mean gradient of the shoulder's torque, and the arm's own is the "
-    "mean of M₁₁ over the training windows. The names of filters follow the rule of the lesson "
-    "Convolution filters."
+    "Your browser trains a network with {hidden} hidden units on every fifth window of {width} "
+    "positions. The error on trajectory {last} counts all windows. If you change the trajectories, "
+    "the page records them anew with the same controller, friction, encoder and torque noise."
 )
 
 
@@ -97,9 +93,13 @@ class NetworkTrainer(_PageWidget):
     """Record trajectories in the page, train a window network on them, read the inertia in it.
 
     Errors, torques and the filters of all units are seen on the way. Everything is computed in the
-    page, with a kernel and without. With a kernel the reader's choices are traits to set, observe
-    and link: a page that shows the widget then records and trains anew, up to `epoch`. Until it
-    has, and as long as no page shows the widget, the results are None.
+    page, with a kernel and without: by plain descent, on every fifth window to be fast. The inertia
+    comes from the mean gradient of the shoulder's torque, the arm's own is the mean of M11 over the
+    training windows, and filters are named as by `classify`.
+
+    With a kernel the reader's choices are traits to set, observe and link: a page that shows the
+    widget then records and trains anew, up to `epoch`. Until it has, and as long as no page shows
+    the widget, the results are None.
 
     Parameters
     ----------
@@ -177,13 +177,13 @@ class NetworkTrainer(_PageWidget):
     torques.tag(sync=True)
     noise = t.Bytes(help="the torque sensor's noise in them, N m as float32", read_only=True)
     noise.tag(sync=True)
-    extents_deg = t.Any(help="extents of each trajectory, degrees").tag(sync=True)
-    seed = t.Int(1, help="number of the initial weights").tag(sync=True)
-    inputs = t.Enum(tuple(_SCALINGS), "printed", help="range of the inputs").tag(sync=True)
-    shifted = t.Bool(False, help="whether torques are shifted in time").tag(sync=True)
-    step_size = t.Enum(_STEPS, 1.0, help="times the step size of `default_rate`").tag(sync=True)
-    momentum = t.Enum(_MOMENTA, 0.98, help="acceleration of the descent").tag(sync=True)
-    epoch = t.Int(0, help="epochs trained").tag(sync=True)
+    extents_deg = t.Any().tag(sync=True)
+    seed = t.Int(1).tag(sync=True)
+    inputs = t.Enum(tuple(_SCALINGS), "printed").tag(sync=True)
+    shifted = t.Bool(False).tag(sync=True)
+    step_size = t.Enum(_STEPS, 1.0).tag(sync=True)
+    momentum = t.Enum(_MOMENTA, 0.98).tag(sync=True)
+    epoch = t.Int(0).tag(sync=True)
     reached = t.Dict(help="the page's last results, and the choices behind them", read_only=True)
     reached.tag(sync=True)
     weight_bytes = t.Bytes(help="the page's last weights as float64", read_only=True)

@@ -146,7 +146,7 @@ extras.push((view) => {
     const one = `${right}: the largest at the elbow is ${best}, ${newtons(rms(best))}. ${WHY[best] ?? ""}`.trim();
     if (!second) return one;
     const own = second === BETS[1] ? "Yes" : "No";
-    const two = `${own}, the ratio stays. At double speed every term is four times as large, because accelerations and products of two speeds both grow with the square.`;
+    const two = `${own}, the ratio stays. At double speed every term is four times as large.`;
     return `${two} Does friction, too? Switch it on.`;
   }
   function question() {
