@@ -112,8 +112,8 @@ def _nearest(value, cover, names, margin) -> np.ndarray:
             p = np.sqrt(max(a - d, 0.0) + nudge * abs(a) + 1e-12)
             free[rigid] = p, b / p, np.sqrt(max(d - (b / p) ** 2, 0.0) + nudge * abs(d) + 1e-12)
         found = fit(
-            lambda z: whiten @ (arm(z) - value), free, x_scale="jac", xtol=1e-14, ftol=1e-14,
-            gtol=1e-14, max_nfev=2000,
+            lambda z: whiten @ (arm(z) - value), free, x_scale="jac", xtol=1e-12, ftol=1e-12,
+            gtol=1e-12, max_nfev=100,
         )  # fmt: skip
         best = found if best is None or found.cost < best.cost else best
     return arm(best.x)

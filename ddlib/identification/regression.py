@@ -116,7 +116,8 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     noise in the motion alone gives them (`Equations.blur`), and if its standard error, as torque,
     is less than all of the measured torque. Parameters that unseen directions touch are NaN; sums
     of them that can be told are `Estimate.combinations`. A joint whose torque is zero throughout
-    is left out: its equations would be solved by zeros, with a noise of zero.
+    is left out, as is one with too few equations: either would be solved exactly, and count
+    without limit.
 
     Noise in the motion makes estimates too small. The mean of that, to first order, is the inverse
     of the normal equations' matrix times the blur's times the estimates (Fuller 1987); where it
@@ -128,11 +129,11 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
         If there are no more equations than parameters, or nothing can be told.
     """
     integer("rounds", rounds, 1)
-    equations, notes = _driven(equations)
-    names, regressors, torques = equations[:3]
-    count = sum(y.shape[-1] for y in torques)
+    names, count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if count <= len(names):
         raise ValueError(f"equations must be more than the {len(names)} parameters, got {count}")
+    equations, notes = _driven(equations)
+    names, regressors, torques = equations[:3]
     unseen = _unseen(equations)
     if not unseen.shape[1]:
         found = _solved(names, regressors, torques, rounds)
@@ -167,29 +168,37 @@ def _solved(names, regressors, torques, rounds) -> Estimate:
 
 
 def _driven(equations) -> tuple[Equations, list[str]]:
-    """The equations without those of a joint whose torque is zero throughout, and a word on it."""
-    idle = [j for j, y in enumerate(equations.torque) if y.size and not y.any()]
-    if not idle:
-        return equations, []
-    if len(idle) == sum(y.size > 0 for y in equations.torque):
+    """The equations without those of joints that cannot say how noisy they are, and words on it.
+
+    Those are joints whose torque is zero throughout, and joints with no more equations than
+    parameters in them, if others have more: both would be solved exactly and count infinitely.
+    """
+    pairs = list(zip(equations.regressor, equations.torque))
+    idle = [j for j, (_, y) in enumerate(pairs) if y.size and not y.any()]
+    felt = [np.count_nonzero(a.any(tuple(range(a.ndim - 1)))) for a, _ in pairs]
+    few = [j for j, (_, y) in enumerate(pairs) if y.size and y.shape[-1] <= felt[j]]
+    few = [j for j in few if j not in idle]
+    used = [j for j, (_, y) in enumerate(pairs) if y.size]
+    if used and set(idle) == set(used):
         raise ValueError("equations must have a torque, got zeros throughout")
-    shown = [
-        (a[..., :0, :], y[..., :0]) if j in idle else (a, y)
-        for j, (a, y) in enumerate(zip(equations.regressor, equations.torque))
-    ]
-    joints = " and ".join(str(j + 1) for j in idle)
-    note = f"Joint {joints} has no torque; its equations were left out."
-    regressors, torques = zip(*shown)
-    blur = equations.blur
+    few = [] if set(few) | set(idle) == set(used) else few
+    notes = [f"Joint {j + 1} has no torque; its equations were left out." for j in idle]
+    notes += [f"Joint {j + 1} has too few equations; they were left out." for j in few]
+    if not notes:
+        return equations, []
+    out, blur = {*idle, *few}, equations.blur
+    regressors = tuple(a[..., :0, :] if j in out else a for j, (a, _) in enumerate(pairs))
+    torques = tuple(y[..., :0] if j in out else y for j, (_, y) in enumerate(pairs))
     if blur is not None:
-        blur = tuple(0 * x if j in idle else x for j, x in enumerate(blur))
-    return equations._replace(regressor=regressors, torque=torques, blur=blur), [note]
+        blur = tuple(0 * x if j in out else x for j, x in enumerate(blur))
+    return equations._replace(regressor=regressors, torque=torques, blur=blur), notes
 
 
 def _information(equations, joints=None):
     """Normal matrices of the regressor and of its errors, and the torque's energy, over noise.
 
-    Means over repetitions; each joint's noise is what its own equations leave over.
+    Means over repetitions; each joint's noise is what its own equations leave over, and all of its
+    torque if they are too few to leave anything.
     """
     count = len(equations.names)
     seen, blurred, energy = np.zeros((count, count)), np.zeros((count, count)), 0.0
@@ -201,7 +210,8 @@ def _information(equations, joints=None):
         kept = basis * (values > 1e-10 * values.max(-1, keepdims=True))[:, None, :]
         left = y - (kept @ (np.swapaxes(kept, -1, -2) @ y[..., None]))[..., 0]
         power = np.mean(y**2)
-        variance = max(np.sum(left**2) / max(left.size - len(left) * count, 1), 1e-20 * power)
+        free = y.shape[-1] - count
+        variance = max(np.sum(left**2) / (len(left) * free), 1e-20 * power) if free > 0 else power
         if variance == 0:
             continue
         seen += np.mean(np.swapaxes(a, -1, -2) @ a, 0) / variance
@@ -262,7 +272,8 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
     def summed(factors):
         through = factors @ ways
         value = inner.values @ through
-        return value, np.sqrt(np.einsum("p,...pq,q->...", through, inner.covariance, through))
+        spread = np.einsum("p,...pq,q->...", through, inner.covariance, through)
+        return value, np.sqrt(np.maximum(spread, 0))
 
     shape = (*inner.values.shape[:-1], len(names))
     values, errors = np.full(shape, np.nan), np.full(shape, np.nan)

@@ -29,7 +29,7 @@ def estimate(values, cover, names=("a", "b", "d")):
 def test_the_condition_is_that_of_the_mass_matrix():
     rng = np.random.default_rng(0)
     inside = 0
-    for a, b, d in rng.uniform([-0.5, -1, -0.5], [2, 1, 2], (300, 3)):
+    for a, b, d in rng.uniform([-0.5, -1, -0.5], [2, 1, 2], (60, 3)):
         c = np.cos(ANGLES[:, 1])
         mass = np.stack([a + 2 * b * c, d + b * c, d + b * c, d + 0 * c], -1).reshape(-1, 2, 2)
         exists = np.linalg.eigvalsh(mass).min() > 0
@@ -37,7 +37,7 @@ def test_the_condition_is_that_of_the_mass_matrix():
         unchanged = not found.notes
         inside += exists
         assert exists == unchanged
-    assert 30 < inside < 270
+    assert 6 < inside < 54
 
 
 @pytest.mark.parametrize("seed", range(4))
