@@ -103,7 +103,7 @@ def by_kalman(
     """
     shares = _shares(recording.q, noise, recording.motion)
     again = partial(_smoothed, step=recording.step, shares=shares)
-    margin = int(np.ceil(2 * min(shares) ** (-0.5 / _ORDER)))
+    margin = int(np.ceil(2 * max(shares) ** (-0.5 / _ORDER)))  # a joint at rest has no ends
     return _motion(recording, again, names, margin, rows, width, hold)
 
 

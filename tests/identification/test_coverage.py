@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from ddlib.control import pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II
@@ -66,9 +67,7 @@ def shares(kind, way):
     held = (found.covers(truth) & given).sum(0) / np.maximum(given.sum(0), 1)
     sums = []
     for one in found.combinations:
-        from scipy.stats import t
-
-        half = t.ppf(0.975, found.freedom) * one.error
+        half = student.ppf(0.975, found.freedom) * one.error
         sums.append((str(one), np.mean(np.abs(one.value - one.factors @ truth) <= half)))
     return given.mean(0), held, sums, found
 
