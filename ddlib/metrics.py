@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array
+from ddlib._check import finite_array, flag
 
 
 def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
@@ -20,6 +20,7 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
     pooled : bool
         Whether to join the joints, by the root of their mean squared RMSS, or give each its own.
     """
+    flag("pooled", pooled)
     predicted, target = finite_array("predicted", predicted), finite_array("target", target)
     if target.ndim < 2 or not target.shape[-2] or predicted.shape[-2:] != target.shape[-2:]:
         raise ValueError(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, shaped
+from ddlib._check import finite_array, integer, like, non_negative, shaped
 from ddlib.learning import TrainingSet
 from ddlib.simulation import LOG_STEP
 
@@ -31,6 +31,7 @@ def ridge_filters(data: TrainingSet, penalties) -> np.ndarray:
     ndarray, shape (penalties, output, joint, width)
         Torque by position, N m/rad.
     """
+    like("data", data, "TrainingSet")
     penalties = shaped("penalties", non_negative("penalties", penalties), "(penalties,)")
     x, y = (a.reshape(len(a), -1) for a in (data.x, data.y))
     x, y = x - x.mean(0), y - y.mean(0)
@@ -60,6 +61,7 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     joint : int
         Whose inertia.
     """
+    like("data", data, "TrainingSet")
     states = shaped("states", finite_array("states", states), f"({len(data.x)}, joint, 3)")
     integer("joint", joint, 0, states.shape[1] - 1)
     width = data.x.shape[-1]

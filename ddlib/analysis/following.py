@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, number, shaped
+from ddlib._check import finite_array, like, number, shaped
 from ddlib.analysis.filters import DERIVATIVES, _odd_width
 from ddlib.learning import TorqueModel
 from ddlib.simulation import LOG_STEP
@@ -83,6 +83,7 @@ def followed(f, windows, states) -> _Responses:
 
 def mean_gradient(model: TorqueModel, windows) -> np.ndarray:
     """Mean gradient of networks' torques, N m/rad, shape ``(..., output, joint, width)``."""
+    like("model", model, "TorqueModel")
     weights = model.weights
     hidden, output = weights.activity(model.scaled(windows))
     hidden, output = hidden * (1 - hidden), output * (1 - output)  # slopes of the sigmoids

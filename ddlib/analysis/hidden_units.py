@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array, like, number
 from ddlib.learning import TorqueModel
 from ddlib.metrics import rmss
 
@@ -32,6 +32,7 @@ def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
 
 def net_inputs(model: TorqueModel, windows) -> np.ndarray:
     """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``."""
+    like("model", model, "TorqueModel")
     x, weights = model.scaled(windows), model.weights
     net = np.einsum("...hjw,njw->...nh", weights.hidden_weights, x)
     return net + weights.hidden_bias[..., None, :]
@@ -39,6 +40,7 @@ def net_inputs(model: TorqueModel, windows) -> np.ndarray:
 
 def ablation(model: TorqueModel, windows, torque) -> tuple[list, np.ndarray]:
     """Units of one network, and its RMSS while each of them rests at its mean activity."""
+    like("model", model, "TorqueModel")
     weights = model.weights
     if weights.hidden_bias.ndim != 1:
         raise ValueError(f"model must be a single network, got {weights.hidden_bias.shape[0]}")

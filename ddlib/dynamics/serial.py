@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import every, finite_array, function, integer, number, shaped
 from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, _checked_state
 from ddlib.dynamics.formulations import _Constants, _LinkConstants, newton_euler
 
@@ -58,6 +58,7 @@ class SerialArm:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
+        every("links", self.links, "SpatialLink")
         links = tuple(self.links)
         if not links or not all(isinstance(link, SpatialLink) for link in links):
             raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
@@ -67,6 +68,8 @@ class SerialArm:
     @classmethod
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
         """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
+        every("links", links, "Link")
+        number("gravity", gravity)
         spatial = (
             SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
@@ -91,6 +94,7 @@ class SerialArm:
         `formulation` is `newton_euler`, `lagrange_euler` or `recursive_lagrange`: they agree, at
         different cost.
         """
+        function("formulation", formulation, "like newton_euler")
         state = _checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))
         return np.stack([t + np.zeros(state[0].shape[:-1]) for t in tau], -1)

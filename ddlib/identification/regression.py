@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, like, number, one_of
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -56,6 +56,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     A joint's noise is what its equations leave over. It decides the weights, which decide what is
     left over; a few `rounds` settle both. Leading axes are repetitions, each solved for itself.
     """
+    like("equations", equations, "Equations")
     integer("rounds", rounds, 1)
     names, regressors, torques = equations
     counts = [y.shape[-1] for y in torques]

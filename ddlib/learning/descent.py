@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, integer, shaped
+from ddlib._check import every, finite_array, flag, integer, like, shaped
 from ddlib.learning.network import TorqueModel, Weights, _from_rows, rows
 from ddlib.learning.training import (
     WARM_UP_MOMENTUM,
@@ -88,6 +88,10 @@ def train_ensemble(
         The trained ensemble, the errors of every member, and weights by epoch. If no error is
         finite: a `TrainingDiverged` error; if all of several end above 1: `WorseThanMean`.
     """
+    like("weights", weights, "Weights")
+    like("data", data, "TrainingSet")
+    flag("progress", progress)
+    every("snapshots", snapshots, "integer")
     members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
     rate, momentum = _per_member(rate, momentum, epochs, members)

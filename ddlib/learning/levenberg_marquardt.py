@@ -17,7 +17,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import finite_array, flag, integer, like, number, shaped
 from ddlib.learning.descent import _WORKERS
 from ddlib.learning.gauss_newton import _Objective
 from ddlib.learning.network import TorqueModel, Weights
@@ -96,6 +96,9 @@ def solve(
     TypeError
         If `whiten` is neither True nor False.
     """
+    like("weights", weights, "Weights")
+    like("data", data, "TrainingSet")
+    flag("progress", progress)
     if not isinstance(whiten, bool):
         raise TypeError(f"whiten must be True or False, got {whiten!r}")
     _check(weights, data, test)

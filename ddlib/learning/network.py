@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import finite_array, integer, like, number, shaped
 from ddlib.learning.windows import Scaler
 
 INITIAL = 0.03
@@ -128,6 +128,7 @@ def rows(weights: Weights) -> np.ndarray:
 
     Hidden units come first, then the outputs with their direct weights.
     """
+    like("weights", weights, "Weights")
     parts = [
         np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
         for w, b in (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import finite_array, integer, like, number, pair, shaped
 from ddlib.learning.windows import Scaler, sliding_windows
 
 if TYPE_CHECKING:
@@ -37,6 +37,8 @@ class TrainingSet:
     @classmethod
     def from_arrays(cls, windows, torque, target=TARGET_RANGE, scaling=(0.0, 1.0)) -> TrainingSet:
         """Scale windows ``(cases, joint, width)``, rad, to `scaling`, torques, N m, to `target`."""
+        pair("target", target, 0.0, 1.0)
+        pair("scaling", scaling)
         windows = shaped("windows", windows, "(cases, joint, width)")
         torque = shaped("torque", torque, f"({len(windows)}, joint)")
         inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
@@ -50,11 +52,14 @@ class TrainingSet:
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
+        finite_array("windows", windows)
+        finite_array("torque", torque)
         return self.inputs.scale(windows, -2), self.outputs.scale(torque)
 
 
 def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Windows, rad, and torques, N m, of a recording's motions, ``cases`` being the first axis."""
+    like("recording", recording, "Recording")
     windows = sliding_windows(recording.q, width, recording.motion)
     torque = recording.tau[..., recording.motion, :]
     return windows.reshape(-1, *windows.shape[-2:]), torque.reshape(-1, torque.shape[-1])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import filled, finite_array, integer, number, pair, shaped
 
 
 def check_width(width) -> int:
@@ -56,6 +56,7 @@ class Scaler:
     target: tuple[float, float] = (0.0, 1.0)
 
     def __post_init__(self):
+        pair("target", self.target)
         low, high = finite_array("low", self.low), finite_array("high", self.high)
         if low.shape != high.shape or not (high > low).all():
             raise ValueError(f"high must exceed low for each joint, got low={low}, high={high}")
@@ -68,6 +69,9 @@ class Scaler:
     @classmethod
     def fit(cls, data, target=(0.0, 1.0), joint_axis: int = -1) -> Scaler:
         """The scaler that maps the range of `data` per joint to `target`."""
+        pair("target", target)
+        integer("joint_axis", joint_axis, -10, 10)
+        filled("data", data)
         data = np.moveaxis(finite_array("data", data), joint_axis, -1)
         data = data.reshape(-1, data.shape[-1])
         if not len(data):
@@ -91,6 +95,7 @@ class Scaler:
 
     def _along(self, data, axis):
         """Checked data, and `low` and `gain` in a shape that fits them."""
+        integer("joint_axis", axis, -10, 10)
         data, shape = finite_array("data", data), [1] * np.ndim(data)
         if not -data.ndim <= axis < data.ndim or data.shape[axis] != self.low.size:
             raise ValueError(

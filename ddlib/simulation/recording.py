@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array, like, number
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -103,6 +103,8 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     time; its mean is taken. Lagrange-Euler's is taken in the middle of the period, with the mean
     acceleration; the error of that is of second order in the period.
     """
+    like("arm", arm, "Arm")
+    like("recording", recording, "Recording")
     step, period = recording.step, recording.control_step
     if not period:
         raise ValueError(f"recording must have a control_step above 0, got {period}")

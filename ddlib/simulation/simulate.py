@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, one_of, shaped
+from ddlib._check import filled, finite_array, integer, number, one_of, regular, shaped, triple
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
@@ -155,6 +155,8 @@ def follow(
     duration : float, optional
         Length of the motion from 0 s on; default: where the reference moves.
     """
+    triple("reference", reference)
+    regular("seed", seed)
     _check_plant(arm, effects)
     t = shaped("t", t, "(time,)")
     integer("samples of t", t.size, 2)
@@ -259,6 +261,7 @@ def record(
     **options
         ``effects``, ``seed``, ``velocity`` and ``start``, as in `follow`.
     """
+    filled("extents_deg", extents_deg)
     number("control_step", control_step, 1e-5, 0.1)
     number("log_step", log_step, control_step, 1.0)
     ratio = log_step / control_step
