@@ -73,7 +73,7 @@ def shaped(name: str, value, shape: tuple | str) -> np.ndarray:
 
 def filled(name: str, value) -> None:
     """Refuse an array without entries."""
-    if np.size(value) == 0:
+    if finite_array(name, value).size == 0:
         raise ValueError(f"{name} must not be empty, got shape {np.shape(value)}")
 
 
@@ -184,7 +184,7 @@ def like(name: str, value, kind: str) -> None:
         raise TypeError(f"{name} must be {what}, got {told(value)}")
 
 
-def function(name: str, value, signature: str) -> None:
+def function_of(name: str, value, signature: str) -> None:
     """Refuse what cannot be called; `signature` says how it will be."""
     if not callable(value):
         raise TypeError(f"{name} must be a function {signature}, got {told(value)}")
@@ -229,6 +229,50 @@ def triple(name: str, value) -> None:
 
 
 _PARTS = ("q", "qd", "qdd")
+
+
+def cases_of(name: str, value) -> None:
+    """Refuse what is neither None nor a pair of windows and targets that vary in each column."""
+    if value is None:
+        return
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise TypeError(
+            f"{name} must be a pair of windows and targets, as data.transform(*cases(recording, "
+            f"width)) makes it, got {told(value)}"
+        )
+    x, y = (finite_array(f"{name}[{k}]", part) for k, part in enumerate(value))
+    if x.ndim != 3 or y.ndim != 2 or len(x) != len(y):
+        raise ValueError(
+            f"{name} must hold windows (cases, joint, width) and targets (cases, output), "
+            f"got shapes {x.shape} and {y.shape}"
+        )
+    varies(name, y, "take a run in which it does")
+
+
+def along(name: str, value, axis: int, joints: int) -> None:
+    """Refuse an array that has not so many joints along an axis."""
+    shape = finite_array(name, value).shape
+    if len(shape) < -axis or shape[axis] != joints:
+        raise ValueError(f"{name} must have {joints} joints along axis {axis}, got shape {shape}")
+
+
+def known_options(call: str, options, known: tuple[str, ...]) -> None:
+    """Refuse an option that a call does not have; a TypeError as Python's own."""
+    for name in options:
+        if name not in known:
+            raise TypeError(f"{call} has no option {name!r}; it has {', '.join(known)}")
+
+
+def varies(name: str, torque, advice: str) -> None:
+    """Refuse torques (..., cases, joint) of which one joint's never changes."""
+    torque = np.asarray(torque)
+    still = np.flatnonzero(np.ptp(torque, axis=-2).reshape(-1, torque.shape[-1]).max(0) == 0)
+    if still.size:
+        joint = still[0]
+        raise ValueError(
+            f"{name} must change at each joint, but joint {joint + 1} is "
+            f"{torque[..., 0, joint].flat[0]:g} throughout: {advice}"
+        )
 
 
 def regular(name: str, value) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from ddlib import paper
-from ddlib._check import finite_array, integer, like, number, pair, text
+from ddlib._check import finite_array, integer, like, number, pair, text, told
 from ddlib.control import Controller, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import (
@@ -71,6 +71,11 @@ class Setup:
 
     def __post_init__(self):
         text("name", self.name)
+        if not callable(getattr(self.controller, "start", self.controller)):
+            raise TypeError(
+                "controller must have a start method, as pd(kp, kd) has, or be a function, got "
+                f"{told(self.controller)}"
+            )
         like("arm", self.arm, "Arm")
         like("effects", self.effects, "Effects")
         integer("epochs", self.epochs, 1)

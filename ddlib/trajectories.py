@@ -54,7 +54,8 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     number("duration", duration, 0.0, open_low=True)
     if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
         warnings.warn(
-            f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family",
+            f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family; "
+            "smooth_pick_and_place has no such limit",
             OutsideFamilyWarning,
             stacklevel=2,
         )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like, non_negative, shaped
+from ddlib._check import filled, finite_array, integer, like, non_negative, shaped
 from ddlib.learning import TrainingSet
 from ddlib.simulation import LOG_STEP
 
@@ -32,10 +32,16 @@ def ridge_filters(data: TrainingSet, penalties) -> np.ndarray:
         Torque by position, N m/rad.
     """
     like("data", data, "TrainingSet")
+    filled("penalties", penalties)
     penalties = shaped("penalties", non_negative("penalties", penalties), "(penalties,)")
     x, y = (a.reshape(len(a), -1) for a in (data.x, data.y))
     x, y = x - x.mean(0), y - y.mean(0)
     variance, axes = np.linalg.eigh(x.T @ x / len(x))
+    if (penalties == 0).any() and variance[0] <= 1e-14 * variance[-1]:
+        raise ValueError(
+            "penalties must be above 0 for these windows, which vary in "
+            f"{int((variance > 1e-14 * variance[-1]).sum())} of {len(variance)} directions, got 0"
+        )
     slopes = axes.T @ (x.T @ y) / len(x)
     f = axes @ (slopes / (variance[:, None] + penalties[:, None, None]))
     f = np.moveaxis(f, -1, 1).reshape(len(penalties), y.shape[1], *data.x.shape[1:])

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ddlib._check import finite_array, function, integer, like, number, shaped
+from ddlib._check import filled, finite_array, function_of, integer, like, number, shaped
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 
@@ -54,6 +54,7 @@ def responses(model: TorqueModel, values) -> np.ndarray:
     """Activities, ``(..., joint, width, points, hidden)``, along one input, the others at zero."""
     like("model", model, "TorqueModel")
     values = shaped("values", values, "(points,)")
+    filled("values", values)
     shape = model.weights.hidden_weights.shape[-2:]
     states = np.zeros((*shape, values.size, *shape))
     for joint, place in np.ndindex(*shape):
@@ -69,7 +70,7 @@ def shuffled(
 
     `predict` makes torques of states ``(cases, joint, width)``; `scale` are their deviations.
     """
-    function("predict", predict, "of states (cases, joint, width)")
+    function_of("predict", predict, "of states (cases, joint, width)")
     states = shaped("states", states, "(cases, joint, width)")
     before = predict(states)
     rng = np.random.default_rng(integer("seed", seed, 0))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import every, flag, like, one_of
+from ddlib._check import every, flag, function_of, like, one_of
 from ddlib.dynamics.arm import Link
 from ddlib.dynamics.counting import Operations, Tape
 from ddlib.dynamics.derivation import derive
@@ -53,6 +53,8 @@ def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> 
     `knowledge` says what is known off-line: "nothing", the "zeros" of the method, or also the
     constants of the "arm"; then the formula is customised: nothing is computed twice or in vain.
     """
+    function_of("formulation", formulation, "like newton_euler")
+    like("arm", arm, "SerialArm")
     one_of("knowledge", knowledge, KNOWLEDGE)
     tape = Tape()
     state = [[tape.unknown(x) for x in row] for row in _state(arm.joints)]

@@ -236,7 +236,13 @@ def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) ->
     number("step", step, 0.0, open_low=True)
     parts = {}
     for title, f in functions.items():
-        parts[title] = decompose(shaped(f"weights of {title!r}", f, "(width,)"))
+        if np.ndim(f) == 1 and (len(f) < 3 or len(f) % 2 == 0):
+            raise ValueError(
+                f"functions must have an odd number of weights, 3 or more, got {len(f)}"
+            )
+        parts[title] = decompose(
+            shaped(f"functions[{title!r}]" if title else "functions", f, "(width,)")
+        )
     columns = min(len(parts), 3)
     rows = -(-len(parts) // columns)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like, number, pair, shaped
+from ddlib._check import along, filled, integer, like, number, pair, shaped, varies
 from ddlib.learning.windows import Scaler, sliding_windows
 
 if TYPE_CHECKING:
@@ -41,6 +41,13 @@ class TrainingSet:
         pair("scaling", scaling)
         windows = shaped("windows", windows, "(cases, joint, width)")
         torque = shaped("torque", torque, f"({len(windows)}, joint)")
+        filled("windows", windows)
+        varies(
+            "windows",
+            windows.swapaxes(-1, -2).reshape(-1, windows.shape[1]),
+            "a joint that stands still shows nothing of its dynamics",
+        )
+        varies("torque", torque, "identify without a network, or take runs with that torque")
         inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
         return cls(inputs.scale(windows, -2), outputs.scale(torque), inputs, outputs)
 
@@ -52,8 +59,8 @@ class TrainingSet:
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
-        finite_array("windows", windows)
-        finite_array("torque", torque)
+        along("windows", windows, -2, self.inputs.low.size)
+        along("torque", torque, -1, self.outputs.low.size)
         return self.inputs.scale(windows, -2), self.outputs.scale(torque)
 
 

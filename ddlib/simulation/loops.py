@@ -8,7 +8,16 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import finite_array, integer, like, non_negative, number, shaped, triple
+from ddlib._check import (
+    finite_array,
+    function_of,
+    integer,
+    like,
+    non_negative,
+    number,
+    shaped,
+    triple,
+)
 from ddlib.control import PID, closed_loop, plant
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, ViscousFriction
@@ -167,7 +176,11 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
         Feedback gains, N m/rad and N m s/rad, and the arm's viscous friction, N m s/rad.
     """
     like("arm", arm, "Arm")
+    shaped("kp", kp, (2,))
+    shaped("kd", kd, (2,))
+    shaped("viscous", viscous, (2,))
     inverse = model.inverse_dynamics if isinstance(model, Arm) else model
+    function_of("model", inverse, "model(q, qd, qdd) -> tau, or an Arm")
     kp, kd, viscous = (
         non_negative(name, value, 2)
         for name, value in (("kp", kp), ("kd", kd), ("viscous", viscous))
