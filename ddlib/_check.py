@@ -124,6 +124,11 @@ def integer(name: str, value, low: int, high: int | None = None) -> int:
     return int(value)
 
 
+def seed_number(name: str, value) -> int:
+    """`value` as a seed of a random generator: any integer from 0 and up."""
+    return integer(name, value, 0, 2**256)
+
+
 def flag(name: str, value) -> bool:
     """`value` if it is True or False, otherwise a TypeError: a text like "no" would mean yes."""
     if not isinstance(value, (bool, np.bool_)):
@@ -271,7 +276,7 @@ def varies(name: str, torque, advice: str) -> None:
         joint = still[0]
         raise ValueError(
             f"{name} must change at each joint, but joint {joint + 1} is "
-            f"{torque[..., 0, joint].flat[0]:g} throughout: {advice}"
+            f"{torque[..., 0, joint].flat[0] + 0.0:g} throughout: {advice}"
         )
 
 

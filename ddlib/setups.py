@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from ddlib import paper
-from ddlib._check import finite_array, integer, like, number, pair, text, told
+from ddlib._check import finite_array, integer, like, number, pair, seed_number, text, told
 from ddlib.control import Controller, pd, proportional
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.effects import (
@@ -85,7 +85,7 @@ class Setup:
         number("rate", self.rate, 0.0, open_low=True)
         pair("scaling", self.scaling)
         integer("hidden", self.hidden, 1)
-        integer("seed", self.seed, 0)
+        seed_number("seed", self.seed)
         integer("steps", self.steps, 0)
         number("decay", self.decay, 0.0)
         if self.decay and not self.steps:
@@ -101,7 +101,7 @@ class Setup:
 
         Rounding is no noise: without another zero every recording would round alike.
         """
-        integer("seed", seed, 0)
+        seed_number("seed", seed)
         steps = [effect.step for effect in self.effects.encoder if hasattr(effect, "step")]
         zero = np.random.default_rng((seed, len(steps))).uniform(0.0, max(steps, default=0.0), 2)
         shifted = (EncoderZero(tuple(zero)), *self.effects.encoder, EncoderZero(tuple(-zero)))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import finite_array, integer, number, seed_number, shaped
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
 # The page Provenance shows constants with the notes below them.
@@ -77,7 +77,7 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
     Uniform over the square from 0 to `max_deg`, as the paper draws its six (section 2).
     """
     integer("n", n, 1)
-    integer("seed", seed, 0)
+    seed_number("seed", seed)
     number("max_deg", max_deg, 0.0, open_low=True)
     return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
 

@@ -68,7 +68,10 @@ def content(f) -> np.ndarray:
     """Components of weight functions of 5 samples or more along `basis`, ``(..., 4)``."""
     f = _odd_width(f)
     if f.shape[-1] < 5:
-        raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
+        raise ValueError(
+            f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}: take a wider "
+            "window"
+        )
     return f @ basis(f.shape[-1]).T
 
 

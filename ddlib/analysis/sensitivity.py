@@ -9,7 +9,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ddlib._check import filled, finite_array, function_of, integer, like, number, shaped
+from ddlib._check import (
+    filled,
+    finite_array,
+    function_of,
+    like,
+    number,
+    seed_number,
+    shaped,
+)
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 
@@ -73,7 +81,7 @@ def shuffled(
     function_of("predict", predict, "of states (cases, joint, width)")
     states = shaped("states", states, "(cases, joint, width)")
     before = predict(states)
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number("seed", seed))
     order = rng.permutation(len(states))
     changes = []
     for joint, place in np.ndindex(*states.shape[1:]):

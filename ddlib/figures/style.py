@@ -24,6 +24,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from ddlib._files import write_whole
 from ddlib.tables import _SUPERSCRIPT
 
 _FONT = "'DejaVu Sans',Verdana,sans-serif"
@@ -122,8 +123,7 @@ class Illustration:
         """Write the picture to an ``.svg`` file, dark on white."""
         svg = self.svg.replace("currentColor", "#1a1a1a")
         svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(svg)
+        write_whole(path, svg)
 
 
 def illustrate(

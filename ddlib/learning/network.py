@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, like, number, shaped, told
+from ddlib._check import finite_array, integer, like, number, seed_number, shaped, told
 from ddlib.learning.windows import Scaler
 
 INITIAL = 0.03
@@ -79,7 +79,7 @@ class Weights:
         shapes += ((outputs, joints, width), (outputs,))
         draws = []
         for k in range(members):
-            rng = np.random.default_rng(integer("seed", seed, 0) + k)
+            rng = np.random.default_rng(seed_number("seed", seed) + k)
             draws.append([rng.uniform(-initial, initial, shape) for shape in shapes])
         return cls(*(np.stack(parts) for parts in zip(*draws)))
 

@@ -12,6 +12,7 @@ from ddlib._check import (
     number,
     one_of,
     regular,
+    seed_number,
     shaped,
     told,
     triple,
@@ -60,7 +61,7 @@ class _Streams:
 def _generator(seed):
     """Source of noise for one seed (all runs share it) or for an array of them."""
     if np.ndim(seed) == 0:
-        return np.random.default_rng(integer("seed", seed, 0))
+        return np.random.default_rng(seed_number("seed", seed))
     seeds = np.asarray(seed)
     if seeds.dtype.kind not in "iu":
         raise TypeError(f"seed must be an integer or an array of integers, got {told(seed)}")
