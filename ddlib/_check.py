@@ -201,6 +201,21 @@ def text(name: str, value) -> None:
         raise TypeError(f"{name} must be a text, got {told(value)}")
 
 
+def texts(name: str, value, count: int) -> None:
+    """Refuse what are not so many texts."""
+    fits = isinstance(value, (tuple, list)) and len(value) == count
+    if not fits or not all(isinstance(item, str) for item in value):
+        raise TypeError(f"{name} must be {count} texts, got {told(value)}")
+
+
+def mapping(name: str, value) -> None:
+    """Refuse what is no mapping, or an empty one."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} must be a mapping of names, got {told(value)}")
+    if not value:
+        raise ValueError(f"{name} must hold one item or more, got none")
+
+
 def every(name: str, values, kind: str) -> None:
     """Refuse what is no series, or a series that holds what is not `like` a kind."""
     what, *attributes = _KINDS[kind]

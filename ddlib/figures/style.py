@@ -24,6 +24,7 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
+from ddlib._check import function_of, number, text
 from ddlib._files import write_whole
 from ddlib.tables import _SUPERSCRIPT
 
@@ -148,6 +149,12 @@ def illustrate(
     ValueError
         If the alternative text is empty.
     """
+    function_of("draw", draw, "draw(figure)")
+    text("alt", alt)
+    number("width", width, 0.0, 50.0, open_low=True)
+    number("height", height, 0.0, 100.0, open_low=True)
+    if narrow_height is not None:
+        number("narrow_height", narrow_height, 0.0, 100.0, open_low=True)
     if not alt.strip():
         raise ValueError("alt must describe the figure, got an empty text")
     with mpl.rc_context({**_RC, "svg.hashsalt": alt}):
@@ -294,6 +301,7 @@ def check_label(label: str) -> str:
     ValueError
         If it names none: a unit alone, a joint alone or with a unit, nothing.
     """
+    text("label", label)
     quantity = label.partition(",")[0].strip()
     if quantity in ("", "shoulder", "elbow", *_UNITS):
         raise ValueError(f"an axis label must be like 'torque, N m', got {label!r}")

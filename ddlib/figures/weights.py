@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from ddlib._check import like, number, one_of, shaped
+from ddlib._check import finite_array, like, number, one_of, shaped
 from ddlib.analysis import decompose
 from ddlib.figures.style import (
     COLOURS,
@@ -234,6 +234,8 @@ def decomposed(functions: Mapping[str, np.ndarray] | np.ndarray, step: float) ->
     if not functions:
         raise ValueError("functions must hold one weight function or more, got none")
     number("step", step, 0.0, open_low=True)
+    for title, f in functions.items():
+        finite_array(f"functions[{title!r}]" if title else "functions", f)
     parts = {}
     for title, f in functions.items():
         if np.ndim(f) == 1 and (len(f) < 3 or len(f) % 2 == 0):

@@ -88,6 +88,10 @@ def _fed_forward(model, controller):
     return joint_control.Feedforward(model, controller).start(REFERENCE, 0.02)
 
 
+def _explained(target, by):
+    return analysis.explained(target, by)
+
+
 def _torques(weights, inputs, outputs):
     return learning.TorqueModel(weights, inputs, outputs).torque(windows()[0])
 
@@ -228,6 +232,10 @@ def _calls():
             step_deg=1.0, effects=effects.IDEAL,
         )),
         (simulation.smooth_pick_and_place, dict(extents_deg=pair, t=T, speed=1.0)),
+        (simulation.run_system, dict(
+            system=simulation.feedforward_system(ARM, ARM, KP, (60.0, 20.0)),
+            reference=Trajectory(*(x[:20] for x in REFERENCE)), t=T[:20], start=STATE[:2],
+        )),
         (simulation.score, dict(arm=ARM, recording=run, seconds=3.0)),
         # learning, without training
         (learning.sliding_windows, dict(q=run.q, width=7, cases=slice(10, 20))),
@@ -304,6 +312,7 @@ def _calls():
         (analysis.savitzky_golay, dict(width=7, derivative=1, step=0.01, degree=2)),
         (analysis.shares, dict(f=FILTER)),
         (analysis.upright, dict(f=FILTER)),
+        (_explained, dict(target=FILTER, by=FILTER**2)),
         (analysis.followed, dict(f=net.hidden_weights, windows=few, states=states())),
         (analysis.gains, dict(f=FILTER, step=0.01)),
         (analysis.mean_gradient, dict(model=model(), windows=x)),
@@ -337,14 +346,40 @@ def _calls():
         (figures.hinton, dict(weights=net, scale="row")),
         (figures.network_diagram, dict(weights=net)),
         (figures.decomposed, dict(functions=FILTER, step=0.01)),
+        (figures.curves, dict(
+            x=FILTER, panels={"torque, N m": {"one": FILTER}}, x_label="time, s", alt="A line.",
+            columns=1, height=2.0, x_log=False, y_log=False,
+        )),
+        (figures.families, dict(
+            panels={"": {"one": (FILTER, np.ones((5, 2)))}}, labels=LABELS,
+            alt="Lines.", height=2.0, x_log=False, y_log=False,
+        )),
+        (figures.by_case, dict(
+            x=FILTER, cases={"one": FILTER}, x_label="time, s", y_label="torque, N m",
+            alt="A line.", height=2.0,
+        )),
+        (figures.check_label, dict(label="torque, N m")),
+        (figures.illustrate, dict(
+            draw=lambda figure: None, alt="Nothing.", width=7.0, height=3.0, narrow_height=2.0
+        )),
+        (figures.rmss_by_window, dict(
+            table={"one": {"test": {7: FILTER**2}}}, printed={"test": {7: 0.1}}
+        )),
     ]  # fmt: skip
 
 
+LABELS = ("time, s", "torque, N m")
 RAGGED, EMPTY = [1.0, [2.0, 3.0]], np.zeros(0)
 NEVER = (object(), "text", 1j)
-FREE = {"name"}  # texts of which any will do
+FREE = {"name", "alt", "label", "x_label", "y_label"}  # texts of which any will do
 HASHED = {"count", "derive"}  # they keep their answers, so Python refuses a list by itself
-OPTIONAL = {"start", "duration", "axis", "scale"}  # what may be None where the signature hides it
+OPTIONAL = {
+    "x",
+    "start",
+    "duration",
+    "axis",
+    "scale",
+}  # what may be None where the signature hides it
 
 
 def _wrong(value, optional):
@@ -367,6 +402,8 @@ def _wrong(value, optional):
     if isinstance(value, Trajectory):
         short = Trajectory(*value[:2], value[2][..., :1])
         return (*NEVER, 3, np.zeros(3), value[:2], short, {}, *nothing)
+    if value is LABELS:
+        return (*NEVER, 3, {"a": 1}, [None], ["a", 1], ["a"], RAGGED, *nothing)
     if isinstance(value, (list, tuple)):
         return (*NEVER, 3, np.nan, {"a": 1}, [None], ["a", "b"], RAGGED, *nothing)
     return (*NEVER, 3, np.zeros(3), np.zeros((3, 3)), {}, [1, 2], *nothing)
@@ -438,7 +475,9 @@ def wrong_answers(function, arguments):
 
 def _room(function):
     """The room of ddlib that a call belongs to."""
-    return function.__module__.split(".")[1]
+    inside = {_zero: "effects", _fed_forward: "control", _torques: "learning"}
+    inside[_explained] = "analysis"
+    return inside.get(function) or function.__module__.split(".")[1]
 
 
 ROOMS = ("trajectories", "dynamics", "effects", "control", "simulation", "learning", "metrics",
