@@ -149,7 +149,6 @@ def illustrate(
     ValueError
         If the alternative text is empty.
     """
-    function_of("draw", draw, "draw(figure)")
     text("alt", alt)
     number("width", width, 0.0, 50.0, open_low=True)
     number("height", height, 0.0, 100.0, open_low=True)
@@ -157,6 +156,7 @@ def illustrate(
         number("narrow_height", narrow_height, 0.0, 100.0, open_low=True)
     if not alt.strip():
         raise ValueError("alt must describe the figure, got an empty text")
+    function_of("draw", draw, "draw(figure)")
     with mpl.rc_context({**_RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
