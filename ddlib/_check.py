@@ -1,28 +1,55 @@
-"""Argument checks: every error names the argument, its value and its range."""
+"""Argument checks: every error names the argument, its value and its range, on one line."""
 
 from __future__ import annotations
 
+import numbers
+from collections.abc import Mapping
+
 import numpy as np
+
+_MOST = 10**9  # largest integer where no range is given
+_LONGEST = 80  # letters of a value in a message
+
+
+def told(value) -> str:
+    """A value as a message shows it: on one line and short; of a large array its shape."""
+    if isinstance(value, np.ndarray) and value.size > 8:
+        return f"an array of shape {value.shape}"
+    if isinstance(value, (list, tuple)) and len(value) > 40:
+        return f"a {type(value).__name__} of {len(value)} items"
+    try:
+        text = " ".join(repr(value).split())
+    except Exception:  # an object whose repr fails is named by its kind
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 4]} ..."
 
 
 def finite_array(name: str, value, last: int | None = None) -> np.ndarray:
     """`value` as a float array; TypeError or ValueError otherwise.
 
-    Refused are what is no real number, NaN and infinity, and a last axis that is not `last` long.
+    Refused are what is no real number, booleans and texts among them, NaN and infinity, and a last
+    axis that is not `last` long.
     """
+    array = None
     try:
         given = np.asarray(value)
-        kind = given.dtype.kind
-        if kind not in "biufO" or (kind == "O" and (given == None).any()):  # noqa: E711
-            raise TypeError(f"numbers of kind {given.dtype}")
-        array = given.astype(float)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} must be an array of real numbers, got {value!r}") from error
+        items = given.ravel() if given.dtype.kind == "O" else ()
+        if given.dtype.kind in "iufO" and all(map(_is_real, items)):
+            array = given.astype(float)
+    except (TypeError, ValueError, OverflowError, RuntimeError):
+        pass
+    if array is None or array.shape != given.shape:
+        raise TypeError(f"{name} must be an array of real numbers, got {told(value)}")
     if last is not None and (array.ndim == 0 or array.shape[-1] != last):
         raise ValueError(f"{name} must have a last axis of length {last}, got shape {array.shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} must be finite, got NaN or infinity")
     return array
+
+
+def _is_real(x) -> bool:
+    """Whether an item of an array of objects is a real number, and neither None nor a text."""
+    return isinstance(x, numbers.Real) and not isinstance(x, (bool, np.bool_))
 
 
 def shaped(name: str, value, shape: tuple | str) -> np.ndarray:
@@ -44,11 +71,25 @@ def shaped(name: str, value, shape: tuple | str) -> np.ndarray:
     return array
 
 
+def filled(name: str, value) -> None:
+    """Refuse an array without entries."""
+    if finite_array(name, value).size == 0:
+        raise ValueError(f"{name} must not be empty, got shape {np.shape(value)}")
+
+
 def number(name: str, value, low=-np.inf, high=np.inf, *, open_low=False) -> float:
     """`value` as a float within `low` to `high` (`open_low` excludes `low` itself)."""
-    if isinstance(value, bool) or np.ndim(value) != 0:
-        raise TypeError(f"{name} must be a single number, got {value!r}")
-    x = float(finite_array(name, value))
+    try:
+        single = np.ndim(value) == 0 and not isinstance(value, (bool, np.bool_))
+    except (TypeError, ValueError):  # lists of unequal lengths
+        single = False
+    if single:
+        try:
+            x = float(finite_array(name, value))
+        except TypeError:
+            single = False
+    if not single:
+        raise TypeError(f"{name} must be a single number, got {told(value)}")
     if x < low or x > high or (open_low and x == low):
         bracket = "(" if open_low else "["
         raise ValueError(f"{name} must lie in {bracket}{low:g}, {high:g}], got {x:g}")
@@ -67,22 +108,205 @@ def positive(name: str, value, shape: tuple | str = "(..., 2)") -> np.ndarray:
     """`value` as a finite array of numbers above 0, of a shape as in `shaped`."""
     array = shaped(name, value, shape)
     if (array <= 0).any():
-        raise ValueError(f"{name} must be positive, got {value}")
+        raise ValueError(f"{name} must be positive, got {told(value)}")
     return array
 
 
 def integer(name: str, value, low: int, high: int | None = None) -> int:
     """`value` as an int within `low` to `high`; TypeError or ValueError otherwise."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
-        raise TypeError(f"{name} must be an integer, got {value!r}")
+        raise TypeError(f"{name} must be an integer, got {told(value)}")
     if value < low or (high is not None and value > high):
         upper = "and up" if high is None else f"to {high}"
-        raise ValueError(f"{name} must be an integer from {low} {upper}, got {value}")
+        raise ValueError(f"{name} must be an integer from {low} {upper}, got {told(value)}")
+    if high is None and value > _MOST:
+        raise ValueError(f"{name} must be an integer up to {_MOST}, got {told(value)}")
     return int(value)
+
+
+def seed_number(name: str, value) -> int:
+    """`value` as a seed of a random generator: any integer from 0 and up."""
+    return integer(name, value, 0, 2**256)
+
+
+def flag(name: str, value) -> bool:
+    """`value` if it is True or False, otherwise a TypeError: a text like "no" would mean yes."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} must be True or False, got {told(value)}")
+    return bool(value)
 
 
 def one_of(name: str, value, known) -> str:
     """`value` if it is among `known`, otherwise a ValueError that lists them."""
-    if value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    if not any(value is item or (np.ndim(item) == 0 and _same(value, item)) for item in known):
+        raise ValueError(f"{name} must be one of {_listed(known)}, got {told(value)}")
     return value
+
+
+def _same(value, item) -> bool:
+    """Whether two things are equal, of which one may be an array."""
+    same = value == item
+    return isinstance(same, (bool, np.bool_)) and bool(same)
+
+
+def _listed(known) -> str:
+    """The first of what is known, as far as a message has room."""
+    names = list(map(repr, known))
+    while sum(map(len, names)) + 2 * len(names) > 180:
+        names = [*names[: len(names) // 2], "..."]
+    return ", ".join(names)
+
+
+# What a kind of object has, and how messages speak of it
+_KINDS = {
+    "Arm": ("an Arm, with two joints", "inverse_dynamics"),
+    "SerialArm": ("a SerialArm", "links", "joints"),
+    "Link": ("a Link(mass, length, com, inertia)", "mass", "length", "com", "inertia"),
+    "SpatialLink": ("a SpatialLink", "twist_deg", "com", "inertia"),
+    "Effects": ("Effects, as Effects(friction=(ViscousFriction(...),))", "friction_torque"),
+    "PID": ("a PID, as pd(kp, kd) makes it", "kp", "ki", "kd"),
+    "Controller": ("a controller with a start method, as pd(kp, kd) makes it", "start"),
+    "StateSpace": ("a control.StateSpace, as plant(inertia, viscous) makes it", "ninputs", "A"),
+    "LinearSystem": ("a control.StateSpace or control.TransferFunction", "dt", "ninputs"),
+    "System": ("an InterconnectedSystem, as feedforward_system(...) makes it", "ninputs"),
+    "Recording": ("a Recording, as record(...) makes it", "reference", "q", "tau"),
+    "Setup": ("a Setup, like JOINT_DAMPING", "arm", "effects", "controller"),
+    "TrainingSet": ("a TrainingSet", "x", "y", "inputs"),
+    "Weights": ("Weights, of a TorqueModel its weights", "hidden_weights", "output_bias"),
+    "TorqueModel": ("a TorqueModel", "weights", "inputs", "outputs"),
+    "Scaler": ("a Scaler", "scale", "gain"),
+    "Module": ("a torch.nn.Module, like WindowNetwork", "parameters", "forward"),
+    "Equations": ("Equations, of a recording by_modulation(recording)", "regressor", "torque"),
+    "integer": ("an integer", "__index__"),
+    "row of weights": ("a row of weights", "__len__"),
+}
+
+
+def like(name: str, value, kind: str) -> None:
+    """Refuse what has not what a `kind` of object has."""
+    what, *attributes = _KINDS[kind]
+    if not all(hasattr(value, attribute) for attribute in attributes):
+        raise TypeError(f"{name} must be {what}, got {told(value)}")
+
+
+def function_of(name: str, value, signature: str) -> None:
+    """Refuse what cannot be called; `signature` says how it will be."""
+    if not callable(value):
+        raise TypeError(f"{name} must be a function {signature}, got {told(value)}")
+
+
+def text(name: str, value) -> None:
+    """Refuse what is no text."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a text, got {told(value)}")
+
+
+def texts(name: str, value, count: int) -> None:
+    """Refuse what are not so many texts."""
+    fits = isinstance(value, (tuple, list)) and len(value) == count
+    if not fits or not all(isinstance(item, str) for item in value):
+        raise TypeError(f"{name} must be {count} texts, got {told(value)}")
+
+
+def mapping(name: str, value) -> None:
+    """Refuse what is no mapping, or an empty one."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{name} must be a mapping of names, got {told(value)}")
+    if not value:
+        raise ValueError(f"{name} must hold one item or more, got none")
+
+
+def every(name: str, values, kind: str) -> None:
+    """Refuse what is no series, or a series that holds what is not `like` a kind."""
+    what, *attributes = _KINDS[kind]
+    if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
+        raise TypeError(f"{name} must be a series, each item {what}, got {told(values)}")
+    for item in values if isinstance(values, (list, tuple)) else ():
+        if isinstance(item, str) or not all(hasattr(item, part) for part in attributes):
+            raise TypeError(f"{name} must hold only what is {what}, got {told(item)}")
+
+
+def pair(name: str, value, low=-np.inf, high=np.inf) -> None:
+    """Refuse what is no increasing pair of numbers within `low` to `high`."""
+    array = finite_array(name, value)
+    if array.shape != (2,):
+        raise ValueError(f"{name} must be a pair of numbers, got {told(value)}")
+    if not low <= array[0] < array[1] <= high:
+        where = "" if np.isinf(low) else f" within {low:g} to {high:g}"
+        raise ValueError(f"{name} must be an increasing pair{where}, got {told(value)}")
+
+
+def triple(name: str, value) -> None:
+    """Refuse what is no `Trajectory`: positions, velocities and accelerations of one shape."""
+    if not isinstance(value, (tuple, list)) or len(value) != 3:
+        raise TypeError(
+            f"{name} must be a Trajectory of positions, velocities and accelerations, as "
+            f"pick_and_place(extents_deg, t) returns it, got {told(value)}"
+        )
+    shapes = [finite_array(f"{name}.{part}", x, 2).shape for part, x in zip(_PARTS, value)]
+    if len(set(shapes)) > 1:
+        raise ValueError(f"{name} must have q, qd and qdd of one shape, got {told(shapes)}")
+
+
+_PARTS = ("q", "qd", "qdd")
+
+
+def cases_of(name: str, value) -> None:
+    """Refuse what is neither None nor a pair of windows and targets that vary in each column."""
+    if value is None:
+        return
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise TypeError(
+            f"{name} must be a pair of windows and targets, as data.transform(*cases(recording, "
+            f"width)) makes it, got {told(value)}"
+        )
+    x, y = (finite_array(f"{name}[{k}]", part) for k, part in enumerate(value))
+    if x.ndim != 3 or y.ndim != 2 or len(x) != len(y):
+        raise ValueError(
+            f"{name} must hold windows (cases, joint, width) and targets (cases, output), "
+            f"got shapes {x.shape} and {y.shape}"
+        )
+    varies(name, y, "take a run in which it does")
+
+
+def along(name: str, value, axis: int, joints: int) -> None:
+    """Refuse an array that has not so many joints along an axis."""
+    shape = finite_array(name, value).shape
+    if len(shape) < -axis or shape[axis] != joints:
+        raise ValueError(f"{name} must have {joints} joints along axis {axis}, got shape {shape}")
+
+
+def known_options(call: str, options, known: tuple[str, ...]) -> None:
+    """Refuse an option that a call does not have; a TypeError as Python's own."""
+    for name in options:
+        if name not in known:
+            raise TypeError(f"{call} has no option {name!r}; it has {', '.join(known)}")
+
+
+def varies(name: str, torque, advice: str) -> None:
+    """Refuse torques (..., cases, joint) of which one joint's never changes."""
+    torque = np.asarray(torque)
+    still = np.flatnonzero(np.ptp(torque, axis=-2).reshape(-1, torque.shape[-1]).max(0) == 0)
+    if still.size:
+        joint = still[0]
+        raise ValueError(
+            f"{name} must change at each joint, but joint {joint + 1} is "
+            f"{torque[..., 0, joint].flat[0] + 0.0:g} throughout: {advice}"
+        )
+
+
+def regular(name: str, value) -> None:
+    """Refuse lists of unequal lengths, of which numpy makes no array."""
+    try:
+        np.shape(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} must be a number or an array, got {told(value)}") from None
+
+
+def joined(names: str, *shapes) -> None:
+    """Refuse shapes that do not broadcast; `names` are the arguments they belong to."""
+    try:
+        np.broadcast_shapes(*shapes)
+    except ValueError:
+        listed = ", ".join(map(str, shapes))
+        raise ValueError(f"{names} must have shapes that fit together, got {listed}") from None

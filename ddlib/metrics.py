@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array
+from ddlib._check import finite_array, flag, told
 
 
 def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
@@ -20,6 +20,7 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
     pooled : bool
         Whether to join the joints, by the root of their mean squared RMSS, or give each its own.
     """
+    flag("pooled", pooled)
     predicted, target = finite_array("predicted", predicted), finite_array("target", target)
     if target.ndim < 2 or not target.shape[-2] or predicted.shape[-2:] != target.shape[-2:]:
         raise ValueError(
@@ -27,7 +28,12 @@ def rmss(predicted, target, *, scale=None, pooled: bool = True) -> np.ndarray:
             f"got {predicted.shape} and {target.shape}"
         )
     scale = target.std(-2) if scale is None else finite_array("scale", scale, target.shape[-1])
+    if (scale == 0).any() and (target.std(-2) == 0).any():
+        raise ValueError(
+            f"target must change at each joint, got standard deviations {told(target.std(-2))}: of "
+            "a run at rest give scale, like the deviation of the training torques"
+        )
     if (scale <= 0).any():
-        raise ValueError(f"scale must be positive for each joint, got {scale}")
+        raise ValueError(f"scale must be positive for each joint, got {told(scale)}")
     mean_square = ((predicted - target) ** 2).mean(-2) / scale**2
     return np.sqrt(mean_square.mean(-1) if pooled else mean_square)

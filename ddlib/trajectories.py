@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import finite_array, integer, number, seed_number, shaped
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 
 # The page Provenance shows constants with the notes below them.
@@ -54,7 +54,8 @@ def pick_and_place(extents_deg, t, duration: float = MOTION_SECONDS) -> Trajecto
     number("duration", duration, 0.0, open_low=True)
     if ((extents_deg < 0) | (extents_deg > MAX_EXTENT_DEG)).any():
         warnings.warn(
-            f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family",
+            f"extents_deg outside 0 to {MAX_EXTENT_DEG:g} degrees: not of the paper's family; "
+            "smooth_pick_and_place has no such limit",
             OutsideFamilyWarning,
             stacklevel=2,
         )
@@ -76,7 +77,7 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
     Uniform over the square from 0 to `max_deg`, as the paper draws its six (section 2).
     """
     integer("n", n, 1)
-    integer("seed", seed, 0)
+    seed_number("seed", seed)
     number("max_deg", max_deg, 0.0, open_low=True)
     return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
 

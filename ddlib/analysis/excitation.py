@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, shaped
+from ddlib._check import filled, finite_array, integer, like, non_negative, shaped
 from ddlib.learning import TrainingSet
 
 
@@ -30,10 +30,17 @@ def ridge_filters(data: TrainingSet, penalties) -> np.ndarray:
     ndarray, shape (penalties, output, joint, width)
         Torque by position, N m/rad.
     """
+    like("data", data, "TrainingSet")
+    filled("penalties", penalties)
     penalties = shaped("penalties", non_negative("penalties", penalties), "(penalties,)")
     x, y = (a.reshape(len(a), -1) for a in (data.x, data.y))
     x, y = x - x.mean(0), y - y.mean(0)
     variance, axes = np.linalg.eigh(x.T @ x / len(x))
+    if (penalties == 0).any() and variance[0] <= 1e-14 * variance[-1]:
+        raise ValueError(
+            "penalties must be above 0 for these windows, which vary in "
+            f"{int((variance > 1e-14 * variance[-1]).sum())} of {len(variance)} directions, got 0"
+        )
     slopes = axes.T @ (x.T @ y) / len(x)
     f = axes @ (slopes / (variance[:, None] + penalties[:, None, None]))
     f = np.moveaxis(f, -1, 1).reshape(len(penalties), y.shape[1], *data.x.shape[1:])
@@ -64,6 +71,7 @@ def half_penalty(data: TrainingSet, states, joint: int = 0) -> float:
     ValueError
         If the windows' sampling period is not known.
     """
+    like("data", data, "TrainingSet")
     if data.step is None:
         raise ValueError("data must know its step: give TrainingSet.from_arrays a step, in s")
     states = shaped("states", finite_array("states", states), f"({len(data.x)}, joint, 3)")

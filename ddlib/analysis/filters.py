@@ -68,7 +68,10 @@ def content(f) -> np.ndarray:
     """Components of weight functions of 5 samples or more along `basis`, ``(..., 4)``."""
     f = _odd_width(f)
     if f.shape[-1] < 5:
-        raise ValueError(f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}")
+        raise ValueError(
+            f"f must have 5 samples or more for four derivatives, got {f.shape[-1]}: take a wider "
+            "window"
+        )
     return f @ basis(f.shape[-1]).T
 
 
@@ -175,9 +178,19 @@ def savitzky_golay(width: int, derivative: int, step: float, degree: int = 3) ->
 
 
 def frequency_response(f, frequencies, step: float) -> np.ndarray:
-    """Complex gain of filters for ``exp(i 2 pi nu t)``, with nu in Hz and the period in s."""
+    """Complex gain of filters for ``exp(i 2 pi nu t)``, with nu in Hz and the period in s.
+
+    Frequencies are at most half the sampling rate: above it samples do not tell them apart.
+    """
     f, frequencies = _odd_width(f), finite_array("frequencies", frequencies)
     number("step", step, 0.0, open_low=True)
+    if frequencies.ndim > 1:
+        raise ValueError(f"frequencies must be one number or a row, got shape {frequencies.shape}")
+    if frequencies.size and np.abs(frequencies).max() > (1 + 1e-9) / (2 * step):
+        raise ValueError(
+            f"frequencies must not exceed half the sampling rate, {1 / (2 * step):g} Hz, got "
+            f"{np.abs(frequencies).max():g}"
+        )
     half = f.shape[-1] // 2
     times = np.arange(-half, half + 1) * step
     return f @ np.exp(2j * np.pi * times[:, None] * frequencies)

@@ -60,6 +60,8 @@ def followed(f, windows, states) -> _Responses:
     and acceleration at their centres, ``(cases, joint, 3)``.
     """
     f = finite_array("f", f)
+    if f.ndim < 2:
+        raise ValueError(f"f must have shape (..., joint, width), got {f.shape}")
     joints, width = f.shape[-2:]
     windows = shaped("windows", windows, f"(cases, {joints}, {width})")
     states = shaped("states", states, (len(windows), joints, 3))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import filled, finite_array, like, number, shaped
 from ddlib.learning import TorqueModel
 from ddlib.metrics import rmss
 
@@ -26,12 +26,17 @@ def transition_width(net_input, margin: float = 0.1) -> np.ndarray:
     From `margin` to ``1 - margin`` a sigmoid's net input moves by ``2 ln((1 - margin) / margin)``.
     """
     net_input = finite_array("net_input", net_input)
+    if net_input.ndim < 2:
+        raise ValueError(f"net_input must have shape (..., cases, hidden), got {net_input.shape}")
+    if not net_input.size or (net_input.std(-2) == 0).any():
+        raise ValueError("net_input must vary over the cases at each unit")
     number("margin", margin, 0.0, 0.49, open_low=True)
     return 2 * np.log((1 - margin) / margin) / net_input.std(-2)
 
 
 def net_inputs(model: TorqueModel, windows) -> np.ndarray:
     """Weighted sums of the hidden units, bias included, ``(..., cases, hidden)``."""
+    like("model", model, "TorqueModel")
     x, weights = model.scaled(windows), model.weights
     net = np.einsum("...hjw,njw->...nh", weights.hidden_weights, x)
     return net + weights.hidden_bias[..., None, :]
@@ -39,9 +44,13 @@ def net_inputs(model: TorqueModel, windows) -> np.ndarray:
 
 def ablation(model: TorqueModel, windows, torque) -> tuple[list, np.ndarray]:
     """Units of one network, and its RMSS while each of them rests at its mean activity."""
+    like("model", model, "TorqueModel")
+    shaped("torque", torque, f"({len(model.scaled(windows))}, joint)")
     weights = model.weights
     if weights.hidden_bias.ndim != 1:
-        raise ValueError(f"model must be a single network, got {weights.hidden_bias.shape[0]}")
+        raise ValueError(
+            f"model must be a single network, got {weights.hidden_bias.shape[0]} (model[0])"
+        )
     hidden, output = weights.activity(model.scaled(windows))
     logit = np.log(output / (1 - output))
     shift = hidden.mean(0) - hidden
@@ -64,7 +73,7 @@ def refitted(features, torque, held_out, answer) -> np.ndarray:
     torque, answer = finite_array("torque", torque), finite_array("answer", answer)
     if features.ndim != 2 or len(features) != len(torque) or len(held_out) != len(answer):
         raise ValueError(
-            "features and held_out must have a row for each torque, got shapes "
+            "features must have a row for each torque, held_out for each answer, got shapes "
             f"{features.shape}, {torque.shape}, {held_out.shape} and {answer.shape}"
         )
     x, new = (np.column_stack([a, np.ones(len(a))]) for a in (features, held_out))
@@ -81,6 +90,8 @@ def match(first, second) -> tuple[np.ndarray, np.ndarray]:
     """
     from scipy.optimize import linear_sum_assignment
 
+    shaped("first", first, "(cases, hidden)")
+    shaped("second", second, "(cases, hidden)")
     first, second = _activity(first), _activity(second)
     if first.ndim != 2 or first.shape != second.shape:
         raise ValueError(
@@ -96,6 +107,7 @@ def match(first, second) -> tuple[np.ndarray, np.ndarray]:
 
 def _activity(activity) -> np.ndarray:
     activity = finite_array("activity", activity)
+    filled("activity", activity)
     if activity.ndim < 2 or activity.min() < 0 or activity.max() > 1:
         raise ValueError(
             "activity must have shape (..., cases, hidden) and lie between 0 and 1, got shape "

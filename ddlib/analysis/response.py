@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import orth
 
-from ddlib._check import finite_array
+from ddlib._check import finite_array, like
 from ddlib.analysis.following import _Responses, gains, mean_gradient
 from ddlib.analysis.hidden_units import net_inputs
 from ddlib.learning import TorqueModel
@@ -51,6 +51,7 @@ def heard(outputs, states) -> _Responses:
 
 def unit_inputs(model: TorqueModel, windows) -> dict[str, np.ndarray]:
     """Net inputs of the "hidden" units, and what the "direct" weights give to the outputs."""
+    like("model", model, "TorqueModel")
     x = model.scaled(windows)
     direct = np.einsum("...ojw,njw->...no", model.weights.direct_weights, x)
     return {"hidden": net_inputs(model, windows), "direct": direct}
@@ -68,6 +69,7 @@ def calibrated(model: TorqueModel, windows, step: float) -> _Calibrated:
 
     `step` is the sampling period of the windows, s.
     """
+    like("model", model, "TorqueModel")
     weights = model.weights
     output = weights.activity(model.scaled(windows))[1]
     slope = (output * (1 - output)).mean(-2)  # of the whole network's outputs

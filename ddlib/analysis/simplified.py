@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import non_negative, number
+from ddlib._check import filled, finite_array, like, non_negative, number, shaped, triple
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
 from ddlib.metrics import rmss
@@ -22,6 +22,9 @@ def share_of_velocity_terms(
 
     The path is travelled `speed` times faster; of the effects, friction is part of the torque.
     """
+    like("arm", arm, "Arm")
+    triple("trajectory", trajectory)
+    like("effects", effects, "Effects")
     number("speed", speed, 0.0, open_low=True)
     qd = speed * trajectory.qd
     terms = arm.torque_terms(trajectory.q, qd, speed**2 * trajectory.qdd)
@@ -34,6 +37,10 @@ def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) 
 
     Behind a gear of ratio N a rotor of inertia J (`rotor`, kg m^2) acts like an inertia N^2 J.
     """
+    like("arm", arm, "Arm")
+    triple("trajectory", trajectory)
+    filled("gears", gears)
+    shaped("gears", gears, "(gears,)")
     gears = non_negative("gears", gears)
     number("rotor", rotor, 0.0)
     terms = arm.torque_terms(*trajectory)
@@ -44,6 +51,15 @@ def share_of_other_joint(arm: Arm, trajectory: Trajectory, gears, rotor: float) 
 
 def linear_residual(arm: Arm, q, qd, qdd) -> float:
     """RMSS that the best linear function of the states leaves of the torque, joints pooled."""
+    like("arm", arm, "Arm")
+    finite_array("q", q, 2)
+    finite_array("qd", qd, 2)
+    finite_array("qdd", qdd, 2)
+    if not np.shape(q) == np.shape(qd) == np.shape(qdd):
+        raise ValueError(
+            "q, qd and qdd must have one shape, got "
+            f"{np.shape(q)}, {np.shape(qd)} and {np.shape(qdd)}"
+        )
     tau = arm.inverse_dynamics(q, qd, qdd).reshape(-1, 2)
     x = np.concatenate([np.reshape(part, (-1, 2)) for part in (q, qd, qdd)], -1)
     x = np.append(x, np.ones((len(x), 1)), -1)

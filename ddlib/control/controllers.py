@@ -13,7 +13,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ddlib._check import non_negative, number, shaped
+from ddlib._check import function_of, like, non_negative, number, shaped, told
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -50,7 +50,8 @@ def as_controller(controller: Controller | Callable) -> Controller:
     if callable(controller):
         return _Function(controller)
     raise TypeError(
-        f"controller must have a start method or be a function f(wanted, q, qd), got {controller!r}"
+        "controller must have a start method or be a function f(wanted, q, qd), got "
+        f"{told(controller)}"
     )
 
 
@@ -118,6 +119,7 @@ class Feedforward:
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
         """The law that follows `reference`, called every `step` s."""
         model = self.model.inverse_dynamics if isinstance(self.model, Arm) else self.model
+        function_of("model", model, "model(q, qd, qdd) -> tau, or an Arm")
         wanted = f"(..., {reference.q.shape[-2]}, 2)"
         torque = shaped("model(q, qd, qdd)", model(*reference), wanted)
         feedback = as_controller(self.feedback).start(reference, step)
@@ -141,6 +143,7 @@ class ComputedTorque:
     kd: tuple[float, float]
 
     def __post_init__(self):
+        like("arm", self.arm, "Arm")
         for name in ("kp", "kd"):
             non_negative(name, getattr(self, name), 2)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number
+from ddlib._check import filled, finite_array, integer, like, non_negative, number, told
 
 
 def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
@@ -25,11 +25,12 @@ def plant(inertia, viscous, stiffness=0.0) -> control.StateSpace:
         What gravity adds to the torque away from the posture, N m/rad; negative if it would fall.
     """
     inertia = np.atleast_2d(finite_array("inertia", inertia))
+    filled("inertia", inertia)
     joints = len(inertia)
     if inertia.shape != (joints, joints) or not np.allclose(inertia, inertia.T):
-        raise ValueError(f"inertia must be a number or a symmetric matrix, got {inertia.tolist()}")
+        raise ValueError(f"inertia must be a number or a symmetric matrix, got {told(inertia)}")
     if np.linalg.eigvalsh(inertia).min() <= 0:
-        raise ValueError(f"inertia must be positive definite, got {inertia.tolist()}")
+        raise ValueError(f"inertia must be positive definite, got {told(inertia)}")
     viscous = np.diag(_per_joint("viscous", viscous, joints))
     zero, one = np.zeros((joints, joints)), np.eye(joints)
     stiffness = finite_array("stiffness", stiffness)
@@ -71,6 +72,7 @@ def closed_loop(
     delay : int
         Whole periods between a reading and its torque; sampled loops only.
     """
+    like("joints", joints, "StateSpace")
     n = joints.ninputs
     A, command, torque, law, reference = _parts(joints, kp, ki, kd, period, delay)
     B = np.hstack([command @ reference[0] + reference[1], torque])
@@ -86,6 +88,7 @@ def opened_loop(
 
     In goes that torque, out comes the controller's answer with its sign reversed.
     """
+    like("joints", joints, "StateSpace")
     number("joint", joint, 0, joints.ninputs - 1)
     A, command, _, law, _ = _parts(joints, kp, ki, kd, period, delay)
     others = [k for k in range(joints.ninputs) if k != joint]
@@ -142,11 +145,22 @@ class _Margins(NamedTuple):
 
 
 def margins(loop) -> _Margins:
-    """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control."""
+    """Gain and phase margins of an `opened_loop` or a `loop_gain`, by python-control.
+
+    The loop has one input and one output, in continuous time or, with a `dt`, sampled.
+    """
+    like("loop", loop, "LinearSystem")
+    if (loop.ninputs, loop.noutputs) != (1, 1):
+        raise ValueError(
+            f"loop must have one input and one output, got {loop.ninputs} and {loop.noutputs}"
+        )
+    if loop.dt is True:
+        raise ValueError("loop must have a sampling period in s as its dt, got dt=True")
     period = loop.dt or 0.0
     if period:
         # To the w plane, z = (1 + w T / 2) / (1 - w T / 2): the unit circle becomes the imaginary
         # axis, on which python-control's polynomials are well conditioned.
+        loop = control.ss(loop)
         state = np.eye(loop.nstates)
         inverse = np.linalg.inv(loop.A + state)
         A = 2 / period * inverse @ (loop.A - state)
@@ -189,7 +203,7 @@ def _per_joint(name, value, joints) -> np.ndarray:
     """A number or one value per joint as an array, refused if negative."""
     value = non_negative(name, value)
     if value.ndim > 1 or value.size not in (1, joints):
-        raise ValueError(f"{name} must be a number or have {joints} values, got {value.tolist()}")
+        raise ValueError(f"{name} must be a number or have {joints} values, got {told(value)}")
     return np.broadcast_to(value, joints)
 
 
@@ -199,10 +213,13 @@ def late_poles(joints: control.StateSpace, gain, period: float, late: float) -> 
     The torque ``-gain x`` of a reading is held for a `period` from `late` s on, which may be
     longer. Between changes the joints (`plant`) are solved exactly (Astrom & Wittenmark 1997).
     """
+    like("joints", joints, "StateSpace")
     number("period", period, 0.0, open_low=True)
     whole, late = divmod(number("late", late, 0.0) / period + 1e-12, 1.0)
     states, inputs = joints.B.shape
     K = finite_array("gain", gain, states)
+    if K.shape not in ((inputs, states), (states,)):
+        raise ValueError(f"gain must have shape {(inputs, states)}, got {K.shape}")
     parts = [_held(joints, share * period) for share in (late, 1 - late)]
     older, newer = parts[1][0] @ parts[0][1], parts[1][1]
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import one_of
+from ddlib._check import every, flag, function_of, like, one_of
 from ddlib.dynamics.arm import Link
 from ddlib.dynamics.counting import Operations, Tape
 from ddlib.dynamics.derivation import derive
@@ -53,6 +53,8 @@ def count(formulation: Callable, arm: SerialArm, knowledge: str = "nothing") -> 
     `knowledge` says what is known off-line: "nothing", the "zeros" of the method, or also the
     constants of the "arm"; then the formula is customised: nothing is computed twice or in vain.
     """
+    function_of("formulation", formulation, "like newton_euler")
+    like("arm", arm, "SerialArm")
     one_of("knowledge", knowledge, KNOWLEDGE)
     tape = Tape()
     state = [[tape.unknown(x) for x in row] for row in _state(arm.joints)]
@@ -69,6 +71,9 @@ def count_closed_form(
 
     `shared` subexpressions are computed once; velocity terms may be left out (Bejczy 1974).
     """
+    every("links", links, "Link")
+    flag("shared", shared)
+    flag("velocity_terms", velocity_terms)
     links = list(links)
     derivation = derive(len(links))
     tape = Tape()
@@ -82,6 +87,8 @@ def count_closed_form(
 
 def table(joints: Iterable[int], link: Link) -> dict[str, dict[int, Operations]]:
     """Operations ``{formulation: {joints: ...}}`` of planar arms and of the `PUMA_560`."""
+    every("joints", joints, "integer")
+    like("link", link, "Link")
     joints = list(joints)
 
     def planar(n):

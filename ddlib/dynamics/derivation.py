@@ -9,7 +9,7 @@ from functools import cache, cached_property
 
 import sympy as sp
 
-from ddlib._check import integer, number
+from ddlib._check import every, flag, integer, number
 from ddlib.dynamics.arm import Link
 
 _MAX_LINKS = 6
@@ -49,6 +49,7 @@ class _Derivation:
 
     def base_values(self, links: Iterable[Link], gravity: float = 0.0) -> list[float]:
         """The base parameters of an arm under `gravity` (m/s^2), in the order of `base`."""
+        every("links", links, "Link")
         links = list(links)
         if len(links) != len(self.q):
             raise ValueError(f"links must be {len(self.q)}, got {len(links)}")
@@ -68,6 +69,7 @@ def derive(links: int, gravity: bool = False) -> _Derivation:
     across every earlier link and ``r_k w_k`` across its own, and two directions i and j enclose the
     angle ``q_(i+1) + ... + q_j``.
     """
+    flag("gravity", gravity)
     integer("links", links, 1, _MAX_LINKS)
 
     def named(name):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddlib._check import finite_array, integer
+from ddlib._check import finite_array, integer, like
 from ddlib.dynamics.arm import STANDARD_GRAVITY, _checked_state
 from ddlib.dynamics.formulations import _link_frame
 from ddlib.dynamics.serial import SerialArm, SpatialLink
@@ -20,6 +20,7 @@ def mass_matrix(arm: SerialArm, q) -> np.ndarray:
 
     Column j is the torque that accelerates joint j alone by 1 rad/s^2 from rest.
     """
+    like("arm", arm, "SerialArm")
     q = finite_array("q", q, arm.joints)
     weightless, one = SerialArm(arm.links), np.eye(arm.joints)
     rest = np.zeros_like(q)
@@ -40,6 +41,7 @@ def _frames(arm: SerialArm, q) -> np.ndarray:
 
 def hand(arm: SerialArm, q) -> np.ndarray:
     """End of the last link at angles `q` (rad), shape ``(..., 3)``, m: x and y level, z up."""
+    like("arm", arm, "SerialArm")
     return _frames(arm, q)[..., -1, :3, 3]
 
 
@@ -48,6 +50,7 @@ def inertial_parameters(link: SpatialLink) -> np.ndarray:
 
     Mass (kg), first moments x, y, z (kg m), second moments xx, yy, zz, xy, xz, yz (kg m^2, signed).
     """
+    like("link", link, "SpatialLink")
     com = np.array(link.com)
     tensor = np.array(link.inertia) + link.mass * _steiner(com)
     return np.concatenate([[link.mass], link.mass * com, [tensor[place] for place in _SECOND]])
@@ -61,6 +64,7 @@ def regressor(arm: SerialArm, q, qd, qdd) -> np.ndarray:
     columns depend on others, or are zero: only some combinations of parameters move a joint (Khosla
     1986).
     """
+    like("arm", arm, "SerialArm")
     q, qd, qdd = _checked_state(q, qd, qdd, arm.joints)
     placed = _frames(arm, q)
     axes, places = placed[..., :3, 2], placed[..., :3, 3]
@@ -110,6 +114,7 @@ def _tensor_times(x) -> np.ndarray:
 
 def locked(arm: SerialArm, joints: int) -> SerialArm:
     """The arm with only its first joints free, what lies beyond locked at angle zero: one body."""
+    like("arm", arm, "SerialArm")
     integer("joints", joints, 1, arm.joints)
     if joints == arm.joints:
         return arm

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import every, finite_array, function_of, integer, number, shaped, told
 from ddlib.dynamics.arm import STANDARD_GRAVITY, Link, _checked_state
 from ddlib.dynamics.formulations import _Constants, _LinkConstants, newton_euler
 
@@ -33,7 +33,12 @@ class SpatialLink:
         number("mass", self.mass, 0.0)
         com, inertia = shaped("com", self.com, (3,)), finite_array("inertia", self.inertia, 3)
         if inertia.shape != (3, 3) or not np.array_equal(inertia, inertia.T):
-            raise ValueError(f"inertia must be a symmetric 3 x 3 matrix, got {self.inertia}")
+            raise ValueError(f"inertia must be a symmetric 3 x 3 matrix, got {told(self.inertia)}")
+        if np.linalg.eigvalsh(inertia)[0] < -1e-9 * np.abs(inertia).max():
+            raise ValueError(
+                "inertia must have no negative principal moment, got "
+                f"{np.linalg.eigvalsh(inertia)[0]:.3g} kg m^2 in {told(inertia.tolist())}"
+            )
         object.__setattr__(self, "com", tuple(com.tolist()))
         object.__setattr__(self, "inertia", tuple(map(tuple, inertia.tolist())))
 
@@ -58,6 +63,7 @@ class SerialArm:
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self):
+        every("links", self.links, "SpatialLink")
         links = tuple(self.links)
         if not links or not all(isinstance(link, SpatialLink) for link in links):
             raise TypeError(f"links must be one or more SpatialLink, got {self.links!r}")
@@ -67,6 +73,8 @@ class SerialArm:
     @classmethod
     def planar(cls, links: Iterable[Link], gravity: float = 0.0) -> SerialArm:
         """An arm of parallel axes; angles count from hanging along the x axis, as in `Arm`."""
+        every("links", links, "Link")
+        number("gravity", gravity)
         spatial = (
             SpatialLink(
                 0.0, k.length, 0.0, k.mass, (k.com - k.length, 0.0, 0.0), np.diag([0, 0, k.inertia])
@@ -91,6 +99,7 @@ class SerialArm:
         `formulation` is `newton_euler`, `lagrange_euler` or `recursive_lagrange`: they agree, at
         different cost.
         """
+        function_of("formulation", formulation, "like newton_euler")
         state = _checked_state(q, qd, qdd, self.joints)
         tau = formulation(self.constants(), *(np.moveaxis(x, -1, 0) for x in state))
         return np.stack([t + np.zeros(state[0].shape[:-1]) for t in tau], -1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, non_negative, number, positive
+from ddlib._check import finite_array, like, non_negative, number, positive
 
 
 @dataclass(frozen=True)
@@ -107,6 +107,7 @@ class FlexibleJoint:
 
     def links(self, arm):
         """The `arm` without its motors' inertia: what hangs behind the springs."""
+        like("arm", arm, "Arm")
         shoulder, elbow = self.motor_inertia
         try:
             return replace(arm, a=arm.a - shoulder - elbow, d=arm.d - elbow)
@@ -117,6 +118,7 @@ class FlexibleJoint:
 
     def mass_matrix(self, arm, q) -> np.ndarray:
         """Mass matrix (..., 4, 4), kg m^2, of both links, then both motors; `q`: link angles."""
+        like("arm", arm, "Arm")
         links = self.links(arm).mass_matrix(q)
         shoulder, elbow = self.motor_inertia
         mass = np.zeros((*links.shape[:-2], 4, 4))
@@ -128,6 +130,7 @@ class FlexibleJoint:
 
     def mode_frequencies(self, arm, q) -> np.ndarray:
         """Natural frequencies (..., 2) of small twists at link angles `q`, rad/s, rising."""
+        like("arm", arm, "Arm")
         k = np.asarray(self.stiffness, dtype=float)[..., None] * np.eye(2)
         spring = np.block([[k, -k], [-k, k]])
         # modes of M x'' + K x = 0; two are rigid rotations of frequency 0

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import integer, non_negative, number, one_of
+from ddlib._check import finite_array, integer, non_negative, number, one_of, told
 from ddlib.effects.actuators import ComputingTime, Saturation
 from ddlib.effects.friction import CoulombFriction, ViscousFriction
 
@@ -40,7 +40,7 @@ class EncoderZero:
 
     def apply(self, x, rng=None):
         """The reading `x`, shifted."""
-        return x + np.asarray(self.angle)
+        return x + np.asarray(finite_array("angle", self.angle, 2))
 
 
 @dataclass(frozen=True)
@@ -138,9 +138,13 @@ class Effects:
             effects = getattr(self, part)
             if not isinstance(effects, tuple) or not all(_fits(e, part) for e in effects):
                 names = " or ".join(f"{m}()" for m in methods)
-                raise TypeError(f"{part} must be a tuple of effects with {names}, got {effects}")
+                raise TypeError(
+                    f"{part} must be a tuple of effects with {names}, got {told(effects)}"
+                )
         if len(self.transmission) > 1:
-            raise ValueError(f"transmission must hold one effect at most, got {self.transmission}")
+            raise ValueError(
+                f"transmission must hold one effect at most, got {told(self.transmission)}"
+            )
 
     @property
     def computing_time(self) -> float:

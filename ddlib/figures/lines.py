@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
-from ddlib._check import shaped
+from ddlib._check import flag, integer, mapping, number, shaped, text, texts
 from ddlib.figures.style import (
     COLOURS,
     DASHES,
@@ -55,6 +55,14 @@ def curves(
     x_log, y_log : bool
         Logarithmic axes.
     """  # fmt: skip
+    if x is not None:
+        shaped("x", x, "(points,)")
+    mapping("panels", panels)
+    for named in panels.values():
+        mapping("panels", named)
+    text("x_label", x_label)
+    integer("columns", columns, 1, 12)
+    _check_look(alt, height, x_log, y_log)
     rows = -(-len(panels) // columns)
     names = [tuple(named) for named in panels.values()]
     above = len(names[0]) > 1 and len(set(names)) == 1  # where no curve can run through it
@@ -118,8 +126,11 @@ def families(
     ValueError
         If there is no panel, or shapes do not fit.
     """
-    if not panels:
-        raise ValueError("panels must hold one panel or more, got none")
+    mapping("panels", panels)
+    for named in panels.values():
+        mapping("panels", named)
+    texts("labels", labels, 2)
+    _check_look(alt, height, x_log, y_log)
     for named in panels.values():
         for name, (x, y) in named.items():
             x = shaped(f"x of {name!r}", x, "(points,)")
@@ -155,6 +166,14 @@ def families(
     return illustrate(draw, alt, 7.0, height * rows + 0.5)
 
 
+def _check_look(alt, height, x_log=False, y_log=False) -> None:
+    """Refuse what cannot be a text, a height in inches, or whether an axis is logarithmic."""
+    text("alt", alt)
+    number("height", height, 0.0, 50.0, open_low=True)
+    flag("x_log", x_log)
+    flag("y_log", y_log)
+
+
 def dots_in_one(axis: Axes, places: np.ndarray, **look) -> None:
     """Dots ``(n, 2)`` as one path, as thousands of markers would be as many elements of the page.
 
@@ -186,8 +205,11 @@ def by_case(
     ValueError
         If a label names no quantity, or there is no case.
     """
-    if not cases:
-        raise ValueError("cases must hold one case or more, got none")
+    shaped("x", x, "(points,)")
+    mapping("cases", cases)
+    text("x_label", x_label)
+    text("y_label", y_label)
+    _check_look(alt, height)
 
     def draw(figure: Figure):
         axes = figure.subplots(len(cases), 1, sharex=True, squeeze=False)[:, 0]

@@ -8,7 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ddlib._check import finite_array
+from ddlib._check import finite_array, mapping
 from ddlib.figures.style import (
     COLOURS,
     INK,
@@ -42,7 +42,10 @@ def rmss_by_window(
     ValueError
         If an error is not above 0.
     """
+    mapping("table", table)
+    mapping("printed", printed)
     for name, columns in table.items():
+        mapping("table", columns)
         for cells in columns.values():
             for values in cells.values():
                 if not (finite_array(name, values) > 0).all():

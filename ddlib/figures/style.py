@@ -26,7 +26,8 @@ from matplotlib.gridspec import GridSpec
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-from ddlib._check import one_of
+from ddlib._check import function_of, number, one_of, text
+from ddlib._files import write_whole
 from ddlib.tables import _SUPERSCRIPT
 
 _FONT = "'DejaVu Sans',Verdana,sans-serif"
@@ -161,8 +162,7 @@ class Illustration:
             return
         svg = self.svg.replace("currentColor", "#1a1a1a")
         svg = svg.replace(' style="', ' style="background:#ffffff;', 1)
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(svg)
+        write_whole(path, svg)
 
 
 def illustrate(
@@ -187,8 +187,14 @@ def illustrate(
     ValueError
         If the alternative text is empty.
     """
+    text("alt", alt)
+    number("width", width, 0.0, 50.0, open_low=True)
+    number("height", height, 0.0, 100.0, open_low=True)
+    if narrow_height is not None:
+        number("narrow_height", narrow_height, 0.0, 100.0, open_low=True)
     if not alt.strip():
         raise ValueError("alt must describe the figure, got an empty text")
+    function_of("draw", draw, "draw(figure)")
     with mpl.rc_context({**_RC, "svg.hashsalt": alt}):
         figure = Figure(figsize=(width, height))
         draw(figure)
@@ -333,6 +339,7 @@ def check_label(label: str) -> str:
     ValueError
         If it names none: a unit alone, a joint alone or with a unit, nothing.
     """
+    text("label", label)
     quantity = label.partition(",")[0].strip()
     if quantity in ("", "shoulder", "elbow", *_UNITS):
         raise ValueError(f"an axis label must be like 'torque, N m', got {label!r}")

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 from scipy.stats import t as student
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, like, number, one_of
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
 from ddlib.trajectories import Trajectory
@@ -128,6 +128,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     ValueError
         If there are no more equations than parameters, or nothing can be told.
     """
+    like("equations", equations, "Equations")
     integer("rounds", rounds, 1)
     names, count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if count <= len(names):

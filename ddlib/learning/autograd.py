@@ -7,7 +7,7 @@ import torch
 from torch import nn
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, shaped
+from ddlib._check import finite_array, flag, like, shaped
 from ddlib.learning.network import _FIELDS, INITIAL, TorqueModel, Weights
 from ddlib.learning.training import (
     History,
@@ -163,6 +163,8 @@ def train(
     TrainingDiverged
         If the error is no longer finite; if it is, but ends above 1: a `WorseThanMean` warning.
     """
+    like("network", network, "Module")
+    flag("progress", progress)
     _check_descent(rate, momentum, epochs)
     x, y = finite_array("x", x), finite_array("y", y)
     if y.ndim != 2 or len(y) != len(x) or (np.ptp(y, axis=0) == 0).any():

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from tqdm.auto import tqdm
 
-from ddlib._check import finite_array, integer, shaped
+from ddlib._check import cases_of, every, finite_array, flag, integer, like, shaped
 from ddlib.learning._threads import in_threads
 from ddlib.learning.network import TorqueModel, Weights, _from_rows, rows
 from ddlib.learning.training import (
@@ -95,6 +95,16 @@ def train_ensemble(
     TrainingInterrupted
         On Ctrl-C or the kernel's stop, within one epoch; it holds the networks as they are then.
     """
+    like("weights", weights, "Weights")
+    like("data", data, "TrainingSet")
+    flag("progress", progress)
+    every("snapshots", snapshots, "integer")
+    if weights.hidden_bias.ndim != 2:
+        raise ValueError(
+            "weights must have one leading axis of members (of one network: weights[None]), got "
+            f"hidden_bias of shape {weights.hidden_bias.shape}"
+        )
+    cases_of("test", test)
     members = len(weights)
     rate = default_rate(weights.width) if rate is None else rate
     rate, momentum = _per_member(rate, momentum, epochs, members)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import finite_array, integer, like, number, seed_number, shaped, told
 from ddlib.learning.windows import Scaler
 
 INITIAL = 0.03
@@ -38,6 +38,13 @@ class Weights:
     def __post_init__(self):
         for field in fields(self):
             object.__setattr__(self, field.name, np.asarray(getattr(self, field.name)))
+        if self.hidden_weights.dtype.kind not in "fiu" or self.hidden_weights.ndim < 3:
+            raise ValueError(
+                "hidden_weights must be numbers of shape (..., hidden, joint, width), got "
+                f"{told(self.hidden_weights)}"
+            )
+        if self.output_bias.ndim < 1:
+            raise ValueError(f"output_bias must have shape (..., output), got {self.output_bias}")
         *lead, hidden, joints, width = self.hidden_weights.shape
         outputs = self.output_bias.shape[-1]
         wanted = {
@@ -63,12 +70,17 @@ class Weights:
         """
         for name, value in (("members", members), ("width", width), ("hidden", hidden)):
             integer(name, value, 1)
+        integer("members", members, 1, 10**6)
+        integer("width", width, 1, 10**5)
+        integer("hidden", hidden, 1, 10**5)
+        integer("joints", joints, 1, 100)
+        integer("outputs", outputs, 1, 100)
         number("initial", initial, 0.0, open_low=True)
         shapes = ((hidden, joints, width), (hidden,), (outputs, hidden))
         shapes += ((outputs, joints, width), (outputs,))
         draws = []
         for k in range(members):
-            rng = np.random.default_rng(integer("seed", seed, 0) + k)
+            rng = np.random.default_rng(seed_number("seed", seed) + k)
             draws.append([rng.uniform(-initial, initial, shape) for shape in shapes])
         return cls(*(np.stack(parts) for parts in zip(*draws)))
 
@@ -88,7 +100,7 @@ class Weights:
 
     def __len__(self) -> int:
         if self.hidden_bias.ndim < 2:
-            raise TypeError("a single network has no length")
+            raise TypeError("weights must be of an ensemble: a single network has no length")
         return len(self.hidden_bias)
 
     @property
@@ -129,6 +141,7 @@ def rows(weights: Weights) -> np.ndarray:
 
     Hidden units come first, then the outputs with their direct weights.
     """
+    like("weights", weights, "Weights")
     parts = [
         np.concatenate([w.reshape(*w.shape[:-2], -1), b[..., None]], -1)
         for w, b in (
@@ -163,10 +176,17 @@ class TorqueModel:
 
     def scaled(self, windows) -> np.ndarray:
         """Windows in rad, ``(cases, joint, width)``, scaled for the input units."""
+        like("inputs", self.inputs, "Scaler")
+        like("weights", self.weights, "Weights")
+        shaped(
+            "windows", windows, "(cases, {}, {})".format(*self.weights.hidden_weights.shape[-2:])
+        )
         return self.inputs.scale(finite_array("windows", windows), joint_axis=-2)
 
     def torque(self, windows) -> np.ndarray:
         """Torques, N m, ``(..., cases, joint)``, for windows, rad, ``(cases, joint, width)``."""
+        like("weights", self.weights, "Weights")
+        like("outputs", self.outputs, "Scaler")
         return self.outputs.unscale(self.weights.activity(self.scaled(windows))[1])
 
     def __repr__(self) -> str:

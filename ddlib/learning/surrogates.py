@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, number, one_of, seed_number
 
 MATCHED = ("shifted", "other run", "phases")
 """Kinds of surrogates that are as smooth as the torques."""
@@ -31,12 +31,15 @@ def surrogate(kind: str, torque, seed: int = 0) -> np.ndarray:
         raise ValueError(
             f"torque must have shape (runs, time, joint) with 4 samples or more, got {torque.shape}"
         )
-    rng = np.random.default_rng(integer("seed", seed, 0))
+    rng = np.random.default_rng(seed_number("seed", seed))
     return _DRAWS[kind](torque, rng)
 
 
 def surrogates(kind: str, torque, draws: int, seed: int = 0) -> np.ndarray:
     """Several draws, shape ``(draws, runs, time, joint)``; draw k depends on ``seed + k`` only."""
+    one_of("kind", kind, _KINDS)
+    seed_number("seed", seed)
+    integer("draws", draws, 1, 10**6)
     return np.stack([surrogate(kind, torque, seed + k) for k in range(integer("draws", draws, 1))])
 
 

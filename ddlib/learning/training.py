@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import along, filled, integer, like, number, pair, shaped, varies
 from ddlib.learning.windows import Scaler, sliding_windows
 
 if TYPE_CHECKING:
@@ -48,8 +48,17 @@ class TrainingSet:
         `step` is the windows' sampling period, s: networks trained on the set keep it, and what
         reads masses from weights or draws them over time asks for it.
         """
+        pair("target", target, 0.0, 1.0)
+        pair("scaling", scaling)
         windows = shaped("windows", windows, "(cases, joint, width)")
         torque = shaped("torque", torque, f"({len(windows)}, joint)")
+        filled("windows", windows)
+        varies(
+            "windows",
+            windows.swapaxes(-1, -2).reshape(-1, windows.shape[1]),
+            "a joint that stands still shows nothing of its dynamics",
+        )
+        varies("torque", torque, "identify without a network, or take runs with that torque")
         if step is not None:
             number("step", step, 0.0, open_low=True)
         inputs, outputs = Scaler.fit(windows, scaling, -2), Scaler.fit(torque, target)
@@ -62,11 +71,14 @@ class TrainingSet:
 
     def transform(self, windows, torque) -> tuple[np.ndarray, np.ndarray]:
         """Other windows (rad) and torques (N m) with this set's scaling."""
+        along("windows", windows, -2, self.inputs.low.size)
+        along("torque", torque, -1, self.outputs.low.size)
         return self.inputs.scale(windows, -2), self.outputs.scale(torque)
 
 
 def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Windows, rad, and torques, N m, of a recording's motions, ``cases`` being the first axis."""
+    like("recording", recording, "Recording")
     recording = recording.for_windows(width)
     windows = sliding_windows(recording.q, width, recording.motion)
     torque = recording.tau[..., recording.motion, :]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, shaped
+from ddlib._check import filled, finite_array, integer, number, pair, shaped, told, varies
 
 
 def check_width(width) -> int:
@@ -35,13 +35,19 @@ def sliding_windows(q, width: int, cases: slice | None = None) -> np.ndarray:
     if width > time:
         raise ValueError(f"width must not exceed the {time} samples of the recording, got {width}")
     if not isinstance(cases, slice | None):
-        raise TypeError(f"cases must be a slice, got {cases!r}")
+        raise TypeError(f"cases must be a slice, got {told(cases)}")
     half = width // 2
     start, stop, step = (cases or slice(half, time - half)).indices(time)
+    if step == 1 and 0 <= start < stop <= time and min(start, time - stop) < half:
+        raise ValueError(
+            f"width must be at most {2 * min(start, time - stop) + 1}, as the recording has "
+            f"{min(start, time - stop)} samples beside its motion, got {width}: record a longer "
+            "rest, or take a smaller window"
+        )
     if step != 1 or start - half < 0 or stop + half > time or start >= stop:
         raise ValueError(
             f"cases must be consecutive samples from {half} to {time - half} for width {width}, "
-            f"got {start} to {stop}: record a longer rest"
+            f"got {told(cases)}"
         )
     whole = np.lib.stride_tricks.sliding_window_view(q, width, axis=-2)
     return whole[..., start - half : stop - half, :, :]
@@ -56,9 +62,12 @@ class Scaler:
     target: tuple[float, float] = (0.0, 1.0)
 
     def __post_init__(self):
+        pair("target", self.target)
         low, high = finite_array("low", self.low), finite_array("high", self.high)
         if low.shape != high.shape or not (high > low).all():
-            raise ValueError(f"high must exceed low for each joint, got low={low}, high={high}")
+            raise ValueError(
+                f"high must exceed low for each joint, got low={told(low)}, high={told(high)}"
+            )
         first, last = (number("target", x) for x in self.target)
         if not last > first:
             raise ValueError(f"target must be an increasing pair, got {self.target}")
@@ -68,10 +77,14 @@ class Scaler:
     @classmethod
     def fit(cls, data, target=(0.0, 1.0), joint_axis: int = -1) -> Scaler:
         """The scaler that maps the range of `data` per joint to `target`."""
+        pair("target", target)
+        integer("joint_axis", joint_axis, -10, 10)
+        filled("data", data)
         data = np.moveaxis(finite_array("data", data), joint_axis, -1)
         data = data.reshape(-1, data.shape[-1])
         if not len(data):
             raise ValueError("data must hold at least one value per joint, got none")
+        varies("data", data, "without a range it has no scale")
         return cls(data.min(0), data.max(0), tuple(target))
 
     @property
@@ -91,6 +104,7 @@ class Scaler:
 
     def _along(self, data, axis):
         """Checked data, and `low` and `gain` in a shape that fits them."""
+        integer("joint_axis", axis, -10, 10)
         data, shape = finite_array("data", data), [1] * np.ndim(data)
         if not -data.ndim <= axis < data.ndim or data.shape[axis] != self.low.size:
             raise ValueError(

@@ -8,7 +8,16 @@ from typing import NamedTuple
 import control
 import numpy as np
 
-from ddlib._check import finite_array, integer, non_negative, number, shaped
+from ddlib._check import (
+    finite_array,
+    function_of,
+    integer,
+    like,
+    non_negative,
+    number,
+    shaped,
+    triple,
+)
 from ddlib.control import PID, closed_loop, plant
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects, ViscousFriction
@@ -44,6 +53,7 @@ class SecondOrderModel:
     viscous: tuple[float, float] = (0.0, 0.0)  #: Viscous friction, N m s/rad.
 
     def __post_init__(self):
+        like("arm", self.arm, "Arm")
         finite_array("posture", self.posture, 2)
         non_negative("viscous", self.viscous, 2)
 
@@ -69,6 +79,11 @@ def predicted_response(
 
     Gravity's torque in the posture is compensated; what it adds beside it is part of the loop.
     """
+    like("arm", arm, "Arm")
+    like("controller", controller, "PID")
+    number("period", period, 1e-6, 10.0)
+    number("seconds", seconds, 2 * period, 1e6 * period)
+    shaped("posture", posture, (2,))
     integer("joint", joint, 0, 1)
     posture = finite_array("posture", posture, 2)
     joints = plant(arm.mass_matrix(posture), viscous, _gravity_stiffness(arm, posture))
@@ -92,6 +107,13 @@ def simulated_response(
     One run steps the reference by `step_deg`, a second one carries a load that would displace a
     spring of stiffness ``kp`` by as much. A loop that rings on has a bandwidth of NaN.
     """
+    like("arm", arm, "Arm")
+    like("controller", controller, "PID")
+    number("period", period, 1e-6, 10.0)
+    number("seconds", seconds, 10 * period, 1e6 * period)
+    shaped("posture", posture, (2,))
+    shaped("viscous", non_negative("viscous", viscous), "(2,)")
+    like("effects", effects, "Effects")
     integer("joint", joint, 0, 1)
     number("step_deg", step_deg, 0.0, open_low=True)
     size = np.deg2rad(step_deg)
@@ -153,7 +175,12 @@ def feedforward_system(arm: Arm, model, kp, kd, viscous=(0.0, 0.0)) -> control.I
     kp, kd, viscous : array_like, shape (2,)
         Feedback gains, N m/rad and N m s/rad, and the arm's viscous friction, N m s/rad.
     """
+    like("arm", arm, "Arm")
+    shaped("kp", kp, (2,))
+    shaped("kd", kd, (2,))
+    shaped("viscous", viscous, (2,))
     inverse = model.inverse_dynamics if isinstance(model, Arm) else model
+    function_of("model", inverse, "model(q, qd, qdd) -> tau, or an Arm")
     kp, kd, viscous = (
         non_negative(name, value, 2)
         for name, value in (("kp", kp), ("kd", kd), ("viscous", viscous))
@@ -193,6 +220,8 @@ def run_system(
 
     `start` are angles (rad) and velocities (rad/s); default: at rest at the first position.
     """
+    like("system", system, "System")
+    triple("reference", reference)
     t = shaped("t", t, "(time,)")
     reference = Trajectory(*(shaped("reference", x, (t.size, 2)) for x in reference))
     start = np.stack([reference.q[0], [0.0, 0.0]]) if start is None else start
@@ -211,6 +240,7 @@ def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
     theta are ``(..., 2)`` in degrees; the motion lasts ``3 / speed`` s, before and after it the
     reference rests. Velocities grow with the `speed` s, accelerations with its square.
     """
+    shaped("t", t, "(time,)")
     number("speed", speed, 0.0, open_low=True)
     size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2
     t, rate = finite_array("t", t), speed * 2 * np.pi / MOTION_SECONDS
@@ -237,6 +267,8 @@ def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Scor
     without the first third. Of the hand, mm: `hand`, RMS without that third, and at the `turn`
     half-way. `effort`: RMS of the torque vector, N m.
     """
+    like("arm", arm, "Arm")
+    like("recording", recording, "Recording")
     if seconds is not None:
         recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
     t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddlib._check import finite_array, number
+from ddlib._check import filled, finite_array, like, number, told
 from ddlib.dynamics import Arm
 from ddlib.trajectories import Trajectory
 
@@ -107,6 +107,8 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
     time; its mean is taken. Lagrange-Euler's is taken in the middle of the period, with the mean
     acceleration; the error of that is of second order in the period.
     """
+    like("arm", arm, "Arm")
+    like("recording", recording, "Recording")
     step, period = recording.step, recording.control_step
     if not period:
         raise ValueError(f"recording must have a control_step above 0, got {period}")
@@ -123,4 +125,9 @@ def residual_torque(arm: Arm, recording: Recording) -> np.ndarray:
 
 def rms(x, axis: int = -2) -> np.ndarray:
     """Root mean square of `x` over time, by default of an array ``(..., time, joint)``."""
+    filled("x", x)
+    if not isinstance(axis, (int, np.integer, tuple, type(None))) or isinstance(axis, bool):
+        raise TypeError(f"axis must be an integer or None, got {told(axis)}")
+    if isinstance(axis, int) and not -np.ndim(x) <= axis < np.ndim(x):
+        raise ValueError(f"axis must lie within the {np.ndim(x)} axes of x, got {axis}")
     return np.sqrt(np.mean(finite_array("x", x) ** 2, axis))

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import finite_array, integer, number, one_of, shaped
+from ddlib._check import (
+    filled,
+    finite_array,
+    integer,
+    known_options,
+    number,
+    one_of,
+    regular,
+    seed_number,
+    shaped,
+    told,
+    triple,
+)
 from ddlib.control import Controller, as_controller
 from ddlib.dynamics import Arm
 from ddlib.effects import IDEAL, Effects
@@ -49,12 +61,12 @@ class _Streams:
 def _generator(seed):
     """Source of noise for one seed (all runs share it) or for an array of them."""
     if np.ndim(seed) == 0:
-        return np.random.default_rng(integer("seed", seed, 0))
+        return np.random.default_rng(seed_number("seed", seed))
     seeds = np.asarray(seed)
     if seeds.dtype.kind not in "iu":
-        raise TypeError(f"seed must be an integer or an array of integers, got {seed!r}")
+        raise TypeError(f"seed must be an integer or an array of integers, got {told(seed)}")
     if not seeds.size or (seeds < 0).any():
-        raise ValueError(f"seed must hold integers from 0 and up, got {seed!r}")
+        raise ValueError(f"seed must hold integers from 0 and up, got {told(seed)}")
     return _Streams(seeds)
 
 
@@ -106,7 +118,7 @@ def _check_plant(arm, effects) -> None:
     if not isinstance(effects, Effects):
         raise TypeError(
             "effects must be Effects with its parts in tuples, like "
-            f"Effects(friction=(ViscousFriction((0.5, 0.15)),)), got {effects!r:.80}"
+            f"Effects(friction=(ViscousFriction((0.5, 0.15)),)), got {told(effects)}"
         )
 
 
@@ -155,6 +167,8 @@ def follow(
     duration : float, optional
         Length of the motion from 0 s on; default: where the reference moves.
     """
+    triple("reference", reference)
+    regular("seed", seed)
     _check_plant(arm, effects)
     t = shaped("t", t, "(time,)")
     integer("samples of t", t.size, 2)
@@ -163,7 +177,7 @@ def follow(
     reference = Trajectory(q, *(shaped(n, x, q.shape) for n, x in zip(names, reference[1:])))
     controller = as_controller(controller)
     step = _equal_steps(t)
-    integer("log_every", log_every, 1)
+    integer("log_every", log_every, 1, t.size - 1)
     one_of("velocity", velocity, ("tachometer", "difference"))
     late = effects.computing_time
     if late > step * (1 - 1e-9):
@@ -195,7 +209,12 @@ def follow(
         if np.shape(wanted)[-1:] != (2,):
             raise ValueError(
                 "controller must return torques of shape (..., 2), one for each joint, got "
-                f"{wanted!r:.80} of shape {np.shape(wanted)}"
+                f"{told(wanted)} of shape {np.shape(wanted)}"
+            )
+        if np.isnan(wanted).any():
+            raise ValueError(
+                f"controller must return finite torques, got NaN at t = {t[k]:.3f} s: look for a "
+                "division by zero or a missing value in it"
             )
         before, tau = tau, actuator(wanted, rng)
         if k % log_every == 0:
@@ -216,7 +235,7 @@ def follow(
 def _initial_state(first, start):
     """Angles and velocities at the start of each run, checked, in the shape of the runs."""
     if not hasattr(start, "__len__") or len(start) != 2:
-        raise ValueError(f"start must be a pair of angles and velocities, got {start!r}")
+        raise ValueError(f"start must be a pair of angles and velocities, got {told(start)}")
     q, qd = (finite_array(f"start[{k}]", x, 2) for k, x in enumerate(start))
     try:
         return np.broadcast_arrays(q, qd, first)[:2]
@@ -259,6 +278,8 @@ def record(
     **options
         ``effects``, ``seed``, ``velocity`` and ``start``, as in `follow`.
     """
+    filled("extents_deg", extents_deg)
+    known_options("record", options, ("effects", "seed", "velocity", "start"))
     number("control_step", control_step, 1e-5, 0.1)
     number("log_step", log_step, control_step, 1.0)
     ratio = log_step / control_step

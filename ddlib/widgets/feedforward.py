@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 import traitlets as t
 
+from ddlib._check import like
 from ddlib.control import Feedforward, proportional
 from ddlib.dynamics import Arm
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
@@ -65,6 +66,7 @@ class FeedforwardSwitches(LiveWidget):
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 
     def __init__(self, arm: Arm = JOINT_DAMPING.arm, **options):
+        like("arm", arm, "Arm")
         self._arm = arm
         super().__init__(
             lambda **setting: _kept(arm, **setting),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import integer, number, shaped, told
 from ddlib.analysis import decompose
 from ddlib.widgets.base import CurveWidget, Panel
 from ddlib.widgets.hinton import CENTRE
@@ -35,7 +35,7 @@ class FilterFold(CurveWidget):
     def __init__(self, rows: Mapping[str, np.ndarray], step: float, **options):
         number("step", step, 0.0, open_low=True)
         if not isinstance(rows, Mapping) or len(rows) < 2:
-            raise TypeError(f"rows must map two labels or more to weights, got {rows!r}")
+            raise TypeError(f"rows must map two labels or more to weights, got {told(rows)}")
         some = shaped("rows", next(iter(rows.values())), "(width,)")
         integer("samples of rows", some.size, 3)
         self._rows = {str(label): shaped(f"rows[{label!r}]", f, some.shape)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import traitlets as t
 
-from ddlib._check import number, one_of
+from ddlib._check import number, one_of, told
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, Weights
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
@@ -51,10 +51,10 @@ def _check_models(models, axes: int, least: int = 2) -> dict[int, TorqueModel]:
     """
     if not isinstance(models, Mapping) or len(models) < least:
         sizes = "two window sizes or more" if least == 2 else "window sizes"
-        raise TypeError(f"models must map {sizes} to models, got {models!r}")
+        raise TypeError(f"models must map {sizes} to models, got {told(models)}")
     for width, model in models.items():
         if not isinstance(model, TorqueModel):
-            raise TypeError(f"models must hold TorqueModels, got {model!r} for {width!r}")
+            raise TypeError(f"models must hold TorqueModels, got {told(model)} for {told(width)}")
         if model.weights.width != width or model.weights.hidden_bias.ndim != axes + 1:
             what = "one network" if axes == 0 else "an ensemble"
             shape = model.weights.hidden_weights.shape

@@ -10,7 +10,7 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import finite_array, number
+from ddlib._check import finite_array, like, number, shaped
 from ddlib.effects import IDEAL
 from ddlib.figures import JOINTS
 from ddlib.learning import TorqueModel, sliding_windows
@@ -129,19 +129,34 @@ class TrajectoryPicker(LiveWidget):
         trajectories_deg=APPENDIX_I,
         **options,
     ):
+        like("setup", setup, "Setup")
+        if not isinstance(models, Mapping | None):
+            raise TypeError(f"models must map names to single networks, got {models!r:.80}")
         models = dict(models or {})
         for name, model in models.items():
             single = isinstance(model, TorqueModel) and model.weights.hidden_bias.ndim == 1
             if not single or name in (_RIGID, _RECORDED):
-                raise TypeError(f"models must be single networks by name, got {name}: {model!r}")
+                raise TypeError(
+                    f"models must be single networks by name, got {name}: {model!r:.80}"
+                )
         if on_record is not None and not callable(on_record):
             raise TypeError(f"on_record must be callable, got {on_record!r}")
         self._on_record = on_record or setup.record
-        family = finite_array("trajectories_deg", trajectories_deg, 2)
-        if len(family) < 4 or family.min() < 0 or family.max() > MAX_EXTENT_DEG:
+        family = shaped("trajectories_deg", trajectories_deg, "(runs, 2)")
+        if len(family) < 4:
             raise ValueError(
-                f"trajectories_deg must hold 4 pairs or more from 0 to {MAX_EXTENT_DEG:g} degrees, "
-                f"got {family.tolist()}"
+                "trajectories_deg must be 4 pairs or more, three to train on and the last one to "
+                f"test, got {len(family)}"
+            )
+        if family.min() < 0 or family.max() > MAX_EXTENT_DEG:
+            raise ValueError(
+                f"trajectories_deg must lie from 0 to {MAX_EXTENT_DEG:g} degrees, got "
+                f"{family.min():g} to {family.max():g}"
+            )
+        if np.linalg.matrix_rank(family[:-1] - family[0], tol=1e-3) < 2:
+            raise ValueError(
+                "trajectories_deg must have training pairs that are not all on one line, as they "
+                f"span the hull, got {family[:-1].tolist()!r:.80}"
             )
         self._hull = ConvexHull(family[:-1])
         curves = _Curves(setup, models, family[:-1])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array
+from ddlib._check import filled, like, shaped
 from ddlib.dynamics import with_load
 from ddlib.effects import Effects
 from ddlib.figures import JOINTS
@@ -59,7 +59,9 @@ class TorqueTerms(LiveWidget):
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 
     def __init__(self, setup: Setup = JOINT_DAMPING, extents_deg=APPENDIX_I, **options):
-        extents_deg = finite_array("extents_deg", extents_deg, 2)
+        like("setup", setup, "Setup")
+        extents_deg = shaped("extents_deg", extents_deg, "(runs, 2)")
+        filled("extents_deg", extents_deg)
         if any(setup.arm.gravity_moments):
             raise ValueError(f"setup must have a horizontal arm, got {setup.arm.gravity_moments}")
         self._arms = {load: with_load(setup.arm, load) for load in _LOADS}

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import traitlets as t
 
-from ddlib._check import finite_array
+from ddlib._check import finite_array, like
 from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.learning.windows import check_width
 from ddlib.simulation import Recording
@@ -50,6 +50,7 @@ class SlidingWindow(LiveWidget):
         first: int | None = None,
         **options,
     ):
+        like("recording", recording, "Recording")
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")
@@ -177,6 +178,7 @@ class HiddenTorque(LiveWidget):
     recorded.tag(sync=True)
 
     def __init__(self, recording: Recording, width: int = 21, **options):
+        like("recording", recording, "Recording")
         finite_array("recording.q", recording.q, 2)
         if recording.q.ndim != 2:
             raise ValueError(f"recording must be one run, got shape {recording.q.shape}")

@@ -115,7 +115,7 @@ ARM = CMU_DD_ARM_II
 LABELS = "x, s", "error, m"
 REFUSALS = [
     (figures.curves, (T, {"y": {"a": T}}, "x", " "), "alt must describe"),
-    (figures.families, ({}, LABELS, "A."), "panels must hold one panel or more"),
+    (figures.families, ({}, LABELS, "A."), "panels must hold one item or more"),
     (figures.families, ({"": {"a": (X, given.FAN[:3])}}, LABELS, "A."), "y of 'a' must"),
     (figures.by_case, (X, given.CASES, "time, s", "elbow, °", "A."), "axis label must"),
     (
@@ -123,8 +123,8 @@ REFUSALS = [
         ({"a": {"test": {11: [0.1, 0.0]}}}, given.PRINTED),
         "errors of 'a' must be",
     ),
-    (figures.decomposed, ({"a": np.ones(10)}, 0.01), "f must have an odd"),
-    (figures.decomposed, (np.ones((2, 11)), 0.01), "weights of"),
+    (figures.decomposed, ({"a": np.ones(10)}, 0.01), "functions must have an odd"),
+    (figures.decomposed, (np.ones((2, 11)), 0.01), "functions must have shape"),
     (figures.decomposed, ({}, 0.01), "functions must hold one"),
     (figures.decomposed, (np.ones(11), 0.0), "step must"),
     (beyond.maps, (X[:2], {"a": -np.ones((2, 2))}, (), "A."), "errors of 'a' must be positive"),

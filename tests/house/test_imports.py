@@ -12,8 +12,17 @@ from pathlib import Path
 from book_pages import ROOT
 
 DDLIB = (
-    *("_check", "paper", "metrics", "tables", "trajectories", "dynamics", "effects", "control"),
-    *("simulation", "logs", "identification", "learning", "setups", "analysis", "figures"),
+    *("_check", "_files", "paper", "metrics", "tables", "trajectories", "dynamics", "effects"),
+    *(
+        "control",
+        "simulation",
+        "logs",
+        "identification",
+        "learning",
+        "setups",
+        "analysis",
+        "figures",
+    ),
     "widgets",
 )
 WORKSHOP = ("report", "beyond", "chapters")

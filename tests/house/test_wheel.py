@@ -11,7 +11,7 @@ from book_pages import ROOT
 SOURCES = ("ddlib", "pyproject.toml", "README.md", "LICENSE")
 WITHOUT_TORCH = (
     *("dynamics", "effects", "control", "simulation", "identification", "analysis"),
-    *("figures", "widgets", "trajectories", "metrics", "tables", "paper", "_check"),
+    *("figures", "widgets", "trajectories", "metrics", "tables", "paper", "_check", "_files"),
 )
 
 IMPORT = """

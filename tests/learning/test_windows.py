@@ -60,9 +60,10 @@ def test_scaling_there_and_back(joints, target, data):
         (lambda: sliding_windows(Q, 20), "width must be odd"),
         (lambda: sliding_windows(Q, 21), "width must not exceed the 20 samples"),
         (lambda: sliding_windows(Q, 5.0), "width must be an integer"),
-        (lambda: sliding_windows(Q, 5, slice(1, 10)), "cases must be consecutive samples"),
+        (lambda: sliding_windows(Q, 5, slice(1, 10)), "width must be at most 3, as the recording"),
+        (lambda: sliding_windows(Q, 5, slice(4, 16, 2)), "cases must be consecutive samples"),
         (lambda: Scaler([0, 2], [1, 1]), "high must exceed low"),
-        (lambda: Scaler.fit([[0.0, 1.0], [1.0, 1.0]]), "high must exceed low"),  # a still joint
+        (lambda: Scaler.fit([[0.0, 1.0], [1.0, 1.0]]), "data must change at each joint"),
         (lambda: Scaler([0, 0], [1, 1]).scale(np.zeros((4, 1))), "data must have 2 joints along"),
     ],
 )

@@ -138,7 +138,7 @@ def test_divergence_is_reported_and_nothing_else(arm):
 
 def test_refusals():
     reference = Trajectory(*np.zeros((3, 3, 3, 2)))  # three runs of three samples
-    built = dict(arm=ARM, controller=PD, reference=reference, t=[0.0, 0.1, 0.2])
+    built = dict(arm=ARM, controller=PD, reference=reference, t=[0.0, 0.1, 0.2], log_every=1)
     planned = dict(arm=ARM, controller=PD, extents_deg=(45.0, 45.0))
     free = dict(arm=ARM, q=[0, 0], qd=[0, 0], seconds=1.0)
     late = Effects(actuator=(ComputingTime(0.1),))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, number, shaped
+from ddlib._check import integer, number, seed_number, shaped
 from ddlib.dynamics import CMU_DD_ARM_II, Arm
 from ddlib.trajectories import MOTION_SECONDS, pick_and_place
 
@@ -30,7 +30,7 @@ def random_states(samples: int = SAMPLES, seed: int = 0, radius: float = RADIUS)
     """States drawn uniformly from the hypercube, shape (samples, joint, 3)."""
     size = (integer("samples", samples, 1), 2, 3)
     number("radius", radius, 0.0, open_low=True)
-    return np.random.default_rng(integer("seed", seed, 0)).uniform(-radius, radius, size)
+    return np.random.default_rng(seed_number("seed", seed)).uniform(-radius, radius, size)
 
 
 def states_along(extents_deg, samples: int = SAMPLES, duration=MOTION_SECONDS) -> np.ndarray:

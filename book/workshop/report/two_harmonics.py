@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ddlib._check import integer, shaped
+from ddlib._check import integer, seed_number, shaped
 from ddlib.setups import STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import (
@@ -52,7 +52,7 @@ def _two_harmonics(extents_deg, second_deg, t, order: int = ORDER) -> Trajectory
 def _second_amplitudes(order: int = ORDER, seed: int = 0) -> np.ndarray:
     """Amplitudes of the second sine for the six runs, degrees, shape (6, 2)."""
     most = SHARE * MAX_EXTENT_DEG / integer("order", order, 2) ** 2
-    draw = np.random.default_rng(integer("seed", seed, 0))
+    draw = np.random.default_rng(seed_number("seed", seed))
     return draw.uniform(-most, most, APPENDIX_I.shape)
 
 

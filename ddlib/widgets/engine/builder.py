@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import traitlets as t
 
-from ddlib._check import shaped
+from ddlib._check import like, shaped
 from ddlib.analysis import frequency_response, savitzky_golay
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
@@ -126,6 +126,7 @@ class FilterBuilder(_PageWidget):
 
     def __init__(self, unit, setup: Setup = JOINT_DAMPING):
         unit = shaped("unit", unit, (_WIDTH,))
+        like("setup", setup, "Setup")
         q, truth, step = readings(setup)
         time = np.arange(truth.size) * LOG_STEP
         most = 1.25 * np.abs(truth).max()

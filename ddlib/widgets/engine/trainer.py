@@ -6,7 +6,7 @@ import numpy as np
 import traitlets as t
 from scipy.spatial import ConvexHull
 
-from ddlib._check import integer, number, one_of, shaped
+from ddlib._check import integer, like, number, one_of, shaped
 from ddlib.analysis import CLASSES, basis
 from ddlib.figures import JOINTS
 from ddlib.learning import (
@@ -22,6 +22,7 @@ from ddlib.learning import (
 from ddlib.learning.windows import check_width
 from ddlib.paper import HIDDEN_UNITS
 from ddlib.setups import INITIAL, JOINT_DAMPING, Setup
+from ddlib.simulation import LOG_STEP
 from ddlib.trajectories import APPENDIX_I, MAX_EXTENT_DEG
 from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
@@ -208,12 +209,20 @@ class NetworkTrainer(_PageWidget):
         shifts: int = 5,
         code: str = "",
     ):
+        like("setup", setup, "Setup")
         one_of("momentum", momentum, _MOMENTA)
         check_width(width)
         integer("hidden", hidden, 1)
         extents = shaped("extents_deg", extents_deg, "(runs, 2)")
-        if len(extents) < 4 or extents.min() < 0:
-            raise ValueError(f"extents_deg must be 4 pairs or more, 0 or above, got {extents_deg}")
+        if len(extents) < 4:
+            raise ValueError(
+                "extents_deg must be 4 pairs or more, three to train on and the last one to test, "
+                f"got {len(extents)}"
+            )
+        if extents.min() < 0:
+            raise ValueError(f"extents_deg must not be negative, got {extents.min():g}")
+        if np.ptp(extents[:-1], axis=0).max() == 0:
+            raise ValueError("extents_deg must differ among the training runs, got one pair only")
         widest = max(MAX_EXTENT_DEG, float(np.ceil(extents.max())))
         step = plant(setup.arm, setup.effects)["encoder"]
         if step < _FINEST:

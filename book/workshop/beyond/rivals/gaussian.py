@@ -16,7 +16,7 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
-from ddlib._check import integer, one_of, positive
+from ddlib._check import integer, one_of, positive, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
 from workshop.beyond.rivals.identified import Identified
@@ -78,7 +78,7 @@ class GaussianProcess(Rival):
         self.directions = directions
         self.subset = integer("subset", subset, 2)
         self.restarts = integer("restarts", restarts, 0)
-        self.seed = integer("seed", seed, 0)
+        self.seed = seed_number("seed", seed)
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)
@@ -202,7 +202,7 @@ class _RandomFeatures(Rival):
         self.features = integer("features", features, 1)
         self.directions = directions
         self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
-        self.seed = integer("seed", seed, 0)
+        self.seed = seed_number("seed", seed)
 
     def _fit(self, x, torque):
         self.inputs = _Inputs(x, self.directions)

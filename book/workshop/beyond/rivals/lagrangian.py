@@ -15,7 +15,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from ddlib._check import finite_array, integer, number, one_of
+from ddlib._check import finite_array, integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 from workshop.beyond.rivals.protocol import Rival, _NotFitted
@@ -154,7 +154,7 @@ class LagrangianNetwork(Rival):
         self.rate = number("rate", rate, 0.0, open_low=True)
         self.decay = number("decay", decay, 0.0)
         self.finish = integer("finish", finish, 0)
-        self.seed = integer("seed", seed, 0)
+        self.seed = seed_number("seed", seed)
         self.watch = watch
 
     def _fit(self, x, torque):

@@ -10,7 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from ddlib._check import integer, number, one_of
+from ddlib._check import integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.learning import (
     INITIAL,
@@ -35,7 +35,7 @@ class _Network(Rival):
     ):
         self.kind, self.hidden = one_of("kind", kind, _KINDS), integer("hidden", hidden, 1)
         self.initial = number("initial", initial, 0.0, open_low=True)
-        self.scaling, self.seed = scaling, integer("seed", seed, 0)
+        self.scaling, self.seed = scaling, seed_number("seed", seed)
 
     def _fit(self, x, torque):
         low, high = (x.min(0), x.max(0)) if self.kind == "states" else (0.0, 1.0)
@@ -164,7 +164,7 @@ class _Sequence(Rival):
     def __init__(self, channels=16, epochs=100, *, rate=0.01, decay=0.01, seed=0):
         self.channels, self.epochs = integer("channels", channels, 1), integer("epochs", epochs, 1)
         self.rate = number("rate", rate, 0.0, open_low=True)
-        self.decay, self.seed = number("decay", decay, 0.0), integer("seed", seed, 0)
+        self.decay, self.seed = number("decay", decay, 0.0), seed_number("seed", seed)
 
     @abstractmethod
     def _network(self, joints: int, width: int, outputs: int) -> nn.Module:

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
-from ddlib._check import finite_array, integer, one_of, positive, shaped
+from ddlib._check import finite_array, integer, one_of, positive, seed_number, shaped
 from ddlib.analysis import cells_reached
 from ddlib.dynamics import ELBOWS, Arm, follow_hand
 from ddlib.setups import Setup, true_states
@@ -89,7 +89,7 @@ class Circles:
 
 def random_circles(runs: int, seed: int) -> Circles:
     """Members of the family, each quantity uniform in its range, either way round."""
-    draw = np.random.default_rng(integer("seed", seed, 0))
+    draw = np.random.default_rng(seed_number("seed", seed))
     shape = (integer("runs", runs, 1),)
     ranges = (RADIUS, PERIOD, DISTANCE, BEARING)
     return Circles(*(draw.uniform(*r, shape) for r in ranges), draw.random(shape) < 0.5)
@@ -150,7 +150,7 @@ def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
 
 def _random_points(runs: int, points: int, seed: int) -> np.ndarray:
     """Via points ``(runs, points, 2)``, rad, uniform over the angles of pick-and-place."""
-    draw = np.random.default_rng(integer("seed", seed, 0))
+    draw = np.random.default_rng(seed_number("seed", seed))
     shape = (integer("runs", runs, 1), integer("points", points, 1), 2)
     return -np.deg2rad(draw.uniform(0.0, MAX_EXTENT_DEG, shape))
 
