@@ -3,3 +3,12 @@ from .log import (
     LoggedRecording as LoggedRecording,
     LoggedRun as LoggedRun,
 )
+from .reading import (
+    read_csv as read_csv,
+    read_log as read_log,
+    write_csv as write_csv,
+)
+from .resampling import (
+    LogWarning as LogWarning,
+    resample as resample,
+)

@@ -1,4 +1,3 @@
-from .csv_files import read_csv as read_csv
 from .loops import (
     Load as Load,
     SecondOrderModel as SecondOrderModel,
