@@ -1,3 +1,11 @@
+from .checking import (
+    DoubtfulRecording as DoubtfulRecording,
+    check_recording as check_recording,
+)
+from .findings import (
+    Check as Check,
+    Finding as Finding,
+)
 from .log import (
     Log as Log,
     LoggedRecording as LoggedRecording,
