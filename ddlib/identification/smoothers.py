@@ -11,13 +11,12 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import butter, savgol_filter, sosfiltfilt
 
 from ddlib._check import integer, number, shaped
-from ddlib.identification.equations import _in_runs, _lateness, _steady
+from ddlib.identification.equations import _bumps, _in_runs, _lateness, _steady
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
 from ddlib.simulation import Recording
 
 _SMOOTHEST, _ROUGHEST = 1e-12, 1e4  # shares of process in encoder noise; rounding allows no less
 _ENOUGH = 20_000  # samples of one joint from which a share is found
-_UNHARMED = 0.4  # of a smoother's corner frequency: below, its gain is 1 within half a percent
 _ORDER = 3  # The acceleration is a random walk.
 
 
@@ -26,7 +25,7 @@ def by_butterworth(
     cutoff: float,
     names: Sequence[str] = RIGID + FRICTION,
     order: int = 4,
-    both_sides: float | None = None,
+    width: float | None = 0.6,
     hold: float | None = None,
     rows: Recording | None = None,
 ) -> Equations:
@@ -43,11 +42,10 @@ def by_butterworth(
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     order : int
         Of the filter, which runs forwards and backwards.
-    both_sides : float, optional
-        Cutoff, Hz, of a second low-pass for both sides of the equations, of which so many are kept
-        that their noise is independent ("parallel filtering and decimation" in Gautier 1997). It
-        takes away torque at frequencies that the states have lost, and does not bias anything.
-        Default: .4 of `cutoff`; infinite: no such filter.
+    width : float or None
+        Width of smooth bumps under which both sides of the equations are averaged, s, as in
+        `by_modulation`: torque and motion then lose the same frequencies, which biases nothing.
+        None: an equation for each sample, for which intervals are too narrow.
     hold : float, optional
         Time for which the controller holds a torque, s: a sample stands for the torque half of it
         later. Default: as the recording says; 0 if it says nothing.
@@ -58,20 +56,18 @@ def by_butterworth(
     Returns
     -------
     Equations
-        Without samples within ``1 / cutoff`` of the recording's ends.
+        Of the motion; without samples within ``1 / cutoff`` of the recording's ends.
     """
-    late = _late(recording, hold)
-    states = butterworth_states(recording.q, recording.step, cutoff, order, late)
+    orders = _filtered(recording.q, recording.step, cutoff, order)
     margin = int(np.ceil(1 / (cutoff * recording.step)))
-    both_sides = _UNHARMED * cutoff if both_sides is None else both_sides
-    return _inside(recording, states, names, margin, rows, both_sides)
+    return _motion(recording, orders, names, margin, rows, width, hold)
 
 
 def by_kalman(
     recording: Recording,
     names: Sequence[str] = RIGID + FRICTION,
     noise: float | None = None,
-    both_sides: float | None = None,
+    width: float | None = 0.6,
     hold: float | None = None,
     rows: Recording | None = None,
 ) -> Equations:
@@ -85,30 +81,21 @@ def by_kalman(
         Parameters, from `RIGID`, `GRAVITY` and `FRICTION`.
     noise : float, optional
         As in `kalman_states`.
-    both_sides : float, optional
-        As in `by_butterworth`; default: .4 of the frequency at which the smoother's gain is one
-        half, of the joint that is smoothed most.
-    hold, rows
+    width, hold, rows
         As in `by_butterworth`.
 
     Returns
     -------
     Equations
-        Without samples so near to the recording's ends that the smoother sees one side only.
+        Of the motion; without samples so near to the recording's ends that the smoother sees one
+        side only.
     """
-    late, step = _late(recording, hold), recording.step
-    q, motion = recording.q, recording.motion
-    states, share = _smoothed(q, step, noise, late, motion)
-    corner = share.min() ** (0.5 / _ORDER)  # in 1 / samples
-    margin = int(np.ceil(2 / corner))
-    if both_sides is None:
-        both_sides = min(_UNHARMED * corner / (2 * np.pi), 0.25) / step
-    return _inside(recording, states, names, margin, rows, both_sides)
+    orders, share = _smoothed(recording.q, recording.step, noise, recording.motion)
+    margin = int(np.ceil(2 * share.min() ** (-0.5 / _ORDER)))
+    return _motion(recording, orders, names, margin, rows, width, hold)
 
 
-def butterworth_states(
-    q, step: float, cutoff: float, order: int = 4, later: float = 0.0
-) -> np.ndarray:
+def butterworth_states(q, step: float, cutoff: float, order: int = 4) -> np.ndarray:
     """Position, velocity and acceleration by a zero-phase low-pass and central differences.
 
     Parameters
@@ -122,21 +109,16 @@ def butterworth_states(
         delayed.
     order : int
         Of the Butterworth filter in each direction.
-    later : float
-        How much later than its sample a state is wanted, s; less than two periods.
 
     Returns
     -------
     ndarray, shape (..., time, joint, 3)
         In rad, rad/s and rad/s^2. Differences are of fourth order.
     """
-    q = _low_passed("cutoff", shaped("q", q, "(..., time, joint)"), step, cutoff, order)
-    later = number("later", later, 0.0, 2 * step)
-    orders = [savgol_filter(q, 5, 4, k, step, axis=-2) for k in range(5)]
-    return _later(orders, later)
+    return _later(_filtered(shaped("q", q, "(..., time, joint)"), step, cutoff, order))
 
 
-def kalman_states(q, step: float, noise: float | None = None, later: float = 0.0) -> np.ndarray:
+def kalman_states(q, step: float, noise: float | None = None) -> np.ndarray:
     """Position, velocity and acceleration by a fixed-interval Kalman smoother.
 
     Each joint's acceleration is a random walk whose power maximises the likelihood of all samples.
@@ -152,8 +134,6 @@ def kalman_states(q, step: float, noise: float | None = None, later: float = 0.0
     noise : float, optional
         Standard deviation of a reading, rad. Default: an encoder's step divided by the root of 12
         if all readings are multiples of a step, otherwise by the likelihood, too.
-    later : float
-        How much later than its sample a state is wanted, s; less than two periods.
 
     Returns
     -------
@@ -162,8 +142,7 @@ def kalman_states(q, step: float, noise: float | None = None, later: float = 0.0
     """
     q = shaped("q", q, "(..., time, joint)")
     step = number("step", step, 0.0, open_low=True)
-    later = number("later", later, 0.0, 2 * step)
-    return _smoothed(q, step, noise, later, slice(None))[0]
+    return _later(_smoothed(q, step, noise, slice(None))[0])
 
 
 def encoder_step(q) -> float | None:
@@ -180,65 +159,85 @@ def encoder_step(q) -> float | None:
     return None if rough or counts.max() > 1e6 else step
 
 
-def _low_passed(name, x, step, cutoff, order) -> np.ndarray:
+def _filtered(q, step, cutoff, order) -> np.ndarray:
+    """Low-passed angles and four derivatives of fourth order, (order, ..., time, joint)."""
     step = number("step", step, 0.0, open_low=True)
-    number(name, cutoff, 0.0, 0.499 / step, open_low=True)
+    number("cutoff", cutoff, 0.0, 0.499 / step, open_low=True)
     sections = butter(integer("order", order, 1, 12), cutoff, fs=1 / step, output="sos")
-    pad = int(np.ceil(3 / (cutoff * step)))
-    if x.shape[-2] <= max(pad, 5):
+    pad, samples = int(np.ceil(3 / (cutoff * step))), q.shape[-2]
+    if samples <= max(pad, 5):
+        least = 3 / (step * samples)
         raise ValueError(
-            f"{name} must be above {3 / (step * x.shape[-2]):.3g} Hz for {x.shape[-2]} samples, "
-            f"got {cutoff:g}"
+            f"cutoff must be above {least:.3g} Hz for {samples} samples, got {cutoff:g}"
         )
-    return sosfiltfilt(sections, x, axis=-2, padlen=pad)
+    q = sosfiltfilt(sections, q, axis=-2, padlen=pad)
+    return np.stack([savgol_filter(q, 5, 4, k, step, axis=-2) for k in range(5)])
 
 
-def _later(orders, later) -> np.ndarray:
-    """The first three of some derivatives, a little later, by Taylor's polynomial."""
+def _later(orders, late=0.0) -> np.ndarray:
+    """States (..., time, joint, 3) a little later, by Taylor's polynomial, from derivatives."""
     count = len(orders)
-    return np.stack(
-        [sum(orders[k + n] * later**n / factorial(n) for n in range(count - k)) for k in range(3)],
-        -1,
-    )
+    found = [
+        sum(orders[k + n] * late**n / factorial(n) for n in range(count - k)) for k in range(3)
+    ]
+    return np.stack(found, -1)
 
 
-def _late(recording, hold) -> float:
-    if hold is not None:
-        return number("hold", hold, 0.0) / 2
-    return 0.0 if recording.control_step is None else _lateness(recording)
-
-
-def _inside(recording, states, names, margin, rows, cutoff) -> Equations:
-    """Equations at the samples of the motion that are `margin` away from the recording's ends."""
-    steady = _steady(_in_runs(recording if rows is None else rows), names)
-    states = states[..., None, :, :, :] if recording.reference.q.ndim == 2 else states
-    recording, count, step = _in_runs(recording), recording.t.size, recording.step
-    if steady.shape[-1] != count:
-        raise ValueError(f"rows must have {count} samples, got {steady.shape[-1]}")
-    equations = from_states(*np.moveaxis(states, -1, 0), recording.tau, names)
-    regressors, torques, every = equations.regressor, equations.torque, 1
-    if cutoff != np.inf:
-        regressors, torques = (
-            [_low_passed("both_sides", x, step, cutoff, 4) for x in parts]
-            for parts in (regressors, [y[..., None] for y in torques])
+def _motion(recording, orders, names, margin, rows, width, hold) -> Equations:
+    """Equations of the motion, `margin` samples away from the recording's ends."""
+    late = 0.0 if recording.control_step is None else _lateness(recording)
+    late = late if hold is None else number("hold", hold, 0.0) / 2
+    rows, single = _in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
+    steady = _steady(rows, names)
+    if steady.shape[-1] != recording.t.size:
+        raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
+    states = _later(orders, late if width is None else 0.0)
+    states = states[..., None, :, :, :] if single else states
+    (begin, end), step, motion = recording.span, recording.step, recording.motion
+    inside = np.zeros(recording.t.size, bool)
+    inside[max(motion.start, margin) : min(motion.stop, len(inside) - margin)] = True
+    tau = _in_runs(recording).tau
+    equations = from_states(*np.moveaxis(states, -1, 0), tau, names)
+    if width is None:
+        _some(keep := steady & inside, margin * step)
+        regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
+        return Equations(
+            tuple(names), regressors, tuple(y[..., k] for y, k in zip(equations.torque, keep))
         )
-        torques = [y[..., 0] for y in torques]
-        margin += int(np.ceil(1 / (cutoff * step)))
-        every = max(1, round(0.5 / (cutoff * step)))
-    inside, motion = np.zeros(count, bool), recording.motion
-    inside[max(motion.start, margin) : min(motion.stop, count - margin) : every] = True
-    keep = steady & inside
+    if end - begin < 12 * step * (1 - 1e-6):
+        raise ValueError(f"recording must have 12 samples of motion, got {end - begin:g} s")
+    number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
+    width = int(width / (6 * step) + 1e-6) * 6 * step
+    bumps, later = (_bumps(recording.t - begin + x, width, end - begin)[0] for x in (0, late))
+    whole = (bumps @ ~inside) / bumps.sum(-1) < 0.02
+    regressors, torques = [], []
+    for a, y, sure in zip(equations.regressor, equations.torque, steady):
+        _some(keeps := (sure @ bumps.T / bumps.sum(-1) > 0.9) & whole, margin * step)
+        parts = []
+        for run, keep in enumerate(keeps):
+            # bumps overlap: the inverse Cholesky factor makes their torque noise independent
+            whiten = np.linalg.inv(np.linalg.cholesky(later[keep] @ later[keep].T))
+            parts.append(
+                (
+                    whiten @ (bumps[keep] @ a[..., run, :, :]),
+                    (y[..., run, :] @ later[keep].T) @ whiten.T,
+                )
+            )
+        regressors.append(np.concatenate([x for x, _ in parts], -2))
+        torques.append(np.concatenate([x for _, x in parts], -1))
+    return Equations(tuple(names), tuple(regressors), tuple(torques))
+
+
+def _some(keep, margin) -> None:
     if not keep.any():
         raise ValueError(
-            f"recording must have samples of motion {margin * step:.3g} s away from its ends, "
-            "got none"
+            f"recording must have motion {margin:.3g} s away from its ends, at speeds at which "
+            "friction has a sure sign; got none"
         )
-    regressors = tuple(a[..., k, :] for a, k in zip(regressors, keep))
-    return Equations(tuple(names), regressors, tuple(y[..., k] for y, k in zip(torques, keep)))
 
 
-def _smoothed(q, step, noise, later, moving) -> tuple[np.ndarray, np.ndarray]:
-    """States, and for each joint the share of process noise per sample in encoder noise."""
+def _smoothed(q, step, noise, moving) -> tuple[np.ndarray, np.ndarray]:
+    """Position and derivatives; each joint's share of process noise (a sample) in the encoder's."""
     if noise is not None:
         number("noise", noise, 0.0, open_low=True)
     if q.shape[-2] < 12:
@@ -251,9 +250,9 @@ def _smoothed(q, step, noise, later, moving) -> tuple[np.ndarray, np.ndarray]:
         share = _likeliest(runs[:, moving], known)
         x = _states(runs, share)[0].reshape(*q.shape[:-1], _ORDER)
         x = np.concatenate([x, np.gradient(x[..., -1:], axis=-2)], -1)
-        found.append(_later([x[..., k] / step**k for k in range(_ORDER + 1)], later))
+        found.append(x / step ** np.arange(_ORDER + 1))
         shares.append(share)
-    return np.stack(found, -2), np.array(shares)
+    return np.moveaxis(np.stack(found, -2), -1, 0), np.array(shares)
 
 
 def _likeliest(runs, noise) -> float:
@@ -297,7 +296,8 @@ def _states(runs, share) -> tuple[np.ndarray, float, np.ndarray]:
     right[:, 0] = (runs - centre).T
     x = cho_solve_banded((triangle, True), right.reshape(-1, len(runs)))
     x = np.moveaxis(x.reshape(right.shape), -1, 0)
-    left = ((runs - centre) * (runs - centre - x[..., 0])).sum(1)
+    jump = x[:, 1:] - x[:, :-1] @ ahead.T
+    left = ((runs - centre - x[..., 0]) ** 2).sum(1) + ((jump @ weight) * jump).sum((1, 2))
     x[..., 0] += centre
     log_process = order * np.log(share) + np.linalg.slogdet(process)[1]
     return x, float(2 * np.log(triangle[0]).sum() + (samples - 1) * log_process), left

@@ -94,7 +94,7 @@ def test_a_first_estimates_simulation_is_an_instrument_for_the_arm(bits):
     guess = record(first, LOOP, APPENDIX_I[:5], effects=replace(IDEAL, friction=friction))
     guess = guess.mapped(lambda x: np.broadcast_to(x, (60, *x.shape)))
     guess = replace(guess, reference=many.reference)
-    how = {"cutoff": 30.0, "both_sides": 10.0 if bits == 12 else 5.0}
+    how = {"cutoff": 30.0, "width": 0.3 if bits == 12 else 0.6}
     equations = by_butterworth(many, names=names, rows=guess, **how)
     found = instrumental_variables(equations, by_butterworth(guess, names=names, **how))
     off = np.abs(found.values.mean(0) / truth - 1)[:3]

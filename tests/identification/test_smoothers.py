@@ -132,16 +132,15 @@ def test_smoothed_states_are_nearer_than_parabolas_of_any_window():
         assert (found[:, k] - x[:, k])[inner].std() < best
 
 
-def test_a_slow_sine_passes_both_with_its_derivatives_also_between_samples():
+def test_a_slow_sine_passes_both_with_its_derivatives():
     t = np.arange(600) * STEP
-    w, late = 2 * np.pi * 0.8, 0.004
+    w = 2 * np.pi * 0.8
     q = np.stack([np.sin(w * t), 0.3 * np.cos(w * t)], -1)
-    at = t + late
-    first = np.stack([np.sin(w * at), w * np.cos(w * at), -(w**2) * np.sin(w * at)], -1)
+    first = np.stack([np.sin(w * t), w * np.cos(w * t), -(w**2) * np.sin(w * t)], -1)
     for found, rtol in (
-        (butterworth_states(q, STEP, 12.0, later=late), 2e-4),
-        (kalman_states(q, STEP, later=late), 2e-3),
-        (kalman_states(q, STEP, 1e-6, later=late), 2e-3),
+        (butterworth_states(q, STEP, 12.0), 2e-4),
+        (kalman_states(q, STEP), 2e-3),
+        (kalman_states(q, STEP, 1e-6), 2e-3),
     ):
         inner = slice(100, -100)
         np.testing.assert_allclose(found[inner, 0], first[inner], atol=rtol * w**2)
