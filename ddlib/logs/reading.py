@@ -48,7 +48,8 @@ def read_log(
     columns : mapping, optional
         Heads in the file of time, q1, q2, tau1, tau2 and run, where they differ:
         ``{"time": "timestamp", "q1": "actual_q_0"}``. A number is a column's place, counted
-        from 0. None is for a joint without torque: ``{"tau2": None}``.
+        from 0. None is for a joint without torque, ``{"tau2": None}``, and for one that is locked,
+        as in a log of a single joint: ``{"q2": None, "tau2": None}``.
     units : mapping, optional
         Units of columns that are not in s, rad, N m: ``{"time": "ms", "q1": "deg", "q2": "deg"}``.
         Known are s, ms, us, ns; rad, mrad, deg, rev; Nm, mNm, Ncm, kNm; A, mA; and a number is
@@ -72,8 +73,8 @@ def read_log(
     Returns
     -------
     Log
-        In s, rad, N m; times of a clock that counts from 1970 begin at 0. `notes` say what was
-        converted or left out.
+        In s, rad, N m; times of a clock that counts from 1970 begin at 0. Where a file's time
+        begins again, so does a run. `notes` say what was converted or left out.
 
     Raises
     ------
@@ -178,10 +179,12 @@ def _wanted(columns, rate, run) -> dict:
             )
     for name, head in columns.items():
         is_place = isinstance(head, (int, np.integer)) and not isinstance(head, bool)
-        if not (isinstance(head, str) or is_place or (head is None and name in _TORQUES)):
+        if not (isinstance(head, str) or is_place or (head is None and name in _MEASURED)):
             raise fault(
                 f"columns: {name} must be a head of the file or a place, got {shown(repr(head))}"
             )
+    if all(columns.get(name, name) is None for name in _ANGLES):
+        raise ValueError("columns must name an angle, q1 or q2, got None for both")
     if run is not None:
         columns["run"] = run
     own = {name: name for name in _QUANTITIES if name != "run"}
@@ -222,6 +225,8 @@ class _Reader:
             raise fault(f"{self.name}: no samples below the heads")
         self.cells = text_files.columns(self.table, list(self.places.values()))
         self.rows = np.arange(len(self.table.lines))
+        if self.table.above:
+            self.notes.append(f"{_lines(self.table.above)} above the heads passed over.")
         if self.table.left_out:
             what = "a wrong count of cells"
             self.notes.append(f"{_lines(self.table.left_out)} with {what} left out.")
@@ -285,6 +290,11 @@ class _Reader:
                         units[name] = unit if _is_known(name, unit) else None
             else:
                 self.notes.append(f"{name} is taken to be 0 throughout, as columns says.")
+        if missing and not heads and len(text_files.cells(self.table, 0)) == 1:
+            raise fault(
+                f"{self.name}: one number on a line; a log must have a line for each time, and on "
+                f"it a column for each quantity"
+            )
         if missing and not heads:
             raise fault(
                 f"{self.name}, line {self.table.head_line}: numbers, and no heads above them; give "
@@ -300,7 +310,10 @@ class _Reader:
         seen = {}
         for name, place in places.items():
             if place in seen:
-                raise fault(f"columns: {seen[place]} and {name} must differ, got one head for both")
+                raise fault(
+                    f"columns: {seen[place]} and {name} must differ, got one head for both; if "
+                    f"they are in two files, join them first, by pandas.merge(a, b, on=...)"
+                )
             seen[place] = name
         return places, {name: unit for name, unit in units.items() if unit is not None}
 
@@ -376,6 +389,7 @@ class _Reader:
 
     def _times(self, time, members) -> tuple[dict, dict]:
         """Lines and times in s of each run."""
+        members = self._parted(time, members)
         if self.skip_bad:
             members = self._forward(time, members)
         steps = np.concatenate([np.diff(time[rows]) for rows in members.values()])
@@ -403,6 +417,28 @@ class _Reader:
         time = known_units.converted(np.asarray(time, float), size)
         return members, {name: time[rows] for name, rows in members.items()}
 
+    def _parted(self, time, members) -> dict:
+        """Runs parted where their time begins again."""
+        parted = {}
+        for name, rows in members.items():
+            t, parts, start = time[rows], [], 0
+            for k in np.flatnonzero(np.diff(t) < 0) + 1:
+                if t[k] <= t[start] + 0.1 * (t[k - 1] - t[start]) and k - start >= 3:
+                    parts.append(rows[start:k])
+                    start = k
+            if not parts:
+                parted[name] = rows
+                continue
+            parts.append(rows[start:])
+            first = self.table.numbers[self.rows[parts[1][0]]]
+            self.notes.append(
+                f"time begins again at {len(parts) - 1} places, the first at line {first}; a run "
+                f"begins there."
+            )
+            joined = ", part" if ", run " in name else ", run"
+            parted |= {f"{name}{joined} {k + 1}": part for k, part in enumerate(parts)}
+        return parted
+
     def _forward(self, time, members) -> dict:
         """Each run's lines whose time is later than all before."""
         kept, count = {}, 0
@@ -422,6 +458,9 @@ class _Reader:
     def _angles(self, measured, lines, absolute_elbow) -> np.ndarray:
         found = []
         for name in _ANGLES:
+            if name not in measured:
+                found.append(np.zeros(len(self.rows)))
+                continue
             told, values = self._size(name), np.asarray(measured[name], float)
             if told is not None:
                 values = known_units.converted(values, told[0])
