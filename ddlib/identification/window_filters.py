@@ -120,6 +120,7 @@ class FilteredEquations:
         if isinstance(runs, Recording):
             if abs(runs.step / self.step - 1) > 1e-6:
                 raise ValueError(f"runs must have a step of {self.step:g} s, got {runs.step:g} s")
+            runs = runs.for_windows(self.width)
             begin, end = runs.motion.start - half, runs.motion.stop + half
             if begin < 0 or end > runs.t.size:
                 raise ValueError(f"runs must rest {half} samples before and after their motion")

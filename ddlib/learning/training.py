@@ -55,6 +55,7 @@ class TrainingSet:
 
 def cases(recording: Recording, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Windows, rad, and torques, N m, of a recording's motions, ``cases`` being the first axis."""
+    recording = recording.for_windows(width)
     windows = sliding_windows(recording.q, width, recording.motion)
     torque = recording.tau[..., recording.motion, :]
     return windows.reshape(-1, *windows.shape[-2:]), torque.reshape(-1, torque.shape[-1])

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddlib._check import number
-from ddlib.logs import text_files, units as known_units
+from ddlib.logs import _text_files as text_files, _units as known_units
+from ddlib.logs._text_files import Table, fault, listed, shown
 from ddlib.logs.log import Log, LoggedRecording, LoggedRun
 from ddlib.logs.resampling import LogWarning, resampled
-from ddlib.logs.text_files import Table, fault, listed, shown
 from ddlib.simulation import Recording
 
 _ANGLES, _TORQUES = ("q1", "q2"), ("tau1", "tau2")
@@ -301,11 +301,10 @@ class _Reader:
                 f'columns by their places, counted from 0, like columns={{"time": 0, "q1": 1}}'
             )
         if missing:
-            way = "rate=, in Hz, if it has no time" if missing == ["time"] else "columns="
+            rate = ", or give rate=, in Hz" if missing == ["time"] else ""
             raise fault(
                 f"{self.name}, line {self.table.head_line}: no column {listed(missing, 60)} in "
-                f"{listed(heads, 90)}; name them by columns={{...}}"
-                + (", or give rate=, in Hz" if way.startswith("rate") else "")
+                f"{listed(heads, 90)}; name what it is called by columns={{...}}{rate}"
             )
         seen = {}
         for name, place in places.items():
@@ -355,8 +354,8 @@ class _Reader:
             head = self.table.heads[place] if self.table.heads else f"{place} ({name})"
             text = shown(text_files.cell(self.table, k, place), 40)
             raise fault(
-                f"{self.name}, line {self.table.numbers[k]}, column {shown(head)}: must be a finite "
-                f"number, got {text!r}; skip_bad=True leaves such lines out"
+                f"{self.name}, line {self.table.numbers[k]}, column {shown(head)}: must be a "
+                f"finite number, got {text!r}; skip_bad=True leaves such lines out"
             )
         return values
 

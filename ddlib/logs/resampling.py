@@ -10,8 +10,8 @@ from scipy.interpolate import make_interp_spline
 from scipy.signal import cheby1, sosfiltfilt
 
 from ddlib._check import integer, number
+from ddlib.logs._text_files import fault, listed, shown
 from ddlib.logs.log import Log, LoggedRecording, LoggedRun
-from ddlib.logs.text_files import fault, listed, shown
 from ddlib.trajectories import Trajectory
 
 _SMALL = 2e-3  # of a step: a stamp may be off by this, which no encoder sees
@@ -389,8 +389,9 @@ def _of_one_length(pieces, step, seconds, notes) -> list[_Piece]:
     if long:
         gone = sum(len(piece.t) - length for piece in long)
         notes.append(
-            f"{_times(len(long), 'run')} cut to the {length} samples of the shortest that is kept; "
-            f"{_times(gone, 'sample')} at their ends left out. seconds= cuts long runs into several."
+            f"{_times(len(long), 'run')} cut to the {length} samples of the shortest that is "
+            f"kept; {_times(gone, 'sample')} at their ends left out. seconds= cuts long runs into "
+            f"several."
         )
     return [piece.cut(slice(length)) for piece in pieces if len(piece.t) >= length]
 

@@ -77,6 +77,10 @@ class Recording:
         begin = float(self.t[0]) + motion.start * step
         return begin, begin + (motion.stop - motion.start) * step
 
+    def for_windows(self, width: int) -> Recording:
+        """The recording itself: around its motion are rests, of which windows see a part."""
+        return self
+
     @property
     def tracking_error(self) -> np.ndarray:
         """Reference minus true position, rad, shape ``(..., time, joint)``."""

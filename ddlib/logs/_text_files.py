@@ -279,9 +279,10 @@ def columns(table: Table, places: list[int]) -> dict[int, np.ndarray]:
         "decimal": decimal,
         "skipinitialspace": True,
         "skip_blank_lines": False,
-        "float_precision": "round_trip",
         "low_memory": False,
     }
+    if tuple(map(int, pandas.__version__.split(".")[:2])) < (3, 1):
+        how["float_precision"] = "round_trip"  # later versions do so by default
     parts = {place: [] for place in how["usecols"]}
     starts = range(0, len(table.lines), _CHUNK)
     for start in tqdm(starts, desc=shown(table.path), unit_scale=_CHUNK, unit=" lines", delay=3):

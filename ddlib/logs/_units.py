@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from ddlib._check import number
-from ddlib.logs.text_files import fault, listed, shown
+from ddlib.logs._text_files import fault, listed, shown
 
 # Units in SI; what is above 1 divides, so that 17 ms are .017 s to the last digit
 _KNOWN = {
@@ -125,6 +125,6 @@ def check_angle(values: np.ndarray, place: str, quantity: str, lines) -> None:
     if abs(values[k]) > _TURNS:
         raise fault(
             f"{place}: {quantity} goes to {values[k]:g} (line {lines[k]}): degrees, or radians of "
-            f'a joint that turns on? Say which by units={{"{quantity}": "deg"}} or "rad", or '
-            f"radians in a count"
+            f'a joint that turns on? Say which by units={{"{quantity}": "deg"}} or '
+            f'{{"{quantity}": "rad"}}; or is that sample wrong?'
         )
