@@ -1,3 +1,4 @@
+from .checked import checked as checked
 from .lines import (
     by_case as by_case,
     curves as curves,

@@ -1,6 +1,7 @@
 from .checking import (
     DoubtfulRecording as DoubtfulRecording,
     check_recording as check_recording,
+    warn_of as warn_of,
 )
 from .findings import (
     Check as Check,

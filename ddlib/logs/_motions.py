@@ -14,9 +14,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline
 from scipy.signal import savgol_filter
 
-from ddlib.logs._readings import _filled, unwrapped
+from ddlib.logs._readings import unwrapped
 from ddlib.logs._stamps import usual_step
-from ddlib.logs._torques import at_rest
+from ddlib.logs._torques import at_rest, weak
 from ddlib.logs.findings import JOINTS, Finding, found
 from ddlib.logs.log import LoggedRun
 from ddlib.tables import significant
@@ -69,11 +69,17 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
     weight = list(_gravity(with_gravity, without, driven))
     yield from weight
     rigid = ("a", "b", "d", *gravity)
-    others = list(_other_readings(stretches, width, step, rigid, driven, with_gravity))
-    yield from others
-    if not others:
-        yield from _lag(equations, rigid, driven, step)
-        yield from _signs(equations, gravity, driven)
+    # a torque that is hardly more than noise says nothing of its sign
+    idle = [all(weak(run, j) for run in runs) for j in range(2)]
+    works = [driven[j] and not idle[j] for j in range(2)]
+    others = []
+    if works == driven:
+        others = list(_other_readings(stretches, width, step, rigid, driven, with_gravity))
+        yield from others
+    if not others and any(works):
+        if works == driven:
+            yield from _lag(equations, rigid, driven, step)
+        yield from _signs(equations, gravity, works)
     yield from _excitation(stretches, equations, width, step, driven, with_gravity, bool(weight))
 
 
@@ -300,7 +306,7 @@ def _other_readings(stretches, width, step, rigid, driven, as_is: _Fit) -> Itera
     """Whether the equations hold better if angles or torques are read in another way."""
     best = (as_is.share, None)
     for kind, words, advice, angles, signs in _READINGS:
-        if kind != "units of angle" and at_rest_all(stretches).any():
+        if kind != "units of angle" and _resting(stretches).any():
             continue
         changed, works = stretches, driven
         if kind == "order of the joints":
@@ -324,7 +330,7 @@ def _other_readings(stretches, width, step, rigid, driven, as_is: _Fit) -> Itera
     )  # fmt: skip
 
 
-def at_rest_all(stretches) -> np.ndarray:
+def _resting(stretches) -> np.ndarray:
     """Which joints rest in all stretches, (2,)."""
     q = np.concatenate([s.q - s.q[0] for s in stretches])
     return at_rest(LoggedRun("", np.arange(len(q)), q, q, None))
@@ -367,7 +373,8 @@ def _lag(equations, rigid, driven, step) -> Iterator[Finding]:
         f"The torque fits the motion best if it is read {abs(lag):.1f} ± {2 * error:.1f} samples "
         f"({1000 * abs(lag) * step:.3g} ms) {which}; {100 * now:.1f} % of it are left over now, "
         f"{100 * at:.1f} % then.",
-        "A torque that is late looks like less damping, an early one like more.",
+        "A torque that is logged late adds to the damping: inertia times delay times the square of "
+        "the motion's frequency; an early one takes as much away.",
         "Look for a filter or a queue between the two columns, and shift one. Friction and "
         "backlash that the equations lack look alike, so record a free swing before you do.",
     )  # fmt: skip
@@ -435,7 +442,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     errors = np.sqrt(3.0) * np.linalg.norm(kept, axis=0) / norm[felt]
     unsure = np.abs(vectors[~sure]).max(0, initial=0.0) > 0.2
     of = dict(zip(np.array(names)[felt], zip(errors, unsure)))
-    scale = dict(zip(names, fit_values(fit)))
+    scale = dict(zip(names, _by_name(fit)))
     told, nothing, lost = [], [], []
     for name in NAMES:
         if name in GRAVITY and not heavy:
@@ -459,7 +466,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     )  # fmt: skip
 
 
-def fit_values(fit: _Fit) -> np.ndarray:
+def _by_name(fit: _Fit) -> np.ndarray:
     """Parameters of a fit with both kinds of gravity, without the cosines' share."""
     values = fit.values.copy()
     values[3:5] = np.hypot(values[3:5], values[5:7])

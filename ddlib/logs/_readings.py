@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ddlib.logs.findings import Finding, found
+from ddlib.logs.findings import Finding, count, found
 from ddlib.logs.log import LoggedRun
 
 TURN = 2 * np.pi
@@ -57,7 +57,7 @@ def _spikes(k, j, run, q):
         if chosen.any():
             yield found(
                 run, "spike", severity, (k, j), rows[chosen],
-                f"{chosen.sum()} angles lie alone beside their neighbours, by up to "
+                f"{count(chosen.sum(), 'angle')} alone beside the neighbours, by up to "
                 f"{sizes[chosen].max():.3g} rad of a range of {spread:.3g} rad.",
                 "An acceleration sees a spike first: one of half a radian can make an inertia a "
                 "tenth of what it is.",
@@ -92,7 +92,7 @@ def _wraps(k, j, run, q):
     if rows.size:
         yield found(
             run, "wrap", "wrong", (k, j), rows + 1,
-            f"The angle jumps by a whole turn {rows.size} times.",
+            f"The angle jumps by a whole turn {count(rows.size, 'time')}.",
             "A jump looks like a speed of hundreds of rad/s; inertias come out too small.",
             "Take `numpy.unwrap(q, axis=-2)`, with period=360 before degrees are converted.",
         )  # fmt: skip
@@ -102,7 +102,7 @@ def _wraps(k, j, run, q):
     if rows.size:
         yield found(
             run, "wrap", "wrong", (k, j), rows + 1,
-            f"The angle jumps by 360 {rows.size} times: it seems to be in degrees.",
+            f"The angle jumps by 360 {count(rows.size, 'time')}: it seems to be in degrees.",
             "Speeds, sines and inertias are all wrong.",
             "Name the unit deg, and take `numpy.unwrap` with period=360.",
         )  # fmt: skip
@@ -215,8 +215,8 @@ def _dropouts(k, j, run, q, lost):
         yield found(
             run, f"drop-outs ({how})", "wrong" if rows.size > 0.003 * q.size else "doubtful",
             (k, j), rows,
-            f"The angle {what} in {len(stretches)} stretches, of up to {longest} samples, while "
-            "the joint moves.",
+            f"The angle {what} in {count(len(stretches), 'stretch')} of up to {longest} samples, "
+            "while the joint moves.",
             "Each ends with a jump, which looks like a large speed: frictions and inertias are "
             "wrong.",
             "Take these samples out and resample across them, or leave the stretches out.",
@@ -264,7 +264,7 @@ def _held_torque(k, j, run, q, tau):
             share = rows.size / tau.size
             yield found(
                 run, f"torque {value}", "wrong" if value == "zero" and share < 0.1 else "doubtful",
-                (k, j), rows, f"The torque {what} in {len(stretches)} stretches.",
+                (k, j), rows, f"The torque {what} in {count(len(stretches), 'stretch')}.",
                 "Equations are told a torque that did not act.",
                 "Leave these samples out, unless the torque was switched so.",
             )  # fmt: skip

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ddlib.logs.findings import Finding, found
+from ddlib.logs.findings import Finding, count, found
 from ddlib.logs.log import LoggedRun
 
 SLOWEST, FASTEST = 0.002, 100.0  #: Peak speeds of a joint, rad/s, outside of which units are wrong.
@@ -27,14 +27,15 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
     if not step:
         yield found(
             run, "time", "wrong", place, [], "No time is later than the one before.",
-            "Speeds and accelerations cannot be computed.", "Name the column of the time, or a rate.",
+            "Speeds and accelerations cannot be computed.",
+            "Name the column of the time, or a rate.",
         )  # fmt: skip
         return
     back, same = np.flatnonzero(steps < 0), np.flatnonzero(steps == 0)
     if back.size:
         yield found(
             run, "time runs back", "wrong", place, back + 1,
-            f"The time falls {back.size} times, by up to {-steps[back].min():.3g} s.",
+            f"The time falls {count(back.size, 'time')}, by up to {-steps[back].min():.3g} s.",
             "Samples are in a wrong order, or several runs are read as one.",
             "Split the log into its runs, or sort it by time.",
         )  # fmt: skip
@@ -42,7 +43,7 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
         share = same.size / steps.size
         yield found(
             run, "repeated time", "doubtful" if share > 0.002 else "note", place, same + 1,
-            f"{same.size} times are the same as the ones before.",
+            f"Of {count(run.t.size, 'sample')} {same.size:,} have the time of the one before.",
             "A difference between such samples has no speed.",
             "Resample the log: `resample` keeps one sample of each time.",
         )  # fmt: skip
@@ -53,8 +54,8 @@ def stamps(k: int, run: LoggedRun) -> Iterator[Finding]:
         grave = missing > 0.02 * run.t.size or longest > 20 * step
         yield found(
             run, "gaps", "doubtful" if grave else "note", place, gaps + 1,
-            f"About {missing:.0f} samples are missing at {gaps.size} places; the longest gap is "
-            f"{1000 * longest:.4g} ms, where {1000 * step:.4g} ms are usual.",
+            f"About {count(round(missing), 'sample')} missing at {count(gaps.size, 'place')}; the "
+            f"longest gap is {1000 * longest:.4g} ms, where {1000 * step:.4g} ms are usual.",
             "Counted as samples, the motion looks faster there than it was.",
             "Resample by the times, and leave long gaps out.",
         )  # fmt: skip

@@ -51,14 +51,14 @@ class Check:
     def __repr__(self):
         samples = sum(run.t.size for run in self.runs)
         counts = [sum(f.severity == severity for f in self.findings) for severity in SEVERITIES]
-        told = ", ".join(f"{count} {name}" for count, name in zip(counts, SEVERITIES))
-        title = f"{len(self.runs)} runs, {samples:,} samples: {told}"
+        told = ", ".join(f"{n} {name}" for n, name in zip(counts, SEVERITIES))
+        title = f"{count(len(self.runs), 'run')}, {count(samples, 'sample')}: {told}"
         groups = self._groups()
-        heads = [f"{found.severity:8s}  {_place(found, runs)}" for found, runs in groups]
+        heads = [f"{found.severity:8s}  {place(found, runs)}" for found, runs in groups]
         lines = [title]
-        for head, (found, _) in zip(heads, groups):
+        for head, (found, runs) in zip(heads, groups):
             lines += ["", f"{head}: {found.kind}"[:_ADVICE]]
-            for text in (f"{found.what} {_rows(found)}", found.effect, f"Do: {found.advice}"):
+            for text in (f"{found.what} {_rows(found, runs)}", found.effect, f"Do: {found.advice}"):
                 lines += textwrap.wrap(text, _ADVICE, initial_indent="  ", subsequent_indent="  ")
         return "\n".join(lines)
 
@@ -66,7 +66,7 @@ class Check:
         """The same as a table of a notebook."""
         header = ("", "where", "finding", "seen", "what it does", "what to do")
         rows = [
-            (found.severity, _place(found, runs), found.kind, f"{found.what} {_rows(found)}",
+            (found.severity, place(found, runs), found.kind, f"{found.what} {_rows(found, runs)}",
              found.effect, found.advice)
             for found, runs in self._groups()
         ]  # fmt: skip
@@ -81,7 +81,7 @@ class Check:
         return list(groups.values())
 
 
-def _place(found: Finding, runs) -> str:
+def place(found: Finding, runs) -> str:
     """Where findings are, in words."""
     joint = found.where[1]
     of_joint = "" if joint is None else f", {JOINTS[joint]}"
@@ -92,16 +92,21 @@ def _place(found: Finding, runs) -> str:
     return f"{'runs' if len(numbers) > 1 else 'run'} {shown}{of_joint}"
 
 
-def _rows(found: Finding) -> str:
+def _rows(found: Finding, runs) -> str:
     """The first rows of a finding, by lines of the file if they are known."""
     if not len(found.rows):
         return ""
     name, numbers = ("row", found.rows) if found.lines is None else ("line", found.lines)
-    if len(numbers) == 1:
-        return f"({name} {int(numbers[0])})"
+    where = f"run {found.where[0] + 1}, " if len(runs) > 1 else ""
     shown = ", ".join(str(int(number)) for number in numbers[:4])
-    rest = f" and {len(numbers) - 4} more" if len(numbers) > 4 else ""
-    return f"({name}s {shown}{rest})"
+    rest = f" and {len(numbers) - 4:,} more" if len(numbers) > 4 else ""
+    return f"({where}{name}{'s' if len(numbers) > 1 else ''} {shown}{rest})"
+
+
+def count(number: int, thing: str) -> str:
+    """A number of things in words: "1 stretch", "2,000 samples"."""
+    plural = "es" if thing.endswith("ch") else "s"
+    return f"{number:,} {thing}{'' if number == 1 else plural}"
 
 
 def in_runs(recording: Recording | Log) -> tuple[LoggedRun, ...]:

@@ -11,6 +11,7 @@ from ddlib.dynamics import CMU_DD_ARM_II, Operations
 from ddlib.figures import Illustration
 from ddlib.identification import Equations, least_squares
 from ddlib.learning import Weights
+from ddlib.logs import Log, LoggedRun, check_recording
 from workshop.beyond.figures import maps
 from workshop.chapters import (
     adaptive_control,
@@ -35,6 +36,10 @@ X = np.linspace(1.0, 10.0, 6)
 T = np.linspace(0.0, 3.0, 50)
 
 # Shared by chapters
+SPIKED = LoggedRun(
+    "own.csv", T, np.stack([np.sin(3 * T) + 0.5 * (np.arange(50) == 20), np.cos(T)], -1),
+    np.stack([-9 * np.sin(3 * T), -np.cos(T)], -1), np.arange(2, 52),
+)  # fmt: skip
 FAN = X[:, None] * [1.0, 2.0, 4.0, 7.0]
 CURVES = {"q, rad": {"one": X, "two": X**2}, "error": {"two": (X[1:], 1 / X[1:])}}
 CASES = {"small swing": np.sin(X), "large swing": 3 * np.sin(X), "none": 0 * X}
@@ -114,6 +119,7 @@ EXAMPLES = {
     "network_diagram": lambda: shared.network_diagram(Weights.random(1, 21)[0]),
     "hinton": lambda: shared.hinton(Weights.random(1, 41)[0]),
     "decomposed": partial(shared.decomposed, FILTERS, 0.01),
+    "checked": lambda: shared.checked(check_recording(Log((SPIKED,)))),
     "decomposed, one": lambda: shared.decomposed(FILTERS["unit 0"], 0.01),
 
     "arm_sketch": partial(dynamics.arm_sketch, CMU_DD_ARM_II, [0.6, 0.9]),

@@ -1,0 +1,66 @@
+"""What a check of a recording found, drawn where it was found."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ddlib._check import integer
+from ddlib.figures.style import COLOURS, JOINTS, Illustration, illustrate, legend_above
+from ddlib.logs import Check
+
+_POINTS = 400  # of a curve: more are not seen, and weigh
+
+
+def checked(check: Check, run: int | None = None) -> Illustration:
+    """Angle, speed and torque of one run over time, with the samples of findings as dots.
+
+    Parameters
+    ----------
+    check : Check
+        From `ddlib.logs.check_recording`.
+    run : int, optional
+        Its number, counted from 0. Default: that of the worst finding that names samples.
+
+    Raises
+    ------
+    ValueError
+        If the check has no such run.
+    """
+    marked = [found for found in check.findings if len(found.rows)]
+    if run is None:
+        run = marked[0].where[0] if marked else 0
+    run = integer("run", run, 0, len(check.runs) - 1)
+    marked = [found for found in marked if found.where[0] == run]
+    logged = check.runs[run]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        speed = np.gradient(logged.q, logged.t, axis=0)
+    speed[~np.isfinite(speed)] = np.nan
+    series = {"angle, rad": logged.q, "speed, rad/s": speed, "torque, N m": logged.tau}
+    every = max(1, len(logged.t) // _POINTS)
+
+    def draw(figure: Figure):
+        axes = figure.subplots(2, 3, sharex=True)
+        shown = {}
+        for j, row in enumerate(axes):
+            for axis, (label, values) in zip(row, series.items()):
+                axis.plot(logged.t[::every], values[::every, j], color=COLOURS[0], lw=0.9)
+                for k, kind in enumerate(dict.fromkeys(found.kind for found in marked)):
+                    rows = [f.rows for f in marked if f.kind == kind and f.where[1] in (None, j)]
+                    if not rows:
+                        continue
+                    at = np.concatenate(rows)
+                    at = at[:: max(1, len(at) // 60)]
+                    look = {"color": COLOURS[1 + k % 5], "marker": "osv^D"[k % 5], "ms": 3.5}
+                    (shown[kind],) = axis.plot(logged.t[at], values[at, j], ls="", **look)
+                axis.set_ylabel(label)
+                axis.set_title(JOINTS[j])
+                if j:
+                    axis.set_xlabel("time, s")
+        if shown:
+            legend_above(figure, list(shown.values()), list(shown))
+
+    kinds = ", ".join(dict.fromkeys(found.kind for found in marked)) or "nothing"
+    name = logged.name or f"run {run + 1}"
+    alt = f"Angle, speed and torque of both joints over time, {name}. Marked: {kinds}."
+    return illustrate(draw, alt, 7.0, 4.0)
