@@ -309,9 +309,10 @@ class _Reader:
         seen = {}
         for name, place in places.items():
             if place in seen:
+                apart = seen[place][0] == "q" and name.startswith("tau")
                 raise fault(
-                    f"columns: {seen[place]} and {name} must differ, got one head for both; if "
-                    f"they are in two files, join them first, by pandas.merge(a, b, on=...)"
+                    f"columns: {seen[place]} and {name} must differ, got one head for both"
+                    f"{'; join files of angles and of torques by pandas.merge' if apart else ''}"
                 )
             seen[place] = name
         return places, {name: unit for name, unit in units.items() if unit is not None}
