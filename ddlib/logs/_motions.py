@@ -22,6 +22,7 @@ from ddlib.logs.log import LoggedRun
 from ddlib.tables import significant
 
 MOST = 6000  # equations of a joint: more tell a check nothing
+ENOUGH = 120  # samples of a bump, up to twice as many
 SHIFTS = np.arange(-8, 9)  # samples
 GRAVITY = ("g1", "g2")
 NAMES = ("a", "b", "d", "g1", "g2", "F_v1", "F_c1", "F_v2", "F_c2")
@@ -58,6 +59,10 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
             "Sign, lag and units of the torque are not checked.", "Record longer motions.",
         )  # fmt: skip
         return
+    thinned = max(width // ENOUGH, 1)
+    if thinned > 1:  # bumps do not need more samples
+        stretches = [_Stretch(s.run, *_means((s.q, s.tau), thinned)) for s in stretches]
+        width, step = width // thinned // 6 * 6, step * thinned
     equations = _averaged(stretches, width, step, lambda q: q, SHIFTS)
     if len(equations.block) < 40:
         return
@@ -78,7 +83,7 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
         yield from others
     if not others and any(works):
         if works == driven:
-            yield from _lag(equations, rigid, driven, step)
+            yield from _lag(equations, rigid, driven, step, thinned)
         yield from _signs(equations, gravity, works)
     yield from _excitation(stretches, equations, width, step, driven, with_gravity, bool(weight))
 
@@ -107,6 +112,12 @@ def _stretches(runs, step) -> list[_Stretch]:
                 ]
                 pieces.append(_Stretch(k, *even))
     return pieces
+
+
+def _means(series, count: int) -> list[np.ndarray]:
+    """Series (samples, 2) as means of `count` samples."""
+    whole = len(series[0]) // count * count
+    return [x[:whole].reshape(-1, count, 2).mean(1) for x in series]
 
 
 def _width(stretches, step) -> int:
@@ -336,7 +347,7 @@ def _resting(stretches) -> np.ndarray:
     return at_rest(LoggedRun("", np.arange(len(q)), q, q, None))
 
 
-def _lag(equations, rigid, driven, step) -> Iterator[Finding]:
+def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
     """The shift of the torque that fits the motion best, with its uncertainty by blocks of time."""
     blocks = np.unique(equations.block)
     groups = np.array_split(blocks, min(8, blocks.size))
@@ -365,12 +376,13 @@ def _lag(equations, rigid, driven, step) -> Iterator[Finding]:
     error = float(np.sqrt((n - 1) / n * np.sum((parts - parts.mean()) ** 2)))
     now = middle.share
     at = _fit(equations, rigid, int(np.clip(np.round(lag), -8, 8)) + 8, driven).share
-    if abs(lag) < 0.6 or abs(lag) < 4 * error or at > 0.9 * now:
+    if thinned * abs(lag) < 0.6 or abs(lag) < 4 * error or at > 0.9 * now:
         return
     which = "later" if lag > 0 else "earlier"
     yield found(
         None, "lag", "wrong" if at < 0.5 * now else "doubtful", (None, None), [],
-        f"The torque fits the motion best if it is read {abs(lag):.1f} ± {2 * error:.1f} samples "
+        f"The torque fits the motion best if it is read {thinned * abs(lag):.1f} ± "
+        f"{2 * thinned * error:.1f} samples "
         f"({1000 * abs(lag) * step:.3g} ms) {which}; {100 * now:.1f} % of it are left over now, "
         f"{100 * at:.1f} % then.",
         "A torque that is logged late adds to the damping: inertia times delay times the square of "

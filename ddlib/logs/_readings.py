@@ -36,13 +36,13 @@ def readings(k: int, run: LoggedRun) -> Iterator[Finding]:
         lost = dropouts(whole, q, run.t)
         yield from _dropouts(k, j, run, q, lost)
         mended = _without(whole, lost)
-        yield from _spikes(k, j, run, mended)
+        yield from _spikes(k, j, run, mended, lost)
         yield from _held_torque(k, j, run, q, tau)
         yield from _limit(k, j, run, tau)
         yield from _one_sign(k, j, run, q, tau)
 
 
-def _spikes(k, j, run, q):
+def _spikes(k, j, run, q, lost):
     """Single wrong angles, those that matter apart from those that hardly do."""
     rows, sizes = spikes(q)
     steps = np.diff(run.t)
@@ -60,7 +60,7 @@ def _spikes(k, j, run, q):
         if chosen.any():
             yield found(
                 run, "spike", severity, (k, j), rows[chosen],
-                f"{count(chosen.sum(), 'angle')} alone beside the neighbours, by up to "
+                f"Beside what the neighbours say: {count(chosen.sum(), 'angle')}, by up to "
                 f"{sizes[chosen].max():.3g} rad of a range of {spread:.3g} rad.",
                 "An acceleration sees a spike first: one of half a radian can make an inertia a "
                 "tenth of what it is.",
