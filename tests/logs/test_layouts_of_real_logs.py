@@ -107,5 +107,5 @@ def test_angles_and_torques_in_two_files(tmp_path):
     rows = [f"{0.005 * k:.3f},{a},{b}" for k, (a, b) in enumerate(ANGLES)]
     path = write(tmp_path / "positions.csv", ["time,joint_1,joint_2", *rows])
     same = {"q1": "joint_1", "q2": "joint_2", "tau1": "joint_1", "tau2": "joint_2"}
-    with pytest.raises(ValueError, match=r"q1 and tau1 must differ.*join files of angles and of torques"):
+    with pytest.raises(ValueError, match=r"q1 and tau1 must differ.*join files of angles"):
         read_log([path, path], same)
