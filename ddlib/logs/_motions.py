@@ -21,7 +21,7 @@ from ddlib.logs.findings import JOINTS, Finding, found
 from ddlib.logs.log import LoggedRun
 from ddlib.tables import significant
 
-MOST = 6000  # equations of a joint: more tell a check nothing
+LEAST, MOST = 150, 6000  # equations of a joint, roughly: more tell a check nothing
 ENOUGH = 120  # samples of a bump, up to twice as many
 SHIFTS = np.arange(-8, 9)  # samples
 GRAVITY = ("g1", "g2")
@@ -44,7 +44,7 @@ class _Averaged:
     columns: tuple[dict, dict]
     torques: tuple[np.ndarray, np.ndarray]  #: Each (shifts, equations).
     block: np.ndarray  #: Which stretch of time an equation comes from.
-    speed: np.ndarray  #: Mean speed under a bump, (equations, 2).
+    overlap: float  #: How many equations stand for one that is independent of the others.
 
 
 def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
@@ -52,7 +52,7 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
     step = float(np.median([usual_step(run.t) for run in runs] or [0.0]))
     stretches = _stretches(runs, step)
     width = _width(stretches, step)
-    if not stretches or width < 12 or sum(len(s.q) for s in stretches) < 6 * width:
+    if not stretches or width < 12 or sum(len(s.q) for s in stretches) < 4 * width:
         yield found(
             None, "too short", "note", (None, None), [],
             "There are too few samples of motion to compare torque and motion.",
@@ -68,6 +68,8 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
         return
     now = len(SHIFTS) // 2
     driven = [bool(np.ptp(np.concatenate([s.tau[:, j] for s in stretches]))) for j in range(2)]
+    if not any(driven):
+        return
     gravity = ("g1", "g2", "g1c", "g2c")
     with_gravity = _fit(equations, ("a", "b", "d", *gravity), now, driven)
     without = _fit(equations, ("a", "b", "d"), now, driven)
@@ -98,6 +100,8 @@ def _stretches(runs, step) -> list[_Stretch]:
             continue
         forward = np.concatenate([[True], t[1:] > np.maximum.accumulate(t)[:-1]])
         t, q, tau = t[forward], q[forward], tau[forward]
+        if t.size < 24:
+            continue
         q = np.stack([unwrapped(q[:, j]) for j in range(2)], -1)
         for part in np.split(np.arange(t.size), np.flatnonzero(np.diff(t) > 6 * step) + 1):
             if part.size < 24:
@@ -137,7 +141,7 @@ def _width(stretches, step) -> int:
     return int(min(max(0.67 * period, 18), longest) // 6) * 6
 
 
-def _averaged(stretches, width, step, reading: Callable, shifts) -> _Averaged:
+def _averaged(stretches, width, step, reading: Callable, shifts, smoothing=4) -> _Averaged:
     """Equations under bumps of `width` samples, with angles read in some way."""
     place = np.arange(1, width) * (6.0 / width)
     shape = BSpline.basis_element(np.arange(7), extrapolate=False)
@@ -148,10 +152,10 @@ def _averaged(stretches, width, step, reading: Callable, shifts) -> _Averaged:
     w1 = shape.derivative()(place) / (knot * scale)
     w2 = shape.derivative(2)(place) / (knot**2 * scale)
     total = sum(len(s.q) for s in stretches)
-    hop = max(width // 6, total // MOST, 1)
+    hop = max(min(width // 6, total // LEAST), total // MOST, 1)
     edge = int(np.max(np.abs(shifts)))
-    columns, torques, blocks, speeds = ({}, {}), ([], []), [], []
-    smooth = max(5, width // 4 * 2 // 2 | 1)
+    columns, torques, blocks = ({}, {}), ([], []), []
+    smooth = max(5, width // smoothing | 1)
     block = 0
     for s in stretches:
         if len(s.q) < width + 2 * edge + hop:
@@ -198,13 +202,14 @@ def _averaged(stretches, width, step, reading: Callable, shifts) -> _Averaged:
             torques[j].append(np.stack(shifted))
         blocks.append(block + np.arange(zero.size) * 4 // zero.size)
         block += 4
-        speeds.append(np.stack([under(np.abs(v[:, j]), w) for j in range(2)], -1))
     if not blocks:
-        return _Averaged(({}, {}), (np.empty((1, 0)),) * 2, np.empty(0, int), np.empty((0, 2)))
+        return _Averaged(({}, {}), (np.empty((1, 0)),) * 2, np.empty(0, int), 1.0)
     columns = tuple({name: np.concatenate(x) for name, x in one.items()} for one in columns)
-    speed = np.concatenate(speeds)
     return _Averaged(
-        columns, tuple(np.concatenate(x, -1) for x in torques), np.concatenate(blocks), speed
+        columns,
+        tuple(np.concatenate(x, -1) for x in torques),
+        np.concatenate(blocks),
+        width / (2 * hop),
     )
 
 
@@ -374,6 +379,8 @@ def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
     parts = np.array([best(~np.isin(equations.block, group)) for group in groups])
     n = len(parts)
     error = float(np.sqrt((n - 1) / n * np.sum((parts - parts.mean()) ** 2)))
+    # friction is no smooth step, and a torque is held from sample to sample
+    error = np.hypot(error, 0.12)
     now = middle.share
     at = _fit(equations, rigid, int(np.clip(np.round(lag), -8, 8)) + 8, driven).share
     if thinned * abs(lag) < 0.6 or abs(lag) < 4 * error or at > 0.9 * now:
@@ -411,7 +418,7 @@ def _signs(equations, gravity, driven) -> Iterator[Finding]:
         torque = a[:, :inertial] @ values[:inertial]
         left = y - a @ values
         slope = first @ torque / (first @ first) if first @ first else 0.0
-        error = np.sqrt(left.var() / (first @ first + 1e-300)) * 3
+        error = 2 * np.sqrt(equations.overlap * left.var() / (first @ first + 1e-300))
         matters = torque.std() > 2 * left.std()
         if slope < -4 * error and matters:
             yield found(
@@ -441,7 +448,8 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     spread = np.concatenate([np.diff(s.q, 4, axis=0) for s in stretches]).std(0) / np.sqrt(70)
     noisy = [_Stretch(s.run, s.q + spread * rng.standard_normal(s.q.shape), s.tau)
              for s in stretches]  # fmt: skip
-    again = _averaged(noisy, width, step, lambda q: q, SHIFTS)
+    # columns that only noise or smoothing tells apart are the same
+    again = _averaged(noisy, width, step, lambda q: q, SHIFTS, 2 if width < 24 else 7)
     b = np.concatenate([m / sigma[j] for j, m in _matrices(again, rigid, driven)])
     norm = np.linalg.norm(a, axis=0)
     felt = norm > 0
@@ -450,8 +458,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     noise = np.linalg.norm(change @ vectors.T, axis=0) + 1e-7
     sure = size > 3 * noise
     kept = vectors[sure] / size[sure, None]
-    # neighbouring bumps overlap: six of them are about as much as two
-    errors = np.sqrt(3.0) * np.linalg.norm(kept, axis=0) / norm[felt]
+    errors = np.sqrt(equations.overlap) * np.linalg.norm(kept, axis=0) / norm[felt]
     unsure = np.abs(vectors[~sure]).max(0, initial=0.0) > 0.2
     of = dict(zip(np.array(names)[felt], zip(errors, unsure)))
     scale = dict(zip(names, _by_name(fit)))

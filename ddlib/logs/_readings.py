@@ -78,6 +78,8 @@ def _filled(x):
 def unwrapped(q) -> np.ndarray:
     """Angles without jumps of a turn, in rad; only jumps are taken that a turn explains."""
     jumps = np.diff(q)
+    if not jumps.size:
+        return q
     turns = np.where(wrapped(jumps), np.round(jumps / TURN), 0.0)
     return q - TURN * np.concatenate([[0.0], np.cumsum(turns)])
 
@@ -245,7 +247,7 @@ def _held_torque(k, j, run, q, tau):
             )  # fmt: skip
         return
     usual, low, high = np.median(np.abs(steps)), tau.min(), tau.max()
-    span = 0.3 * tau.std()
+    span, zero_steps = 0.3 * tau.std(), np.count_nonzero(steps == 0)
     held, zeros = [], []
     for b, n in zip(begin, length):
         e = b + n
@@ -255,7 +257,10 @@ def _held_torque(k, j, run, q, tau):
         if tau[b] == 0 and min(jumps) > max(span, 5 * usual):
             zeros.append((b, e))
         elif (
-            tau[b] != 0 and n >= 10 and np.ptp(q[b:e]) > 0.01 * np.ptp(q) and (jumps[1] > 3 * usual)
+            tau[b] != 0
+            and n >= 10
+            and np.ptp(q[b:e]) > 0.01 * np.ptp(q)
+            and (jumps[1] > 3 * usual or zero_steps - n < 0.02 * steps.size)
         ):
             held.append((b, e))
     for stretches, what, value in (

@@ -64,13 +64,13 @@ class Check:
 
     def _repr_markdown_(self) -> str:
         """The same as a table of a notebook."""
-        header = ("", "where", "finding", "seen", "what it does", "what to do")
+        header = ("severity", "where", "finding", "seen", "what it does", "what to do")
         rows = [
             (found.severity, place(found, runs), found.kind, f"{found.what} {_rows(found, runs)}",
              found.effect, found.advice)
             for found, runs in self._groups()
         ]  # fmt: skip
-        return Table(header, rows or [("", "", "nothing found", "", "", "")])._repr_markdown_()
+        return Table(header, rows or [("–", "–", "nothing found", "", "", "")])._repr_markdown_()
 
     def _groups(self) -> list[tuple[Finding, list]]:
         """The findings, those of one kind and joint in several runs together, by their first."""

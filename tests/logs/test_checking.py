@@ -54,7 +54,7 @@ LOGS = {
 
 @cache
 def recordings():
-    """Sixteen simulated recordings by name, of six motions each: no defect but what sensors do."""
+    """Sixteen simulated recordings of three motions each: no defect but what sensors do."""
     out = {}
     for name, (arm, size) in ARMS.items():
         friction = (
@@ -71,7 +71,7 @@ def recordings():
             )
             law = pd(kp, damping * kp) if damping else proportional(kp)
             seed = len(out)
-            extents = random_extents(6, seed=seed)
+            extents = random_extents(6, seed=seed)[:3]
             out[name, kind] = record(arm, law, extents, effects=effects, seed=seed)
     return out
 
@@ -227,7 +227,7 @@ def test_lag_is_measured_within_its_uncertainty():
     recording = recordings()["CMU", "quiet"]
     (found,) = check_recording(changed(recording, tau=lambda x: np.roll(x, 3, axis=0))).of("lag")
     told, error = found.what.split("read ")[1].split(" samples")[0].split(" ± ")
-    assert abs(float(told) - 2.9) < float(error) + 0.1 and "later" in found.what
+    assert abs(float(told) - 2.9) < float(error) and "later" in found.what
     assert float(error) < 0.5 and "backlash" in found.advice
 
 
@@ -242,7 +242,7 @@ def test_spikes_are_rare_in_noise_and_in_steps():
         step, noise = ((3.8e-4, 0), (1e-5, 0), (1e-9, 1e-4), (1e-3, 1e-3))[k % 4]
         q = np.round((q + rng.normal(0, noise + 1e-15, q.size)) / step) * step
         false += len(spikes(q)[0])
-        at, size = 1000 + k, max(0.02, 20 * noise)
+        at, size = 1000 + k, max(0.02, 30 * noise)
         q[at] += size
         rows, sizes = spikes(q)
         found += at in rows and abs(sizes[rows == at][0] / size - 1) < 0.5
@@ -256,7 +256,7 @@ def test_excitation_names_what_a_locked_elbow_cannot_tell():
     q1 = 0.5 * np.sin(2 * t) + 0.4 * np.sin(3 * t)
     qdd = np.stack([-2.0 * np.sin(2 * t) - 3.6 * np.sin(3 * t), 0 * t], -1)
     q = np.stack([q1, 0 * t], -1)
-    tau = Arm("my arm", a=1.0, b=0.2, d=0.3).inverse_dynamics(q, np.zeros((300, 2)), qdd)
+    tau = Arm("my arm", 1.0, 0.2, 0.3, (0.3, 0.3)).inverse_dynamics(q, np.zeros((300, 2)), qdd)
     for noise in (0.0, 1e-4):
         read = q + rng.normal(0, 1, q.shape) * [0.0, noise]
         run = LoggedRun("locked", t, read, tau + rng.normal(0, 0.01, tau.shape), None)
@@ -270,7 +270,7 @@ def test_torque_that_is_zero_throughout_is_told_not_refused():
     """R11."""
     log = changed(recordings()["small", "quiet"], tau=lambda tau: tau * [1, 0])
     check = check_recording(log)
-    assert len(check.of("no torque")) == 6 and not check.wrong
+    assert len(check.of("no torque")) == 3 and not check.wrong
     both = check_recording(changed(recordings()["small", "quiet"], tau=lambda tau: 0 * tau))
     assert "no torque" in kinds(both, "wrong")
 
@@ -337,15 +337,15 @@ def test_a_spike_is_told_with_its_line_and_drawn():
     assert order == sorted(order)
     assert figures.checked(check).alt.endswith("run 2. Marked: spike.")
     assert figures.checked(check, 0).alt.endswith("run 1. Marked: nothing.")
-    with pytest.raises(ValueError, match=r"run must be an integer from 0 to 5, got 6"):
-        figures.checked(check, 6)
+    with pytest.raises(ValueError, match=r"run must be an integer from 0 to 2, got 3"):
+        figures.checked(check, 3)
 
 
 def test_what_is_missing_is_told():
     recording = recordings()["CMU", "quiet"]
     log = changed(recording, q=moved(slice(100, 110), np.nan))
     check = check_recording(log)
-    assert not check.wrong and len(check.of("missing")) == 6
+    assert not check.wrong and len(check.of("missing")) == 3
     assert check.of("missing")[0].rows.tolist() == list(range(100, 110))
 
 
@@ -354,7 +354,7 @@ def test_what_is_no_recording_is_refused():
         check_recording(np.zeros((5, 2)))
     recording = recordings()["CMU", "quiet"]
     with pytest.raises(
-        ValueError, match=r"q and tau of shape \(\.\.\., 400, 2\), got \(6, 400, 1\)"
+        ValueError, match=r"q and tau of shape \(\.\.\., 400, 2\), got \(3, 400, 1\)"
     ):
         check_recording(replace(recording, q=recording.q[..., :1]))
     assert "0 runs" in repr(check_recording(Log(())))
@@ -366,7 +366,7 @@ def test_a_logged_recording_knows_its_lines_and_a_warning_is_one_line():
     q[2, 200, 1] -= 0.3
     parts = {name: getattr(plain, name) for name in plain.__dataclass_fields__} | {"q": q}
     lines = np.arange(q[..., 0].size).reshape(q.shape[:2]) + 2
-    logged = LoggedRecording(**parts, names=tuple("abcdef"), lines=lines)
+    logged = LoggedRecording(**parts, names=tuple("abc"), lines=lines)
     assert check_recording(logged).wrong[0].lines.tolist() == [lines[2, 200]]
     with pytest.warns(DoubtfulRecording, match=r"spike \(run 3, elbow\)") as caught:
         warn_of(logged)
