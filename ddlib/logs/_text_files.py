@@ -149,7 +149,7 @@ def split(path: str, text: str, separator, decimal, skip_bad: bool) -> Table:
     comments = [k for k in filled if k < start]
     first = every[start].strip() if not body else every[body[0]]
     sep = _separator(every[start], first) if separator is None else separator
-    sep = " " if sep in (r"\s+", "") else sep
+    sep = " " if sep == r"\s+" else sep
     if _has_numbers_only(_cells(every[start], sep)):  # heads stand in a comment, or nowhere
         heads, head_line = [], start + 1
         for k in comments[-1:]:
@@ -253,7 +253,8 @@ def _count(table: Table, name: str, skip_bad: bool) -> None:
         table.left_out = int(bad.size)
         return
     k = bad[0]
-    told = f"{name}, line {table.numbers[k]}: {counts[k]} cells under {heads} heads"
+    cells = "1 cell" if counts[k] == 1 else f"{counts[k]} cells"
+    told = f"{name}, line {table.numbers[k]}: {cells} under {heads} heads"
     sample = table.lines[k]
     if sep == "," and counts[k] > heads and not re.search(r"\d\.\d", sample):
         told += "; decimal commas between commas cannot be told apart: write semicolons between"

@@ -64,7 +64,7 @@ def in_head(head: str, quantity: str) -> tuple[str, str | None]:
 def factor(quantity: str, unit) -> tuple[float, str]:
     """SI units in a unit, and the kind of it; a ValueError lists those that are known."""
     if not isinstance(unit, str):
-        return number(f"units of {quantity}", unit), kind_of(quantity)[0]
+        return number(f"units of {quantity}", unit, 0.0, open_low=True), kind_of(quantity)[0]
     for kind in kind_of(quantity):
         if spelled(unit) in _KNOWN[kind]:
             return _KNOWN[kind][spelled(unit)], kind

@@ -84,6 +84,7 @@ def read_log(
     OSError
         If a file cannot be read.
     """
+    _check_layout(separator, decimal, encoding)
     wanted = _wanted(columns, rate, run)
     units, factors = _by_column("units", units), _by_column("factors", factors)
     if rate is not None:
@@ -170,7 +171,7 @@ def write_csv(path, recording: Recording) -> None:
 
 def _wanted(columns, rate, run) -> dict:
     """The head or place of each quantity: as given, else its own name."""
-    columns = dict(columns or {})
+    columns = _mapping("columns", columns)
     for name in columns:
         if name not in _QUANTITIES:
             raise fault(
@@ -194,10 +195,31 @@ def _wanted(columns, rate, run) -> dict:
     return wanted
 
 
+def _mapping(name: str, given) -> dict:
+    if given is not None and not isinstance(given, Mapping):
+        example = {"columns": "its head", "units": "deg", "factors": 0.7}[name]
+        raise fault(
+            f"{name} must be a dictionary, like {{'q1': {example!r}}}, got {shown(repr(given))}",
+            TypeError,
+        )
+    return dict(given or {})
+
+
+def _check_layout(separator, decimal, encoding) -> None:
+    """Refuse what no file can have."""
+    for name, value in {"separator": separator, "decimal": decimal, "encoding": encoding}.items():
+        if not isinstance(value, str | None):
+            raise TypeError(f"{name} must be text, got {shown(repr(value))}")
+    if separator not in (None, r"\s+") and (len(separator) != 1 or separator in '"\n'):
+        raise fault(f"separator must be one character, like ';', got {shown(repr(separator))}")
+    if decimal not in (None, ".", ","):
+        raise fault(f"decimal must be '.' or ',', got {shown(repr(decimal))}")
+
+
 def _by_column(name: str, given) -> dict:
     """A mapping by quantity; "q" and "tau" stand for both joints."""
     found = {}
-    for key, value in dict(given or {}).items():
+    for key, value in _mapping(name, given).items():
         both = {"q": _ANGLES, "tau": _TORQUES}.get(key, (key,))
         for quantity in both:
             if quantity not in _QUANTITIES[:-1]:

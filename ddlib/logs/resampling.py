@@ -128,6 +128,8 @@ def resampled(log, step, longest_gap, seconds, trust_stamps) -> tuple[LoggedReco
             )
     notes = list(log.notes)
     pieces, lost = _pieces(log, own, longest_gap, notes)
+    if step is not None:  # three samples at least, and no flood of them
+        number("step", step, min(own) / 100, max(np.ptp(piece.t) for piece in pieces) / 2)
     made, added = _even(pieces, step, trust_stamps, notes)
     grid = made[0].t[1] - made[0].t[0] if step is None else step
     total = sum(len(piece.t) for piece in made)
@@ -225,6 +227,7 @@ def _even(pieces, step, trust_stamps, notes) -> tuple[list[_Piece], int]:
     steps = np.array([fit.step for fit in fits])
     mean = float((steps * weights).sum() / weights.sum())
     target = mean if step is None else step
+    lower = 1 + _OTHER if step is None else _LOWER
     made, added = [], 0
     for piece, fit in zip(pieces, fits):
         name, n = shown(piece.run, 100), len(piece.t)
@@ -262,11 +265,9 @@ def _even(pieces, step, trust_stamps, notes) -> tuple[list[_Piece], int]:
             notes.append(
                 f"{name}: uneven stamps (steps of {np.diff(piece.t).min():.3g} to "
                 f"{np.diff(piece.t).max():.3g} s); angles interpolated by cubic splines and "
-                f"torques by lines, to even steps of {fit.step if step is None else step:.6g} s."
+                f"torques by lines, to even steps of {target:.6g} s."
             )
-            on_grid = (
-                piece if not target > _LOWER * fit.step else piece.at(_grid(piece.t, fit.step))
-            )
+            on_grid = piece if not target > lower * fit.step else piece.at(_grid(piece.t, fit.step))
             alike = False
         if not alike:
             if fit.count is not None:
@@ -274,7 +275,7 @@ def _even(pieces, step, trust_stamps, notes) -> tuple[list[_Piece], int]:
                     f"{name}: brought from steps of {fit.step:.6g} s to steps of {target:.6g} s"
                     + (", finer than logged: nothing is gained." if target < fit.step else ".")
                 )
-            if target > _LOWER * fit.step:
+            if target > lower * fit.step:
                 on_grid = _low_pass(on_grid, fit.step, target)
                 notes.append(
                     f"{name}: angles and torques went through a low-pass without a lag, up to "

@@ -203,6 +203,9 @@ ERRORS = [
      "write semicolons between columns, or decimal points"),
     (table() + "0.6,1,2\n", {},
      "own.csv, line 62: 3 cells under 5 heads; skip_bad=True leaves such lines out"),
+    (table(sep="\t").replace("\t", ",", 4), {},
+     "own.csv, line 2: 1 cell under 5 heads; between cells is taken to be a comma, say separator= "
+     "if not"),
     (table("time,q1,q2"), {},
      "own.csv, line 2: 5 cells under 3 heads; between cells is taken to be a comma, say "
      "separator= if not"),
@@ -260,6 +263,28 @@ ERRORS = [
      "own.csv, line 1: no column trial in time, q1, q2, tau1, tau2; name what it is called by "
      "columns={...}"),
 ]  # fmt: skip
+
+
+ARGUMENTS = [
+    ({"columns": ["q1"]}, "columns must be a dictionary, like {'q1': 'its head'}, got ['q1']"),
+    ({"units": "deg"}, "units must be a dictionary, like {'q1': 'deg'}, got 'deg'"),
+    ({"factors": 2}, "factors must be a dictionary, like {'q1': 0.7}, got 2"),
+    ({"columns": {"q1": None}}, "columns: q1 must be a head of the file or a place, got None"),
+    ({"units": {"q1": 0}}, "units of q1 must lie in (0, inf], got 0"),
+    ({"separator": ";;"}, "separator must be one character, like ';', got ';;'"),
+    ({"separator": 5}, "separator must be text, got 5"),
+    ({"decimal": "x"}, "decimal must be '.' or ',', got 'x'"),
+    ({"encoding": 5}, "encoding must be text, got 5"),
+    ({"step": 5}, "step must lie in [0.0001, 0.295], got 5"),
+    ({"step": 1e-9}, "step must lie in [0.0001, 0.295], got 1e-09"),
+]
+
+
+@pytest.mark.parametrize("options, told", ARGUMENTS)
+def test_errors_of_arguments_say_what_may_stand_there(options, told, tmp_path):
+    with pytest.raises((TypeError, ValueError)) as error:
+        read_csv(stored(tmp_path, table()), **options)
+    assert str(error.value) == told
 
 
 @pytest.mark.parametrize("content, options, told", ERRORS)
