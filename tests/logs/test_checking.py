@@ -179,6 +179,14 @@ DEFECTS = {
 }
 SHOWN_BY_NUMBERS = ("units of time", "units of angle", "wrap", "spike", "drop-outs (zero)")
 
+BY_EQUATIONS = (
+    "sign of a torque",
+    "elbow angle",
+    "sign of the elbow",
+    "order of the joints",
+    "lag",
+)
+
 
 def kinds(check, *severities):
     return {found.kind for found in check.findings if found.severity in severities}
@@ -198,13 +206,16 @@ def test_good_recordings_are_not_called_wrong():
         heavy = bool(check.of("gravity"))
         assert heavy == any(ARMS.get(arm, ARMS["CMU"])[0].gravity_moments), (arm, kind)
     # a torque that is computed from a coarse reading has its steps in it, by rights
-    assert set(doubtful) <= {"command", "little torque", "spike"}
+    assert set(doubtful) <= {"command", "little torque", "spike", "excitation"}
     assert max(doubtful.values()) <= 10
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_defects_are_found_in_nearly_all_recordings(defect):
-    """Fifteen of sixteen or more; nothing else is called wrong but what the same samples do."""
+    """Fifteen of sixteen by single numbers, twelve by the equations of three short motions.
+
+    Nothing else is called wrong but what the same samples do.
+    """
     found, others, warned = 0, Counter(), 0
     kind = defect.removesuffix(" at rest").removesuffix(", early")
     for recording in recordings().values():
@@ -217,7 +228,7 @@ def test_defects_are_found_in_nearly_all_recordings(defect):
                 warnings.simplefilter("always")
                 warn_of(as_recording(log))
             warned += [w.category for w in caught] == [DoubtfulRecording]
-    assert found >= 15
+    assert found >= (12 if defect in BY_EQUATIONS else 15)
     assert sum(others.values()) <= (16 if defect == "units of time" else 1), others
     assert warned == (16 if defect in SHOWN_BY_NUMBERS else 0)
 
