@@ -19,6 +19,7 @@ from ddlib.simulation import Recording
 
 _ANGLES, _TORQUES = ("q1", "q2"), ("tau1", "tau2")
 _MEASURED = (*_ANGLES, *_TORQUES)
+_MAY_LACK = ("q2", *_TORQUES)  # 0 throughout, as in the log of a single joint
 _QUANTITIES = ("time", *_MEASURED, "run")
 
 
@@ -180,12 +181,10 @@ def _wanted(columns, rate, run) -> dict:
             )
     for name, head in columns.items():
         is_place = isinstance(head, (int, np.integer)) and not isinstance(head, bool)
-        if not (isinstance(head, str) or is_place or (head is None and name in _MEASURED)):
+        if not (isinstance(head, str) or is_place or (head is None and name in _MAY_LACK)):
             raise fault(
                 f"columns: {name} must be a head of the file or a place, got {shown(repr(head))}"
             )
-    if all(columns.get(name, name) is None for name in _ANGLES):
-        raise ValueError("columns must name an angle, q1 or q2, got None for both")
     if run is not None:
         columns["run"] = run
     own = {name: name for name in _QUANTITIES if name != "run"}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ddlib.dynamics import Arm
 from ddlib.logs import Log, LoggedRun, check_recording
 
 T = 0.004 * np.arange(1000)
@@ -80,3 +81,24 @@ def test_rounding_is_no_motion_and_no_torque():
     check = check_recording(log(q, tau))
     assert kinds(check) >= {"at rest", "no torque"} and "little torque" not in kinds(check)
     assert "within 0 rad" in check.of("at rest")[0].what
+
+
+def test_a_torque_later_than_all_that_is_tried_has_no_margin():
+    t = 0.01 * np.arange(1500)
+    q = 0.5 * np.stack([np.sin(4 * t) + np.sin(7 * t), np.sin(5 * t) + np.cos(9 * t)], -1)
+    qd = np.gradient(q, 0.01, axis=0)
+    qdd = np.gradient(qd, 0.01, axis=0)
+    tau = Arm("my arm", 1.0, 0.2, 0.3, (0.3, 0.3)).inverse_dynamics(q, qd, qdd)
+    rng = np.random.default_rng(3)
+    late = np.roll(tau, 11, axis=0)[20:-20] + rng.normal(0, 0.01, (1460, 2))
+    (lag,) = check_recording(log(q[20:-20], late, t[20:-20])).of("lag")
+    assert "8.0 or more samples" in lag.what
+
+
+def test_a_motion_that_tells_no_parameter_is_asked_to_be_longer():
+    t = 0.01 * np.arange(300)
+    q = np.stack([0.2 * t, 0.1 * t], -1)
+    rng = np.random.default_rng(3)
+    q, tau = q + rng.normal(0, 1e-4, q.shape), 1.0 + rng.normal(0, 0.1, q.shape)
+    (told,) = check_recording(log(q, tau, t)).of("excitation")
+    assert told.what.startswith("No parameter is told") and "Record longer" in told.advice

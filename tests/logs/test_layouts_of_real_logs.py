@@ -93,7 +93,9 @@ def test_a_log_of_one_joint(tmp_path):
     recording = read_csv(path, {**names, "q2": None, "tau2": None})
     np.testing.assert_array_equal(recording.q[0], ANGLES * [1, 0])
     assert any("q2 is taken to be 0" in note for note in recording.notes)
-    with pytest.raises(ValueError, match="columns must name an angle, q1 or q2, got None for both"):
+    with pytest.raises(
+        ValueError, match="columns: q1 must be a head of the file or a place, got None"
+    ):
         read_csv(path, {**names, "q1": None, "q2": None, "tau2": None})
 
 
