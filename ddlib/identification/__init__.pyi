@@ -2,7 +2,6 @@ from .consistency import (
     physically_consistent as physically_consistent,
 )
 from .equations import (
-    SLOW as SLOW,
     by_differences as by_differences,
     by_modulation as by_modulation,
     by_smoothing as by_smoothing,
@@ -24,6 +23,7 @@ from .regression import (
     GRAVITY as GRAVITY,
     RIGID as RIGID,
     SIGN_SPEED as SIGN_SPEED,
+    SLOW as SLOW,
     Combination as Combination,
     Equations as Equations,
     Estimate as Estimate,

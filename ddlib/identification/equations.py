@@ -17,6 +17,7 @@ from ddlib.identification.regression import (
     FRICTION,
     RIGID,
     SIGN_SPEED,
+    SLOW,
     Equations,
     _columns,
     from_states,
@@ -25,7 +26,6 @@ from ddlib.simulation import Recording, record
 
 _BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes away biases them."
 _SHAKES = 8  # how often noise is added to readings, to see what it does to a regressor
-SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 
 
 def by_differences(recording: Recording, names: Sequence[str] = RIGID + FRICTION) -> Equations:
@@ -78,7 +78,11 @@ def by_modulation(
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step
     if end - begin < shortest - tiny:
         raise ValueError(f"recording must have 12 samples of motion or more, got {end - begin:g} s")
-    number("width", width, shortest - tiny, end - begin + tiny)
+    if not shortest - tiny <= number("width", width) <= end - begin + tiny:
+        raise ValueError(
+            f"width must lie in [{shortest:.3g}, {end - begin:.3g}], got {width:g} s: a bump has "
+            "12 samples or more, and is no longer than the motion"
+        )
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
     late = _lateness(recording) if hold is None else number("hold", hold, 0.0) / 2
     recording = _in_runs(recording)

@@ -19,6 +19,7 @@ RIGID = ("a", "b", "d")  #: Base parameters of a horizontal two-link arm, kg m^2
 GRAVITY = ("g1", "g2")  #: Gravity moments of a vertical arm, N m.
 #: Viscous (N m s/rad) and Coulomb (N m) friction of shoulder and elbow.
 FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
+SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity is blurred.
 
 
@@ -132,7 +133,12 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     integer("rounds", rounds, 1)
     names, count = equations.names, sum(y.shape[-1] for y in equations.torque)
     if count <= len(names):
-        raise ValueError(f"equations must be more than the {len(names)} parameters, got {count}")
+        slow = not count and any(name.startswith("F_c") for name in names)
+        why = f": dry friction asks for a joint that moves on at {SLOW} rad/s or more"
+        raise ValueError(
+            f"equations must be more than the {len(names)} parameters, got {count}"
+            f"{why if slow else ''}"
+        )
     equations, notes = _driven(equations)
     names, regressors, torques = equations[:3]
     unseen = _unseen(equations)

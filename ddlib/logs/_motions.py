@@ -386,10 +386,12 @@ def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
     if thinned * abs(lag) < 0.6 or abs(lag) < 4 * error or at > 0.9 * now:
         return
     which = "later" if lag > 0 else "earlier"
+    margin = f" ± {2 * thinned * error:.1f}"
+    if abs(lag) == SHIFTS[-1]:  # no later one was tried
+        margin = " or more"
     yield found(
         None, "lag", "wrong" if at < 0.5 * now else "doubtful", (None, None), [],
-        f"The torque fits the motion best if it is read {thinned * abs(lag):.1f} ± "
-        f"{2 * thinned * error:.1f} samples "
+        f"The torque fits the motion best if it is read {thinned * abs(lag):.1f}{margin} samples "
         f"({1000 * abs(lag) * step:.3g} ms) {which}; {100 * now:.1f} % of it are left over now, "
         f"{100 * at:.1f} % then.",
         "A torque that is logged late adds to the damping: inertia times delay times the square of "
@@ -474,14 +476,17 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
             nothing.append(name)
         else:
             told.append(f"{name} to {significant(max(200 * error / value, 0.1), 1)} %")
-    seen = f"Told are {', '.join(told) or 'none'}."
+    seen = f"Told are {', '.join(told)}." if told else "No parameter is told by itself."
     seen += f" No different from zero: {', '.join(nothing)}." if nothing else ""
     seen += f" Cannot be told one by one: {', '.join(lost)}." if lost else ""
+    advice = "Nothing: percentages are twice the standard errors, roughly."
+    if lost:
+        advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
+    if not told:
+        advice = "Record longer motions in which both joints speed up and slow down, each its way."
     yield found(
-        None, "excitation", "doubtful" if lost else "note", (None, None), [], seen,
-        "What cannot be told comes out at random, and takes others along.",
-        f"Leave {' or '.join(lost)} out, or move so that they matter apart." if lost
-        else "Nothing: percentages are twice the standard errors, roughly.",
+        None, "excitation", "doubtful" if lost or not told else "note", (None, None), [], seen,
+        "What cannot be told comes out at random, and takes others along.", advice,
     )  # fmt: skip
 
 

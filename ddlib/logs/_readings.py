@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ddlib.logs._stamps import usual_step
 from ddlib.logs.findings import Finding, count, found
 from ddlib.logs.log import LoggedRun
 
@@ -15,6 +16,7 @@ SPIKE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])  # what fourth differences make of
 
 def readings(k: int, run: LoggedRun) -> Iterator[Finding]:
     """What the angles and torques of run number `k` show, joint by joint."""
+    yield from _slow_readings(k, run)
     for j in range(2):
         if run.t.size < 12:
             return
@@ -37,6 +39,7 @@ def readings(k: int, run: LoggedRun) -> Iterator[Finding]:
         yield from _spikes(k, j, run, mended, lost)
         yield from _held_torque(k, j, run, q, tau)
         yield from _limit(k, j, run, tau)
+        yield from _one_sign(k, j, run, q, tau)
 
 
 def _spikes(k, j, run, q, lost):
@@ -275,15 +278,62 @@ def _held_torque(k, j, run, q, tau):
             )  # fmt: skip
 
 
+def _slow_readings(k, run):
+    """Lines that repeat all readings of the line before: the log is faster than what it logs."""
+    readings = np.concatenate([run.q, run.tau], axis=1)
+    if len(readings) < 40:
+        return
+    with np.errstate(invalid="ignore"):
+        changes = np.diff(readings, axis=0) != 0
+    changes = changes[:, changes.sum(axis=0) >= 20]
+    new = np.flatnonzero(changes.any(axis=1))
+    if changes.shape[1] < 2 or new.size < 20:
+        return
+    waits = np.diff(new)
+    usual = float(np.median(waits))
+    # those of a quantiser change one by one, and a joint that rests waits at its ends only
+    if usual < 2 or changes[new].mean() < 0.8 or np.percentile(waits, 90) > 3 * usual:
+        return
+    yield found(
+        run, "slow readings", "doubtful", (k, None), [],
+        f"Angles and torques change together, every {usual:.0f} samples only.",
+        "From line to line the arm stands still and jumps; readings are up to "
+        f"{usual - 1:.0f} samples old.",
+        f"Take a step of {usual * usual_step(run.t):.3g} s or more, and no differences of lines.",
+    )  # fmt: skip
+
+
+def _one_sign(k, j, run, q, tau):
+    """A torque that comes down to zero and never changes its sign, of a joint that swings."""
+    size = np.abs(tau)
+    high = size.max()
+    if not high or (tau.min() < -0.01 * high and tau.max() > 0.01 * high):
+        return
+    small, moves = size < 0.1 * high, np.diff(q)
+    path = np.abs(moves).sum()
+    both = min(moves[moves > 0].sum(), -moves[moves < 0].sum()) > 0.1 * path
+    touches = np.count_nonzero(np.diff(small.astype(np.int8)) == 1)  # times it comes down to zero
+    if both and path > 0.1 and touches >= 3 and 0.03 < small.mean() < 0.7:
+        yield found(
+            run, "torque of one sign", "doubtful", (k, j), [],
+            f"The torque comes down to zero {count(touches, 'time')} and never changes its sign, "
+            "while the joint moves both ways.",
+            "If only the amount of a current was logged, inertia and friction are wrong.",
+            "Log the current with its sign, or give it that of the command.",
+        )  # fmt: skip
+
+
 def _limit(k, j, run, tau):
     """Many samples at exactly the largest or smallest value."""
     if np.ptp(tau) == 0:
         return
+    waits = np.diff(np.flatnonzero(np.diff(tau)))
+    usual = np.median(waits) if waits.size else 1  # a slow torque stays so long at any value
     for value, name in ((tau.max(), "highest"), (tau.min(), "lowest")):
         rows = np.flatnonzero(tau == value)
         begin, length = constant(tau)
         longest = max((n for b, n in zip(begin, length) if tau[b] == value), default=1)
-        if value == 0 or longest < 4 or rows.size < max(5, 0.003 * tau.size):
+        if value == 0 or longest < 4 * usual or rows.size < max(5, 0.003 * tau.size):
             continue
         if longest > 0.6 * tau.size or np.unique(tau).size < 12:
             continue  # a torque of few values, as of pulses

@@ -33,6 +33,7 @@ _SEPARATORS = (";", "\t", ",", "|", " ")
 _NAMES = {";": "semicolon", "\t": "tab", ",": "comma", "|": "bar", " ": "blank"}
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?$")
 _CHUNK = 250_000  # lines
+_ABOVE = 100  # lines about a log, above its heads, at most
 _LONGEST = 300  # characters of an error
 
 
@@ -48,6 +49,7 @@ class Table:
     separator: str
     decimal: str | None  #: None: not known yet.
     left_out: int = 0  #: Lines with too few or too many cells.
+    above: int = 0  #: Lines above the heads that are no comments.
 
 
 def shown(text, most: int = 40) -> str:
@@ -141,7 +143,8 @@ def split(path: str, text: str, separator, decimal, skip_bad: bool) -> Table:
     filled = [k for k, line in enumerate(every) if line.strip()]
     if not filled:
         raise fault(f"{name}: is empty")
-    start = next((k for k in filled if every[k].lstrip()[0] not in "#%"), filled[-1])
+    spoken = [k for k in filled if every[k].lstrip()[0] not in "#%"] or filled[-1:]
+    start = _first(every, spoken, separator)
     body = [k for k in filled if k > start and every[k].lstrip()[0] not in "#%"]
     comments = [k for k in filled if k < start]
     first = every[start].strip() if not body else every[body[0]]
@@ -158,9 +161,29 @@ def split(path: str, text: str, separator, decimal, skip_bad: bool) -> Table:
         _check_quotes(every[start], f"{name}, line {start + 1}")
         heads, head_line = _heads(every[start], sep), start + 1
     table = Table(path, heads, head_line, [every[k] for k in body], np.array(body, int) + 1, sep,
-                  decimal)  # fmt: skip
+                  decimal, above=spoken.index(start))  # fmt: skip
     _count(table, name, skip_bad)
     return table
+
+
+def _first(every, spoken, separator) -> int:
+    """The line of the heads: the first, unless lines about the log stand above it."""
+    seps = _SEPARATORS if separator is None else (separator,)
+    for n in range(min(len(spoken) - 3, _ABOVE)):
+        below = [every[k] for k in spoken[n + 1 : n + 4]]
+        for sep in seps:
+            heads, rows = _heads(every[spoken[n]], sep), [_cells(line, sep) for line in below]
+            rows = [row[:-1] if row[len(heads) :] == [""] else row for row in rows]
+            numbers = [sum(map(_is_number, row)) for row in rows]
+            if 2 * min(numbers) < len(heads) or any(len(row) != len(heads) for row in rows):
+                continue
+            if len(heads) > 1 and (n == 0 or 2 * sum(map(_is_number, heads)) < len(heads)):
+                return spoken[n]
+    return spoken[0]
+
+
+def _is_number(cell: str) -> bool:
+    return bool(_NUMBER.match(cell))
 
 
 def _separator(head: str, first: str) -> str:
@@ -213,8 +236,13 @@ def _count(table: Table, name: str, skip_bad: bool) -> None:
     counts = np.array(counts, int)
     heads = len(table.heads) or (int(np.median(counts)) if counts.size else 0)
     ends = counts == heads + 1
-    if sep != " " and counts.size and ends.all() and all(x.rstrip().endswith(sep) for x in lines):
-        table.lines = [x.rstrip()[:-1] for x in lines]  # a separator at the end of each line
+    if (
+        sep != " "
+        and counts.size
+        and ends.all()
+        and all(x.rstrip(" ").endswith(sep) for x in lines)
+    ):
+        table.lines = [x.rstrip(" ")[:-1] for x in lines]  # a separator at the end of each line
         counts = counts - 1
     bad = np.flatnonzero(counts != heads)
     if not bad.size:
@@ -279,6 +307,11 @@ def _decimal(table: Table, places) -> str:
     return "," if commas and not any("." in cell for cell in numbers) else "."
 
 
+def cells(table: Table, line: int) -> list[str]:
+    """What stands on a line, as text."""
+    return _cells(table.lines[line], table.separator)
+
+
 def cell(table: Table, line: int, place: int) -> str:
     """What stands in a cell, as text."""
-    return _cells(table.lines[line], table.separator)[place]
+    return cells(table, line)[place]

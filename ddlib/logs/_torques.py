@@ -26,9 +26,20 @@ def weak(run: LoggedRun, j: int) -> bool:
     """Whether a joint's torque is small beside the other's, and noise a good part of it."""
     tau, other = run.tau[:, j], np.nanstd(run.tau[:, 1 - j])
     tau = tau[np.isfinite(tau)]
-    if tau.size < 12 or not tau.std() < 0.3 * other:
+    if tau.size < 12 or not tau.std() < 0.3 * other or steady(tau):
         return False
     return bool(np.median(np.abs(np.diff(tau, 2))) > 0.1 * tau.std())
+
+
+def _moved(q):
+    """How far each joint moves, in rad, without the rounding of a computation, (2,)."""
+    return np.round(np.nanmax(q, axis=0) - np.nanmin(q, axis=0), 9)
+
+
+def steady(x) -> bool:
+    """Whether values are one value, but for the rounding of a computation."""
+    x = x[np.isfinite(x)]
+    return bool(np.ptp(x) <= 1e-9 * np.abs(x).max()) if x.size else True
 
 
 def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
@@ -37,7 +48,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
     if rest.all():
         yield found(
             run, "at rest", "wrong", (k, None), [],
-            f"No joint moves: the angles stay within {np.nanmax(np.ptp(run.q, axis=0)):.3g} rad.",
+            f"No joint moves: the angles stay within {_moved(run.q).max():.3g} rad.",
             "No inertia and no friction can be told from this run.",
             "Leave the run out.",
         )  # fmt: skip
@@ -45,8 +56,7 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
         if rest[j] and not rest.all():
             yield found(
                 run, "at rest", "doubtful", (k, j), [],
-                f"The {JOINTS[j]} moves by {np.nanmax(run.q[:, j]) - np.nanmin(run.q[:, j]):.3g} "
-                "rad only.",
+                f"The {JOINTS[j]} moves by {_moved(run.q)[j]:.3g} rad only.",
                 "Its own inertia, the coupling and its friction cannot be told one by one, only "
                 "the inertia of both links together.",
                 "Add runs in which it moves, or fit the sum alone.",
@@ -56,8 +66,8 @@ def at_work(k: int, run: LoggedRun) -> Iterator[Finding]:
         if tau.size < 12:
             continue
         other = np.nanstd(run.tau[:, 1 - j])
-        if np.ptp(tau) == 0:
-            both = not np.nanstd(run.tau[:, 1 - j])
+        if steady(tau):
+            both = steady(run.tau[:, 1 - j])
             yield found(
                 run, "no torque", "wrong" if both else "doubtful", (k, j), [],
                 f"The {JOINTS[j]}'s torque is {tau[0]:.4g} N m throughout.",

@@ -90,15 +90,19 @@ def unit_of_times(times: np.ndarray, steps: np.ndarray, place: str) -> tuple[str
     """
     first = abs(float(times[0])) if times.size else 0.0
     step = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
+    slow = []
     for unit, size in _KNOWN["time"].items():
-        if _EPOCH[0] <= first * size <= _EPOCH[1] and (step == 0 or step * size <= 60):
-            return unit, True
+        if _EPOCH[0] <= first * size <= _EPOCH[1]:
+            if step == 0 or _STEPS[0] <= step * size <= _STEPS[1]:
+                return unit, True
+            slow = [unit] if step * size > _STEPS[1] else slow
     if step == 0 or _STEPS[0] <= step <= _STEPS[1]:
         return "s", False
     sizes = _KNOWN["time"]
     likely = [u for u, size in sizes.items() if _STEPS[0] <= step * size <= _STEPS[1]]
+    likely = [unit for unit in slow if unit not in likely] + likely
     readings = [f'"{u}" ({step * sizes[u]:g} s a step)' for u in likely]
-    if step < 2:
+    if step < 2 and "s" not in likely:
         readings = [f'"s" ({step:g} s a step)', *readings]
     if step == 1:
         readings.append("numbers of samples (then give rate= and no time)")

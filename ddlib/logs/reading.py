@@ -19,6 +19,7 @@ from ddlib.simulation import Recording
 
 _ANGLES, _TORQUES = ("q1", "q2"), ("tau1", "tau2")
 _MEASURED = (*_ANGLES, *_TORQUES)
+_MAY_LACK = ("q2", *_TORQUES)  # 0 throughout, as in the log of a single joint
 _QUANTITIES = ("time", *_MEASURED, "run")
 
 
@@ -48,7 +49,8 @@ def read_log(
     columns : mapping, optional
         Heads in the file of time, q1, q2, tau1, tau2 and run, where they differ:
         ``{"time": "timestamp", "q1": "actual_q_0"}``. A number is a column's place, counted
-        from 0. None is for a joint without torque: ``{"tau2": None}``.
+        from 0. None is for a joint without torque, ``{"tau2": None}``, and for one that is locked,
+        as in a log of a single joint: ``{"q2": None, "tau2": None}``.
     units : mapping, optional
         Units of columns that are not in s, rad, N m: ``{"time": "ms", "q1": "deg", "q2": "deg"}``.
         Known are s, ms, us, ns; rad, mrad, deg, rev; Nm, mNm, Ncm, kNm; A, mA; and a number is
@@ -72,8 +74,8 @@ def read_log(
     Returns
     -------
     Log
-        In s, rad, N m; times of a clock that counts from 1970 begin at 0. `notes` say what was
-        converted or left out.
+        In s, rad, N m; times of a clock that counts from 1970 begin at 0. Where a file's time
+        begins again, so does a run. `notes` say what was converted or left out.
 
     Raises
     ------
@@ -179,7 +181,7 @@ def _wanted(columns, rate, run) -> dict:
             )
     for name, head in columns.items():
         is_place = isinstance(head, (int, np.integer)) and not isinstance(head, bool)
-        if not (isinstance(head, str) or is_place or (head is None and name in _TORQUES)):
+        if not (isinstance(head, str) or is_place or (head is None and name in _MAY_LACK)):
             raise fault(
                 f"columns: {name} must be a head of the file or a place, got {shown(repr(head))}"
             )
@@ -244,6 +246,8 @@ class _Reader:
             raise fault(f"{self.name}: no samples below the heads")
         self.cells = text_files.columns(self.table, list(self.places.values()))
         self.rows = np.arange(len(self.table.lines))
+        if self.table.above:
+            self.notes.append(f"{_lines(self.table.above)} above the heads passed over.")
         if self.table.left_out:
             what = "a wrong count of cells"
             self.notes.append(f"{_lines(self.table.left_out)} with {what} left out.")
@@ -307,6 +311,11 @@ class _Reader:
                         units[name] = unit if _is_known(name, unit) else None
             else:
                 self.notes.append(f"{name} is taken to be 0 throughout, as columns says.")
+        if missing and not heads and len(text_files.cells(self.table, 0)) == 1:
+            raise fault(
+                f"{self.name}: one number on a line; a log must have a line for each time, and on "
+                f"it a column for each quantity"
+            )
         if missing and not heads:
             raise fault(
                 f"{self.name}, line {self.table.head_line}: numbers, and no heads above them; give "
@@ -321,7 +330,11 @@ class _Reader:
         seen = {}
         for name, place in places.items():
             if place in seen:
-                raise fault(f"columns: {seen[place]} and {name} must differ, got one head for both")
+                apart = seen[place][0] == "q" and name.startswith("tau")
+                raise fault(
+                    f"columns: {seen[place]} and {name} must differ, got one head for both"
+                    f"{'; join files of angles and of torques by pandas.merge' if apart else ''}"
+                )
             seen[place] = name
         return places, {name: unit for name, unit in units.items() if unit is not None}
 
@@ -397,6 +410,7 @@ class _Reader:
 
     def _times(self, time, members) -> tuple[dict, dict]:
         """Lines and times in s of each run."""
+        members = self._parted(time, members)
         if self.skip_bad:
             members = self._forward(time, members)
         steps = np.concatenate([np.diff(time[rows]) for rows in members.values()])
@@ -424,6 +438,28 @@ class _Reader:
         time = known_units.converted(np.asarray(time, float), size)
         return members, {name: time[rows] for name, rows in members.items()}
 
+    def _parted(self, time, members) -> dict:
+        """Runs parted where their time begins again."""
+        parted = {}
+        for name, rows in members.items():
+            t, parts, start = time[rows], [], 0
+            for k in np.flatnonzero(np.diff(t) < 0) + 1:
+                if t[k] <= t[start] + 0.1 * (t[k - 1] - t[start]) and k - start >= 3:
+                    parts.append(rows[start:k])
+                    start = k
+            if not parts:
+                parted[name] = rows
+                continue
+            parts.append(rows[start:])
+            first = self.table.numbers[self.rows[parts[1][0]]]
+            self.notes.append(
+                f"time begins again at {len(parts) - 1} places, the first at line {first}; a run "
+                f"begins there."
+            )
+            joined = ", part" if ", run " in name else ", run"
+            parted |= {f"{name}{joined} {k + 1}": part for k, part in enumerate(parts)}
+        return parted
+
     def _forward(self, time, members) -> dict:
         """Each run's lines whose time is later than all before."""
         kept, count = {}, 0
@@ -443,6 +479,9 @@ class _Reader:
     def _angles(self, measured, lines, absolute_elbow) -> np.ndarray:
         found = []
         for name in _ANGLES:
+            if name not in measured:
+                found.append(np.zeros(len(self.rows)))
+                continue
             told, values = self._size(name), np.asarray(measured[name], float)
             if told is not None:
                 values = known_units.converted(values, told[0])

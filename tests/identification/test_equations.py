@@ -128,6 +128,9 @@ def test_refusals():
             by_modulation(run, width=width)
     with pytest.raises(ValueError, match="recording must have 12 samples of motion"):
         by_modulation(replace(run, duration=0.1))
+    lines = replace(run, q=np.repeat(run.q[..., ::6, :], 6, axis=-2)[..., : run.t.size, :])
+    with pytest.raises(ValueError, match="got 0: dry friction asks for a joint that moves on"):
+        least_squares(by_modulation(lines))  # readings that stay for six lines
     with pytest.raises(ValueError, match="width must be an odd number"):
         by_smoothing(run, 10)
 
