@@ -5,6 +5,9 @@ from .equations import (
     by_smoothing as by_smoothing,
     repeat as repeat,
 )
+from .instruments import (
+    instrumental_variables as instrumental_variables,
+)
 from .known_axes import (
     joint_columns as joint_columns,
     joint_terms as joint_terms,
@@ -23,6 +26,13 @@ from .regression import (
     from_states as from_states,
     least_squares as least_squares,
     true_parameters as true_parameters,
+)
+from .smoothers import (
+    butterworth_states as butterworth_states,
+    by_butterworth as by_butterworth,
+    by_kalman as by_kalman,
+    encoder_step as encoder_step,
+    kalman_states as kalman_states,
 )
 from .window_filters import (
     FilteredEquations as FilteredEquations,
