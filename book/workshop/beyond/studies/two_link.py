@@ -7,7 +7,7 @@ is a command: it has as many values as samples, where currents come in steps of 
 at exactly 8 N m on both sides in C0; and it changes against the measured velocity, as a damper's
 torque would. Every run but one trains and that one tests, in turn: in A0 five of six, as in the
 report; in C0 and C1 two of three, which is all there is. Networks that are read learnt all runs.
-The instruments of `checks/smoothed.py` need the commanded torques, so these are in the file, too.
+`checks/instruments.py` needs the commanded torques, so these are in the file, too.
 """
 
 from __future__ import annotations
