@@ -15,7 +15,7 @@ from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illust
 from ddlib.identification import joint_terms
 from ddlib.learning import p_value
 from ddlib.tables import quote, significant
-from workshop.beyond.studies.tx40 import Windowed
+from workshop.beyond.studies.tx40 import Windowed, identified
 from workshop.chapters import real_two_link_arm as swinging
 from workshop.chapters.exercises import Between, judge
 from workshop.report import results
@@ -240,6 +240,14 @@ def _closed(power: int = 1) -> float:
     return (wide - own) / (wide - least)
 
 
+def coulomb_apart() -> float:
+    """How far newton metres for an ampere of Coulomb friction are apart at joints 1 to 5."""
+    data = Windowed.of(_RATE, 11)
+    found = identified(data.states, data.current).coulomb
+    ratio = (np.array(COULOMB) / np.abs(REDUCTION) / found)[:5]
+    return float(ratio.max() / ratio.min() - 1)
+
+
 def _quoted() -> None:
     """The numbers of the prose."""
     for name, short in _ALIKE.items():
@@ -248,6 +256,7 @@ def _quoted() -> None:
     friction = 100 * np.array(_row(11)["friction"])
     quote("real-friction-least", friction.min())
     quote("real-friction-most", friction.max())
+    quote("real-coulomb-off", 100 * coulomb_apart())
     for what in WORTH:
         quote(f"real-{what}-joints", int(beyond_null(what).value))
     for name, value in swinging.numbers().items():
@@ -274,9 +283,13 @@ def _said() -> None:
     stated("two-wiggles-cost", found["wiggles cost"])
     stated("two-not-rigid", found["not rigid"])
     stated("two-longer-less", found["longer holds less"])
-    stated("two-beyond-nulls", found["shoulder beyond nulls"])
-    stated("two-elbow-nulls", found["elbow like nulls"])
+    stated("two-beyond-nulls", found["beyond nulls"])
+    stated("two-like-nulls", found["like nulls"])
     stated("two-window-matters", found["window matters"])
+    stated("two-long-err", found["long windows err"])
+    stated("two-smooth-loses-nothing", found["smooth loses nothing"])
+    stated("two-instruments-find", found["instruments find"])
+    stated("two-smoothers-trade", found["cutoffs trade"] and found["likeliest fails"])
 
 
 def _parts_figure() -> Illustration:

@@ -43,11 +43,19 @@ _BESIDE = {
     _RUBBING: "filter with friction",
     "identified": "equations",
     "filters and equations": "equations with learnt filters",
+    "Butterworth filter": "equations after a Butterworth filter",
+    "Kalman smoother": "equations after a Kalman smoother",
     "network of 1988": "network of 1988",
+}
+_SMOOTHED = {
+    "learnt": "filters and equations",
+    "butterworth": "Butterworth filter",
 }
 _TOLD = {
     "identified": "equations",
     "filters and equations": "learnt filters",
+    "Butterworth filter": "Butterworth, equations",
+    "Kalman smoother": "Kalman, equations",
     "structure and process": "equations and process",
     "on states": "network on states",
     "recurrent": "recurrent network",
@@ -96,8 +104,44 @@ def _tuned() -> dict:
     return results.read("tuned")["rivals"]
 
 
+def smoothed(arm: str = "the report's arm") -> dict:
+    """What ``smoothers`` found on an arm: two smoothers and filters that are learnt, by name."""
+    return results.read("smoothers")["arms"][arm]["ways"]
+
+
+def learnt_over(against: str = "Butterworth filter") -> list[np.ndarray]:
+    """Errors of learnt filters over a smoother's: on the square, then on two other arms."""
+    places = [("the report's arm", "inside"), ("the report's arm", "outside")]
+    places += [("vertical", "trajectory 6"), ("coarse encoder", "trajectory 6")]
+    found = []
+    for arm, part in places:
+        ways = smoothed(arm)
+        mine, other = (
+            np.array(ways[name]["errors"][part]) for name in ("filters and equations", against)
+        )
+        found.append(mine / other)
+    return found
+
+
+def inertias_off(way: str, arm: str = "the report's arm") -> np.ndarray:
+    """How far the three inertias are from the true ones, as shares, (days, 3)."""
+    return np.array(smoothed(arm)[way]["off"])[:, :3]
+
+
+@cache
+def _entered() -> dict:
+    """All rivals that were tuned, and the two smoothers, with errors and stored numbers."""
+    names = results.read("smoothers")["arms"]["the report's arm"]["names"]
+    more = {
+        name: {"errors": one["errors"], "count": [len(names) + 1]}  # parameters, and the knob
+        for name, one in smoothed().items()
+        if name not in _tuned()
+    }
+    return _tuned() | more
+
+
 def _errors(name: str, part: str = "trajectory 6") -> np.ndarray:
-    return np.array(_tuned()[name]["errors"][part])
+    return np.array(_entered()[name]["errors"][part])
 
 
 def _ratios() -> Table:
@@ -108,7 +152,7 @@ def _ratios() -> Table:
         for part in _PARTS:
             found = over(name, part)
             cells.append(f"{np.median(found):.2f} ({found.min():.2f} to {found.max():.2f})")
-        rows.append((told, *cells, f"{np.median(_tuned()[name]['count']):,.0f}"))
+        rows.append((told, *cells, f"{np.median(_entered()[name]['count']):,.0f}"))
     heads = "trajectory 6", "square, in the hull", "outside the hull", "numbers stored"
     return Table(("rival", *heads), rows)
 
@@ -119,7 +163,7 @@ def show(name: str = "errors") -> Illustration | Table:
         return _ratios()
     marked = results.read("tuned")["reference"]
     shown = {}
-    for name, one in _tuned().items():
+    for name, one in _entered().items():
         errors, count = _errors(name), np.median(one["count"])
         shown[_TOLD.get(name, name)] = errors, f"{np.median(errors):.3f}", f"{count:,.0f}"
     order = sorted(shown, key=lambda name: np.median(shown[name][0]))
@@ -336,14 +380,17 @@ def _quoted() -> None:
     study, untuned = results.read("tuned"), row("network of 1988", size=10)
     for short, name in (("network", study["reference"]), ("recurrent", "recurrent")):
         quote(f"rivals-{short}", np.median(_errors(name)))
-    medians = {name: np.median(_errors(name)) for name in _tuned()}
+    medians = {name: np.median(_errors(name)) for name in _entered()}
     quote("rivals-ahead-all", sum(x < medians[study["reference"]] for x in medians.values()))
     for end, value in (("least", np.min), ("most", np.max)):
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
+    for short, name in _SMOOTHED.items():
+        quote(f"rivals-{short}", np.median(_errors(name)))
+    late = smoothed("late sensor")[study["own"]]
+    quote("rivals-late-applied", np.median(late["applied"]["trajectory 6"]))
     won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))
-    quote("rivals-recurrent-training", np.median(_errors("recurrent", "training")))
     quote("rivals-network-untuned", np.median(untuned["errors"]["trajectory 6"]))
     ahead = [better(part).text.split(":")[0].split(" of ") for part in _PARTS]
     (six, every), (inside, _), (outside, _) = ahead
@@ -361,6 +408,11 @@ def _said() -> None:
     stated("rivals-equations-ahead", over("identified").max() < 0.8)
     less = over(study["own"], against="identified")
     stated("rivals-filters-ahead", np.median(less) < 1)
+    beside = over(study["own"], against="Butterworth filter")
+    stated("rivals-smoother-draws", beside.min() < 1 < beside.max())
+    stated("rivals-learnt-lead", max(x.max() for x in learnt_over()) < 1)
+    off = {name: np.median(np.abs(inertias_off(name))) for name in smoothed()}
+    stated("rivals-inertias-off", off[study["own"]] > 1.5 * sorted(off.values())[-2])
     draw = over("linear filter")
     stated("rivals-linear-draws", draw.min() < 1 < draw.max())
     hull = [over("linear filter", part).max() for part in ("inside", "outside")]

@@ -55,11 +55,8 @@ def _shaken(run) -> dict:
 
 @study
 def _two_link_longer() -> dict:
-    """Moments after longer windows and descent, fast motion, one motion recorded twice."""
-    twice = [arm._recording(run) for run in ("C1_154220", "C1_154548")]
-    spread = [np.std(pair, axis=1).mean(0) for pair in zip(*twice)]  # positions, torques
-    apart = [(((x - y) / size) ** 2).mean() ** 0.5 for x, y, size in zip(*twice, spread)]
+    """Moments after longer windows and descent, and fast motion."""
     solved = {d: {str(w): _solved(r, w) for w in _WIDTHS} for d, r in arm._RUNS.items()}
-    row = {"epochs": _EPOCHS, "turns": _TURNS, "apart": apart, "solved": solved}
+    row = {"epochs": _EPOCHS, "turns": _TURNS, "solved": solved}
     row["descended"] = {design: _descended(runs) for design, runs in arm._RUNS.items()}
     return row | {"shaken": {r: _shaken(r) for runs in arm._RUNS.values() for r in runs}}
