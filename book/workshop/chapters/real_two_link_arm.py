@@ -198,7 +198,8 @@ def _window_figure() -> figures.Illustration:
     alt = (
         "The shoulder's gravity over that of the builders, by window. Plain least squares at 50, "
         f"210 and 450 ms: {told}. With instruments (dotted) it is near 1 from 50 ms on, "
-        "and above 1 with long windows. Networks rise from 110 to 410 ms; unrelated torques scatter about 0."
+        "and above 1 with long windows. Networks rise from 110 to 410 ms; unrelated torques "
+        "scatter about 0."
     )
     return figures.illustrate(draw, alt, 7.2, 2.4)
 

@@ -1,0 +1,52 @@
+"""Smoothers beside learnt filters: exact motions give exact parameters, and one rule tunes all."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddlib.effects import IDEAL
+from ddlib.identification import RIGID
+from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, split
+from workshop.beyond.studies.checks import smoothers
+from workshop.report import results
+
+
+@pytest.fixture(scope="module")
+def ideal():
+    """The planned motions, and the torques that the arm needs for them."""
+    recording = STATE_FEEDBACK.record(effects=IDEAL)
+    plan = recording.reference
+    torque = STATE_FEEDBACK.arm.inverse_dynamics(*plan)
+    return split(replace(recording, q=plan.q, tau=torque, tau_true=torque))
+
+
+@pytest.mark.parametrize("way", [("Butterworth filter", (13.0,)), ("Kalman smoother", (2.0,))])
+def test_a_clean_recording_gives_the_inertias_and_the_torques(ideal, way):
+    training, six = ideal
+    name, setting = way
+    kept = smoothers._WAYS[name][setting](RIGID, training)
+    arm = STATE_FEEDBACK.arm
+    np.testing.assert_allclose(kept.values, [arm.a, arm.b, arm.d], rtol=0.05)
+    assert kept.predict(six).shape == six.tau[six.motion].shape
+    assert smoothers._wrong(kept, six) < 0.06
+
+
+def test_a_late_sensor_logs_what_was_applied_two_samples_before():
+    setup = smoothers._ARMS["late sensor"][0]
+    quiet = [e for e in setup.effects.torque_sensor if not hasattr(e, "std")]
+    recording = setup.record(effects=replace(setup.effects, torque_sensor=tuple(quiet)))
+    late = smoothers._LATE
+    np.testing.assert_allclose(recording.tau[:, late:], recording.tau_true[:, :-late])
+
+
+def test_learnt_filters_are_those_of_the_study_that_tuned_them():
+    name = smoothers._LEARNT
+    ours = results.read("smoothers")["arms"]["the report's arm"]["ways"][name]
+    theirs = results.read("tuned")["rivals"][name]
+    assert ours["setting"] == theirs["setting"]
+    for part, errors in theirs["errors"].items():
+        np.testing.assert_allclose(ours["errors"][part], errors, rtol=1e-9)
+    settings = {way: len(each) for way, each in smoothers._WAYS.items()}
+    assert set(settings.values()) == {theirs["tried"][0]}
+    assert JOINT_DAMPING in [arm for arm, *_ in smoothers._ARMS.values()]
