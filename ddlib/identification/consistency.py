@@ -57,6 +57,8 @@ def physically_consistent(estimate: Estimate, margin: float = 1e-3) -> Estimate:
     moved = np.zeros(flat.shape, bool)
     for k, (value, cover) in enumerate(zip(flat, spread)):
         told = np.flatnonzero(np.isfinite(value))
+        if not told.size:
+            continue
         found = _nearest(value[told], cover[np.ix_(told, told)], [names[i] for i in told], margin)
         moved[k, told] = np.abs(found - value[told]) > 1e-9 * np.abs(value[told]).max()
         flat[k, told] = found

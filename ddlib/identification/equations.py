@@ -80,7 +80,7 @@ def by_modulation(
         raise ValueError(f"recording must have 12 samples of motion or more, got {end - begin:g} s")
     if not shortest - tiny <= number("width", width) <= end - begin + tiny:
         raise ValueError(
-            f"width must lie in [{shortest:.3g}, {end - begin:.3g}], got {width:g} s: a bump has "
+            f"width must lie in [{shortest:g}, {end - begin:g}], got {width:g} s: a bump has "
             "12 samples or more, and is no longer than the motion"
         )
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ddlib.logs.findings import Finding, count, found
+from ddlib.logs.findings import JOINTS, Finding, count, found
 from ddlib.logs.log import LoggedRun
 
 SLOWEST, FASTEST = 0.002, 100.0  #: Peak speeds of a joint, rad/s, outside of which units are wrong.
+HIGHEST = 500.0  #: Torque of a joint, N m, from which its unit is doubted.
 FARTHEST = 8 * np.pi  #: Range of a joint, rad, beyond which degrees are suspected.
 
 
@@ -124,4 +125,13 @@ def units(k: int, run: LoggedRun) -> Iterator[Finding]:
             f"{seen} The step is {step:.4g} s.",
             "No arm is as fast: inertias come out far too small.",
             "Check the unit of the time, and the rate.",
+        )  # fmt: skip
+    highest = np.nanmax(np.abs(run.tau), axis=0, initial=0.0)
+    if highest.max() > HIGHEST:
+        j = int(np.argmax(highest))
+        yield found(
+            run, "units of torque", "doubtful", (k, j), [],
+            f"The torque of the {JOINTS[j]} goes to {highest[j]:.4g} N m, as in few arms.",
+            "If these are mA or N mm, inertias come out a thousand times too large.",
+            "Name the unit of the torque: mA, with N m per A as its factor, or mNm.",
         )  # fmt: skip

@@ -259,6 +259,8 @@ def _count(table: Table, name: str, skip_bad: bool) -> None:
     if sep == "," and counts[k] > heads and not re.search(r"\d\.\d", sample):
         told += "; decimal commas between commas cannot be told apart: write semicolons between"
         raise fault(told + " columns, or decimal points")
+    if counts[k] > 1 and (counts == counts[k]).all():
+        raise fault(f"{told}, as on all lines; give the columns their heads in a copy of the file")
     among = f"; between cells is taken to be a {_NAMES.get(sep, repr(sep))}, say separator= if not"
     few = "; skip_bad=True leaves such lines out" if bad.size < counts.size / 2 else among
     raise fault(told + few)

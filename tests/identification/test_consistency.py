@@ -88,3 +88,9 @@ def test_repetitions_are_moved_one_by_one():
     assert positive(*found.values[0])
     with pytest.raises(ValueError, match=r"margin must lie in \[0, 0.4\], got 0.9"):
         physically_consistent(many, 0.9)
+
+
+def test_an_estimate_that_tells_nothing_stays():
+    nothing = np.full(3, np.nan)
+    estimate = Estimate(("a", "b", "d"), nothing, nothing, None, 9)
+    assert physically_consistent(estimate) is estimate

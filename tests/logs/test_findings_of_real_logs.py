@@ -102,3 +102,11 @@ def test_a_motion_that_tells_no_parameter_is_asked_to_be_longer():
     q, tau = q + rng.normal(0, 1e-4, q.shape), 1.0 + rng.normal(0, 0.1, q.shape)
     (told,) = check_recording(log(q, tau, t)).of("excitation")
     assert told.what.startswith("No parameter is told") and "Record longer" in told.advice
+
+
+@pytest.mark.parametrize("size, told", [(300.0, []), (700.0, [(0, 0)])])
+def test_a_torque_in_milliamperes_is_doubted(size, told):
+    q, tau = motion()
+    check = check_recording(log(q, size * tau * [1 / np.abs(tau[:, 0]).max(), 0.5]))
+    doubted = [f.where for f in check.of("units of torque") if f.severity == "doubtful"]
+    assert doubted == told

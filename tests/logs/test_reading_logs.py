@@ -207,8 +207,8 @@ ERRORS = [
      "own.csv, line 2: 1 cell under 5 heads; between cells is taken to be a comma, say separator= "
      "if not"),
     (table("time,q1,q2"), {},
-     "own.csv, line 2: 5 cells under 3 heads; between cells is taken to be a comma, say "
-     "separator= if not"),
+     "own.csv, line 2: 5 cells under 3 heads, as on all lines; give the columns their heads in a "
+     "copy of the file"),
     (table() + "0.6,1,NaN,1,1\n", {},
      "own.csv, line 62, column q2: must be a finite number, got 'NaN'; skip_bad=True leaves such "
      "lines out"),
