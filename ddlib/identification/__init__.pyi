@@ -1,8 +1,12 @@
+from .consistency import (
+    physically_consistent as physically_consistent,
+)
 from .equations import (
     SLOW as SLOW,
     by_differences as by_differences,
     by_modulation as by_modulation,
     by_smoothing as by_smoothing,
+    encoder_step as encoder_step,
     repeat as repeat,
 )
 from .instruments import (
@@ -20,6 +24,7 @@ from .regression import (
     GRAVITY as GRAVITY,
     RIGID as RIGID,
     SIGN_SPEED as SIGN_SPEED,
+    Combination as Combination,
     Equations as Equations,
     Estimate as Estimate,
     excitation as excitation,
@@ -31,7 +36,6 @@ from .smoothers import (
     butterworth_states as butterworth_states,
     by_butterworth as by_butterworth,
     by_kalman as by_kalman,
-    encoder_step as encoder_step,
     kalman_states as kalman_states,
 )
 from .window_filters import (

@@ -23,6 +23,8 @@ from ddlib.identification.regression import (
 )
 from ddlib.simulation import Recording, record
 
+_BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes away biases them."
+_SHAKES = 8  # how often noise is added to readings, to see what it does to a regressor
 SLOW = 0.1  #: Below this speed (rad/s) the sign of a joint's friction is not trusted.
 
 
@@ -82,20 +84,28 @@ def by_modulation(
     recording = _in_runs(recording)
     t, length = recording.t - begin, end - begin
     bumps, later = _bumps(t, width, length), _bumps(t + late, width, length)[0]
-    rows = _modulated(bumps, recording.q, recording.step)
     steady = _steady(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
-    regressors, torques = [], []
-    for j in range(2):
-        torque = recording.tau[..., j] @ later.T
-        a = _columns(rows[j], names, torque)
-        parts = []
-        for run, keep in enumerate(steady[j]):
-            # bumps overlap: the inverse Cholesky factor makes their torque noise independent
-            whiten = np.linalg.inv(np.linalg.cholesky(later[keep] @ later[keep].T))
-            parts.append((whiten @ a[..., run, keep, :], torque[..., run, keep] @ whiten.T))
-        regressors.append(np.concatenate([x for x, _ in parts], -2))
-        torques.append(np.concatenate([y for _, y in parts], -1))
-    return Equations(tuple(names), tuple(regressors), tuple(torques))
+    torque = np.moveaxis(recording.tau, -1, 0) @ later.T
+    # bumps overlap: the inverse Cholesky factor makes their torque noise independent
+    whiten = [
+        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in keeps]
+        for keeps in steady
+    ]
+
+    def regressor(q) -> tuple[np.ndarray, ...]:
+        rows = _modulated(bumps, q, recording.step)
+        found = []
+        for row, keeps, factors in zip(rows, steady, whiten):
+            a = _columns(row, names, np.empty((*q.shape[:-2], len(later))))
+            parts = [w @ a[..., k, keep, :] for k, (w, keep) in enumerate(zip(factors, keeps))]
+            found.append(np.concatenate(parts, -2))
+        return tuple(found)
+
+    torques = tuple(
+        np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
+        for y, keeps, ws in zip(torque, steady, whiten)
+    )
+    return Equations(tuple(names), regressor(recording.q), torques, _blur(recording, regressor))
 
 
 def repeat(
@@ -132,6 +142,46 @@ def _in_runs(recording: Recording) -> Recording:
     return recording.mapped(lambda x: x[..., None, :, :]) if single else recording
 
 
+def _blur(recording: Recording, regressor) -> tuple[np.ndarray, ...]:
+    """``E' E`` by joint of the errors ``E`` that readings' noise makes in a regressor of angles.
+
+    Noise like that of the readings is added to them, of the first repetition.
+    """
+    q = recording.q.reshape(-1, *recording.q.shape[-3:])[0]
+    noise = _reading_noise(q[..., recording.motion, :])
+    plain, rng = regressor(q), np.random.default_rng(0)
+    shaken = [regressor(q + noise * rng.normal(size=q.shape)) for _ in range(_SHAKES)]
+    return tuple(
+        np.mean([(x[j] - a).T @ (x[j] - a) for x in shaken], 0) for j, a in enumerate(plain)
+    )
+
+
+def _reading_noise(q) -> np.ndarray:
+    """Standard deviation of each joint's readings (run, time, joint), rad.
+
+    From sixth differences, which see noise and hardly any motion; an encoder's step gives more.
+    """
+    if q.shape[-2] < 8:
+        return np.zeros(q.shape[-1])
+    rough = np.sqrt(np.mean(np.diff(q, 6, axis=-2) ** 2, (0, 1)) / 924)
+    steps = [encoder_step(q[..., j]) or 0.0 for j in range(q.shape[-1])]
+    return np.maximum(rough, np.array(steps) / np.sqrt(12))
+
+
+def encoder_step(q) -> float | None:
+    """The step of which all differences of readings ``(..., time)`` are multiples; or None."""
+    gaps = np.abs(np.diff(q, axis=-1)).ravel()
+    size = np.abs(q).max(initial=0.0)
+    gaps = gaps[gaps > 1e-9 * size + 1e-15]
+    if gaps.size < 10:
+        return None
+    step = gaps.min()
+    counts = np.round(gaps / step)
+    step = float((gaps * counts).sum() / (counts**2).sum())
+    rough = np.abs(gaps / step - np.round(gaps / step)).max() > 0.1
+    return None if rough or counts.max() > 1e6 else step
+
+
 def _lateness(recording: Recording) -> float:
     """How much later than its sample a logged torque acts in the mean, s."""
     if recording.control_step is None:
@@ -161,9 +211,8 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     inside[recording.motion.start + margin : recording.motion.stop - margin] = True
     keep = _steady(recording, names) & inside
     regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
-    return Equations(
-        tuple(names), regressors, tuple(y[..., k] for y, k in zip(equations.torque, keep))
-    )
+    torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
+    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
 
 
 def _bumps(t, width, length) -> list[np.ndarray]:

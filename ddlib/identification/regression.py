@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import eigh, null_space
 from scipy.stats import t as student
 
 from ddlib._check import finite_array, integer, number, one_of
@@ -21,33 +22,88 @@ FRICTION = ("F_v1", "F_v2", "F_c1", "F_c2")
 SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity is blurred.
 
 
+_TIMES = 3.0  # what a seen direction's energy is of what noise in the motion gives it
+_ROUNDING = 1e-10  # of a column's size: what is smaller is rounding
+_TOUCHED = 0.01  # of a unit direction: parameters that it touches less are told all the same
+
+
 class Equations(NamedTuple):
     """Linear equations ``torque = regressor @ parameters + noise``, a set for each joint."""
 
     names: tuple[str, ...]  #: The parameters.
     regressor: tuple[np.ndarray, ...]  #: Each (..., equations, parameters).
     torque: tuple[np.ndarray, ...]  #: Each (..., equations).
+    #: For each joint ``E' E`` of the errors ``E`` that noise in the motion makes in the regressor,
+    #: (parameters, parameters); none: the motion is known exactly.
+    blur: tuple[np.ndarray, ...] | None = None
+    biased: str = ""  #: Why their estimates have no interval, if they have none.
 
 
-@dataclass(frozen=True)
+class Combination(NamedTuple):
+    """A sum of parameters that a recording tells though it does not tell each of them."""
+
+    names: tuple[str, ...]  #: All parameters.
+    factors: np.ndarray  #: What each counts in the sum, (parameters,).
+    value: np.ndarray  #: The sum, (...).
+    error: np.ndarray  #: Its standard error.
+
+    def __str__(self):
+        terms = [(f, n) for f, n in zip(self.factors, self.names) if f]
+        text = " ".join(
+            f"{'-' if f < 0 else '+'} {abs(f):.3g} {n}".replace(" 1 ", " ") for f, n in terms
+        )
+        text = text.removeprefix("+ ")
+        if np.ndim(self.value):
+            return text
+        return f"{text} = {self.value:.4g} ± {self.error:.2g}"
+
+
+@dataclass(frozen=True, repr=False)
 class Estimate:
-    """Parameters with their uncertainty; leading axes are repetitions."""
+    """Parameters with their uncertainty; leading axes are repetitions.
+
+    A parameter that the recording cannot tell is NaN, and `told` says so. The sums of such
+    parameters that it does tell are in `combinations`.
+    """
 
     names: tuple[str, ...]  #: The parameters.
     values: np.ndarray  #: Estimates, (..., parameters).
-    errors: np.ndarray  #: Their standard errors.
+    errors: np.ndarray  #: Their standard errors, of what scatters: a bias is not in them.
     noise: np.ndarray  #: Standard deviation of an equation's torque, (..., joint), N m.
     freedom: int  #: Degrees of freedom: equations minus parameters.
+    told: np.ndarray | None = None  #: Which parameters can be told, (parameters,); none: all.
+    combinations: tuple[Combination, ...] = ()  #: What is told of those that cannot.
+    covariance: np.ndarray | None = None  #: Of the estimates, (..., parameters, parameters).
+    unsure: np.ndarray | None = None  #: Where a bias leaves no interval, (..., parameters).
+    notes: tuple[str, ...] = ()  #: Sentences: what was left out, what is impossible.
 
     def half_width(self, level: float = 0.95) -> np.ndarray:
-        """Half the width of the confidence interval, from Student's distribution."""
+        """Half the width of the confidence interval, from Student's distribution.
+
+        NaN where no interval is given: the parameter is not told, or its bias from noise in the
+        motion would be more than half of its standard error.
+        """
         number("level", level, 0.0, 1.0, open_low=True)
-        return student.ppf(0.5 + level / 2, self.freedom) * self.errors
+        half = student.ppf(0.5 + level / 2, self.freedom) * self.errors
+        return half if self.unsure is None else np.where(self.unsure, np.nan, half)
 
     def covers(self, truth, level: float = 0.95) -> np.ndarray:
-        """Whether each confidence interval holds the true parameter."""
+        """Whether each confidence interval holds the true parameter; False if there is none."""
         truth = finite_array("truth", truth, len(self.names))
         return np.abs(self.values - truth) <= self.half_width(level)
+
+    def __repr__(self):
+        if self.values.ndim > 1:
+            text = f"Estimate({', '.join(self.names)}; {self.values.shape[:-1]} repetitions)"
+        else:
+            rows = zip(self.names, self.values, self.half_width())
+            text = "\n".join(
+                f"{name:>4} = "
+                + ("cannot be told" if np.isnan(v) else f"{v:.4g}")
+                + ("" if np.isnan(half) else f" ± {half:.2g}")
+                for name, v, half in rows
+            )
+        return "\n".join([text, *map(str, self.combinations), *self.notes])
 
 
 def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
@@ -55,14 +111,41 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
 
     A joint's noise is what its equations leave over. It decides the weights, which decide what is
     left over; a few `rounds` settle both. Leading axes are repetitions, each solved for itself.
+
+    A direction among the parameters counts as seen if its columns have three times the energy that
+    noise in the motion alone gives them (`Equations.blur`), and if its standard error, as torque,
+    is less than all of the measured torque. Parameters that unseen directions touch are NaN; sums
+    of them that can be told are `Estimate.combinations`. A joint whose torque is zero throughout
+    is left out, as is one with too few equations: either would be solved exactly, and count
+    without limit.
+
+    Noise in the motion makes estimates too small. The mean of that, to first order, is the inverse
+    of the normal equations' matrix times the blur's times the estimates (Fuller 1987); where it
+    exceeds half of a standard error there is no interval.
+
+    Raises
+    ------
+    ValueError
+        If there are no more equations than parameters, or nothing can be told.
     """
     integer("rounds", rounds, 1)
-    names, regressors, torques = equations
+    names, count = equations.names, sum(y.shape[-1] for y in equations.torque)
+    if count <= len(names):
+        raise ValueError(f"equations must be more than the {len(names)} parameters, got {count}")
+    equations, notes = _driven(equations)
+    names, regressors, torques = equations[:3]
+    unseen = _unseen(equations)
+    if not unseen.shape[1]:
+        found = _solved(names, regressors, torques, rounds)
+        unsure = _biased(equations, found, np.eye(len(names)))
+        return replace(found, unsure=unsure, notes=(*notes, *_impossible(found)))
+    if unseen.shape[1] == len(names):
+        raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
+    return _partly(equations, unseen, rounds, notes)
+
+
+def _solved(names, regressors, torques, rounds) -> Estimate:
     counts = [y.shape[-1] for y in torques]
-    if sum(counts) <= len(names):
-        raise ValueError(
-            f"equations must be more than the {len(names)} parameters, got {sum(counts)}"
-        )
     a, y = np.concatenate(regressors, -2), np.concatenate(torques, -1)
     joints = [slice(end - n, end) for n, end in zip(counts, np.cumsum(counts))]
     smallest = 1e-12 * np.sqrt(np.mean(y**2, -1, keepdims=True)) + 1e-300
@@ -79,7 +162,181 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
         noise = np.stack([_spread(left[..., j], basis[..., j, :]) for j in joints], -1)
     values = np.einsum("...pq,...q->...p", inverse, projected)
     freedom = sum(counts) - len(names)
-    return Estimate(names, values, np.linalg.norm(inverse, axis=-1), noise, freedom)
+    errors = np.linalg.norm(inverse, axis=-1)
+    covariance = inverse @ np.swapaxes(inverse, -1, -2)
+    return Estimate(names, values, errors, noise, freedom, covariance=covariance)
+
+
+def _driven(equations) -> tuple[Equations, list[str]]:
+    """The equations without those of joints that cannot say how noisy they are, and words on it.
+
+    Those are joints whose torque is zero throughout, and joints with no more equations than
+    parameters in them, if others have more: both would be solved exactly and count infinitely.
+    """
+    pairs = list(zip(equations.regressor, equations.torque))
+    idle = [j for j, (_, y) in enumerate(pairs) if y.size and not y.any()]
+    felt = [np.count_nonzero(a.any(tuple(range(a.ndim - 1)))) for a, _ in pairs]
+    few = [j for j, (_, y) in enumerate(pairs) if y.size and y.shape[-1] <= felt[j]]
+    few = [j for j in few if j not in idle]
+    used = [j for j, (_, y) in enumerate(pairs) if y.size]
+    if used and set(idle) == set(used):
+        raise ValueError("equations must have a torque, got zeros throughout")
+    few = [] if set(few) | set(idle) == set(used) else few
+    notes = [f"Joint {j + 1} has no torque; its equations were left out." for j in idle]
+    notes += [f"Joint {j + 1} has too few equations; they were left out." for j in few]
+    if not notes:
+        return equations, []
+    out, blur = {*idle, *few}, equations.blur
+    regressors = tuple(a[..., :0, :] if j in out else a for j, (a, _) in enumerate(pairs))
+    torques = tuple(y[..., :0] if j in out else y for j, (_, y) in enumerate(pairs))
+    if blur is not None:
+        blur = tuple(0 * x if j in out else x for j, x in enumerate(blur))
+    return equations._replace(regressor=regressors, torque=torques, blur=blur), notes
+
+
+def _information(equations, joints=None):
+    """Normal matrices of the regressor and of its errors, and the torque's energy, over noise.
+
+    Means over repetitions; each joint's noise is what its own equations leave over, and all of its
+    torque if they are too few to leave anything.
+    """
+    count = len(equations.names)
+    seen, blurred, energy = np.zeros((count, count)), np.zeros((count, count)), 0.0
+    for j, (a, y) in enumerate(zip(equations.regressor, equations.torque)):
+        if (joints is not None and j not in joints) or not y.size:
+            continue
+        a, y = a.reshape(-1, *a.shape[-2:]), y.reshape(-1, y.shape[-1])
+        basis, values, _ = np.linalg.svd(a, full_matrices=False)
+        kept = basis * (values > 1e-10 * values.max(-1, keepdims=True))[:, None, :]
+        left = y - (kept @ (np.swapaxes(kept, -1, -2) @ y[..., None]))[..., 0]
+        power = np.mean(y**2)
+        free = y.shape[-1] - count
+        variance = max(np.sum(left**2) / (len(left) * free), 1e-20 * power) if free > 0 else power
+        if variance == 0:
+            continue
+        seen += np.mean(np.swapaxes(a, -1, -2) @ a, 0) / variance
+        energy += np.mean(np.sum(y**2, -1)) / variance
+        if equations.blur is not None:
+            blurred += equations.blur[j] / variance
+    return seen, blurred, energy
+
+
+def _unseen(equations, joints=None, like=None) -> np.ndarray:
+    """Directions of parameters, each times its column's size, that leave no trace: columns.
+
+    Sizes are those of all joints' columns, or as in `like`.
+    """
+    seen, blurred, energy = _information(equations, joints)
+    size = np.sqrt(np.diag(seen))
+    felt = np.diag(seen) > _TIMES * np.diag(blurred)
+    nothing = np.eye(len(size))[:, ~felt]
+    if not felt.any():
+        return nothing
+    scale = np.outer(size[felt], size[felt])
+    seen, blurred = seen[np.ix_(felt, felt)] / scale, blurred[np.ix_(felt, felt)] / scale
+    floor = _ROUNDING**2 + 1e-10 * np.trace(blurred)
+    values, ways = eigh(seen, blurred + floor * np.eye(len(seen)))
+    ways = ways[:, values < _TIMES]
+    rest = null_space(ways.T) if ways.size else np.eye(len(seen))
+    if rest.size:
+        strength, turned = np.linalg.eigh(rest.T @ seen @ rest)
+        ways = np.hstack([ways, rest @ turned[:, strength < 1 / max(energy, 1e-300)]])
+    found = np.zeros((len(size), ways.shape[1]))
+    found[felt] = ways if like is None else ways * (like[felt] / size[felt])[:, None]
+    return np.hstack([nothing, np.linalg.qr(found)[0]]) if ways.size else nothing
+
+
+def _biased(equations, found, ways) -> np.ndarray | None:
+    """Where noise in the motion moves sums of parameters by more than half a standard error."""
+    if equations.biased:
+        return np.ones(found.values.shape, bool)
+    if equations.blur is None:
+        return None
+    weights = np.maximum(found.noise, 1e-100) ** -2.0
+    blur = np.tensordot(weights, np.stack(equations.blur), 1)
+    moved = found.covariance @ (ways.T @ blur @ ways) @ found.values[..., None]
+    return np.abs(moved[..., 0]) > 0.5 * found.errors
+
+
+def _partly(equations, unseen, rounds, notes) -> Estimate:
+    """What can be told if some directions are unseen."""
+    names, regressors, torques = equations[:3]
+    size = np.sqrt(np.diag(_information(equations)[0]))
+    size = np.where(size > 0, size, 1.0)
+    ways = null_space(unseen.T) / size[:, None]
+    inner = _solved(names[: ways.shape[1]], [a @ ways for a in regressors], torques, rounds)
+    blurred = _biased(equations, replace(inner, names=names), ways)
+    told = np.linalg.norm(unseen, axis=1) < _TOUCHED
+    free = null_space(unseen.T)  # sums in units of column sizes that can be told
+
+    def summed(factors):
+        through = factors @ ways
+        value = inner.values @ through
+        spread = np.einsum("p,...pq,q->...", through, inner.covariance, through)
+        return value, np.sqrt(np.maximum(spread, 0))
+
+    shape = (*inner.values.shape[:-1], len(names))
+    values, errors = np.full(shape, np.nan), np.full(shape, np.nan)
+    for k in np.flatnonzero(told):
+        factors = (free @ free[k]) * size / size[k] / (free[k] @ free[k])
+        values[..., k], errors[..., k] = summed(size[k] * factors / size[k])
+    sums = []
+    for factors in _sums(equations, unseen, told, size):
+        value, error = summed(factors)
+        tidy = np.where(np.abs(factors) * size.min() > 0, factors, 0.0)
+        sums.append(Combination(tuple(names), tidy, value, error))
+    missing = ", ".join(n for n, k in zip(names, told) if not k)
+    notes = [*notes, f"{missing} cannot be told from this recording."]
+    unsure = None
+    if blurred is not None:
+        unsure = np.broadcast_to(blurred.any(-1, keepdims=True), shape)
+    return Estimate(
+        tuple(names), values, errors, inner.noise, inner.freedom, told, tuple(sums), None, unsure,
+        tuple(notes),
+    )  # fmt: skip
+
+
+def _sums(equations, unseen, told, size) -> list[np.ndarray]:
+    """Independent sums of untold parameters that can be told: those of single joints first."""
+    spaces = [_unseen(equations, [j], size) for j in range(len(equations.torque))]
+    kept, wanted = [], len(size) - unseen.shape[1] - told.sum()
+    for space in (*spaces, unseen):
+        rows = null_space(space.T).T * ~told
+        for row in _reduced(rows):
+            row = row * (np.abs(row) > _TOUCHED * np.abs(row).max())
+            tried = np.array([*kept, row])
+            fits = np.linalg.norm(row @ unseen) < 0.1 * np.linalg.norm(row)
+            if len(kept) < wanted and fits and np.linalg.matrix_rank(tried, tol=0.05) > len(kept):
+                kept.append(row / np.linalg.norm(row))
+    found = [row * size for row in kept]
+    return [row / row[np.flatnonzero(row)[0]] for row in found]
+
+
+def _reduced(rows) -> list[np.ndarray]:
+    """Rows of the reduced echelon form (Gauss & Jordan)."""
+    rows, done = rows.copy(), []
+    for k in range(rows.shape[1]):
+        if not len(rows):
+            break
+        best = int(np.abs(rows[:, k]).argmax())
+        if abs(rows[best, k]) < 0.05:
+            continue
+        pivot = rows[best] / rows[best, k]
+        rows = np.delete(rows - np.outer(rows[:, k], pivot), best, 0)
+        done = [row - row[k] * pivot for row in done] + [pivot]
+    return done
+
+
+def _impossible(found) -> list[str]:
+    """A word if no arm has these parameters."""
+    if found.values.ndim > 1 or not set(RIGID) <= set(found.names):
+        return []
+    a, b, d = (found.values[found.names.index(name)] for name in RIGID)
+    if d > 0 and d * (a - d) > b**2:
+        return []
+    return [
+        "No arm has these inertias: its mass matrix would not be positive at every elbow angle."
+    ]
 
 
 def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:
@@ -113,13 +370,30 @@ def true_parameters(arm: Arm, effects: Effects, names: Sequence[str]) -> np.ndar
     return np.array([known[name] for name in names])
 
 
-def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID) -> float:
-    """Condition number of the regressor along a motion; infinite if a parameter is unseen."""
+def excitation(trajectory: Trajectory, names: Sequence[str] = RIGID, noise: float = 0.0) -> float:
+    """Condition number of the regressor along a motion; infinite if a parameter is unseen.
+
+    With `noise`, the standard deviation of accelerations (rad/s^2), a direction of parameters is
+    unseen if it has less than three times the energy that this noise alone gives it.
+    """
+    number("noise", noise, 0.0)
     equations = from_states(*trajectory, np.zeros(2), names)
-    values = np.linalg.svd(
-        np.concatenate([a.reshape(-1, len(names)) for a in equations.regressor]), compute_uv=False
-    )
-    return float(values[0] / values[-1]) if values[-1] > 1e-12 * values[0] else np.inf
+    rows = np.concatenate([a.reshape(-1, len(names)) for a in equations.regressor])
+    values = np.linalg.svd(rows, compute_uv=False)
+    if values[-1] <= 1e-12 * values[0]:
+        return np.inf
+    if noise:
+        rng = np.random.default_rng(0)
+        q, qd, qdd = trajectory
+        shaken = from_states(
+            q, qd, qdd + noise * rng.normal(size=np.shape(qdd)), np.zeros(2), names
+        )
+        shaken = np.concatenate([a.reshape(-1, len(names)) for a in shaken.regressor]) - rows
+        blur = shaken.T @ shaken
+        floor = 1e-10 * np.trace(blur) * np.eye(len(blur))
+        if eigh(rows.T @ rows, blur + floor, eigvals_only=True)[0] < _TIMES:
+            return np.inf
+    return float(values[0] / values[-1])
 
 
 def _spread(left, basis) -> np.ndarray:

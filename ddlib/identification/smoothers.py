@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import factorial
 
 import numpy as np
@@ -11,7 +12,15 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import butter, savgol_filter, sosfiltfilt
 
 from ddlib._check import integer, number, shaped
-from ddlib.identification.equations import _bumps, _in_runs, _lateness, _steady
+from ddlib.identification.equations import (
+    _BY_SAMPLE,
+    _blur,
+    _bumps,
+    _in_runs,
+    _lateness,
+    _steady,
+    encoder_step,
+)
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
 from ddlib.simulation import Recording
 
@@ -58,9 +67,11 @@ def by_butterworth(
     Equations
         Of the motion; without samples within ``1 / cutoff`` of the recording's ends.
     """
-    orders = _filtered(recording.q, recording.step, cutoff, order)
-    margin = int(np.ceil(1 / (cutoff * recording.step)))
-    return _motion(recording, orders, names, margin, rows, width, hold)
+    step = recording.step
+    again = partial(_filtered, step=step, cutoff=cutoff, order=order)
+    number("cutoff", cutoff, 0.0, 0.499 / step, open_low=True)
+    margin = int(np.ceil(1 / (cutoff * step)))
+    return _motion(recording, again, names, margin, rows, width, hold)
 
 
 def by_kalman(
@@ -90,9 +101,10 @@ def by_kalman(
         Of the motion; without samples so near to the recording's ends that the smoother sees one
         side only.
     """
-    orders, share = _smoothed(recording.q, recording.step, noise, recording.motion)
-    margin = int(np.ceil(2 * share.min() ** (-0.5 / _ORDER)))
-    return _motion(recording, orders, names, margin, rows, width, hold)
+    shares = _shares(recording.q, noise, recording.motion)
+    again = partial(_smoothed, step=recording.step, shares=shares)
+    margin = int(np.ceil(2 * max(shares) ** (-0.5 / _ORDER)))  # a joint at rest has no ends
+    return _motion(recording, again, names, margin, rows, width, hold)
 
 
 def butterworth_states(q, step: float, cutoff: float, order: int = 4) -> np.ndarray:
@@ -142,21 +154,7 @@ def kalman_states(q, step: float, noise: float | None = None) -> np.ndarray:
     """
     q = shaped("q", q, "(..., time, joint)")
     step = number("step", step, 0.0, open_low=True)
-    return _later(_smoothed(q, step, noise, slice(None))[0])
-
-
-def encoder_step(q) -> float | None:
-    """The step of which all differences of readings ``(..., time)`` are multiples; or None."""
-    gaps = np.abs(np.diff(q, axis=-1)).ravel()
-    size = np.abs(q).max(initial=0.0)
-    gaps = gaps[gaps > 1e-9 * size + 1e-15]
-    if gaps.size < 10:
-        return None
-    step = gaps.min()
-    counts = np.round(gaps / step)
-    step = float((gaps * counts).sum() / (counts**2).sum())
-    rough = np.abs(gaps / step - np.round(gaps / step)).max() > 0.1
-    return None if rough or counts.max() > 1e6 else step
+    return _later(_smoothed(q, step, _shares(q, noise, slice(None))))
 
 
 def _filtered(q, step, cutoff, order) -> np.ndarray:
@@ -183,8 +181,12 @@ def _later(orders, late=0.0) -> np.ndarray:
     return np.stack(found, -1)
 
 
-def _motion(recording, orders, names, margin, rows, width, hold) -> Equations:
-    """Equations of the motion, `margin` samples away from the recording's ends."""
+def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
+    """Equations of the motion, `margin` samples away from the recording's ends.
+
+    What makes derivatives of angles is `again`.
+    """
+    orders = again(recording.q)
     late = 0.0 if recording.control_step is None else _lateness(recording)
     late = late if hold is None else number("hold", hold, 0.0) / 2
     rows, single = _in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
@@ -201,31 +203,41 @@ def _motion(recording, orders, names, margin, rows, width, hold) -> Equations:
     if width is None:
         _some(keep := steady & inside, margin * step)
         regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
-        return Equations(
-            tuple(names), regressors, tuple(y[..., k] for y, k in zip(equations.torque, keep))
-        )
+        torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
+        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
     if end - begin < 12 * step * (1 - 1e-6):
         raise ValueError(f"recording must have 12 samples of motion, got {end - begin:g} s")
     number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
     width = int(width / (6 * step) + 1e-6) * 6 * step
     bumps, later = (_bumps(recording.t - begin + x, width, end - begin)[0] for x in (0, late))
-    whole = (bumps @ ~inside) / bumps.sum(-1) < 0.02
-    regressors, torques = [], []
-    for a, y, sure in zip(equations.regressor, equations.torque, steady):
-        _some(keeps := (sure @ bumps.T / bumps.sum(-1) > 0.9) & whole, margin * step)
-        parts = []
-        for run, keep in enumerate(keeps):
-            # bumps overlap: the inverse Cholesky factor makes their torque noise independent
-            whiten = np.linalg.inv(np.linalg.cholesky(later[keep] @ later[keep].T))
-            parts.append(
-                (
-                    whiten @ (bumps[keep] @ a[..., run, :, :]),
-                    (y[..., run, :] @ later[keep].T) @ whiten.T,
-                )
+    keeps = (steady @ bumps.T / bumps.sum(-1) > 0.9) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
+    _some(keeps, margin * step)
+    # bumps overlap: the inverse Cholesky factor makes their torque noise independent
+    whiten = [
+        [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in runs] for runs in keeps
+    ]
+
+    def averaged(rows) -> tuple[np.ndarray, ...]:
+        return tuple(
+            np.concatenate(
+                [w @ (bumps[keep] @ a[..., k, :, :]) for k, (w, keep) in enumerate(zip(ws, runs))],
+                -2,
             )
-        regressors.append(np.concatenate([x for x, _ in parts], -2))
-        torques.append(np.concatenate([x for _, x in parts], -1))
-    return Equations(tuple(names), tuple(regressors), tuple(torques))
+            for a, ws, runs in zip(rows, whiten, keeps)
+        )
+
+    def regressor(q) -> tuple[np.ndarray, ...]:
+        return averaged(from_states(*np.moveaxis(_later(again(q)), -1, 0), np.zeros(2), names)[1])
+
+    torques = tuple(
+        np.concatenate(
+            [(y[..., k, :] @ later[keep].T) @ w.T for k, (w, keep) in enumerate(zip(ws, runs))],
+            -1,
+        )
+        for y, ws, runs in zip(equations.torque, whiten, keeps)
+    )
+    blur = _blur(_in_runs(recording), regressor)
+    return Equations(tuple(names), averaged(equations.regressor), torques, blur)
 
 
 def _some(keep, margin) -> None:
@@ -236,23 +248,28 @@ def _some(keep, margin) -> None:
         )
 
 
-def _smoothed(q, step, noise, moving) -> tuple[np.ndarray, np.ndarray]:
-    """Position and derivatives; each joint's share of process noise (a sample) in the encoder's."""
+def _shares(q, noise, moving) -> list[float]:
+    """For each joint the power of the process, in that of the encoder's noise, per sample."""
     if noise is not None:
         number("noise", noise, 0.0, open_low=True)
     if q.shape[-2] < 12:
         raise ValueError(f"q must have 12 samples or more, got {q.shape[-2]}")
-    found, shares = [], []
+    shares = []
     for j in range(q.shape[-1]):
         runs = q[..., j].reshape(-1, q.shape[-2])
         grain = encoder_step(runs) if noise is None else None
-        known = noise if grain is None else grain / np.sqrt(12)
-        share = _likeliest(runs[:, moving], known)
-        x = _states(runs, share)[0].reshape(*q.shape[:-1], _ORDER)
+        shares.append(_likeliest(runs[:, moving], noise if grain is None else grain / 12**0.5))
+    return shares
+
+
+def _smoothed(q, step, shares) -> np.ndarray:
+    """Smoothed angles and three derivatives, (order, ..., time, joint)."""
+    found = []
+    for j, share in enumerate(shares):
+        x = _states(q[..., j].reshape(-1, q.shape[-2]), share)[0]
         x = np.concatenate([x, np.gradient(x[..., -1:], axis=-2)], -1)
-        found.append(x / step ** np.arange(_ORDER + 1))
-        shares.append(share)
-    return np.moveaxis(np.stack(found, -2), -1, 0), np.array(shares)
+        found.append((x / step ** np.arange(_ORDER + 1)).reshape(*q.shape[:-1], -1))
+    return np.moveaxis(np.stack(found, -2), -1, 0)
 
 
 def _likeliest(runs, noise) -> float:

@@ -56,7 +56,8 @@ class FilteredEquations:
     -----
     After `fit`, `filters` and their standard errors `filter_errors` are ``(3, width)``, oldest
     sample first, in 1, 1/s and 1/s^2, like `first`; `estimate` is an `Estimate`. The errors allow
-    for noise that overlapping windows share (Newey & West 1987), not for bias.
+    for noise that overlapping windows share (Newey & West 1987), not for the bias from noise in the
+    positions, for which nothing is known here. So no intervals are given.
     """
 
     def __init__(self, regressor, width, step, pull=None, learn=_QUANTITIES):
@@ -102,11 +103,6 @@ class FilteredEquations:
     def parameters(self) -> dict[str, float]:
         """The parameters found, by name."""
         return dict(zip(self.estimate.names, self.estimate.values.tolist()))
-
-    def intervals(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
-        """Ends of each parameter's confidence interval, by name."""
-        values, half = self.estimate.values, self.estimate.half_width(level)
-        return dict(zip(self.estimate.names, zip(*((values + k * half).tolist() for k in (-1, 1)))))
 
     def _windows(self, name, x) -> np.ndarray:
         if np.ndim(x) != 3:
@@ -217,6 +213,9 @@ class FilteredEquations:
         freedom = y.size - every.shape[1]
         covariance = inverse @ spread @ inverse * (y.size / freedom)
         errors = np.sqrt(np.diag(covariance))[z.size :] / size
-        self.estimate = Estimate(self._names, found.values, errors, found.noise, freedom)
+        unsure = np.ones(found.values.shape, bool)
+        self.estimate = Estimate(
+            self._names, found.values, errors, found.noise, freedom, unsure=unsure
+        )
         ours = self._ways @ covariance[: z.size, : z.size]
         self.filter_errors = np.sqrt(np.maximum((ours * self._ways).sum(-1), 0))

@@ -100,8 +100,8 @@ def test_a_first_estimates_simulation_is_an_instrument_for_the_arm(bits):
     off = np.abs(found.values.mean(0) / truth - 1)[:3]
     assert off.max() < 0.04
     if bits == 12:
-        plain = np.abs(least_squares(equations).values.mean(0) / truth - 1)[:3]
-        assert plain[0] > 0.08 and off[0] < 0.02
+        plain = least_squares(equations)
+        assert not plain.told[names.index("b")], "noise makes most of its column"
     share = found.covers(truth).mean(0)
     assert share.min() > 0.8 and share.mean() > 0.9
 

@@ -1,5 +1,7 @@
 """Least squares for the arm's parameters: exact where the data are, honest where they are not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,11 +12,14 @@ from ddlib.identification import (
     GRAVITY,
     RIGID,
     Equations,
+    by_kalman,
+    by_modulation,
     excitation,
     from_states,
     least_squares,
     true_parameters,
 )
+from ddlib.simulation import Recording
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
 
 FRICTIONS = Effects((ViscousFriction((0.5, 0.15)), CoulombFriction((0.4, 0.1))))
@@ -90,6 +95,81 @@ def test_refusals():
         from_states(*motion, y, ("a", "mass"))
     with pytest.raises(ValueError, match="equations must be more than the 9"):
         least_squares(from_states(*motion, y, ALL))
-    shoulder = pick_and_place(APPENDIX_I[3], T)
-    with pytest.raises(ValueError, match="must determine all of a, b, d"):
-        least_squares(from_states(*shoulder, torque(CMU_DD_ARM_II, shoulder)))
+    still = states(20)[0]
+    with pytest.raises(ValueError, match="must have a torque, got zeros throughout"):
+        least_squares(from_states(still, 0 * still, 0 * still, 0 * still))
+    with pytest.raises(ValueError, match="must determine some of a, b, d; they do not"):
+        least_squares(from_states(still, 0 * still, 0 * still, 1 + 0 * still))
+
+
+def locked(encoder=0.0, noise=0.01, elbow=True, seed=0):
+    """Two sines at the shoulder, the elbow held straight; a, b, d = 1, .2, .3."""
+    rng, t = np.random.default_rng(seed), T
+    angles = (0.5 * np.sin(2 * t) + 0.4 * np.sin(3 * t), np.cos(2 * t) + 1.2 * np.cos(3 * t))
+    angles = (*angles, -2 * np.sin(2 * t) - 3.6 * np.sin(3 * t))
+    motion = Trajectory(*(np.stack([x, 0 * t], -1) for x in angles))
+    arm = replace(CMU_DD_ARM_II, a=1.0, b=0.2, d=0.3)
+    tau = arm.inverse_dynamics(*motion) * [1, elbow]
+    tau = tau + noise * rng.normal(size=tau.shape) * [1, elbow]
+    q = motion.q + encoder * rng.normal(size=tau.shape)
+    return Recording(t, motion, q, tau, motion.q, motion.qd, tau, control_step=0.0)
+
+
+@pytest.mark.parametrize("encoder", [0.0, 1e-4])
+@pytest.mark.parametrize("noise", [0.01, 1e-6])
+@pytest.mark.parametrize("by", [by_modulation, by_kalman])
+def test_a_locked_elbow_leaves_two_sums_and_no_guess(by, encoder, noise):
+    """Of the rows (a + 2 b) q1'' and (b + d) q1'' no parameter can be told by itself."""
+    found = least_squares(by(locked(encoder, noise), RIGID))
+    assert np.isnan(found.values).all() and not found.told.any()
+    shoulder, elbow = found.combinations
+    np.testing.assert_allclose(shoulder.factors, [1, 2, 0], atol=2e-3)
+    np.testing.assert_allclose(elbow.factors, [0, 1, 1], atol=2e-3)
+    for one, truth in ((shoulder, 1.4), (elbow, 0.5)):
+        assert abs(one.value - truth) < 5e-3
+    assert str(shoulder).startswith("a + 2 b = 1.4")
+    assert "cannot be told" in repr(found) and "a, b, d cannot be told" in found.notes[0]
+
+
+@pytest.mark.parametrize("encoder", [0.0, 1e-4])
+def test_intervals_of_sums_hold_and_friction_is_told(encoder):
+    held = []
+    for seed in range(60):
+        found = least_squares(by_modulation(locked(encoder, seed=seed)))
+        assert np.array_equal(found.told, [n in ("F_v1", "F_c1") for n in found.names])
+        (one,) = found.combinations
+        held.append([abs(one.value - 1.4) < 2 * one.error, *found.covers(np.zeros(7))[[3, 5]]])
+    assert np.mean(held, 0).min() > 0.85
+
+
+def test_a_passive_joint_is_left_out_with_a_word():
+    found = least_squares(by_modulation(locked(elbow=False), RIGID))
+    assert found.notes[0] == "Joint 2 has no torque; its equations were left out."
+    (one,) = found.combinations
+    assert one.value == pytest.approx(1.4, abs=2e-3)
+
+
+def test_repetitions_leave_out_the_same():
+    parts = [by_modulation(locked(1e-4, seed=k), RIGID) for k in range(3)]
+    stacked = parts[0]._replace(
+        regressor=tuple(np.stack(x) for x in zip(*(p.regressor for p in parts))),
+        torque=tuple(np.stack(y) for y in zip(*(p.torque for p in parts))),
+    )
+    found = least_squares(stacked)
+    assert found.values.shape == (3, 3) and np.isnan(found.values).all()
+    np.testing.assert_allclose(found.combinations[0].value, [1.4] * 3, atol=0.01)
+
+
+def test_impossible_inertias_are_flagged():
+    motion = states(60)
+    arm = CMU_DD_ARM_II.regressor(*motion)[..., :3] @ [1.0, 0.7, 0.3]
+    found = least_squares(from_states(*motion, arm))
+    assert found.notes == (
+        "No arm has these inertias: its mass matrix would not be positive at every elbow angle.",
+    )
+
+
+def test_excitation_is_judged_against_noise():
+    slight = pick_and_place([(40.0, 0.3)], T)
+    assert np.isfinite(excitation(slight))
+    assert np.isinf(excitation(slight, noise=1.0)) and np.isfinite(excitation(slight, noise=1e-6))

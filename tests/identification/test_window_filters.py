@@ -1,5 +1,7 @@
 """Filters that are learnt with the equations: known ones are found, and parameters beside them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -67,14 +69,16 @@ def test_parameters_of_a_simulated_arm_without_the_bias_of_smoothing():
     assert (off[0] < off[1]).all() and off[0][0] < 0.06 < 0.3 < off[1][0]
 
 
-def test_intervals_hold_what_is_true_if_neighbours_share_the_noise():
+def test_errors_are_the_scatter_if_neighbours_share_the_noise():
     windows, tau = known(2)
     rng, inside, narrow = np.random.default_rng(5), [], []
     for _ in range(40):
         white = rng.normal(0, 2, (2, len(tau[0]) + 4, 2))
         noisy = tau + sum(white[:, k : k + len(tau[0])] for k in range(5))
         found = made(windows, noisy, 1e-6, of=regressor)
-        low, high = np.array([*found.intervals().values()]).T
+        assert np.isnan(found.estimate.half_width()).all(), "with noisy positions it would not hold"
+        half = replace(found.estimate, unsure=None).half_width()
+        low, high = found.estimate.values - half, found.estimate.values + half
         inside.append((low <= TRUE) & (TRUE <= high))
         narrow.append(np.abs(low + high - 2 * TRUE) <= (high - low) / np.sqrt(5))
     assert 0.87 <= np.mean(inside) <= 0.99 and np.mean(narrow) < 0.8

@@ -84,7 +84,7 @@ def _day(day: int) -> dict:
             "errors of filters": made.filter_errors,
             "parameters": made.estimate.values,
             "fixed": fixed.estimate.values,
-            "covered": made.estimate.covers(true),
+            "covered": replace(made.estimate, unsure=None).covers(true),
         }
         if width == _SAMPLES:
             for count in (1, 2):

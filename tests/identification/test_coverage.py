@@ -1,0 +1,80 @@
+"""95 % intervals hold the truth as often as they say, or there is none: 200 recordings each."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import t as student
+
+from ddlib.control import pd, proportional
+from ddlib.dynamics import CMU_DD_ARM_II
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Noise, Quantisation
+from ddlib.identification import (
+    FRICTION,
+    GRAVITY,
+    RIGID,
+    by_butterworth,
+    by_kalman,
+    by_modulation,
+    least_squares,
+    repeat,
+    true_parameters,
+)
+from ddlib.trajectories import APPENDIX_I
+
+REPETITIONS = 200
+LOWEST = 0.95 - 3 * np.sqrt(0.95 * 0.05 / REPETITIONS)  # three deviations of a binomial: .904
+LOOP = pd((300.0, 90.0), (35.0, 10.0))
+FINE = replace(
+    CMU_DD_ARM_II_EFFECTS,
+    encoder=(Quantisation.encoder(20),),
+    torque_sensor=(Noise((0.02, 0.01)),),
+)
+COARSE = replace(CMU_DD_ARM_II_EFFECTS, encoder=(Quantisation.encoder(11),))
+JITTER = replace(CMU_DD_ARM_II_EFFECTS, encoder=(Noise((1e-3, 1e-3)),))
+VERTICAL = replace(CMU_DD_ARM_II, gravity_moments=(20.0, 5.0))
+KINDS = {
+    "quiet": (CMU_DD_ARM_II, LOOP, APPENDIX_I[:5], FINE),
+    "as reported": (CMU_DD_ARM_II, LOOP, APPENDIX_I[:5], CMU_DD_ARM_II_EFFECTS),
+    "noisy, coarse encoder": (CMU_DD_ARM_II, LOOP, APPENDIX_I[:5], COARSE),
+    "noisy, white": (CMU_DD_ARM_II, LOOP, APPENDIX_I[:5], JITTER),
+    "vertical": (VERTICAL, LOOP, APPENDIX_I[:5], CMU_DD_ARM_II_EFFECTS),
+    "ringing": (CMU_DD_ARM_II, proportional((300.0, 90.0)), APPENDIX_I[:5], CMU_DD_ARM_II_EFFECTS),
+    "poorly excited": (CMU_DD_ARM_II, LOOP, [(14.0, 9.0)], CMU_DD_ARM_II_EFFECTS),
+    "elbow at rest": (CMU_DD_ARM_II, LOOP, [(40.0, 0.0)], CMU_DD_ARM_II_EFFECTS),
+    "poor and coarse": (CMU_DD_ARM_II, LOOP, [(14.0, 9.0)], COARSE),
+}
+WAYS = {
+    "modulation": by_modulation,
+    "kalman": by_kalman,
+    "butterworth": lambda r, names: by_butterworth(r, 15.0, names),
+}
+
+
+@cache
+def recorded(kind):
+    arm, *_, effects = plant = KINDS[kind]
+    names = RIGID + (GRAVITY if arm is VERTICAL else ()) + FRICTION
+    return repeat(*plant, REPETITIONS, seed=11), names, true_parameters(arm, effects, names)
+
+
+def shares(kind, way):
+    """For each parameter the share of intervals that hold the truth among those given."""
+    many, names, truth = recorded(kind)
+    found = least_squares(WAYS[way](many, names))
+    given = np.isfinite(found.half_width())
+    held = (found.covers(truth) & given).sum(0) / np.maximum(given.sum(0), 1)
+    sums = []
+    for one in found.combinations:
+        half = student.ppf(0.975, found.freedom) * one.error
+        sums.append((str(one), np.mean(np.abs(one.value - one.factors @ truth) <= half)))
+    return given.mean(0), held, sums, found
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_intervals_hold_the_truth_or_are_not_given(kind, way):
+    given, held, sums, _ = shares(kind, way)
+    assert (held[given > 0.02] >= LOWEST).all(), (given, held)
+    assert all(share >= LOWEST for _, share in sums), sums
