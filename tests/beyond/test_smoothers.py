@@ -14,11 +14,16 @@ from workshop.report import results
 
 @pytest.fixture(scope="module")
 def ideal():
-    """The planned motions, and the torques that the arm needs for them."""
-    recording = STATE_FEEDBACK.record(effects=IDEAL)
-    plan = recording.reference
-    torque = STATE_FEEDBACK.arm.inverse_dynamics(*plan)
-    return split(replace(recording, q=plan.q, tau=torque, tau_true=torque))
+    """Six sums of sines, and the torques that the arm needs for them."""
+    recording, rng = STATE_FEEDBACK.record(effects=IDEAL), np.random.default_rng(0)
+    phase = rng.uniform(0, 2 * np.pi, (2, 6, 1, 2))
+    q, qd, qdd = 0, 0, 0
+    for speed, angle in zip((2.0, 5.0), phase):
+        wave = speed * recording.t[:, None] + angle
+        q, qd = q + 0.3 * np.sin(wave), qd + 0.3 * speed * np.cos(wave)
+        qdd = qdd - 0.3 * speed**2 * np.sin(wave)
+    torque = STATE_FEEDBACK.arm.inverse_dynamics(q, qd, qdd)
+    return split(replace(recording, q=q, tau=torque, tau_true=torque))
 
 
 @pytest.mark.parametrize("way", [("Butterworth filter", (13.0,)), ("Kalman smoother", (2.0,))])
@@ -27,9 +32,9 @@ def test_a_clean_recording_gives_the_inertias_and_the_torques(ideal, way):
     name, setting = way
     kept = smoothers._WAYS[name][setting](RIGID, training)
     arm = STATE_FEEDBACK.arm
-    np.testing.assert_allclose(kept.values, [arm.a, arm.b, arm.d], rtol=0.05)
+    np.testing.assert_allclose(kept.values, [arm.a, arm.b, arm.d], rtol=0.02)
     assert kept.predict(six).shape == six.tau[six.motion].shape
-    assert smoothers._wrong(kept, six) < 0.06
+    assert smoothers._wrong(kept, six) < 0.02
 
 
 def test_a_late_sensor_logs_what_was_applied_two_samples_before():
