@@ -22,6 +22,7 @@ from ddlib.identification.regression import (
     _columns,
     from_states,
 )
+from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording, record
 
 _BY_SAMPLE = "Equations of single samples give no intervals: what smoothing takes away biases them."
@@ -74,6 +75,7 @@ def by_modulation(
         Time for which the controller holds a torque, s: a sample stands for the torque half
         of it later. Default: as the recording says, its computing time included.
     """
+    warn_of_log(recording)
     begin, end = recording.span
     shortest, tiny = 12 * recording.step, 1e-6 * recording.step
     if end - begin < shortest - tiny:

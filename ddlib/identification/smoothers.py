@@ -22,6 +22,7 @@ from ddlib.identification.equations import (
     encoder_step,
 )
 from ddlib.identification.regression import FRICTION, RIGID, Equations, from_states
+from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording
 
 _SMOOTHEST, _ROUGHEST = 1e-12, 1e4  # shares of process in encoder noise; rounding allows no less
@@ -187,6 +188,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     What makes derivatives of angles is `again`.
     """
     orders = again(recording.q)
+    warn_of_log(recording)
     late = 0.0 if recording.control_step is None else _lateness(recording)
     late = late if hold is None else number("hold", hold, 0.0) / 2
     rows, single = _in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2

@@ -11,6 +11,7 @@ from scipy.signal import savgol_coeffs
 
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.identification.regression import Estimate, _known, from_states
+from ddlib.logs.checking import warn_of_log
 from ddlib.simulation import Recording
 
 _QUANTITIES = ("position", "velocity", "acceleration")
@@ -116,6 +117,7 @@ class FilteredEquations:
         if isinstance(runs, Recording):
             if abs(runs.step / self.step - 1) > 1e-6:
                 raise ValueError(f"runs must have a step of {self.step:g} s, got {runs.step:g} s")
+            warn_of_log(runs)
             runs = runs.for_windows(self.width)
             begin, end = runs.motion.start - half, runs.motion.stop + half
             if begin < 0 or end > runs.t.size:

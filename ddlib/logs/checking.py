@@ -11,7 +11,7 @@ from ddlib.logs._readings import SPIKE, readings
 from ddlib.logs._stamps import stamps, units
 from ddlib.logs._torques import at_work, commands
 from ddlib.logs.findings import SEVERITIES, Check, Finding, in_runs, place
-from ddlib.logs.log import Log
+from ddlib.logs.log import Log, LoggedRecording
 from ddlib.simulation import Recording
 
 
@@ -91,8 +91,14 @@ def warn_of(recording: Recording) -> None:
         f"{f' and {len(told) - 3} kinds more' if len(told) > 3 else ''}. "
         "check_recording(recording) says where, and what to do.",
         DoubtfulRecording,
-        stacklevel=3,
+        stacklevel=4,
     )
+
+
+def warn_of_log(recording: Recording) -> None:
+    """`warn_of` a recording that was made from a log; a simulated one is what it is."""
+    if isinstance(recording, LoggedRecording):
+        warn_of(recording)
 
 
 def _suspect(recording: Recording) -> bool:

@@ -328,7 +328,7 @@ def _calls():
         (analysis.noise_floor, dict(
             arm=ARM, deviation=pair, width=7, bits=16.0, torque_noise=0.1, period=0.01
         )),
-        (analysis.calibrated, dict(model=model(), windows=x)),
+        (analysis.calibrated, dict(model=model(), windows=x, step=0.01)),
         (analysis.heard, dict(outputs=activity[: len(states())], states=states())),
         (analysis.unit_inputs, dict(model=model(), windows=x)),
         (analysis.input_shares, dict(weights=net)),
@@ -501,11 +501,12 @@ def test_bad_input_is_refused_by_name(room):
 APART = {
     "dynamics": "Operations Tape lagrange_euler newton_euler recursive_lagrange",
     "control": "ControlLaw Controller",
-    "simulation": "Recording read_csv",
-    "learning": "Descent History Solution kernels prepare",
+    "simulation": "Recording",
+    "learning": "Descent History Solution TorqueNetwork TrainingInterrupted kernels "
+    "module_gradient prepare",
     "analysis": "",
     "effects": "",
-    "figures": "COLOUR_MAP Illustration dots_in_one legend_above plain_ticks",
+    "figures": "COLOUR_MAP Illustration checked dots_in_one legend_above plain_ticks",
 }
 
 

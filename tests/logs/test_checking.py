@@ -3,7 +3,7 @@
 import time
 import warnings
 from collections import Counter
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -20,7 +20,7 @@ from ddlib.effects import (
     Saturation,
     ViscousFriction,
 )
-from ddlib.identification import by_modulation, least_squares
+from ddlib.identification import by_kalman, by_modulation, least_squares
 from ddlib.logs import (
     DoubtfulRecording,
     Log,
@@ -286,23 +286,24 @@ def test_torque_that_is_zero_throughout_is_told_not_refused():
     assert "no torque" in kinds(both, "wrong")
 
 
-def test_commands_of_the_double_pendulum_are_found():
-    """Five of 17 real runs; together with others of their design each has two signs or more."""
+def test_a_command_among_currents_of_a_real_arm_is_found():
+    """Currents come in steps; in one run of a design the column holds what was commanded."""
     with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
-        runs = {}
-        for name in kept.files:
-            x = kept[name].astype(float)
-            runs[name] = LoggedRun(name, x[:, 0], x[:, 1:3], x[:, 3:5], np.arange(len(x)) + 2)
-    commands = {"A0_11", "C0_12", "C0_13", "C1_154220", "C1_154548"}
-    wrong = set()
+        logged = {name: kept[name].astype(float) for name in kept.files}
+
+    def run(name, torques):
+        x = logged[name]
+        return LoggedRun(name, x[:, 0], x[:, 1:3], x[:, torques], np.arange(len(x)) + 2)
+
+    current, command = slice(3, 5), slice(5, 7)
     for design in ("A0", "C0", "C1"):
-        names = [name for name in runs if name.startswith(design)]
-        check = check_recording(Log(tuple(runs[name] for name in names)))
-        wrong |= {(names[f.where[0]], f.where[1]) for f in check.wrong}
-        assert kinds(check, "wrong") == {"command"} and check.of("gravity")
-    assert wrong == {(name, j) for name in commands for j in range(2)}
-    alone = {name for name, run in runs.items() if check_recording(Log((run,))).of("command")}
-    assert alone == commands
+        names = [name for name in logged if name.startswith(design)]
+        check = check_recording(Log(tuple(run(name, current) for name in names)))
+        assert not check.wrong and not check.of("command") and check.of("gravity")
+        for k in range(len(names)):
+            torques = [command if i == k else current for i in range(len(names))]
+            mixed = check_recording(Log(tuple(map(run, names, torques))))
+            assert {found.where for found in mixed.of("command")} == {(k, 0), (k, 1)}
 
 
 def test_times_of_a_log():
@@ -399,3 +400,18 @@ def test_a_warning_costs_little_of_a_fit():
 
     fit = fastest(lambda: least_squares(by_modulation(recording)))
     assert fastest(lambda: warn_of(recording)) < 0.2 * fit
+
+
+def test_fits_to_a_log_warn_of_what_makes_them_wrong():
+    sound = recordings()["CMU", "quiet"]
+    log = LoggedRecording(**{f.name: getattr(sound, f.name) for f in fields(sound)})
+    q = log.q.copy()
+    q[0, 200, 0] += 0.5
+    for fit in (by_modulation, by_kalman):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", DoubtfulRecording)
+            fit(log)
+            fit(replace(sound, q=q))  # simulated: it is what it is
+        with pytest.warns(DoubtfulRecording, match=r"spike \(run 1, shoulder\)") as told:
+            fit(replace(log, q=q))
+        assert told[0].filename == __file__ or fit is by_kalman

@@ -26,7 +26,7 @@ _ROOTS = {"ddlib": Path(ddlib.__file__).parent, "workshop": BOOK / "workshop"}
 _CHECKS = "_check"
 
 # Last names of modules that decide no number: what is used of them counts by its name alone
-_ASIDE = (_CHECKS, "workshop", "results", "sweeps", "code_hash")
+_ASIDE = (_CHECKS, "checking", "workshop", "results", "sweeps", "code_hash")
 
 # Functions of `results` that load networks, and the study that trains them.
 _TRAINED = dict.fromkeys(("networks", "median_network", "course"), "table-4-1")
