@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib._check import finite_array, number, shaped
+from ddlib._check import finite_array, number, shaped, told
 from ddlib.analysis.filters import DERIVATIVES, _odd_width
 from ddlib.learning import TorqueModel
 
@@ -112,7 +112,7 @@ def mean_gradient(model: TorqueModel | Callable, windows) -> np.ndarray:
 def _of_any(model: Callable, windows) -> np.ndarray:
     """`mean_gradient` of a PyTorch module or another callable."""
     if not callable(model):
-        raise TypeError(f"model must be a TorqueModel, a module or callable, got {model!r:.60}")
+        raise TypeError(f"model must be a TorqueModel, a module or callable, got {told(model)}")
     if any(kind.__module__.startswith("torch.nn.") for kind in type(model).__mro__):
         from ddlib.learning import module_gradient
 
