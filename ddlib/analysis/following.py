@@ -120,18 +120,18 @@ def _of_any(model: Callable, windows) -> np.ndarray:
     windows = np.array(shaped("windows", windows, "(cases, joint, width)"))
 
     def torque() -> np.ndarray:
-        told = np.asarray(model(windows.copy()))
-        if told.ndim < 2 or told.shape[-2] != len(windows):
+        torques = np.asarray(model(windows.copy()))
+        if torques.ndim < 2 or torques.shape[-2] != len(windows):
             shape = f"(..., {len(windows)}, output)"
-            raise ValueError(f"model must return torques of shape {shape}, got {told.shape}")
-        return told
+            raise ValueError(f"model must return torques of shape {shape}, got {torques.shape}")
+        return torques
 
-    told = torque()
-    rounding = np.finfo(told.dtype if told.dtype.kind == "f" else float).eps
+    torques = torque()
+    rounding = np.finfo(torques.dtype if torques.dtype.kind == "f" else float).eps
     reach = np.cbrt(rounding) * np.maximum(
         np.abs(windows - windows.mean((0, 2))[:, None]).max((0, 2)), 1e-3
     )
-    found = np.empty((*windows.shape[1:], *told.shape[:-2], told.shape[-1]))
+    found = np.empty((*windows.shape[1:], *torques.shape[:-2], torques.shape[-1]))
     for joint, sample in np.ndindex(windows.shape[1:]):
         before, ends = windows[:, joint, sample].copy(), []
         for sign in (1, -1):
