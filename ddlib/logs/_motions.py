@@ -476,17 +476,17 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
             nothing.append(name)
         else:
             told.append(f"{name} to {significant(max(200 * error / value, 0.1), 1)} %")
-    seen = f"Told are {', '.join(told)}." if told else "No parameter is told by itself."
-    seen += f" No different from zero: {', '.join(nothing)}." if nothing else ""
-    seen += f" Cannot be told one by one: {', '.join(lost)}." if lost else ""
-    advice = "Nothing: percentages are twice the standard errors, roughly."
+    seen = f"The motion tells {', '.join(told)}." if told else "It tells no parameter by itself."
+    seen += f" Not told apart from zero: {', '.join(nothing)}." if nothing else ""
+    seen += f" It does not tell one by one: {', '.join(lost)}." if lost else ""
+    advice = "Nothing to do. The percentages are about two standard errors."
     if lost:
         advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
     if not told:
         advice = "Record longer motions in which both joints speed up and slow down, each its way."
     yield found(
         None, "excitation", "doubtful" if lost or not told else "note", (None, None), [], seen,
-        "What cannot be told comes out at random, and takes others along.", advice,
+        "What a motion does not tell comes out at random, and spoils the rest.", advice,
     )  # fmt: skip
 
 

@@ -60,7 +60,7 @@ def _spikes(k, j, run, q, lost):
         if chosen.any():
             yield found(
                 run, "spike", severity, (k, j), rows[chosen],
-                f"Beside what the neighbours say: {count(chosen.sum(), 'angle')}, by up to "
+                f"{count(chosen.sum(), 'angle')} far from the neighbours, by up to "
                 f"{sizes[chosen].max():.3g} rad of a range of {spread:.3g} rad.",
                 "An acceleration sees a spike first: one of half a radian can make an inertia a "
                 "tenth of what it is.",

@@ -273,7 +273,7 @@ def test_excitation_names_what_a_locked_elbow_cannot_tell():
         run = LoggedRun("locked", t, read, tau + rng.normal(0, 0.01, tau.shape), None)
         check = check_recording(Log((run,)))
         assert not check.wrong and [f.where for f in check.of("at rest")] == [(0, 1)]
-        lost = check.of("excitation")[0].what.partition("Cannot be told one by one: ")[2]
+        lost = check.of("excitation")[0].what.partition("It does not tell one by one: ")[2]
         assert {"b", "d"} <= set(lost.rstrip(".").split(", "))
 
 
