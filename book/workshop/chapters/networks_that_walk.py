@@ -251,7 +251,7 @@ def _exercise(number: int, left: float | None = None) -> Exercise:
         return Exercise(
             "number",
             85 * 0.011,
-            "a late spring pushes along the velocity, with stiffness times delay.",
+            "a late spring takes away damping, by stiffness times delay.",
             slips,
             "Expand the late error in d.",
             unit="N m s/rad",

@@ -341,7 +341,7 @@ def _exercise(number: int, *given) -> Exercise:
             (Between(0.8, 1.2), "a constant does as well as that."),
         ]
         right = Between(0.5 * at_random(model), 1.7 * at_random(model))
-        told = "neighbours are almost alike, so it says little about other motions."
+        told = "the neighbours of each window were learnt, so it says little about other motions."
         return Exercise(
             "number", right, told, slips, "How much of a window do its neighbours share?"
         )

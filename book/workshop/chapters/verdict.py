@@ -398,7 +398,7 @@ def _exercise(number: int, *given) -> Exercise:
         return Exercise(
             "number",
             19,
-            "three sums say it all.",
+            "all filters with these three sums answer such a motion alike.",
             slips,
             "Expand q(t + s); what is its third term?",
             unit="N m",

@@ -247,7 +247,7 @@ def _exercise(number: int, arm=None, kp=None, other=None, extents=None) -> Exerc
         return Exercise(
             "numbers",
             lambda m: not any(is_so(m) for is_so, _ in slips),
-            "the loop is early enough, so no swing grows.",
+            "the two delays add up, and yours are short enough: no swing grows.",
             slips,
             count=2,
         )

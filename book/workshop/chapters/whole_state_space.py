@@ -227,7 +227,10 @@ def _exercise(number: int, *given) -> Exercise:
             (Between(5e-324, 1), "why should the error get smaller?"),  # above 0
         ]
         return Exercise(
-            "number", Between(grown / 2, 2 * grown), f"it grows {grown:.2f} times.", slips
+            "number",
+            Between(grown / 2, 2 * grown),
+            f"the error grows {grown:.2f} times, though turning the arm changes no torque.",
+            slips,
         )
     else:
         error_from, before = given
