@@ -38,7 +38,8 @@ With Python 3.11 or newer, in this folder:
 (On Windows `.venv\\Scripts\\python` in place of `.venv/bin/python`.)
 
 Run the cells from the top. Put each answer in place of the dots; the cell below judges it by
-judge.py, which is folded so that nobody reads a solution by accident. Say how you found it, too.
+judge.py, which is folded so that nobody reads a solution by accident. An answer is judged once: to
+try again, run both cells. Say how you found it, too.
 """
 
 

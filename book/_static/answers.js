@@ -72,17 +72,26 @@
 
   const size = ({ low, along }) => (low ?? along)?.length;
 
-  const judge = ({ cases, otherwise }, text) => {
+  // A number as it is repeated: whole, or with six digits.
+  const shown = (x) => {
+    if (Number.isInteger(x) && Math.abs(x) < 1e15) return String(x + 0);
+    return String(Number(x.toPrecision(6)));
+  };
+
+  const judge = ({ cases, otherwise, unit, options, unfit }, text) => {
     const count = size(cases[0]);
     if (!text.trim()) return "Write an answer first.";
     if (!count) {
       const word = text.replace(/^\s*mine\s*=|["'“”‘’.]/g, "").trim().toLowerCase();
-      return cases.find((one) => one.word?.toLowerCase() === word)?.said ?? otherwise;
+      if (options.length && !options.includes(word)) return unfit;
+      const said = cases.find((one) => one.word?.toLowerCase() === word)?.said ?? otherwise;
+      return `${said} You gave "${word}".`;
     }
     const values = numbers(text, count);
     if (count > 1 && values.length !== count) return `Write ${count} numbers, with commas between.`;
     if (!values.every(Number.isFinite)) return count > 1 ? "Write numbers, with commas between." : "Write a number.";
-    return cases.find((one) => size(one) === count && fits(one, values))?.said ?? otherwise;
+    const said = cases.find((one) => size(one) === count && fits(one, values))?.said ?? otherwise;
+    return `${said} You gave ${`${values.map(shown).join(", ")} ${unit}`.trim()}.`;
   };
 
   // What the cell above says of the answer, as in mine = ...  # a share, from 0 to 1. With a field

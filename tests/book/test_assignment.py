@@ -73,7 +73,7 @@ def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
         cells += [cell.source] * (cell.cell_type == "code")
         if is_check(cell):
             answers.append((len(cells) - 1, len(cells) + 1))
-            cells += [found[len(answers) - 1].solution, cell.source]
+            cells += [found[len(answers) - 1].solution, cell.source, "print(mine)"]
     done = subprocess.run(
         [sys.executable, "-c", RUN], input=json.dumps(cells), capture_output=True, text=True,
         cwd=handed_out / name, env={"PATH": "", "HOME": str(tmp_path), "OMP_NUM_THREADS": "1"},
@@ -84,6 +84,7 @@ def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
     assert len(answers) == len(found) >= 3
     for before, after in answers:
         assert "in place of the dots" in told[before] and told[after].startswith("Right")
+        assert told[after + 1].strip() == "Ellipsis"  # no answer is judged twice
 
 
 def test_what_is_missing_is_named(handed_out):

@@ -24,7 +24,7 @@ from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import Table, quote, significant
 from workshop.beyond.studies.loop import fair_rivals
 from workshop.beyond.studies.loop.runs.adaptive import _FULL
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged
@@ -281,21 +281,30 @@ def show(name: str, *what, **how) -> Illustration:
     return _SHOWN[name](*what, **how)
 
 
-def check(number: int, mine, asked=None) -> None:
-    """Judge an answer; `asked` gives the share of the motors' limits that a corner asks for."""
+def _exercise(number: int, asked=None) -> Exercise:
+    """An exercise; `asked` gives the share of the motors' limits that a corner asks for."""
     if number == 1:
-        slips = [(1.5, "the sign: does V grow?"),
-                 (-2.5, "K multiplies the squares of s.")]  # fmt: skip
+        slips = [(1.5, "the sign: does V grow?"), (-2.5, "K multiplies the squares of s.")]
         told = "wrong estimates do not come in; they are paid for by the update."
-        judge(mine, -1.5, told, slips, "All terms but one cancel.")
+        return Exercise("number", -1.5, told, slips, "All terms but one cancel.", unit="W")
     elif number == 2:
         slips = [(other, "which torques does that one act on?") for other in ("b", "d")]
         otherwise = "one of the letters a, b, d."
-        judge(mine, "a", "the shoulder never accelerates.", slips, otherwise)
+        return Exercise(
+            "word",
+            "a",
+            "the shoulder never accelerates.",
+            slips,
+            otherwise,
+            options=("a", "b", "d"),
+        )
     else:
 
         def short(seconds):
             return 0.05 < seconds <= 0.9 and asked(seconds) <= 1 < asked(0.85 * seconds)
 
         otherwise = "too much for a motor, or longer than needed. What is the impulse?"
-        judge(mine, short, "the elbow's motor decides.", [], otherwise)
+        return Exercise("number", short, "the elbow's motor decides.", [], otherwise, unit="s")
+
+
+check = judging(_exercise)

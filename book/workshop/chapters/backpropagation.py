@@ -13,7 +13,7 @@ from ddlib.figures import Illustration, families, network_diagram
 from ddlib.learning import Descent, History, TrainingSet, Weights, WindowNetwork, train_ensemble
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS
 from ddlib.tables import quote, scientific, significant, spread
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.widgets.weight import OneWeight as OneWeight
 from workshop.report import committed, results
 from workshop.report.evidence.statements import resampled, stated
@@ -205,8 +205,8 @@ def _said() -> None:
     stated("backpropagation-faster", (plain > 3 * quick) & (next(epochs) > 2 * next(epochs)))
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         alpha = np.array([0.0, 0.5, 0.9])
 
@@ -223,7 +223,7 @@ def check(number: int, mine, *given) -> None:
         ]
         told = "at this step size a root leaves the unit circle, at −1."
         hint = "give a function of alpha. For which r does the first root reach size 1?"
-        judge(mine, bound(lambda a: 2 * (1 + a)), told, slips, hint)
+        return Exercise("function", bound(lambda a: 2 * (1 + a)), told, slips, hint)
     elif number == 2:
         misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
         best = min(misses, key=misses.get)
@@ -232,14 +232,19 @@ def check(number: int, mine, *given) -> None:
             (Between(best), "with such a large change the curvature spoils the slope."),
         ]
         told = f"{scientific(best)} is best; it misses {scientific(misses[best])} of the slope."
-        judge(mine, Between(best / 11, 11 * best), told, slips)
+        return Exercise("number", Between(best / 11, 11 * best), told, slips)
     else:
         descend, x, d, level = given
         end = cache(lambda mine: descend(x, d, *mine, epochs=1000, warm_up=0)[1][-1])
-        slips = [(lambda mine: end(mine) > 1, "the descent went astray: the steps are too large.")]
+        slips = [
+            (lambda mine: not end(mine) <= 1, "the descent went astray: the steps are too large.")
+        ]
         hint = f"the training RMSS must fall below {level / 2:.2f} within 1,000 epochs."
         told = "with momentum many small steps add up, so you need less patience."
-        judge(mine, lambda mine: end(mine) < level / 2, told, slips, hint)
+        return Exercise("numbers", lambda mine: end(mine) < level / 2, told, slips, hint, count=2)
+
+
+check = judging(_exercise)
 
 
 # --- what the claims of the chapter measure

@@ -26,7 +26,7 @@ from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
 from ddlib.widgets.engine import builder
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
@@ -157,34 +157,53 @@ def _said() -> None:
     stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)
 
 
-def check(number: int, mine, window: int) -> None:
-    """Judge an answer to an exercise, of a window of so many samples."""
+def _exercise(number: int, window: int) -> Exercise:
+    """An exercise, of a window of so many samples."""
     k = np.arange(window) - window // 2.0
     if number == 1:
-        slips = [(1.0, "this holds for a window of three. In a longer window the line runs on."),
-                 (4 / (k @ k), "divide by the energy of the difference as well.")]  # fmt: skip
-        judge(mine, 2 / (k @ k), "it measures velocity, but from two samples only.", slips,
-              "divide the energy along the line by that of the whole filter.")  # fmt: skip
+        slips = [
+            (1.0, "this holds for a window of three. In a longer window the line runs on."),
+            (4 / (k @ k), "divide by the energy of the difference as well."),
+        ]
+        return Exercise(
+            "number",
+            2 / (k @ k),
+            "it measures velocity, but from two samples only.",
+            slips,
+            "divide the energy along the line by that of the whole filter.",
+        )
     elif number == 2:
         early = (k - 3) ** 2
         share = shares(early - early.mean())[2]
-        judge(mine, Between(share - 0.1, share + 0.1),
-              f"{share:.2f} of its energy goes to acceleration, and the rest to velocity.",
-              otherwise="this is too far off. Expand (k - 3)² and compare the parts.")  # fmt: skip
+        return Exercise(
+            "number",
+            Between(share - 0.1, share + 0.1),
+            f"{share:.2f} of its energy goes to acceleration, and the rest to velocity.",
+            otherwise="this is too far off. Expand (k - 3)² and compare the parts.",
+        )
     elif number == 3:
         powers = np.stack([k**n / np.linalg.norm(k**n) for n in range(4)])
 
         def hears(f):
-            f = np.asarray(f, float)
             return np.abs(powers @ f) / np.linalg.norm(f) > 1e-6
 
-        judge(mine, lambda f: hears(f).tolist() == [False] * 3 + [True],
-              "your filter answers to jerk, and to nothing of lower order.",
-              [(lambda f: np.shape(f) != k.shape, f"your filter needs {k.size} numbers."),
-               (lambda f: hears(f).tolist() == [False, True, False, True],
-                "a cubic contains a line, so your filter also answers to velocity."),
-               (lambda f: not hears(f)[3], "your filter does not answer to jerk.")],
-              "its sums with 1, k and k² must all be zero.")  # fmt: skip
+        return Exercise(
+            "array",
+            lambda f: hears(f).tolist() == [False] * 3 + [True],
+            "your filter answers to jerk, and to nothing of lower order.",
+            [
+                (
+                    lambda f: hears(f).tolist() == [False, True, False, True],
+                    "a cubic contains a line, so your filter also answers to velocity.",
+                ),
+                (lambda f: not hears(f)[3], "your filter does not answer to jerk."),
+            ],
+            "its sums with 1, k and k² must all be zero.",
+            count=k.size,
+        )
+
+
+check = judging(_exercise)
 
 
 def against_nulls(

@@ -46,7 +46,7 @@ from ddlib.identification import (
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import quote, scientific
 from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
-from workshop.chapters.exercises import MultipleOf, judge
+from workshop.chapters.exercises import Exercise, MultipleOf, judging
 from workshop.report.evidence.verdicts import Measured, judged
 
 _MARKERS = "os^DvPX"
@@ -67,8 +67,8 @@ def _quoted() -> None:
         quote(f"dynamics-dropped-{joint}", share)
 
 
-def check(number: int, mine, M=None) -> None:
-    """Judge an answer to an exercise; the first needs the lesson's mass matrix `M`."""
+def _exercise(number: int, M=None) -> Exercise:
+    """An exercise; the first needs the lesson's mass matrix `M`."""
     if number == 1:
         lag = M(np.zeros(2))[1, 0] / M(np.zeros(2))[1, 1]
         slips = (
@@ -76,16 +76,19 @@ def check(number: int, mine, M=None) -> None:
             (-1.0, "then the forearm would keep its direction. Does it?"),
         )
         told = "seen from above, the forearm even turns backwards."
-        judge(
-            mine,
+        return Exercise(
+            "number",
             -lag,
             told,
             slips,
             "the elbow's torque is zero. What follows from the second row?",
+            unit="rad/s²",
         )
     elif number == 2:
         told, unseen = "this change leaves both torques as they are.", MultipleOf((-2.0, 1.0, -1.0))
-        judge(mine, unseen, told, otherwise="write down both torques with the elbow straight.")
+        return Exercise(
+            "numbers", unseen, told, otherwise="write down both torques with the elbow straight."
+        )
     else:
         size = lambda x: excitation(pick_and_place(np.reshape(x, (2, 2)), _TIMES))  # noqa: E731
         slips = (
@@ -98,7 +101,17 @@ def check(number: int, mine, M=None) -> None:
         )
         right = lambda x: np.min(x) >= 0 and np.max(x) <= 45 and size(x) < 7  # noqa: E731
         otherwise = "give two pairs of extents."
-        judge(mine, right, "a few well-chosen motions can do better than many.", slips, otherwise)
+        return Exercise(
+            "numbers",
+            right,
+            "a few well-chosen motions can do better than many.",
+            slips,
+            otherwise,
+            count=4,
+        )
+
+
+check = judging(_exercise)
 
 
 def operations(

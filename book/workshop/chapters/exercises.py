@@ -1,7 +1,8 @@
 """Judges answers to exercises: right, or wrong and why, without the solution.
 
-An answer that is a number, some numbers or a word can be judged in the page as well, where nothing
-runs: see `Waiting`.
+A lesson's module has a function that gives an `Exercise` for each number, and `check =
+judging(that)`. An answer that is a number, some numbers or a word can be judged in the page as
+well, where nothing runs: see `Waiting`.
 """
 
 from __future__ import annotations
@@ -9,6 +10,9 @@ from __future__ import annotations
 import base64
 import json
 import math
+import re
+import reprlib
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -24,8 +28,8 @@ class Between:
     high: float | Sequence[float] = math.inf
 
     def __call__(self, mine) -> bool:
-        mine = _as_many(mine, np.asarray(self.low))
-        return mine is not None and bool(np.all((self.low <= mine) & (mine <= self.high)))
+        mine = np.reshape(mine, np.shape(self.low))
+        return bool(np.all((self.low <= mine) & (mine <= self.high)))
 
 
 @dataclass(frozen=True)
@@ -58,55 +62,247 @@ def fitting(fits: Callable, values: Sequence[float]) -> OneOf:
     )
 
 
-def judge(
-    mine,
-    right,
-    told: str,
-    slips: Iterable[tuple] = (),
-    otherwise: str = "Read the question again.",
-    tolerance: float = 0.02,
-) -> None:
-    """Say what is to be said to an answer.
+@dataclass(frozen=True)
+class Exercise:
+    """What is asked, what is right, and what is said to which answer.
 
-    Parameters
+    Attributes
     ----------
-    mine : object
-        The reader's answer; `...` as long as there is none.
+    kind : str
+        "number", "word", "numbers" (a fixed few, handed on as a tuple), "array" or "function".
     right : float, array_like, str, Between, MultipleOf, OneOf or callable
-        What it has to be, numbers within a relative `tolerance`, `nan` for any; or tells of an
-        answer whether it is right. The page judges all but what only a function can tell.
+        What the answer has to be, `nan` for any number; or tells of an answer whether it is right.
+        The page judges all but what only a function can tell.
     told : str
-        Follows "Right: ".
+        Follows "Right: ", one sentence that teaches.
     slips : iterable of (like `right`, str)
         Answers that come from a known slip, and what follows "Wrong: " to each.
     otherwise : str
         Follows "Wrong: " to all other answers.
     tolerance : float
-        Relative to the size of what is right.
+        Relative to the size of what is right. A near miss is told from a gross error.
+    count : int
+        Of numbers, if what is right does not show it.
+    unit : str
+        Follows the answer where it is repeated.
+    options : sequence of str
+        All words that may be answered.
+    unless : iterable of (callable, str)
+        Answers that cannot be judged, and why.
+    whole : bool
+        Whether numbers have to be whole; then they are handed on as integers.
+    infinite : bool
+        Whether infinity is an answer.
     """
-    cases = [(right, f"Right: {told}"), *((slip, f"Wrong: {why}") for slip, why in slips)]
+
+    kind: str
+    right: object
+    told: str
+    slips: Iterable[tuple] = ()
+    otherwise: str = "Read the question again."
+    tolerance: float = 0.02
+    count: int = 0
+    unit: str = ""
+    options: Sequence[str] = ()
+    unless: Iterable[tuple] = ()
+    whole: bool = False
+    infinite: bool = False
+
+    def cases(self) -> list[tuple]:
+        """What is compared, how closely, and what is said if it fits; the first that fits counts.
+
+        Slips that are one answer come before a near miss, and a near miss before wide slips.
+        """
+        told = [(slip, self.tolerance, f"Wrong: {why}") for slip, why in self.slips]
+        wide = [isinstance(slip, (Between, Callable)) for slip, *_ in told]
+        return [
+            (self.right, self.tolerance, f"Right: {self.told}"),
+            *(case for case, late in zip(told, wide) if not late),
+            *_near(self.right, self.tolerance),
+            *(case for case, late in zip(told, wide) if late),
+        ]
+
+    def size(self) -> int:
+        """How many numbers are asked."""
+        if self.kind == "number":
+            return 1
+        right = self.right.these if isinstance(self.right, MultipleOf) else self.right
+        right = right.low if isinstance(right, Between) else right
+        return self.count or np.size(right)
+
+
+class NotJudged(Exception):
+    """An answer that is none, and why."""
+
+
+def judging(exercise: Callable) -> Callable:
+    """The `check(number, mine, *given)` of a lesson, from what gives each `Exercise`.
+
+    It sets `mine` back to dots where it was called, so that no answer is judged twice: not if the
+    cell with the next answer raises, either.
+    """
+
+    def check(number: int, mine, *given) -> None:
+        """Judge an answer to an exercise, with what the lesson's cells give."""
+        caller = sys._getframe(1).f_globals
+        if caller.get("mine", ...) is mine:
+            caller["mine"] = ...
+        judge(mine, exercise(number, *given))
+
+    return check
+
+
+def judge(mine, exercise: Exercise) -> None:
+    """Say what is to be said to an answer, `...` as long as there is none."""
     if mine is ...:
-        display(Waiting(cases, f"Wrong: {otherwise}", tolerance))
+        display(Waiting(exercise))
         return
-    for wanted, verdict in cases:
-        if _is(mine, wanted, tolerance):
-            print(verdict)
-            return
-    print(f"Wrong: {otherwise}")
-
-
-def _as_many(mine, wanted: np.ndarray) -> np.ndarray | None:
-    """An answer as numbers in the shape of what is wanted, as [11] for 11; None if it has none."""
     try:
-        mine = np.asarray(mine, dtype=float)
+        answer = _taken(mine, exercise)
+        with np.errstate(all="ignore"):
+            said = _said(answer, exercise)
+    except NotJudged as reason:
+        print(reason)
+    except Exception as error:  # whatever an answer raises where it is used
+        print(f"Not judged: with your answer the check raised {_named(error)}")
+    else:
+        print(said + _echo(answer, exercise))
+
+
+def _said(answer, exercise: Exercise) -> str:
+    """The verdict on an answer of the right kind."""
+    for unfit, why in exercise.unless:
+        if unfit(answer):
+            raise NotJudged(f"Not judged: {why}{_echo(answer, exercise)}")
+    found = (said for wanted, close, said in exercise.cases() if _is(answer, wanted, close))
+    return next(found, f"Wrong: {exercise.otherwise}")
+
+
+def _named(error: Exception) -> str:
+    return f"{type(error).__name__}: {error}".rstrip(": .") + "."
+
+
+def _taken(mine, exercise: Exercise):
+    """An answer as what is asked: a float, a tuple of them, an array, a word, a function."""
+    if exercise.kind == "word":
+        return _word(mine, exercise.options)
+    if exercise.kind == "function":
+        return _function(mine)
+    size, given = exercise.size(), reprlib.repr(mine)
+    asked = "one number is asked" if size == 1 else f"{size} numbers are asked"
+    if mine is None:
+        raise NotJudged(f"Not judged: {asked}, and your answer is None. Was something returned?")
+    if isinstance(mine, Callable):
+        raise NotJudged(f"Not judged: {asked}, and your answer is a function.")
+    try:
+        raw = np.asarray(mine)
+        if raw.dtype == bool:
+            raise NotJudged(f"Not judged: {asked}, and your answer is {given}.")
+        if np.iscomplexobj(raw) or any(isinstance(x, complex) for x in raw.flat):
+            raise NotJudged(f"Not judged: your answer is complex, {given}. Is a root negative?")
+        numbers = raw.astype(float).ravel()
     except (TypeError, ValueError):
-        return None
-    return mine.reshape(wanted.shape) if mine.size == wanted.size else None
+        raise NotJudged(f"Not judged: {asked}, and your answer is {given}.") from None
+    if numbers.size != size:
+        raise NotJudged(f"Not judged: {asked}, and you gave {numbers.size}.")
+    if np.isnan(numbers).any():
+        raise NotJudged("Not judged: NaN is no number. What was divided by zero, or never set?")
+    if np.isinf(numbers).any() and not exercise.infinite:
+        raise NotJudged("Not judged: infinity is no answer here. What was divided by zero?")
+    if exercise.whole:
+        if (numbers % 1).any():
+            raise NotJudged(f"Not judged: whole numbers are asked, and your answer is {given}.")
+        numbers = numbers.astype(int)
+    if exercise.kind == "array":
+        return numbers
+    return numbers[0].item() if exercise.kind == "number" else tuple(numbers.tolist())
+
+
+def _word(mine, options: Sequence[str]) -> str:
+    if not isinstance(mine, str) and np.size(mine) == 1:
+        mine = np.asarray(mine).flat[0]
+    word = mine.strip(" \n\t.\"'").lower() if isinstance(mine, str) else ""
+    if not word or (options and word not in map(str.lower, options)):
+        raise NotJudged(f"Not judged: write {_either(options)}.")
+    return word
+
+
+def _either(options: Sequence[str]) -> str:
+    *first, last = [f'"{option}"' for option in options] or ["a word"]
+    return f"{', '.join(first)} or {last}" if first else last
+
+
+def _function(mine) -> Callable:
+    """A function that says of itself if it raises, or gives something else than numbers."""
+    if not isinstance(mine, Callable):
+        raise NotJudged(
+            f"Not judged: a function is asked, and your answer is {reprlib.repr(mine)}."
+        )
+
+    def called(*inputs, **named):
+        try:
+            found = mine(*inputs, **named)
+        except Exception as error:
+            raise NotJudged(f"Your function raised {_named(error)[:-1]}; not judged.") from None
+        try:
+            fine = np.isfinite(np.asarray(found, dtype=float)).all()
+        except (TypeError, ValueError):
+            fine = False
+        if not fine:
+            raise NotJudged(f"Your function returned {reprlib.repr(found)}; not judged.")
+        return found
+
+    return called
+
+
+def _echo(answer, exercise: Exercise) -> str:
+    """The answer that was judged, in words."""
+    if exercise.kind in ("word", "function"):
+        return f' You gave "{answer}".' if exercise.kind == "word" else ""
+    many = np.atleast_1d(answer)
+    if many.size > 6:
+        return f" You gave {many.size} numbers from {_shown(many.min())} to {_shown(many.max())}."
+    return f" You gave {', '.join(map(_shown, many))} {exercise.unit}".rstrip() + "."
+
+
+def _shown(x: float) -> str:
+    """A number as the page writes it, too: whole, or with six digits."""
+    x = float(x)
+    if x.is_integer() and abs(x) < 1e15:
+        return f"{x:.0f}".replace("-0", "0") if x == 0 else f"{x:.0f}"
+    if not 1e-6 <= abs(x) < 1e21:
+        return re.sub(r"e([+-])0", r"e\1", f"{x:.6g}")
+    return np.format_float_positional(x, 6, fractional=False, trim="-")
+
+
+def _near(right, tolerance: float) -> list[tuple]:
+    """What is close to what is right, if that is numbers or ranges."""
+    wide = max(2 * tolerance, min(10 * tolerance, 0.2), 0.02)
+    if isinstance(right, OneOf):
+        if all(isinstance(one, Between) for one in right.these):
+            return [near for one in right.these for near in _near(one, tolerance)]
+        return []
+    if isinstance(right, Between):
+        low, high = (np.asarray(limit, dtype=float) for limit in (right.low, right.high))
+        low, high = low - 0.1 * np.abs(low), high + 0.1 * np.abs(high)
+        return [(Between(low, high), tolerance, "Wrong: close, but not close enough.")]
+    if isinstance(right, (str, Callable)) or not np.isfinite(_numbers(right)).all():
+        return []
+    exact = "close, but here it must be exact: did you round, or leave something out?"
+    close = f"close, but not within {100 * tolerance:.3g} %: rounding, or a unit?"
+    return [(right, wide, f"Wrong: {close if tolerance > 1e-3 else exact}")]
+
+
+def _numbers(wanted) -> np.ndarray:
+    these = wanted.these if isinstance(wanted, MultipleOf) else wanted
+    return np.asarray(these, dtype=float)
 
 
 def _limits(wanted, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """From where to where each number may lie."""
     wanted = np.asarray(wanted, dtype=float)
+    if np.isinf(wanted).any():
+        return wanted, wanted
     close = np.where(np.isnan(wanted), np.inf, tolerance * np.nanmax(np.abs(wanted)))
     middle = np.nan_to_num(wanted)
     return middle - close, middle + close
@@ -114,21 +310,15 @@ def _limits(wanted, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _is(mine, wanted, tolerance: float) -> bool:
     if isinstance(wanted, str):
-        return isinstance(mine, str) and mine.strip(" \n\t.").lower() == wanted.lower()
+        return mine == wanted.lower()
     if isinstance(wanted, OneOf):
         return any(_is(mine, one, tolerance) for one in wanted.these)
     if isinstance(wanted, MultipleOf):
-        these = np.asarray(wanted.these, dtype=float)
-        mine = _as_many(mine, these)
-        if mine is None or not np.isfinite(mine).all():
-            return False
+        these, mine = _numbers(wanted), np.asarray(mine)
         off = mine - these * (these @ mine) / (these @ these)
         return bool(np.any(mine) and np.abs(off).max() <= tolerance * np.abs(mine).max())
     if isinstance(wanted, Callable):
-        try:
-            return bool(wanted(mine))
-        except (TypeError, ValueError, IndexError, KeyError, AttributeError, ArithmeticError):
-            return False
+        return bool(wanted(mine))
     return Between(*_limits(wanted, tolerance))(mine)
 
 
@@ -140,38 +330,41 @@ class Waiting:
     be read at a glance. If an answer has to be run to be judged, the page says where.
     """
 
-    WORDS = "Put your answer in place of the dots, and run this cell again."
+    WORDS = "Put your answer in place of the dots, run that cell, and then this one."
     RUN = (
         "This answer has to be run before it can be judged. Download your own copy of the notebook "
         "(the arrow above the page), and answer there."
     )
 
-    def __init__(self, cases, otherwise: str, tolerance: float):
-        self.cases, self.otherwise, self.tolerance = cases, otherwise, tolerance
+    def __init__(self, exercise: Exercise):
+        self.exercise = exercise
 
     def __repr__(self) -> str:
         return self.WORDS
 
     def data(self) -> dict | None:
         """What a page needs in order to judge; None if only a run can."""
-        if not self._kept(self.cases[0][0]):
+        right, close, _ = (cases := self.exercise.cases())[0]
+        if not self._kept(right, close):
             return None
-        kept = [{**one, "said": said} for wanted, said in self.cases for one in self._kept(wanted)]
-        return {"cases": kept, "otherwise": self.otherwise}
+        kept = [{**one, "said": said} for *wanted, said in cases for one in self._kept(*wanted)]
+        told = {"unit": self.exercise.unit, "options": [*map(str.lower, self.exercise.options)]}
+        told["unfit"] = f"Not judged: write {_either(self.exercise.options)}."
+        return {"cases": kept, "otherwise": f"Wrong: {self.exercise.otherwise}", **told}
 
-    def _kept(self, wanted) -> list[dict]:
+    def _kept(self, wanted, close: float) -> list[dict]:
         if isinstance(wanted, str):
             return [{"word": wanted}]
         if isinstance(wanted, OneOf):
-            return [kept for one in wanted.these for kept in self._kept(one)]
+            return [kept for one in wanted.these for kept in self._kept(one, close)]
         if isinstance(wanted, MultipleOf):
-            return [{"along": [*map(float, wanted.these)], "close": self.tolerance}]
+            return [{"along": [*map(float, wanted.these)], "close": close}]
         if isinstance(wanted, Between):
             limits = wanted.low, wanted.high
         elif isinstance(wanted, Callable) or np.ndim(wanted) > 1 or np.size(wanted) > 6:
             return []
         else:
-            limits = _limits(wanted, self.tolerance)
+            limits = _limits(wanted, close)
         low, high = np.clip(np.broadcast_arrays(*map(np.atleast_1d, limits)), -1e300, 1e300)
         return [{"low": low.tolist(), "high": high.tolist()}]
 

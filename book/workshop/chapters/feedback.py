@@ -11,7 +11,7 @@ from ddlib.simulation import Load
 from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import PIDTuner
-from workshop.chapters.exercises import OneOf, judge
+from workshop.chapters.exercises import Exercise, OneOf, judging
 from workshop.chapters.feedforward import _errors, _geared, _rms
 from workshop.report.evidence.verdicts import Measured
 
@@ -28,8 +28,8 @@ def _quoted() -> None:
         quote(f"pid-tune-late-{name}", np.sqrt((seen["shoulder error"][late] ** 2).mean()))
 
 
-def check(number: int, mine, inertia: float, friction: float, period: float) -> None:
-    """Judge an answer to an exercise, for a joint and a control period."""
+def _exercise(number: int, inertia: float, friction: float, period: float) -> Exercise:
+    """An exercise, for a joint and a control period."""
 
     def quick(gains):
         joint, t = linear.plant(inertia, friction), np.linspace(0, 4, 4001)
@@ -52,16 +52,28 @@ def check(number: int, mine, inertia: float, friction: float, period: float) -> 
             (2 * limit, "that is the limit without the delay."),
             (limit, "the hold costs half a period, the delay a whole one. Add them."),
         ]
-        judge(mine, limit / 1.5, "the spring is one and a half periods late.", slips,
-              "How late is the spring, and what torque along the velocity is that?")  # fmt: skip
+        return Exercise(
+            "number",
+            limit / 1.5,
+            "the spring is one and a half periods late.",
+            slips,
+            "How late is the spring, and what torque along the velocity is that?",
+            unit="N m/rad",
+        )
     elif number == 2:
         slips = [
             (only(0), "it overshoots by more than 5 %. What raises the damping ratio?"),
             (only(1), "it has not settled after 0.55 s. What makes it die out sooner?"),
             (only(2), "the margin is below 60°. Is the crossover too high for the delay?"),
         ]
-        judge(mine, lambda gains: all(quick(gains)), "all three demands are met.", slips,
-              "Give two positive gains, kp and kd.")  # fmt: skip
+        return Exercise(
+            "numbers",
+            lambda gains: all(quick(gains)),
+            "it is damped enough, and its crossover is low enough for the delay.",
+            slips,
+            count=2,
+            unless=[(lambda gains: min(gains) <= 0, "give two positive gains, kp and kd.")],
+        )
     else:
         any_ = np.nan
         alike, twice = (any_, 1, any_), (any_, 2, any_)
@@ -70,7 +82,16 @@ def check(number: int, mine, inertia: float, friction: float, period: float) -> 
             (OneOf(alike, twice), "in ζ both gains stand, one under a root."),
             ((any_, any_, 2), "does a stiffer spring give way more?"),
         ]
-        judge(mine, (root, root, 0.5), "frequency and damping by √2, the angle by a half.", slips)
+        return Exercise(
+            "numbers",
+            (root, root, 0.5),
+            "frequency and damping by √2, the angle by a half.",
+            slips,
+            "put 2 k_p for k_p into ω, into ζ and into the angle.",
+        )
+
+
+check = judging(_exercise)
 
 
 # --- what the claims of the chapter measure

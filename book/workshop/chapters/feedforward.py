@@ -37,7 +37,7 @@ from ddlib.simulation import (
 )
 from ddlib.tables import quote, scientific, significant
 from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report.evidence.verdicts import Measured
 
 
@@ -154,24 +154,42 @@ def _arrow(axis: Axes, *points):
     axis.text((x0 + x1) / 2, y0 + 0.1, name, ha="center", va="bottom")
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise, with what the lesson's cells found."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise, with what the lesson's cells found."""
     if number == 1:
         inertia, friction, omega = given
         slips = [(friction / (friction + inertia * omega), "J s and F are at right angles.")]
-        judge(mine, friction / np.hypot(friction, inertia * omega), "F over |J s + F|.", slips,
-              "Put 1 / P of the model and of the joint into 1 - P / P_model.")  # fmt: skip
+        return Exercise(
+            "number",
+            friction / np.hypot(friction, inertia * omega),
+            "the model leaves friction out, so it misses F over |J s + F|.",
+            slips,
+            "Put 1 / P of the model and of the joint into 1 - P / P_model.",
+        )
     elif number == 2:
         rigid, error = given
-        judge(mine, lambda model: error(model) < 0.1 * error(rigid), "friction can be known.", (),
-              "it leaves too much. What brakes the arm that `inverse` does not know?")  # fmt: skip
+        return Exercise(
+            "function",
+            lambda model: error(model) < 0.1 * error(rigid),
+            "friction can be known, and then less than a tenth of the error is left.",
+            (),
+            "it leaves too much. What brakes the arm that `inverse` does not know?",
+        )
     else:
         slips = [
             (1 / 5, "a softer loop errs more."),
             (25, "for slow motions the error falls with k_p, not with its root."),
         ]
-        judge(mine, 5, "five times the stiffness for a fifth of the error.", slips,
-              "What is S where J s² is small against k_p?")  # fmt: skip
+        return Exercise(
+            "number",
+            5,
+            "five times the stiffness for a fifth of the error.",
+            slips,
+            "What is S where J s² is small against k_p?",
+        )
+
+
+check = judging(_exercise)
 
 
 # --- what the claims of the chapter measure

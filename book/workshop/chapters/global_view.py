@@ -24,7 +24,7 @@ from ddlib.setups import (
 )
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote, significant
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.hinton_diagrams import before_and_after
 from workshop.chapters.start import values
 from workshop.chapters.window_networks import intervals
@@ -222,30 +222,36 @@ def _said() -> None:
     stated_of_units()
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to one of the lesson's exercises, for the reader's own cases."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson, for the reader's own cases."""
     if number == 1:
         slips = [
             (1 / np.sqrt(10), "that is the share that remains, not the share that cancels."),
             (0.9, "deviations do not add up. What does?"),
         ]
         told, otherwise = "variances add up.", "what of unrelated signals adds up?"
-        judge(mine, 1 - 1 / np.sqrt(10), told, slips, otherwise)
+        return Exercise("number", 1 - 1 / np.sqrt(10), told, slips, otherwise)
     elif number == 2:
         units, window = given
         right = "larger" if units > window else "smaller"
-        told = f"{units:.3f} from the units alone, {window:.3f} from the window."
-        judge(
-            mine,
+        told = f"the error is {units:.3f} from the units alone, {window:.3f} from the window."
+        return Exercise(
+            "word",
             right,
             told,
             otherwise="how many numbers does a window have, and how many units are there?",
+            options=("larger", "smaller"),
         )
     else:
         errors_with, alone = given
-        told = "less error than the window alone has, in training and in the test."
+        told = "your units have less error than the window alone has, in training and in the test."
         otherwise = "one of the two errors is not smaller. Try sizes that are ten times apart."
-        judge(mine, lambda x: all(np.less(errors_with(x), alone)), told, otherwise=otherwise)
+        return Exercise(
+            "number", lambda x: all(np.less(errors_with(x), alone)), told, otherwise=otherwise
+        )
+
+
+check = judging(_exercise)
 
 
 def hidden_units_add(

@@ -17,7 +17,7 @@ from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
 from workshop.chapters import excitation, start
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
@@ -214,8 +214,8 @@ def _said() -> None:
     stated("inertia-no-path", not (np.abs(each[:, 2] / arm - 1) < 0.05).any())
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer: `given` stiffness, inertia, frequency; nothing; or the window's time."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise: `given` stiffness, inertia, frequency; nothing; or the window's time."""
     if number == 1:
         K, M, omega = given
         slips = (
@@ -225,24 +225,42 @@ def check(number: int, mine, *given) -> None:
                 "mind the sign: along a sine, acceleration has the opposite sign of position.",
             ),
         )
-        judge(mine, M - K / omega**2, "stiffness hides inertia, and most of it on slow motions.",
-              slips, "put q = sin(ωt) into K q + M q̈ and divide by q̈.")  # fmt: skip
+        return Exercise(
+            "number",
+            M - K / omega**2,
+            "stiffness hides inertia, and most of it on slow motions.",
+            slips,
+            "put q = sin(ωt) into K q + M q̈ and divide by q̈.",
+            unit="kg m²",
+        )
     elif number == 2:
         slips = (
             (1 / 3, "at λ½ itself half of the inertia is left, not all of it."),
             (0.5, "this is the share at λ½."),
         )
-        judge(mine, 0.25, "the other three quarters hide behind position.", slips,
-              "put λ = 3 λ½ into the formula of the remaining share.")  # fmt: skip
+        return Exercise(
+            "number",
+            0.25,
+            "the other three quarters hide behind position.",
+            slips,
+            "put λ = 3 λ½ into the formula of the remaining share.",
+        )
     else:
         (x,) = given
         moments = np.array([x**0, x, x**2 / 2])
         least = np.linalg.pinv(moments) @ np.array([0.0, 3.0, 2.0])
 
         def fits(g):
-            return np.allclose(moments @ np.asarray(g, float), [0, 3, 2], atol=1e-3)
+            return np.allclose(moments @ g, [0, 3, 2], atol=1e-3)
 
-        judge(mine, lambda g: fits(g) and np.sum(np.square(g)) < 1.001 * least @ least,
-              "your filter has the three moments with the least energy.",
-              [(fits, "the moments are right, but a filter of less energy has them as well.")],
-              f"your filter needs {x.size} numbers with K = 0, B = 3 and M = 2.")  # fmt: skip
+        return Exercise(
+            "array",
+            lambda g: fits(g) and np.sum(np.square(g)) < 1.001 * least @ least,
+            "your filter has the three moments with the least energy.",
+            [(fits, "the moments are right, but a filter of less energy has them as well.")],
+            "your filter must have the moments K = 0, B = 3 and M = 2.",
+            count=x.size,
+        )
+
+
+check = judging(_exercise)

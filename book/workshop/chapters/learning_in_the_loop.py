@@ -13,7 +13,7 @@ from ddlib.setups import KD, KP
 from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
 from ddlib.tables import Table, quote, significant, spread
 from ddlib.trajectories import APPENDIX_I
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
@@ -371,15 +371,15 @@ def _said() -> None:
     stated("loop-from-nothing", np.all(learnt + slow, axis=0))
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         M, F, k, gamma = given
         size = gamma * np.sqrt(k * M) / F
         wrong = "G is imaginary there: what is the size of 1 - γ G?"
         slips = [(1 - size, wrong), (1 + size, wrong), (1 + size**2, "that is the square.")]
         told = "above 1, whatever the rate: the resonance grows from trial to trial."
-        judge(mine, np.sqrt(1 + size**2), told, slips, "Put ω² = k / M into G.")
+        return Exercise("number", np.sqrt(1 + size**2), told, slips, "Put ω² = k / M into G.")
     elif number == 2:
         (quick,) = given
 
@@ -387,9 +387,14 @@ def check(number: int, mine, *given) -> None:
             return all(third < alone / 30 for alone, third in quick(float(rate)))
 
         told = "all three motions are learnt in two trials."
-        judge(mine, right, told, [], "some motion has more than a thirtieth left. Try another.")
+        return Exercise(
+            "number", right, told, [], "some motion has more than a thirtieth left. Try another."
+        )
     else:
         (found,) = given
         slips = [(1, "it plays something."), (0, "it plays the old torque, with the old sign.")]
         told = f"found {found:.2f}. What was missing is missing twice."
-        judge(mine, found, told, slips, "What is missing, and what is played?", 0.15)
+        return Exercise("number", found, told, slips, "What is missing, and what is played?", 0.15)
+
+
+check = judging(_exercise)

@@ -14,7 +14,7 @@ from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from workshop import BOOK
 from workshop.beyond.studies.walking import STEP, gradient, layers, torque
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured
 
@@ -244,26 +244,45 @@ def _ranges(g, sure: bool = True) -> list[str]:
     return [middle, stiffness, late if sure else "", damping, net if sure else ""]
 
 
-def check(number: int, mine, left: float | None = None) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, left: float | None = None) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         slips = [(85 / 0.011, "divide or multiply?"), (85 * 11, "the delay is in milliseconds.")]
-        judge(mine, 85 * 0.011, "stiffness times delay.", slips, "Expand the late error in d.")
+        return Exercise(
+            "number",
+            85 * 0.011,
+            "a late spring takes away damping, by stiffness times delay.",
+            slips,
+            "Expand the late error in d.",
+            unit="N m s/rad",
+        )
     elif number == 2:
         slips = [
             (Between(0, left), "the share is larger."),
             (Between(left, 1), "the share is smaller."),
         ]
-        judge(mine, left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2)
+        return Exercise(
+            "number", left, "that close is no guess.", slips, "A share lies between 0 and 1.", 0.2
+        )
     else:
 
         def apart(e):
             now, one, two = e
             return abs(20 * (one - (now + one + two) / 3)) >= 2 and max(map(abs, e)) <= 0.1
 
-        slips = [(lambda e: len(e) == 3 and max(map(abs, e)) > 0.1, "an error is above 0.1 rad.")]
+        slips = [(lambda e: max(map(abs, e)) > 0.1, "an error is above 0.1 rad.")]
         told = "it turns at every sample, as no smooth motion does."
-        judge(mine, apart, told, slips, "Write down the difference of the two torques first.")
+        return Exercise(
+            "numbers",
+            apart,
+            told,
+            slips,
+            "Write down the difference of the two torques first.",
+            count=3,
+        )
+
+
+check = judging(_exercise)
 
 
 class LateSpring(CurveWidget):

@@ -17,7 +17,7 @@ from ddlib.learning import p_value
 from ddlib.tables import quote, significant
 from workshop.beyond.studies.tx40 import Windowed, identified
 from workshop.chapters import real_two_link_arm as swinging
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import stated
 from workshop.report.evidence.verdicts import Measured, judged, mean, median
@@ -332,8 +332,8 @@ def show(name: str) -> Illustration:
     return _parts_figure() if name == "parts" else swinging.show(name)
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         at_random, error, model = given
         slips = [
@@ -341,8 +341,10 @@ def check(number: int, mine, *given) -> None:
             (Between(0.8, 1.2), "a constant does as well as that."),
         ]
         right = Between(0.5 * at_random(model), 1.7 * at_random(model))
-        told = "and it says little about other motions."
-        judge(mine, right, told, slips, "How much of a window do its neighbours share?")
+        told = "the neighbours of each window were learnt, so it says little about other motions."
+        return Exercise(
+            "number", right, told, slips, "How much of a window do its neighbours share?"
+        )
     elif number == 2:
         fitted, error = given
 
@@ -350,12 +352,18 @@ def check(number: int, mine, *given) -> None:
             many = sum(columns(j).shape[1] for j in range(6))
             return many <= 30 and error(fitted(columns)) <= 0.25
 
-        told = "no coupling, no centrifugal torque."
-        judge(mine, few, told, [], "There are more than 30 numbers, or the error is above 0.25.")
+        told = "friction, inertia and weight are enough, without coupling or centrifugal torque."
+        return Exercise(
+            "function", few, told, [], "There are more than 30 numbers, or the error is above 0.25."
+        )
     elif number == 3:
-        slips = [(0.25, "the noise adds to the variance; it is not a share of the sum."),
-                 (3, "it is the other way round.")]  # fmt: skip
-        judge(mine, 1 / 3, "gravity shrinks with inertia.", slips, "Solve v / (v + n) = 0.75.")
+        slips = [
+            (0.25, "the noise adds to the variance; it is not a share of the sum."),
+            (3, "it is the other way round."),
+        ]
+        return Exercise(
+            "number", 1 / 3, "gravity shrinks with inertia.", slips, "Solve v / (v + n) = 0.75."
+        )
     else:
         (gravity,) = given
 
@@ -364,4 +372,15 @@ def check(number: int, mine, *given) -> None:
             return max(off) < 0.07
 
         told = "both kinds of smoothing share the work."
-        judge(mine, near, told, [], "One design is more than 7 % off. Which window smooths what?")
+        return Exercise(
+            "numbers",
+            near,
+            told,
+            [],
+            "One design is more than 7 % off. Which window smooths what?",
+            count=2,
+            whole=True,
+        )
+
+
+check = judging(_exercise)

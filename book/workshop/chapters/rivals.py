@@ -30,7 +30,7 @@ from workshop.beyond.rivals.identified import Identified, Linear
 from workshop.beyond.rivals.protocol import Cases
 from workshop.beyond.rivals.tables import CellTable
 from workshop.chapters.backpropagation import NETWORKS
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import committed, results
 from workshop.report.evidence.statements import stated
 from workshop.report.parity import parity, patterns
@@ -449,16 +449,22 @@ def asked(process: str, part: str = "trajectory 6", what: str = "covered") -> np
     return np.array([row[what] for row in rows])
 
 
-def check(number: int, mine, *asked) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *asked) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
-        slips = [(0.2, "that is the share that is lost."),
-                 (0.25, "that is the penalty over the variance.")]  # fmt: skip
-        judge(mine, 0.8, "small variances lose most.", slips, "Set the slope in w' to zero.")
+        slips = [
+            (0.2, "that is the share that is lost."),
+            (0.25, "that is the penalty over the variance."),
+        ]
+        return Exercise(
+            "number", 0.8, "small variances lose most.", slips, "Set the slope in w' to zero."
+        )
     elif number == 2:
         near = Between(0.5 * np.array(asked), 2 * np.array(asked))
         told = "a known form carries over, free weights do not."
-        judge(mine, near, told, [], "one error hardly grows, the other one grows a lot.")
+        return Exercise(
+            "numbers", near, told, [], "one error hardly grows, the other one grows a lot."
+        )
     else:
         (with_these,) = asked
 
@@ -466,4 +472,15 @@ def check(number: int, mine, *asked) -> None:
             return len(set(kept)) == 5 and with_these(kept) <= 1.5
 
         otherwise = "without which columns does nothing accelerate rightly?"
-        judge(mine, few, "one friction term a joint is nearly enough.", [], otherwise)
+        return Exercise(
+            "numbers",
+            few,
+            "one friction term a joint is nearly enough.",
+            [],
+            otherwise,
+            count=5,
+            whole=True,
+        )
+
+
+check = judging(_exercise)

@@ -20,7 +20,7 @@ from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
 from workshop.beyond.figures import maps
 from workshop.beyond.studies.loop import fair_rivals
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -272,23 +272,45 @@ def show(name: str, *what, **how) -> Illustration:
     return _SHOWN[name](*what, **how)
 
 
-def check(number: int, mine, error=None) -> None:
-    """Judge an answer to an exercise; `error` gives the end-point error (mm) of an answer."""
+def _exercise(number: int, error=None) -> Exercise:
+    """An exercise; `error` gives the end-point error (mm) of an answer."""
     if number == 1:
         zeta = 5.3 / (2 * np.sqrt(750.0 * 6.5))
         rho = np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
         gain = (1 + rho) / (1 - rho) / 750
-        slips = [(1 / 750, "so far goes a torque that stays; one in step with the loop goes on."),
-                 ((1 + rho) / 750, "that is the first swing; all others follow.")]  # fmt: skip
-        judge(mine, gain, "most of it is ringing.", slips, "Add up all swings of a step's answer.")
+        slips = [
+            (1 / 750, "so far goes a torque that stays; one in step with the loop goes on."),
+            ((1 + rho) / 750, "that is the first swing; all others follow."),
+        ]
+        return Exercise(
+            "number",
+            gain,
+            "most of it is ringing.",
+            slips,
+            "Add up all swings of a step's answer.",
+            unit="rad",
+        )
     elif number == 2:
         slips = [(1, "then the torque would do nothing, and it pushes the wrong way.")]
         otherwise = "what is missing is the torque needed minus the torque given."
-        judge(mine, error(-1) / error(0), "twice the torque is missing.", slips, otherwise, 0.15)
+        return Exercise(
+            "number",
+            error(-1) / error(0),
+            "twice the torque is missing.",
+            slips,
+            otherwise,
+            0.15,
+            infinite=True,
+        )
     else:
 
         def short(seconds):
             return 0.01 < seconds <= 0.5 and error(seconds) < 0.5 < error(seconds / 2)
 
         otherwise = "above 0.5 mm, or half of it would do as well. What do the motors give?"
-        judge(mine, short, "the motors can give what is asked.", [], otherwise)
+        return Exercise(
+            "number", short, "the motors can give what is asked.", [], otherwise, unit="s"
+        )
+
+
+check = judging(_exercise)

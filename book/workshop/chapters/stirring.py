@@ -10,7 +10,7 @@ from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.tables import Table, how_many, quote, spread
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
 from workshop.beyond.studies.loop.run_time_parts import exact
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -208,20 +208,30 @@ def _said() -> None:
     stated("stir-velocities-back", old[0] > 0.8 * old[1])
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         d = np.cos(np.deg2rad([2.5, 45.0]))  # both links are of one length
         right = d[0] / np.sin(np.deg2rad(5)) / d[1]
-        slips = [(1 / np.sin(np.deg2rad(5)), "the hand's distance d is another one, too."),
-                 (1 / right, "the other way round.")]  # fmt: skip
+        slips = [
+            (1 / np.sin(np.deg2rad(5)), "the hand's distance d is another one, too."),
+            (1 / right, "the other way round."),
+        ]
         told = "d over the determinant of the Jacobian grows."
-        judge(mine, right, told, slips, "Differentiate the law of cosines.")
+        return Exercise("number", right, told, slips, "Differentiate the law of cosines.")
     elif number == 2:
-        slips = [((-1, 1, -1), "a film that runs backwards has the same accelerations."),
-                 ((1, -1, -1), "these torques are products of two velocities."),
-                 ((1, 1, 1), "friction opposes the velocity.")]  # fmt: skip
-        judge(mine, (1, 1, -1), "all that differs is friction.", slips, "What changes sign?")
+        slips = [
+            ((-1, 1, -1), "a film that runs backwards has the same accelerations."),
+            ((1, -1, -1), "these torques are products of two velocities."),
+            ((1, 1, 1), "friction opposes the velocity."),
+        ]
+        return Exercise(
+            "numbers",
+            (1, 1, -1),
+            "backwards, the same motion differs in friction only.",
+            slips,
+            "What changes sign?",
+        )
     else:
         (asked,) = given
 
@@ -232,4 +242,7 @@ def check(number: int, mine, *given) -> None:
         otherwise = (
             "out of reach, too fast, or 0.1 or more is left. What must change for b to show?"
         )
-        judge(mine, right, "one circle was enough.", [], otherwise)
+        return Exercise("numbers", right, "one circle was enough.", [], otherwise, count=4)
+
+
+check = judging(_exercise)

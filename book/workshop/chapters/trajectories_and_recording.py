@@ -37,7 +37,7 @@ from ddlib.trajectories import (
     random_extents,
 )
 from ddlib.widgets import TrajectoryPicker as TrajectoryPicker
-from workshop.chapters.exercises import Between, fitting, judge
+from workshop.chapters.exercises import Between, Exercise, fitting, judging
 from workshop.report import committed
 from workshop.report.evidence.verdicts import Measured, turns_at
 from workshop.report.exact_states import RADIUS
@@ -176,8 +176,8 @@ def _quoted() -> None:
     quote("recording-cells", 100 * coverage().value)
 
 
-def check(number: int, mine, motion=None) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, motion=None) -> Exercise:
+    """An exercise of the lesson."""
 
     def told(share):
         q, qd, qdd = (x[0, :, 0] for x in motion([[45.0, 45.0]], share))
@@ -189,12 +189,16 @@ def check(number: int, mine, motion=None) -> None:
             4.0,
             "that is twice the frequency. But how large is the wave of a squared sine?",
         )
-        judge(mine, 2.0, "it is twice as large, and in return the velocity does not jump.", [slip])
+        return Exercise(
+            "number", 2.0, "it is twice as large, and in return the velocity does not jump.", [slip]
+        )
     elif number == 2:
         draws = random_extents(12_000, seed=3).reshape(2000, 6, 2)
         outside = np.mean([Delaunay(d[:5]).find_simplex(d[5]) < 0 for d in draws])
         hint = "pick many sets of six pairs at random, and count."
-        judge(mine, outside, "the test lies outside more often than not.", (), hint, tolerance=0.1)
+        return Exercise(
+            "number", outside, "the test lies outside more often than not.", (), hint, tolerance=0.1
+        )
     else:
         known, fastest = told, 1.2 * told(0.0)[1] * (1 + 1e-9)  # 20 % is still right
         slow = fitting(lambda x: known(x)[1] <= fastest, shares := np.arange(-500, 501) / 500)
@@ -203,7 +207,12 @@ def check(number: int, mine, motion=None) -> None:
             (slow, "you could still predict too much of the acceleration from the position."),
             (Between(-np.inf), "the arm would have to move too fast."),
         ]
-        judge(mine, right, "now the recording tells position and acceleration apart.", slips)
+        return Exercise(
+            "number", right, "now the recording tells position and acceleration apart.", slips
+        )
+
+
+check = judging(_exercise)
 
 
 # --- what the claims of the chapter measure

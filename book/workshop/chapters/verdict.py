@@ -17,7 +17,7 @@ from ddlib.setups import SETUPS, WINDOWS
 from ddlib.tables import Table, quote, typeset
 from workshop.beyond._measures import rivals
 from workshop.chapters import excitation, start, window_size
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.rivals import over
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
@@ -391,25 +391,33 @@ def show(name: str) -> Illustration | Table:
     return _chosen(row for row, held in zip(_SUMMED, right) if held == (name == "right"))
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         slips = [(27, "the sum over s² is twice the inertia."), (8, "the arm moves, too.")]
-        judge(mine, 19, "three sums say it all.", slips, "Expand q(t + s); what is its third term?")
+        return Exercise(
+            "number",
+            19,
+            "all filters with these three sums answer such a motion alike.",
+            slips,
+            "Expand q(t + s); what is its third term?",
+            unit="N m",
+        )
     elif number == 2:
         rough = {n: np.abs(np.diff(x, axis=-2)).mean() for n, x in given[0].items()}
         told = "it has no more to do with the motion than noise has, and any smooth shape beats it."
-        judge(
-            mine,
+        return Exercise(
+            "word",
             max(rough, key=rough.get),
             told,
             [],
             "which of them could the motors not have made?",
+            options=tuple(rough),
         )
     else:
 
         def parts(extents):
-            if np.shape(extents) != (2,) or np.abs(extents).max() > 45:
+            if np.abs(extents).max() > 45:
                 return False
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -417,4 +425,9 @@ def check(number: int, mine, *given) -> None:
             return left["equations"] < 0.15 and left["network"] > 1.5 * left["equations"]
 
         otherwise = "which combinations of shoulder and elbow did no motion show to the network?"
-        judge(mine, parts, "equations carry where a fit does not.", [], otherwise)
+        return Exercise(
+            "numbers", parts, "equations carry where a fit does not.", [], otherwise, count=2
+        )
+
+
+check = judging(_exercise)

@@ -38,7 +38,7 @@ from ddlib.simulation import CONTROL_STEP, LOG_STEP, Recording, follow, record, 
 from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
 from ddlib.widgets.switches import RealArmSwitches
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.report.evidence.verdicts import Measured, turns_at
 
 
@@ -206,8 +206,8 @@ def _quoted() -> None:
         quote(f"left-{name}-position", switches.interpolate(**alone)["shoulder position"][0])
 
 
-def check(number: int, mine, arm=None, kp=None, other=None, extents=None) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, arm=None, kp=None, other=None, extents=None) -> Exercise:
+    """An exercise of the lesson."""
 
     def jump(share):
         return lambda f: np.isclose(f(3.0, 1.0, 300.0), share * 2 / 300)
@@ -223,13 +223,15 @@ def check(number: int, mine, arm=None, kp=None, other=None, extents=None) -> Non
 
     if number == 1:
         half = jump(1), "there the joint is at full speed. How far does it swing on?"
-        judge(mine, jump(2), "the joint overshoots by as much as it was held back.", [half])
+        return Exercise(
+            "function", jump(2), "the joint overshoots by as much as it was held back.", [half]
+        )
     elif number == 2:
         ideal, half, whole = map(path, (0.0, 0.5, 1.0))
         share = rms(half - ideal, None) / rms(whole - ideal, None)
         told = "how wide is the dead zone after the correction?"
-        judge(
-            mine,
+        return Exercise(
+            "number",
             share,
             "the correction leaves a dead zone of half the width.",
             (),
@@ -242,7 +244,16 @@ def check(number: int, mine, arm=None, kp=None, other=None, extents=None) -> Non
             (lambda m: m[1] < 0.85, "that is less than 85 % of the gains."),
             (grows, "a swing grows. Which of the two delays can be shortened?"),
         ]
-        judge(mine, lambda m: not any(is_so(m) for is_so, _ in slips), "no swing grows.", slips)
+        return Exercise(
+            "numbers",
+            lambda m: not any(is_so(m) for is_so, _ in slips),
+            "the two delays add up, and yours are short enough: no swing grows.",
+            slips,
+            count=2,
+        )
+
+
+check = judging(_exercise)
 
 
 def friction(factors=(1, 1.5, 2, 2.5, 3, 4)) -> Measured:

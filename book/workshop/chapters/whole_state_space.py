@@ -16,7 +16,7 @@ from ddlib.figures.weights import dots, largest_weight
 from ddlib.learning import TorqueModel, Weights
 from ddlib.metrics import rmss
 from ddlib.tables import Table, quote, significant, spread
-from workshop.chapters.exercises import Between, judge
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims
 from workshop.report.evidence.statements import resampled, stated
@@ -206,15 +206,19 @@ def _said() -> None:
     stated("states-elbow-watched", resampled(_watched()[0], np.mean) > 0.55)
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise of the lesson."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise of the lesson."""
     if number == 1:
         b, d = given[0].b, given[0].d
         shared = (2 * d**2 + b**2 / 2) * np.pi**2 / 3
         right = b**2 * np.pi**4 / 18 / (shared + b**2 * np.pi**4 / 10)
-        slips = [(0.0, "so it is for the velocity. Average over that, and keep the angle."),
-                 (right * 1.8, "v₁⁴ has the mean π⁴/5, and (v₁²)'s mean is π²/3.")]  # fmt: skip
-        judge(mine, right, "the angle alone is worth something, the velocity nothing.", slips)
+        slips = [
+            (0.0, "so it is for the velocity. Average over that, and keep the angle."),
+            (right * 1.8, "v₁⁴ has the mean π⁴/5, and (v₁²)'s mean is π²/3."),
+        ]
+        return Exercise(
+            "number", right, "the angle alone is worth something, the velocity nothing.", slips
+        )
     elif number == 2:
         turned, before = given
         grown = turned / before
@@ -222,14 +226,27 @@ def check(number: int, mine, *given) -> None:
             (Between(1), "does the torque change when you turn the arm?"),
             (Between(5e-324, 1), "why should the error get smaller?"),  # above 0
         ]
-        judge(mine, Between(grown / 2, 2 * grown), f"it grows {grown:.2f} times.", slips)
+        return Exercise(
+            "number",
+            Between(grown / 2, 2 * grown),
+            f"the error grows {grown:.2f} times, though turning the arm changes no torque.",
+            slips,
+        )
     else:
         error_from, before = given
         found = cache(lambda m: error_from(np.array(m)))
         told = "near zero the torque is almost linear, and the samples lie where they count."
-        judge(mine, lambda m: 3 * found(m) < before, told,
-              [(lambda m: found(m) > 0, "the error on the trajectory is not below a third.")],
-              "Give three limits.")  # fmt: skip
+        return Exercise(
+            "numbers",
+            lambda m: 3 * found(m) < before,
+            told,
+            [(lambda m: found(m) > 0, "the error on the trajectory is not below a third.")],
+            "Give three limits.",
+            count=3,
+        )
+
+
+check = judging(_exercise)
 
 
 # --- what the claims of the chapter measure

@@ -27,7 +27,7 @@ from ddlib.tables import quote
 from ddlib.widgets import GuessRound
 from workshop.chapters import index, start
 from workshop.chapters.convolution_filters import _dots
-from workshop.chapters.exercises import judge
+from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
@@ -237,26 +237,44 @@ def _said() -> None:
     stated("whose-small-turns", turn[0])
 
 
-def check(number: int, mine, given) -> None:
-    """Judge an answer: `given` the seconds of a motion, or step times variance by direction."""
+def _exercise(number: int, given) -> Exercise:
+    """An exercise: `given` the seconds of a motion, or step times variance by direction."""
     if number == 1:
         slips = (
             (given, "a shift of half a period only changes the torque's sign."),
             (2 * given, "a shift of a whole period gives the old torque again."),
             (given / 4, "out and back is only half a period of the sine."),
         )
-        judge(mine, given / 2, "then the arm's acceleration filter would become a velocity filter.",
-              slips, "write the shifted sine as a sum of a sine and a cosine.")  # fmt: skip
+        return Exercise(
+            "number",
+            given / 2,
+            "then the arm's acceleration filter would become a velocity filter.",
+            slips,
+            "write the shifted sine as a sum of a sine and a cosine.",
+            unit="s",
+        )
     elif number == 2:
         half = np.log(0.5) / np.log1p(-given[4])
         slips = (
             (1 / given[4], "after so many steps 37 % of the error are left, not half."),
             (-np.log(0.5) / given[2], "this is the number for velocity."),
         )
-        judge(mine, half, "so many steps bring acceleration half-way.", slips)
+        return Exercise(
+            "number", half, "so many steps bring acceleration half-way.", slips, unit="steps"
+        )
     else:
-        slips = ((100, "count the arm's own network among them, too."),
-                 (given, "this gives one in twenty."))  # fmt: skip
-        judge(mine, 99, "with the arm's own network there are a hundred, and it is one.", slips,
-              "how many are as far out as the arm's network, itself included?",
-              tolerance=1e-6)  # fmt: skip
+        slips = (
+            (100, "count the arm's own network among them, too."),
+            (given, "this gives one in twenty."),
+        )
+        return Exercise(
+            "number",
+            99,
+            "with the arm's own network there are a hundred, and it is one.",
+            slips,
+            "how many are as far out as the arm's network, itself included?",
+            tolerance=1e-6,
+        )
+
+
+check = judging(_exercise)

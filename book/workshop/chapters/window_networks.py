@@ -31,7 +31,7 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
 from ddlib.tables import Table, how_many, quote, significant
 from ddlib.widgets import HiddenTorque
-from workshop.chapters.exercises import Between, OneOf, judge
+from workshop.chapters.exercises import Between, Exercise, OneOf, judging
 from workshop.report import results
 from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims
@@ -366,8 +366,8 @@ def _said() -> None:
     stated("window-linear", np.all(more, 0))
 
 
-def check(number: int, mine, *given) -> None:
-    """Judge an answer to an exercise; what is given comes from the lesson's open cells."""
+def _exercise(number: int, *given) -> Exercise:
+    """An exercise; what is given comes from the lesson's open cells."""
     if number == 1:
         window, hidden = given
         direct, biases = 4 * window, hidden + 2
@@ -377,8 +377,14 @@ def check(number: int, mine, *given) -> None:
             (right - direct, "the inputs also lead straight to the outputs."),
             (right - hidden * window - direct // 2, "each joint has a window of its own."),
         )
-        judge(mine, right, "inputs to hidden units, these to outputs, inputs to outputs.", slips,
-              "count each of the three bundles of the figure, dots included.", 1e-9)  # fmt: skip
+        return Exercise(
+            "number",
+            right,
+            "weights lead from inputs to hidden units, from these to outputs, and straight across.",
+            slips,
+            "count each of the three bundles of the figure, dots included.",
+            1e-9,
+        )
     elif number == 2:
         (left,) = given
         most = paper.TABLE_4_1[21].test
@@ -388,8 +394,8 @@ def check(number: int, mine, *given) -> None:
             (OneOf(*small), "this window is small enough, but its error is too large."),
             (Between(-np.inf), "the window must be odd, and its weights must be fewer."),
         )
-        judge(
-            mine,
+        return Exercise(
+            "number",
             right,
             "no hidden unit, and the error is below 0.10.",
             slips,
@@ -399,8 +405,16 @@ def check(number: int, mine, *given) -> None:
         factor = given[0] / given[1]
         told = f"the error is {factor:.0f} times as large, about as for a guess of the mean."
         word = "larger" if factor > 2 else "smaller" if factor < 0.5 else "alike"
-        judge(mine, word, told,
-              otherwise="along which of the two paths did this torque drive the arm?")  # fmt: skip
+        return Exercise(
+            "word",
+            word,
+            told,
+            otherwise="along which of the two paths did this torque drive the arm?",
+            options=("smaller", "alike", "larger"),
+        )
+
+
+check = judging(_exercise)
 
 
 def intervals(

@@ -16,7 +16,7 @@ from ddlib.learning import cases, sliding_windows
 from ddlib.setups import JOINT_DAMPING, WINDOWS
 from ddlib.tables import quote, significant
 from ddlib.widgets import Choice, CurveWidget, Panel, Scalar
-from workshop.chapters.exercises import fitting, judge
+from workshop.chapters.exercises import Exercise, fitting, judging
 from workshop.chapters.window_networks import order_medians, order_stated
 from workshop.report import committed, results
 from workshop.report.evidence import claims
@@ -166,21 +166,24 @@ def _said() -> None:
     stated("size-unfinished", bool(behind_least_squares().sum() >= 4))
 
 
-def check(number: int, mine, floor=None) -> None:
-    """Judge an answer to one of the lesson's exercises; `floor` is the reader's, over bits."""
+def _exercise(number: int, floor=None) -> Exercise:
+    """An exercise of the lesson; `floor` is the reader's, over bits."""
     if number == 1:
         slips = [
             (2**0.5, "that is averaging alone; the window's times grow, too."),
             (4.0, "that is the times alone; more samples are averaged, too."),
             (8.0, "averaging goes with the root of the number of samples."),
         ]
-        judge(mine, 2**2.5, "times enter twice, the samples by their root.", slips)
+        return Exercise("number", 2**2.5, "times enter twice, the samples by their root.", slips)
     elif number == 2:
         told = "odd powers of s do not touch the middle curvature of a symmetric window."
         otherwise = "s runs from -h to h. Which sums over powers of s are zero?"
-        judge(mine, 1.0, told, otherwise=otherwise, tolerance=1e-3)
+        return Exercise("number", 1.0, told, otherwise=otherwise, tolerance=1e-3)
     else:
         told = "this one is fine enough, and half a bit less is not."
         otherwise = "either its floor is above 0.05, or half a bit less is enough."
         right = fitting(lambda b: floor(b) <= 0.05 < floor(b - 0.5), np.arange(1.5, 40, 0.25))
-        judge(mine, right, told, otherwise=otherwise)
+        return Exercise("number", right, told, otherwise=otherwise, unit="bits")
+
+
+check = judging(_exercise)
