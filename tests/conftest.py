@@ -9,6 +9,7 @@ import tempfile
 from functools import cache
 
 import chromium
+import firefox
 import pytest
 from bs4 import BeautifulSoup
 from hypothesis import settings
@@ -126,6 +127,8 @@ def visit(browser):
         size = {"width": width, "height": 800}
         context = browser.new_context(color_scheme=scheme, viewport=size, **options)
         contexts.append(context)
+        if chromium.FIREFOX and options.get("reduced_motion") == "reduce":
+            context.add_init_script(firefox.CALM)
         return Visit(context, url, lands)
 
     yield open_page

@@ -24,8 +24,7 @@ def test_mouse_and_keys_change_the_picture(name, site, visit):
     """For a reader who wants no motion: before a hand moves something, nothing moves."""
     opened = visit(f"{site}/{name}.html", reduced_motion="reduce")
     found = all_handles(opened)
-    if not chromium.FIREFOX:  # which cannot be told that its reader wants no motion
-        stands_still(opened, found)
+    stands_still(opened, found)
     for handle in found:
         before = handle.picture()
         handle.drag()

@@ -3,7 +3,8 @@
 Playwright drives any Firefox by WebDriver BiDi; the extended-support release does not know
 ``emulation.setMediaFeaturesOverride`` yet, which Playwright sends with each new page. This starts
 `$FIREFOX` (or `firefox-esr`, `firefox`), passes everything on, and says yes to that command; pages
-stay light. Once Firefox knows it, this file can go.
+stay light. Once Firefox knows it, this file can go, but for `CALM`: that a reader wants no motion,
+Playwright does not tell it at all.
 """
 
 from __future__ import annotations
@@ -24,6 +25,13 @@ from tornado import httpserver, netutil, web, websocket
 READY = "WebDriver BiDi listening on "
 MOST = 2**30  # bytes of a message: a screenshot is one
 NAMES = ("firefox-esr", "firefox")
+
+CALM = """{
+  const ask = window.matchMedia;
+  const calm = (query) => (query === "(prefers-reduced-motion: reduce)" ? "all" : query);
+  window.matchMedia = (query) => ask.call(window, calm(query));
+}"""
+"""Run before a page's own scripts, which then hear that the reader wants no motion."""
 
 
 def find() -> str | None:

@@ -107,15 +107,20 @@ def flat(weights) -> np.ndarray:
     return np.concatenate([np.ravel(getattr(weights, name)) for name in plain._FIELDS])
 
 
-def drag(page, box, *places):
-    """With the mouse, through places in parts of a box's width and height."""
-    points = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in places]
+def drag(page, box, *places) -> tuple[float, float]:
+    """With the mouse, through places in parts of a box's width and height; the last one reached.
+
+    A mouse is at whole pixels: Firefox tells a page no others.
+    """
+    left, top, width, height = (box[name] for name in ("x", "y", "width", "height"))
+    points = [(round(left + x * width), round(top + y * height)) for x, y in places]
     page.mouse.move(*points[0])
     page.mouse.down()
     for point in points[1:]:
         page.mouse.move(*point, steps=4)
     page.mouse.up()
     page.evaluate(NEXT_FRAME)
+    return (points[-1][0] - left) / width, (points[-1][1] - top) / height
 
 
 def copied(page, name="Code") -> str:
