@@ -52,7 +52,7 @@ def every():
     made = {
         "FilterBuilder": lambda: room.FilterBuilder(np.arange(-10, 11.0) ** 2),
         "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1)),
-        "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}),
+        "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}, 0.01),
         "FeedforwardSwitches": lambda: room.FeedforwardSwitches(),
         "HiddenTorque": lambda: room.HiddenTorque(split(recording)[1]),
         "LoopSentence": lambda: room.LoopSentence(),
@@ -65,7 +65,7 @@ def every():
         "TorqueTerms": lambda: room.TorqueTerms(),
         "TrainingPlayer": lambda: room.TrainingPlayer([0, 10, 20], film, recording, member=1),
         "TrajectoryPicker": lambda: room.TrajectoryPicker(),
-        "WeightReader": lambda: room.WeightReader(start, trained),
+        "WeightReader": lambda: room.WeightReader(start, trained, 0.01),
         "WhoseFilters": lambda: room.WhoseFilters(rounds),
         "CurveWidget": make,
         "LiveWidget": OneWeight,

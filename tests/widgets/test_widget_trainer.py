@@ -324,7 +324,7 @@ def test_python_sets_the_choices_and_reads_what_comes_out(driven):
     apart = (own.model.torque(windows) - torque) / torque.std(0)
     assert own.error == pytest.approx(np.sqrt((apart**2).mean()), rel=1e-3)
     seen_in_training = data.inputs.unscale(data.x, -2)
-    inertia = gains(mean_gradient(own.model, seen_in_training))[0, 0, 2]
+    inertia = gains(mean_gradient(own.model, seen_in_training), 0.01)[0, 0, 2]
     assert own.inertia == pytest.approx(inertia, rel=1e-3)
     assert own.training_error == pytest.approx(page.evaluate(TRAINED))
 
