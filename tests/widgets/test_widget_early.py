@@ -51,7 +51,7 @@ def every():
     rounds = [room.GuessRound(*rows, "learnt noise", "A remark.")] * 2
     made = {
         "FilterBuilder": lambda: room.FilterBuilder(np.arange(-10, 11.0) ** 2),
-        "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1)),
+        "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1), step=0.01),
         "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}, 0.01),
         "FeedforwardSwitches": lambda: room.FeedforwardSwitches(),
         "HiddenTorque": lambda: room.HiddenTorque(split(recording)[1]),
