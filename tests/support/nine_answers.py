@@ -41,6 +41,7 @@ class Nine:
 
     def table(self) -> dict[str, str]:
         """What is said to each kind of answer; first and last by the lesson's own cells."""
+        execute(self.starter, self.space, "starter")
         execute(self.solution, self.space, "solution")
         right = self.space["mine"]
         said = {"as solved": execute(self.check, self.space, "check").strip()}
@@ -69,7 +70,7 @@ class Nine:
 
             return {
                 "int": 3, "float": 0.5, "list": [right], "array": scaled(1), "other case": UNUSED,
-                "near miss": scaled(1.05), "gross error": scaled(1e6), "NaN": scaled(np.nan),
+                "near miss": scaled(1.05), "gross error": scaled(0), "NaN": scaled(np.nan),
                 "raising": raising,
             }  # fmt: skip
         flat = np.asarray(right, dtype=float).ravel()

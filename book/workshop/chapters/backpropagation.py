@@ -222,7 +222,7 @@ def _exercise(number: int, *given) -> Exercise:
             (bound(lambda a: 2 * (1 - a)), "momentum allows larger steps, not smaller."),
         ]
         told = "at this step size a root leaves the unit circle, at −1."
-        hint = "give a function of alpha. For which r does the first root reach size 1?"
+        hint = "for which r does the first root reach size 1?"
         return Exercise("function", bound(lambda a: 2 * (1 + a)), told, slips, hint)
     elif number == 2:
         misses = {eta: abs(given[0](eta)) for eta in 10.0 ** -np.arange(1, 13)}
@@ -241,7 +241,15 @@ def _exercise(number: int, *given) -> Exercise:
         ]
         hint = f"the training RMSS must fall below {level / 2:.2f} within 1,000 epochs."
         told = "with momentum many small steps add up, so you need less patience."
-        return Exercise("numbers", lambda mine: end(mine) < level / 2, told, slips, hint, count=2)
+        return Exercise(
+            "numbers",
+            lambda mine: end(mine) < level / 2,
+            told,
+            slips,
+            hint,
+            count=2,
+            unless=[(lambda mine: mine[0] <= 0, "the step size must be above 0.")],
+        )
 
 
 check = judging(_exercise)

@@ -243,6 +243,7 @@ def _exercise(number: int, *given) -> Exercise:
             [(lambda m: found(m) > 0, "the error on the trajectory is not below a third.")],
             "Give three limits.",
             count=3,
+            unless=[(lambda m: min(m) <= 0, "the limits must be above 0.")],
         )
 
 
