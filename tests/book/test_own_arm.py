@@ -144,7 +144,9 @@ def _log(path, runs, held=None, elbow=1.0, rate=100, seconds=6):
         angle = turn * t[:, None] + rng.uniform(0, 6, (3, 1, 2))
         size = np.array([0.5, 0.4, 0.05])[:, None, None] * [1.0, held is None]
         q, v = (size * np.sin(angle)).sum(0), (size * turn * np.cos(angle)).sum(0)
-        tau = arm.inverse_dynamics(q + [0, held or 0], v, -(size * turn**2 * np.sin(angle)).sum(0))
+        tau = arm.inverse_dynamics(
+            q + np.array([0, held or 0]), v, -(size * turn**2 * np.sin(angle)).sum(0)
+        )
         tau = (tau + [0.4, 0.2] * v + rng.normal(0, 0.01, q.shape)) / [0.5, 0.25]
         q = np.rad2deg(q + [0, held or 0] + (held is None) * rng.normal(0, 1e-5, q.shape))
         for row in np.column_stack([t, q, tau]):
