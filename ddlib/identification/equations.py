@@ -171,7 +171,8 @@ def _reading_noise(q) -> np.ndarray:
         return np.zeros(q.shape[-1])
     rough = np.sqrt(np.mean(np.diff(q, 6, axis=-2) ** 2, (0, 1)) / 924)
     steps = [encoder_step(q[..., j]) or 0.0 for j in range(q.shape[-1])]
-    return np.maximum(rough, np.array(steps) / np.sqrt(12))
+    rounding = 1e-12 * np.abs(q).max((0, 1))  # of sums: all that a joint at rest has
+    return np.maximum.reduce([rough, np.array(steps) / np.sqrt(12), rounding])
 
 
 def encoder_step(q) -> float | None:

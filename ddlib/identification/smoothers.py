@@ -18,6 +18,7 @@ from ddlib.identification.equations import (
     _bumps,
     _in_runs,
     _lateness,
+    _reading_noise,
     _steady,
     encoder_step,
 )
@@ -27,6 +28,7 @@ from ddlib.simulation import Recording
 
 _SMOOTHEST, _ROUGHEST = 1e-12, 1e4  # shares of process in encoder noise; rounding allows no less
 _ENOUGH = 20_000  # samples of one joint from which a share is found
+_COARSER = 2  # steps: noise that is larger hides an encoder's step, and decimals of a text
 _ORDER = 3  # The acceleration is a random walk.
 
 
@@ -260,7 +262,9 @@ def _shares(q, noise, moving) -> list[float]:
     for j in range(q.shape[-1]):
         runs = q[..., j].reshape(-1, q.shape[-2])
         grain = encoder_step(runs) if noise is None else None
-        shares.append(_likeliest(runs[:, moving], noise if grain is None else grain / 12**0.5))
+        fine = grain is not None and _reading_noise(runs[..., None])[0] > _COARSER * grain
+        known = noise if grain is None or fine else grain / 12**0.5
+        shares.append(_likeliest(runs[:, moving], known))
     return shares
 
 

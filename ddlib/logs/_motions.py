@@ -458,7 +458,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     scaled, change = a[:, felt] / norm[felt], (b - a)[:, felt] / norm[felt]
     _, size, vectors = np.linalg.svd(scaled, full_matrices=False)
     noise = np.linalg.norm(change @ vectors.T, axis=0) + 1e-7
-    sure = size > 3 * noise
+    sure = size**2 > 3 * noise**2  # as least_squares judges
     kept = vectors[sure] / size[sure, None]
     errors = np.sqrt(equations.overlap) * np.linalg.norm(kept, axis=0) / norm[felt]
     unsure = np.abs(vectors[~sure]).max(0, initial=0.0) > 0.2

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from book_pages import ROOT, source
 
+from ddlib.dynamics import Arm, Link
+
 CELLS = [
     ("".join(cell["source"]), cell["id"], cell["metadata"].get("tags", []))
     for cell in json.loads(source("book/use-it-on-your-arm").read_text(encoding="utf-8"))["cells"]
@@ -130,6 +132,65 @@ def test_the_feedforward_brings_the_tracking_error_down(run):
     assert (with_it < alone / 3).all()
     alone, with_it = (np.array(row[1:], float) for row in run("another arm, window 15")["table"])
     assert (with_it < alone / 3).all()
+
+
+def _log(path, runs, held=None, elbow=1.0, rate=100, seconds=6):
+    """A log of an arm with sines in its joints, or with an elbow that is held at an angle."""
+    arm = Arm.from_links("x", Link(4.0, 0.35, 0.16, 0.05), Link(2.5, 0.3, 0.14, 0.025))
+    rng, t = np.random.default_rng(6), np.arange(seconds * rate) / rate
+    lines = ["run;stamp;s;e;ampere s;ampere e"]
+    for run in range(runs):
+        turn = np.array([[2.0, 3.0, 7.0], [2.6, 3.7, 8.0]]).T[:, None]
+        angle = turn * t[:, None] + rng.uniform(0, 6, (3, 1, 2))
+        size = np.array([0.5, 0.4, 0.05])[:, None, None] * [1.0, held is None]
+        q, v = (size * np.sin(angle)).sum(0), (size * turn * np.cos(angle)).sum(0)
+        tau = arm.inverse_dynamics(
+            q + np.array([0, held or 0]), v, -(size * turn**2 * np.sin(angle)).sum(0)
+        )
+        tau = (tau + [0.4, 0.2] * v + rng.normal(0, 0.01, q.shape)) / [0.5, 0.25]
+        q = np.rad2deg(q + [0, held or 0] + (held is None) * rng.normal(0, 1e-5, q.shape))
+        for row in np.column_stack([t, q, tau]):
+            lines.append(f"{run};" + ";".join(f"{x:.6f}".replace(".", ",") for x in row))
+    path.write_text("\n".join(lines))
+    heads = {"time": "stamp", "q1": "s", "q2": "e", "tau1": "ampere s", "tau2": "ampere e"}
+    units, factors = {"q": "deg", "tau": "A"}, {"tau1": 0.5, "tau2": 0.25}
+    return (
+        f"files, columns, units, factors = {str(path)!r}, {heads!r}, {units!r}, {factors!r}"
+    ), arm
+
+
+def _until(cell, change):
+    """What the open cells leave behind down to one of them."""
+    space = {"__name__": "__main__"}
+    for name, code in OPEN.items():
+        exec(compile(code + f"\n{change}" * (name == "use-change"), name, "exec"), space)
+        if name == cell:
+            return space
+
+
+def test_one_long_run_in_degrees_and_amperes_is_cut_and_identified(tmp_path, capsys):
+    change, arm = _log(tmp_path / "long.csv", 1, rate=1000, seconds=20)
+    with pytest.raises(ValueError, match="cut a long one by seconds"):
+        _until("use-record", change)
+    space = _until("use-residual-code", f"{change}; seconds = 5; step = 0.01")
+    assert len(space["recording"].q) == 4 and not space["untold"]
+    found = space["estimate"].values[:3]
+    np.testing.assert_allclose(found, [arm.a, arm.b, arm.d], rtol=0.02)
+    assert space["left"] < 0.2 and "do not describe" not in capsys.readouterr().out
+
+
+def test_a_held_elbow_is_said_and_not_guessed(tmp_path, capsys):
+    change, _ = _log(tmp_path / "held.csv", 3, held=0.3)
+    space = _until("use-residual-code", change)
+    table, told = space["estimate"], capsys.readouterr().out
+    assert {"a", "b", "d"} <= set(space["untold"])
+    assert np.isnan(table.values[:3]).all() and "a + 1.91 b = " in told
+    assert "counts as 0 what the log cannot tell: a, b, d" in told
+    assert "Do not drive it by them." in told
+    with pytest.raises(ValueError, match="a joint that stands still"):
+        _until("use-train", change)
+    exec(OPEN["use-feedforward"] + "\n" + OPEN["use-c-code"], space)
+    assert "cannot tell, here 0: a, b, d" in space["in_c"](space["p"])
 
 
 ANSWERS = {

@@ -189,3 +189,12 @@ def test_refusals():
         kalman_states(np.zeros((5, 2)), STEP)
     with pytest.raises(ValueError, match=r"noise must lie in \(0, inf\], got 0"):
         by_kalman(run, noise=0.0)
+
+
+def test_decimals_of_a_text_do_not_pass_for_the_noise_of_an_encoder():
+    """Six decimals are multiples of 1e-6 rad, but the noise of these readings is 20 times that."""
+    t, rng = 0.001 * np.arange(4000), np.random.default_rng(4)
+    q = 0.5 * np.sin(3 * t)[:, None] + 2e-5 * rng.normal(size=(len(t), 2))
+    found = kalman_states(np.round(q, 6), 0.001)[200:-200, :, 2]
+    truth = -4.5 * np.sin(3 * t)[200:-200, None]
+    assert np.abs(found - truth).max() < 0.05 * np.abs(truth).max()
