@@ -46,7 +46,9 @@ class Combination(NamedTuple):
     names: tuple[str, ...]  #: All parameters.
     factors: np.ndarray  #: What each counts in the sum, (parameters,).
     value: np.ndarray  #: The sum, (...).
-    error: np.ndarray  #: Its standard error.
+    error: np.ndarray  #: Its standard error, of what scatters.
+    #: Half the width of its 95 % interval; NaN where noise in the motion leaves none.
+    half_width: np.ndarray | float = np.nan
 
     def __str__(self):
         terms = [(f, n) for f, n in zip(self.factors, self.names) if f]
@@ -56,7 +58,8 @@ class Combination(NamedTuple):
         text = text.removeprefix("+ ")
         if np.ndim(self.value):
             return text
-        return f"{text} = {self.value:.4g} ± {self.error:.2g}"
+        width = "" if np.isnan(self.half_width) else f" ± {self.half_width:.2g}"
+        return f"{text} = {self.value:.4g}{width}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -291,7 +294,10 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
     for factors in _sums(equations, unseen, told, size):
         value, error = summed(factors)
         tidy = np.where(np.abs(factors) * size.min() > 0, factors, 0.0)
-        sums.append(Combination(tuple(names), tidy, value, error))
+        half = student.ppf(0.975, inner.freedom) * error
+        if blurred is not None:
+            half = np.where(blurred.any(-1), np.nan, half)
+        sums.append(Combination(tuple(names), tidy, value, error, half))
     missing = ", ".join(n for n, k in zip(names, told) if not k)
     notes = [*notes, f"{missing} cannot be told from this recording."]
     unsure = None

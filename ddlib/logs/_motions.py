@@ -280,7 +280,8 @@ def _gravity(with_gravity: _Fit, without: _Fit, driven) -> Iterator[Finding]:
             f"Torques that depend on the pose explain {parts} of what the {names} would otherwise "
             "leave over: the arm seems to carry weight.",
             "Without it inertias and frictions are wrong.",
-            "Add `GRAVITY` to the names of the parameters, with angles from the vertical.",
+            "If the arm hangs, add `GRAVITY` to the names of the parameters, with angles from the "
+            "vertical. A spring or a cable looks alike: these names do not hold it.",
         )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from ddlib.dynamics import CMU_DD_ARM_II, IMI_ARM, REYES_KELLY_ARM
 from ddlib.effects import CoulombFriction, Effects, ViscousFriction
@@ -140,6 +141,20 @@ def test_intervals_of_sums_hold_and_friction_is_told(encoder):
         (one,) = found.combinations
         held.append([abs(one.value - 1.4) < 2 * one.error, *found.covers(np.zeros(7))[[3, 5]]])
     assert np.mean(held, 0).min() > 0.85
+
+
+@pytest.mark.parametrize(("encoder", "given"), [(1e-4, 1.0), (0.01, 0.0)])
+def test_sums_that_noise_in_the_motion_biases_have_no_interval(encoder, given):
+    """At .01 rad a + 2 b comes out near 1.2; half of those intervals would not hold 1.4."""
+    found = [least_squares(by_modulation(locked(encoder, seed=k), RIGID)) for k in range(20)]
+    sums = [one.combinations[0] for one in found]
+    assert np.mean([np.isfinite(one.half_width) for one in sums]) == given
+    assert all(("±" in str(one)) == bool(given) for one in sums)
+    if given:  # 95 % as for single parameters, not one standard error
+        ratio = sums[0].half_width / sums[0].error
+        assert ratio == pytest.approx(student.ppf(0.975, found[0].freedom))
+    else:
+        assert np.mean([abs(one.value - 1.4) < 2 * one.error for one in sums]) < 0.9
 
 
 def test_a_passive_joint_is_left_out_with_a_word():
