@@ -25,7 +25,7 @@ MATHJAX = "tex-svg-full.js"
 # or lies in a folder whose name begins with a dot.
 KINDS = {
     *(".py", ".pyi", ".ipynb", ".md", ".bib", ".yml", ".toml", ".txt", ".json", ".csv", ".npz"),
-    *(".js", ".mjs", ".css", ".svg", ".png"),
+    *(".js", ".mjs", ".css", ".svg", ".png", ".cff"),
 }
 KEPT_CACHES = 3
 SMALL = 1  # a batch has the root of so many times the pages that fall to a process
@@ -34,7 +34,15 @@ SMALL = 1  # a batch has the root of so many times the pages that fall to a proc
 # Questions for readers (quizzes.yml) are the pages' alone.
 READ = ("book/cards.yml", "book/claims.yml", "book/errata.yml", "book/questions.yml")
 CELL_INPUTS = ("ddlib", "book/workshop", "book/results", *READ, "requirements.txt")
-PAGE_INPUTS = ("book", "ddlib", "_config.yml", "_toc.yml", "requirements.txt", "pyproject.toml")
+PAGE_INPUTS = (
+    "book",
+    "ddlib",
+    "_config.yml",
+    "_toc.yml",
+    "requirements.txt",
+    "pyproject.toml",
+    "CITATION.cff",
+)
 
 
 def digest(root: Path, patterns: tuple[str, ...]) -> str:

@@ -87,12 +87,14 @@ class Listed(SphinxDirective):
         return [nodes.bullet_list("", *items)]
 
     def line(self, each: Exercise) -> nodes.paragraph:
-        """The chapter as a link, the exercise's number and title."""
+        """The chapter as a link, and the exercise, by number and title, as another."""
         target = dict(refdomain="std", reftype="doc", refexplicit=False)
         target |= dict(reftarget=f"/book/{each.page}", refdoc=self.env.docname)
         link = pending_xref("", nodes.inline(), **target)
         title = re.sub(r"[$`\\]", "", each.title)
-        return nodes.paragraph("", "", link, nodes.Text(f", {each.number}: {title}"))
+        to = f"{each.page}.html#exercise-{each.number}"
+        asked = nodes.reference("", f"{each.number}: {title}", internal=True, refuri=to)
+        return nodes.paragraph("", "", link, nodes.Text(", "), asked)
 
 
 def setup(app):

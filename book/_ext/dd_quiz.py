@@ -88,9 +88,9 @@ class CheckYourself(SphinxDirective):
     def run(self):
         root = Path(self.env.srcdir)
         self.env.note_dependency(str(root / FILE))
-        return [self.made(one) for one in questions(root, self.env.docname)]
+        return [self.made(*each) for each in enumerate(questions(root, self.env.docname), 1)]
 
-    def made(self, one: dict) -> Tag:
+    def made(self, number: int, one: dict) -> Tag:
         choices = [
             self.words("label", answer["text"], f"{answer['letter']}.", ["choice"])
             for answer in one["answers"]
@@ -101,7 +101,7 @@ class CheckYourself(SphinxDirective):
         ]
         legend = self.words("legend", one["question"])
         fields = Tag("", "", legend, *choices, tag="fieldset")
-        summary = Tag("", "", nodes.Text("Answers"), tag="summary")
+        summary = Tag("", "", nodes.Text(f"Answers to question {number}"), tag="summary")
         told = Tag("", "", *whys, tag="div", classes=["whys"])
         fold = Tag("", "", summary, told, tag="details", classes=["answer"])
         name = f"quiz-{one['key']}"

@@ -37,6 +37,8 @@ def prose(node: nodes.Node) -> str:
     if isinstance(node, (*OWN, nodes.title, nodes.comment, nodes.raw, nodes.image)):
         return ""
     inner = "".join(prose(child) for child in node.children)
+    if isinstance(node, nodes.rubric):
+        return f"{inner}. "
     return inner if isinstance(node, nodes.Inline) else f"{inner} "
 
 

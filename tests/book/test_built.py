@@ -121,7 +121,7 @@ def open_answers(page: BeautifulSoup) -> list[str]:
     for el in shown:
         if el.name == "details" or el.select_one(":scope > details"):
             asked = False
-        elif el.select_one(":scope > strong"):
+        elif el.name == "h3":
             asked = True
         elif not asked:
             found.append(el.get_text())

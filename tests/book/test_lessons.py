@@ -30,6 +30,19 @@ def test_chapters_ask_for_a_derivation_a_design_and_a_prediction():
     assert not wrong
 
 
+def test_what_the_walk_needs_is_said_alike():
+    """The landing page names whatever a lesson asks for that no other lesson teaches."""
+    told = (ROOT / "book" / "index.ipynb").read_text(encoding="utf-8")
+    need = re.compile(r"\*\*You need\*\* (.+?)(?::|\.$|\. |\n)", re.MULTILINE)
+    asked = {}
+    for page in ("dynamics", "feedback", "backpropagation"):
+        text = "\n".join(dd_lessons.prose(ROOT / "book" / f"{page}.ipynb"))
+        pieces = re.split(r",(?: and)? ", need.search(text)[1])
+        asked[page] = [each for each in pieces if "{doc}" not in each]
+    assert all(asked.values())
+    assert not [(page, each) for page, all_ in asked.items() for each in all_ if each not in told]
+
+
 def test_every_widget_has_its_place_in_the_lessons():
     homes = ROOT / "ddlib" / "widgets", ROOT / "book" / "workshop"
     code = "\n".join(p.read_text(encoding="utf-8") for home in homes for p in home.rglob("*.py"))

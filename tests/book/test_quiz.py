@@ -30,6 +30,15 @@ def test_each_lesson_asks_and_explains_every_answer():
     assert min(places.count(k) for k in range(3)) > len(places) / 5  # none stands out
 
 
+def test_the_right_answer_does_not_stand_out_by_its_length():
+    """By chance it would be the longest in a third of the questions."""
+    answers = [one["answers"] for asked in ASKED.values() for one in asked]
+    longest = [max(each, key=lambda answer: (len(answer["text"]), answer.get("right", False)))
+               for each in answers]  # fmt: skip
+    share = sum(answer.get("right", False) for answer in longest) / len(answers)
+    assert 0.25 < share < 0.4
+
+
 def test_a_readers_notebook_asks_with_folded_answers():
     told = dd_quiz.with_markdown("Before.\n\n## On your own\n\nAfter.", ROOT, PAGE)
     assert told.startswith("Before.\n\n## Check yourself\n\n**1.** ")

@@ -75,8 +75,8 @@
   const solutions = document.createElement("div");
   let before = null;
   for (const el of all("details.answer, .cell.tag_hide-cell")) {
-    const question = [...article.querySelectorAll("p > strong:first-child")]
-      .filter((q) => /^\d+\. /.test(q.textContent) && q.compareDocumentPosition(el) & Node.DOCUMENT_POSITION_FOLLOWING).pop();
+    const question = all("h3.rubric")
+      .filter((q) => q.compareDocumentPosition(el) & Node.DOCUMENT_POSITION_FOLLOWING).pop();
     const title = question?.textContent ?? "";
     if (title !== before) {
       const id = own(`solution-${all("[id]", solutions).length}`);
