@@ -85,7 +85,7 @@ def test_a_well_damped_loop_swings_less(run):
 def test_one_slip_of_an_encoder_spoils_the_inertia_and_is_found(run):
     space = run("as it stands")
     fit = space["least_squares"](space["by_modulation"](space["spoilt"], space["names"]))
-    assert abs(fit.values[0] / space["truth"][0] - 1) > 0.1
+    assert not abs(fit.values[0] / space["truth"][0] - 1) < 0.1  # NaN: it cannot be told
     wrong = space["check_recording"](space["spoilt"]).wrong
     assert [found.kind for found in wrong] == ["spike"] and wrong[0].where == (0, 1)
     assert not space["check_recording"](space["training"]).wrong

@@ -288,3 +288,11 @@ def test_identification_of_a_log_needs_no_further_word(arm_log):
     learnt = FilteredEquations(RIGID, 7, log.step, pull=1.0).fit(log)
     assert learnt.predict(log).shape == (1, 600 - 6, 2)
     assert learnt.parameters["d"] == pytest.approx(d, rel=0.02)
+
+
+def test_a_lower_rate_keeps_angles_and_torques_at_rest():
+    t = np.arange(2000) * 0.001
+    still = LoggedRun("still", t, np.full((2000, 2), 1.0), np.full((2000, 2), 2.0), np.arange(2000))
+    slow = resample(Log((still,)), step=0.01)
+    np.testing.assert_allclose(slow.q, 1.0, atol=1e-9)
+    np.testing.assert_allclose(slow.tau, 2.0, atol=1e-9)
