@@ -101,7 +101,7 @@ def test_a_motion_that_tells_no_parameter_is_asked_to_be_longer():
     rng = np.random.default_rng(3)
     q, tau = q + rng.normal(0, 1e-4, q.shape), 1.0 + rng.normal(0, 0.1, q.shape)
     (told,) = check_recording(log(q, tau, t)).of("excitation")
-    assert told.what.startswith("No parameter is told") and "Record longer" in told.advice
+    assert told.what.startswith("The motion tells no parameter") and "Record longer" in told.advice
 
 
 @pytest.mark.parametrize("size, told", [(300.0, []), (700.0, [(0, 0)])])
