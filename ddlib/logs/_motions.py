@@ -477,7 +477,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
             nothing.append(name)
         else:
             told.append(f"{name} to {significant(max(200 * error / value, 0.1), 1)} %")
-    seen = f"The motion tells {', '.join(told)}." if told else "The motion tells no parameter by itself."
+    seen = f"The motion tells {', '.join(told) or 'no parameter by itself'}."
     seen += f" Not told apart from zero: {', '.join(nothing)}." if nothing else ""
     seen += f" It does not tell one by one: {', '.join(lost)}." if lost else ""
     advice = "Nothing to do. The percentages are about two standard errors."
