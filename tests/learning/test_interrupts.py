@@ -18,8 +18,9 @@ CALLS = {
     "solve": "solve(start, data, test=test, steps=10**7, tolerance=0.0, **quiet)",
 }
 SCRIPT = """
-import json, sys, threading, time, warnings
+import json, signal, sys, threading, time, warnings
 import numpy as np
+signal.signal(signal.SIGINT, signal.default_int_handler)  # what a shell runs aside ignores it
 from ddlib import STATE_FEEDBACK, TrainingSet, Weights, cases, rmss, solve, split, train_ensemble
 from ddlib.learning import TrainingInterrupted
 
