@@ -90,25 +90,15 @@ _RC = {
 
 @dataclass(frozen=True)
 class Illustration:
-    """A finished figure with its alternative text; a notebook shows it as inline SVG.
+    """A finished figure with its alternative text; a notebook shows it as inline SVG."""
 
-    Attributes
-    ----------
-    svg : str
-        The picture.
-    alt : str
-        What it shows, for those who cannot see it.
-    draw, height
-        What `illustrate` drew it from, and the height of its narrow form in inches, before
-        its panels are put one below the other.
-    size : tuple of float
-        Width and height, inches.
-    """
-
-    svg: str
-    alt: str
+    svg: str  #: The picture.
+    alt: str  #: What it shows, for those who cannot see it.
+    #: What `illustrate` drew it from.
     draw: Callable[[Figure], None] | None = field(default=None, compare=False, repr=False)
+    #: Of its narrow form, inches, before its panels are put one below the other.
     height: float = field(default=0.0, compare=False, repr=False)
+    #: Width and height, inches.
     size: tuple[float, float] = field(default=(0.0, 0.0), compare=False, repr=False)
 
     def __repr__(self) -> str:

@@ -109,7 +109,8 @@ class NetworkTrainer(_PageWidget):
         Coulomb friction, saturation, and quantisation, here of 5e-5 rad or more.
     extents_deg : array_like, shape (runs, 2)
         Of four trajectories or more at the start, degrees; the last one is the test. Later settings
-        have as many; their largest is `MAX_EXTENT_DEG`, or that of the start if it is larger.
+        have as many; their largest is `MAX_EXTENT_DEG`, or that of the start if it is larger. In
+        training each joint must move by a degree or more. The trait of this name is a choice.
     width, hidden : int
         Samples of the window, odd; hidden units.
     epochs, check : int
@@ -117,7 +118,7 @@ class NetworkTrainer(_PageWidget):
     level : float
         RMSS in training below which the error counts as gone.
     momentum : float
-        Acceleration at the start: 0, 0.5, 0.9, 0.95, 0.98 or 0.995.
+        Acceleration at the start: 0, 0.5, 0.9, 0.95, 0.98 or 0.995; the trait is a choice.
     shifts : int
         Draws of torques that are shifted in time.
     code : str
@@ -126,9 +127,6 @@ class NetworkTrainer(_PageWidget):
 
     Attributes
     ----------
-    extents_deg : tuple of pairs
-        Choice: extents of shoulder and elbow in each trajectory, degrees. In training each joint
-        must move by a degree or more.
     seed : int
         Choice: number of the initial weights, 1 to 50, see `first_weights`.
     inputs : str
@@ -137,8 +135,6 @@ class NetworkTrainer(_PageWidget):
         Choice: torques that are shifted in time, so that they do not belong to the motion.
     step_size : float
         Choice: 0.25, 0.5, 1, 2 or 4 times the step size of `default_rate`.
-    momentum : float
-        Choice: acceleration of the descent, as above.
     epoch : int
         Epochs trained so far, 0 to `epochs`. Set it, and the page trains up to it.
     weights : Weights or None
