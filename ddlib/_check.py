@@ -301,12 +301,3 @@ def regular(name: str, value) -> None:
         np.shape(value)
     except (TypeError, ValueError):
         raise TypeError(f"{name} must be a number or an array, got {told(value)}") from None
-
-
-def joined(names: str, *shapes) -> None:
-    """Refuse shapes that do not broadcast; `names` are the arguments they belong to."""
-    try:
-        np.broadcast_shapes(*shapes)
-    except ValueError:
-        listed = ", ".join(map(str, shapes))
-        raise ValueError(f"{names} must have shapes that fit together, got {listed}") from None

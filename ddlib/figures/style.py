@@ -146,9 +146,12 @@ class Illustration:
         """
         suffix = one_of("suffix of path", Path(path).suffix.lower(), (".svg", ".png", ".pdf"))
         if suffix != ".svg":
+            content = io.BytesIO()
             undated = {"CreationDate": None} if suffix == ".pdf" else None
+            options = {"format": suffix[1:], "facecolor": "white", "metadata": undated}
             with mpl.rc_context({**_RC, "figure.constrained_layout.use": False}):
-                self.figure.savefig(path, dpi=dpi, facecolor="white", metadata=undated)
+                self.figure.savefig(content, dpi=dpi, **options)
+            write_whole(path, content.getvalue())
             return
         svg = self.svg.replace("currentColor", "#1a1a1a")
         svg = svg.replace(' style="', ' style="background:#ffffff;', 1)

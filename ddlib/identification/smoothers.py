@@ -57,7 +57,7 @@ def by_butterworth(
     width : float or None
         Width of smooth bumps under which both sides of the equations are averaged, s, as in
         `by_modulation`: torque and motion then lose the same frequencies, which biases nothing.
-        None: an equation for each sample, for which intervals are too narrow.
+        None: an equation for each sample, which gives no intervals.
     hold : float, optional
         Time for which the controller holds a torque, s: a sample stands for the torque half of it
         later. Default: as the recording says; 0 if it says nothing.

@@ -482,10 +482,8 @@ class _Reader:
             if name not in measured:
                 found.append(np.zeros(len(self.rows)))
                 continue
-            told, values = self._size(name), np.asarray(measured[name], float)
-            if told is not None:
-                values = known_units.converted(values, told[0])
-            elif name not in self.factors:
+            values, kind = self._in_si(name, measured)
+            if kind is None and name not in self.factors:
                 known_units.check_angle(values, self.name, name, lines)
             found.append(self._scaled(name, values))
         if absolute_elbow:
@@ -499,16 +497,19 @@ class _Reader:
             if name not in measured:
                 found.append(np.zeros(len(self.rows)))
                 continue
-            told, values = self._size(name), np.asarray(measured[name], float)
-            if told is not None:
-                values = known_units.converted(values, told[0])
-                if told[1] == "current" and name not in self.factors:
-                    raise fault(
-                        f"{self.name}: {name} is a current, in {self._unit(name)[0]}; give its "
-                        f'torque for an ampere, like factors={{"{name}": 0.7}} (N m/A)'
-                    )
+            values, kind = self._in_si(name, measured)
+            if kind == "current" and name not in self.factors:
+                raise fault(
+                    f"{self.name}: {name} is a current, in {self._unit(name)[0]}; give its "
+                    f'torque for an ampere, like factors={{"{name}": 0.7}} (N m/A)'
+                )
             found.append(self._scaled(name, values))
         return np.stack(found, -1)
+
+    def _in_si(self, name, measured) -> tuple[np.ndarray, str | None]:
+        """A column in SI units, and the kind of its unit; None if nothing tells the unit."""
+        told, values = self._size(name), np.asarray(measured[name], float)
+        return (values, None) if told is None else (known_units.converted(values, told[0]), told[1])
 
     def _scaled(self, name, values) -> np.ndarray:
         if name not in self.factors:

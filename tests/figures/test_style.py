@@ -3,6 +3,7 @@
 import io
 import re
 import xml.etree.ElementTree as ET
+from unittest.mock import Mock
 
 import matplotlib as mpl
 import numpy as np
@@ -304,3 +305,14 @@ def test_refusals():
             style.check_label(label)
     for label in ("shoulder torque, N m", "RMSS", "speed, times the paper's"):
         assert style.check_label(label) == label
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+def test_a_picture_that_cannot_be_drawn_leaves_the_old_file(tmp_path, suffix, monkeypatch):
+    path = tmp_path / f"picture.{suffix}"
+    path.write_text("before")
+    picture = illustrate(lambda figure: figure.subplots().plot([0, 1]), "A line.", 3.0, 2.0)
+    monkeypatch.setattr("os.replace", Mock(side_effect=OSError("no room")))
+    with pytest.raises(OSError, match="no room"):
+        picture.save(path)
+    assert path.read_text() == "before" and list(tmp_path.iterdir()) == [path]
