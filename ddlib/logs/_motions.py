@@ -480,7 +480,7 @@ def _excitation(stretches, equations, width, step, driven, fit, heavy) -> Iterat
     seen = f"The motion tells {', '.join(told) or 'no parameter by itself'}."
     seen += f" Not told apart from zero: {', '.join(nothing)}." if nothing else ""
     seen += f" It does not tell one by one: {', '.join(lost)}." if lost else ""
-    advice = "Nothing to do. The percentages are about two standard errors."
+    advice = "Nothing to do. The percentages are rough, and a fit mostly does better."
     if lost:
         advice = f"Leave {' or '.join(lost)} out, or move so that they matter apart."
     if not told:
