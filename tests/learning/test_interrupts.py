@@ -52,11 +52,14 @@ def test_ctrl_c_hands_out_what_was_reached(call):
     process = subprocess.Popen(
         [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    assert process.stdout.readline() == "begun\n"
-    time.sleep(1.5)
-    asked = time.time()
-    os.kill(process.pid, signal.SIGINT)
-    out, error = process.communicate(timeout=60)
+    try:
+        assert process.stdout.readline() == "begun\n"
+        time.sleep(1.5)
+        asked = time.time()
+        os.kill(process.pid, signal.SIGINT)
+        out, error = process.communicate(timeout=60)
+    finally:
+        process.kill()  # a training that heard nothing would go on for days
     assert error == "" and process.returncode == 0
     found = json.loads(out)
     assert found["ended"] - asked < 1.0
