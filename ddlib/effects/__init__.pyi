@@ -2,6 +2,7 @@ from .actuators import (
     ComputingTime as ComputingTime,
     DeadZone as DeadZone,
     FlexibleJoint as FlexibleJoint,
+    Load as Load,
     Ripple as Ripple,
     Saturation as Saturation,
 )

@@ -18,8 +18,14 @@ from ddlib.setups import (
     JOINT_DAMPING_KP as KP,
     JOINT_DAMPING_VISCOUS,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MOTION_SECONDS,
+    Trajectory,
+    pick_and_place,
+    smooth_pick_and_place,
+)
 from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine._live import LiveWidget
 from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant

@@ -6,8 +6,7 @@ import control
 import numpy as np
 
 from ddlib.control import linear
-from ddlib.effects import Effects
-from ddlib.simulation import Load
+from ddlib.effects import Effects, Load
 from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets import PIDTuner
