@@ -25,6 +25,8 @@ from workshop.chapters import (
 from workshop.chapters.feedforward import _EXTENTS, _TIMES, _track
 from workshop.report import committed
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 EFFECTS = left_out._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))
 

@@ -173,6 +173,9 @@ def _calls():
         (effects.StribeckFriction, dict(
             level=pair, breakaway=2 * pair, speed=0.02, smoothing=1e-3
         )),
+        (effects.LuGreFriction, dict(
+            level=pair, breakaway=2 * pair, speed=0.02, stiffness=pair, damping=pair
+        )),
         (effects.ViscousFriction, dict(coefficient=pair)),
         (effects.Backlash, dict(gap=pair)),
         (effects.Delay, dict(periods=2)),
