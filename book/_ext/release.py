@@ -1,4 +1,4 @@
-"""Put a release together in `dist/`: wheel, site, PDF, EPUB, notebooks, and their checksums.
+"""Put a release together in `dist/`: wheel, site, PDF, EPUB, notebooks, their list and checksums.
 
 `python book/_ext/release.py` says what does not agree, and writes nothing then: the version of the
 package, of the citation and of the newest entry of the changelog, its date and the citation's, the
@@ -8,6 +8,8 @@ tag at this commit, and a tree without changes. `make release` makes what is col
 from __future__ import annotations
 
 import hashlib
+import json
+import mimetypes
 import re
 import shutil
 import subprocess
@@ -18,6 +20,7 @@ from pathlib import Path
 import yaml
 
 ROOT = Path(__file__).parents[2]
+CRATE, SPDX = "ro-crate-metadata.json", "https://spdx.org/licenses/"
 ENTRY = re.compile(r"^## (\S+) \((\d{4}-\d\d-\d\d)\)$", re.M)
 MADE = {"notebooks.zip": "html/notebooks.zip", "walk.pdf": "pdf/walk.pdf",
         "evidence.pdf": "pdf/evidence.pdf", "book.epub": "epub/book.epub"}  # fmt: skip
@@ -52,6 +55,49 @@ def disagreements(root: Path) -> list[str]:
     return wrong
 
 
+def crate(cited: dict, made: list[Path]) -> dict:
+    """What a release holds, as an RO-Crate (version 1.1) for archives and indexes."""
+    people = [
+        {
+            "@id": f"#author-{k}",
+            "@type": "Person" if "family-names" in one else "Organization",
+            "name": one.get("name") or f"{one['given-names']} {one['family-names']}",
+        }
+        for k, one in enumerate(cited["authors"], 1)
+    ]
+    files = [
+        {
+            "@id": path.name,
+            "@type": "File",
+            "name": path.name,
+            "contentSize": str(path.stat().st_size),
+            "encodingFormat": mimetypes.guess_type(path.name)[0] or "application/octet-stream",
+        }
+        for path in made
+    ]
+    names = cited["license"] if isinstance(cited["license"], list) else [cited["license"]]
+    licences = [{"@id": f"{SPDX}{name}", "@type": "CreativeWork", "name": name} for name in names]
+    whole = {
+        "@id": "./",
+        "@type": "Dataset",
+        "name": cited["title"],
+        "description": " ".join(cited["abstract"].split()),
+        "version": str(cited["version"]),
+        "datePublished": str(cited["date-released"]),
+        "author": [{"@id": one["@id"]} for one in people],
+        "license": [{"@id": one["@id"]} for one in licences],
+        "hasPart": [{"@id": one["@id"]} for one in files],
+    }
+    itself = {
+        "@id": CRATE,
+        "@type": "CreativeWork",
+        "conformsTo": {"@id": "https://w3id.org/ro/crate/1.1"},
+        "about": {"@id": "./"},
+    }
+    graph = [itself, whole, *files, *people, *licences]
+    return {"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}
+
+
 def collect(root: Path, folder: Path) -> list[Path]:
     """Make the wheel and the site's archive, copy the rest, sum them up; what is there then.
 
@@ -74,6 +120,9 @@ def collect(root: Path, folder: Path) -> list[Path]:
     for name, path in MADE.items():
         stem, dot, ending = name.rpartition(".")
         shutil.copyfile(built / path, new / f"{stem}-{version}{dot}{ending}")
+    cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
+    told = json.dumps(crate(cited, sorted(new.iterdir())), indent=1, ensure_ascii=False)
+    (new / CRATE).write_text(told + "\n", encoding="utf-8")
     made = sorted(new.iterdir())
     sums = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in made]
     (new / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")

@@ -8,6 +8,7 @@ import zipfile
 
 import nbformat
 import pytest
+import yaml
 from book_pages import ROOT
 from packaging.requirements import Requirement
 
@@ -149,3 +150,18 @@ def test_an_incomplete_release_leaves_nothing(tagged):
     with pytest.raises(FileNotFoundError, match=r"walk\.pdf"):
         release.collect(tagged, tagged / "dist")
     assert not list(tagged.glob("*dist"))
+
+
+def test_a_release_lists_what_it_holds(tmp_path):
+    """As an RO-Crate: it says what it is about, and names each file, author and licence."""
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    (tmp_path / "walk.pdf").write_bytes(b"%PDF")
+    graph = release.crate(cited, [tmp_path / "walk.pdf"])["@graph"]
+    by = {one["@id"]: one for one in graph}
+    assert len(by) == len(graph) and by[release.CRATE]["about"] == {"@id": "./"}
+    whole = by["./"]
+    assert whole["name"] == cited["title"] and whole["version"] == str(cited["version"])
+    for kind in ("author", "license", "hasPart"):
+        assert whole[kind] and all(one["@id"] in by for one in whole[kind])
+    pdf = by["walk.pdf"]
+    assert pdf["encodingFormat"] == "application/pdf" and pdf["contentSize"] == "4"
