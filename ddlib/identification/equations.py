@@ -112,7 +112,8 @@ def by_modulation(
         np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
         for y, keeps, ws in zip(torque, steady, whiten)
     )
-    return Equations(tuple(names), regressor(recording.q), torques, _blur(recording, regressor))
+    blur, notes = _blur(recording, regressor), _slow(steady, names)
+    return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
 
 
 def repeat(
@@ -208,6 +209,16 @@ def _steady(recording: Recording, names) -> np.ndarray:
     return speed >= wanted[:, None, None]
 
 
+def _slow(kept, names) -> tuple[str, ...]:
+    """A word on each joint (joint, ...) of which nothing is kept, as it is slow."""
+    return tuple(
+        f"All equations of joint {j + 1} were left out: with F_c{j + 1} they ask for a joint that "
+        f"moves on at {SLOW} rad/s or more. Without F_c{j + 1} they count."
+        for j, keep in enumerate(kept)
+        if f"F_c{j + 1}" in names and not np.any(keep)
+    )
+
+
 def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equations:
     """Equations at the samples of the motion, `margin` samples away from its ends."""
     recording = _in_runs(recording)
@@ -220,7 +231,8 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     keep = _steady(recording, names) & inside
     regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
     torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
+    notes = _slow(keep, names)
+    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
 
 
 def _bumps(t, width, length, orders=(0, 1, 2)) -> list[np.ndarray]:

@@ -81,7 +81,8 @@ def instrumental_variables(
         covariance = inverse @ (spread / free) @ _t(inverse)
         variances.append(np.diagonal(covariance, axis1=-2, axis2=-1))
     errors = np.sqrt(np.maximum(*variances))
-    return Estimate(tuple(names), values, errors, np.stack(noise, -1), count - len(names))
+    noise, free = np.stack(noise, -1), count - len(names)
+    return Estimate(tuple(names), values, errors, noise, free, notes=equations.notes)
 
 
 def _t(x) -> np.ndarray:

@@ -25,6 +25,7 @@ SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity
 
 _TIMES = 3.0  # what a seen direction's energy is of what noise in the motion gives it
 _ROUNDING = 1e-10  # of a column's size: what is smaller is rounding
+_SQUARED = 1e-14  # of a column's energy: what is smaller is rounding of its squares
 _TOUCHED = 0.01  # of a unit direction: parameters that it touches less are told all the same
 
 
@@ -38,6 +39,7 @@ class Equations(NamedTuple):
     #: (parameters, parameters); none: the motion is known exactly.
     blur: tuple[np.ndarray, ...] | None = None
     biased: str = ""  #: Why their estimates have no interval, if they have none.
+    notes: tuple[str, ...] = ()  #: Sentences on what was left out, which go into an estimate.
 
 
 class Combination(NamedTuple):
@@ -143,6 +145,7 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
             f"{why if slow else ''}"
         )
     equations, notes = _driven(equations)
+    notes = [*equations.notes, *notes]
     names, regressors, torques = equations[:3]
     unseen = _unseen(equations)
     if not unseen.shape[1]:
@@ -250,7 +253,8 @@ def _unseen(equations, joints=None, like=None) -> np.ndarray:
     rest = null_space(ways.T) if ways.size else np.eye(len(seen))
     if rest.size:
         strength, turned = np.linalg.eigh(rest.T @ seen @ rest)
-        ways = np.hstack([ways, rest @ turned[:, strength < 1 / max(energy, 1e-300)]])
+        least = max(1 / max(energy, 1e-300), _SQUARED)
+        ways = np.hstack([ways, rest @ turned[:, strength < least]])
     found = np.zeros((len(size), ways.shape[1]))
     found[felt] = ways if like is None else ways * (like[felt] / size[felt])[:, None]
     return np.hstack([nothing, np.linalg.qr(found)[0]]) if ways.size else nothing

@@ -21,6 +21,7 @@ from ddlib.identification.equations import (
     _in_runs,
     _mean_sign,
     _reading_noise,
+    _slow,
     _steady,
     encoder_step,
 )
@@ -209,7 +210,8 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         _some(keep := steady & inside, margin * step)
         regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
         torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
+        notes = _slow(keep, names)
+        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
     if end - begin < 12 * step * (1 - 1e-6):
         raise ValueError(f"recording must have 12 samples of motion, got {end - begin:g} s")
     number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
@@ -245,7 +247,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         for y, ws, runs in zip(equations.torque, whiten, keeps)
     )
     blur = _blur(_in_runs(recording), regressor)
-    return Equations(tuple(names), averaged(states), torques, blur)
+    return Equations(tuple(names), averaged(states), torques, blur, notes=_slow(keeps, names))
 
 
 def _some(keep, margin) -> None:
