@@ -89,7 +89,10 @@ def swung(step):
     waves = np.sin(angle), speed * np.cos(angle), -(speed**2) * np.sin(angle)
     reference = Trajectory(*(np.tile(size * x.sum(-1), (REPETITIONS, 1, 1, 1)) for x in waves))
     effects = replace(FINE, torque_sensor=(Noise((0.1, 0.05)),))
-    seeds, start = np.arange(REPETITIONS)[:, None], (reference.q[..., 0, :], reference.qd[..., 0, :])
+    seeds, start = (
+        np.arange(REPETITIONS)[:, None],
+        (reference.q[..., 0, :], reference.qd[..., 0, :]),
+    )
     run = follow(
         CMU_DD_ARM_II, pd((120.0, 40.0), (20.0, 6.0)), reference, t, effects=effects,
         seed=seeds, log_every=1, start=start,
