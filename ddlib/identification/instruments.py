@@ -44,7 +44,8 @@ def instrumental_variables(
     Estimate
         Standard errors are those of Newey & West (1987), or of White (1980) where these are larger:
         they allow for noise that differs in size, is shared by neighbours, and, where both joints
-        have equations at the same samples, by the joints.
+        have equations at the same samples, by the joints. There are no intervals from equations of
+        single samples: instruments take away the bias of noise, not that of smoothing.
     """
     integer("rounds", rounds, 1)
     names, regressors, torques = equations[:3]
@@ -81,8 +82,10 @@ def instrumental_variables(
         covariance = inverse @ (spread / free) @ _t(inverse)
         variances.append(np.diagonal(covariance, axis1=-2, axis2=-1))
     errors = np.sqrt(np.maximum(*variances))
-    noise, free = np.stack(noise, -1), count - len(names)
-    return Estimate(tuple(names), values, errors, noise, free, notes=equations.notes)
+    return Estimate(
+        tuple(names), values, errors, np.stack(noise, -1), count - len(names),
+        unsure=np.ones(values.shape, bool) if equations.biased else None, notes=equations.notes,
+    )  # fmt: skip
 
 
 def _t(x) -> np.ndarray:
