@@ -110,3 +110,28 @@ def test_a_torque_that_is_held_for_long_moves_no_interval(step):
         assert np.isfinite(found.half_width()).all()
         held = found.covers(truth).mean(0)
         assert (held >= LOWEST).all(), (step, held)
+
+
+def told(equations, count=20):
+    """In how many of the first repetitions an estimate says that what is left is no noise."""
+    parts = (
+        equations._replace(
+            regressor=tuple(a[k] for a in equations.regressor),
+            torque=tuple(y[k] for y in equations.torque),
+        )
+        for k in range(count)
+    )
+    return sum("is no noise" in str(least_squares(part)) for part in parts)
+
+
+@pytest.mark.parametrize("way", ("modulation", "kalman"))
+def test_an_estimate_tells_where_its_equations_leave_more_than_noise(way):
+    by, names = WAYS[way], RIGID + FRICTION
+    for kind in ("quiet", "as reported", "vertical", "ringing"):
+        many, all_names, _ = recorded(kind)
+        assert told(by(many, all_names)) == 0, kind
+    assert told(by(recorded("vertical")[0], names)) == 20, "without gravity"
+    run, _ = swung(0.01)
+    assert told(by(run, names)) == 0
+    late = replace(run, tau=np.roll(run.tau, 2, axis=-2))
+    assert told(by(late, names)) == 20, "a torque that is logged late"
