@@ -72,8 +72,8 @@ def by_modulation(
         Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a multiple of
         six samples. Narrow bumps let quantisation through, wide ones lose detail.
     hold : float, optional
-        Time for which the controller holds a torque, s: a sample stands for the torque half
-        of it later. Default: as the recording says, its computing time included.
+        Time for which the controller holds a torque, s: a sample stands for the torque from then
+        on. Default: as the recording says, its computing time included.
     """
     warn_of_log(recording)
     begin, end = recording.span
@@ -86,10 +86,11 @@ def by_modulation(
             "12 samples or more, and is no longer than the motion"
         )
     width = int((width + tiny) / (6 * recording.step)) * 6 * recording.step
-    late = _lateness(recording) if hold is None else number("hold", hold, 0.0) / 2
-    recording = _in_runs(recording)
-    t, length = recording.t - begin, end - begin
-    bumps, later = _bumps(t, width, length), _bumps(t + late, width, length)[0]
+    if hold is None and recording.control_step is None:
+        raise ValueError("hold must be given, as the recording has no control_step; got None")
+    acts, recording = _acting(recording, hold), _in_runs(recording)
+    place = recording.t - begin, width, end - begin
+    bumps, later, after = _bumps(*place), _held(*place, *acts), _held(*place, 0.0, recording.step)
     steady = _steady(recording, names) @ bumps[0].T / bumps[0].sum(-1) > 0.9
     torque = np.moveaxis(recording.tau, -1, 0) @ later.T
     # bumps overlap: the inverse Cholesky factor makes their torque noise independent
@@ -99,7 +100,7 @@ def by_modulation(
     ]
 
     def regressor(q) -> tuple[np.ndarray, ...]:
-        rows = _modulated(bumps, q, recording.step)
+        rows = _modulated(bumps, after, q, recording.step)
         found = []
         for row, keeps, factors in zip(rows, steady, whiten):
             a = _columns(row, names, np.empty((*q.shape[:-2], len(later))))
@@ -111,7 +112,8 @@ def by_modulation(
         np.concatenate([y[..., k, keep] @ w.T for k, (w, keep) in enumerate(zip(ws, keeps))], -1)
         for y, keeps, ws in zip(torque, steady, whiten)
     )
-    return Equations(tuple(names), regressor(recording.q), torques, _blur(recording, regressor))
+    blur, notes = _blur(recording, regressor), _slow(steady, names)
+    return Equations(tuple(names), regressor(recording.q), torques, blur, notes=notes)
 
 
 def repeat(
@@ -189,13 +191,13 @@ def encoder_step(q) -> float | None:
     return None if rough or counts.max() > 1e6 else step
 
 
-def _lateness(recording: Recording) -> float:
-    """How much later than its sample a logged torque acts in the mean, s."""
-    if recording.control_step is None:
-        raise ValueError("hold must be given, as the recording has no control_step; got None")
-    middle = recording.control_step / 2
+def _acting(recording: Recording, hold: float | None) -> tuple[float, float]:
+    """When a logged torque begins to act, after its sample, and for how long, s."""
+    if hold is not None:
+        return 0.0, number("hold", hold, 0.0)
+    period = recording.control_step or 0.0
     late = recording.computing_time  # with one, a sample holds the torque of the reading before
-    return late - middle if late else middle
+    return late - period if late else 0.0, period
 
 
 def _steady(recording: Recording, names) -> np.ndarray:
@@ -205,6 +207,16 @@ def _steady(recording: Recording, names) -> np.ndarray:
     speed = np.moveaxis(speed.reshape(-1, *q.shape[-3:]).mean(0), -1, 0)
     wanted = np.array([SLOW if f"F_c{j + 1}" in names else 0.0 for j in range(2)])
     return speed >= wanted[:, None, None]
+
+
+def _slow(kept, names) -> tuple[str, ...]:
+    """A word on each joint (joint, ...) of which nothing is kept, as it is slow."""
+    return tuple(
+        f"All equations of joint {j + 1} were left out: with F_c{j + 1} they ask for a joint that "
+        f"moves on at {SLOW} rad/s or more. Without F_c{j + 1} they count."
+        for j, keep in enumerate(kept)
+        if f"F_c{j + 1}" in names and not np.any(keep)
+    )
 
 
 def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equations:
@@ -219,23 +231,34 @@ def _sampled(recording: Recording, velocity, acceleration, names, margin) -> Equ
     keep = _steady(recording, names) & inside
     regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
     torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
+    notes = _slow(keep, names)
+    return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
 
 
-def _bumps(t, width, length) -> list[np.ndarray]:
+def _bumps(t, width, length, orders=(0, 1, 2)) -> list[np.ndarray]:
     """B-splines inside a motion of `length` s and their first two derivatives, (bumps, time)."""
     knot = width / 6
     shape = BSpline.basis_element(knot * np.arange(7), extrapolate=False)
     first = knot * np.arange(int((length - width) / knot + 1e-9) + 1)
     place = t - first[:, None]
-    return [np.nan_to_num(f(place)) for f in (shape, shape.derivative(), shape.derivative(2))]
+    return [np.nan_to_num(shape(place, order)) for order in orders]
 
 
-def _modulated(bumps, q, step) -> list[dict]:
-    """What each parameter contributes to the modulated torque, for shoulder and elbow."""
+def _held(t, width, length, begin, hold) -> np.ndarray:
+    """Mean of each bump while a sample's torque acts: its value in the middle misses ``hold^2``."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)  # exact for a B-spline of degree 5
+    times = t + begin + hold * (1 + nodes[:, None]) / 2
+    return sum(w / 2 * _bumps(x, width, length, (0,))[0] for w, x in zip(weights, times))
+
+
+def _modulated(bumps, after, q, step) -> list[dict]:
+    """What each parameter contributes to the modulated torque, for shoulder and elbow.
+
+    The means of the bumps from each sample to the next are `after`.
+    """
     w, w1, w2 = (x.T for x in bumps)
     velocity = _five_point(q, step)
-    sign = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
+    sign = _mean_sign(velocity)
     q1, q2, v1, v2 = q[..., 0], q[..., 1], velocity[..., 0], velocity[..., 1]
     c2, s2 = np.cos(q2), np.sin(q2)
     weight = np.sin(q1 + q2) @ w
@@ -246,16 +269,29 @@ def _modulated(bumps, q, step) -> list[dict]:
         "g1": np.sin(q1) @ w,
         "g2": weight,
         "F_v1": -q1 @ w1,
-        "F_c1": sign[..., 0] @ w,
+        "F_c1": sign[..., 0] @ after.T,
     }
     elbow = {
         "b": (s2 * v1 * (v1 + v2)) @ w - (c2 * v1) @ w1,
         "d": (q1 + q2) @ w2,
         "g2": weight,
         "F_v2": -q2 @ w1,
-        "F_c2": sign[..., 1] @ w,
+        "F_c2": sign[..., 1] @ after.T,
     }
     return [shoulder, elbow]
+
+
+def _mean_sign(velocity) -> np.ndarray:
+    """Mean sign of velocities (..., time, joint) from each sample to the next, straight between.
+
+    The sign at a sample would be wrong by up to a period where a velocity changes it.
+    """
+    slow = np.clip(velocity / SIGN_SPEED, -1.0, 1.0)
+    area = slow * (velocity - SIGN_SPEED * slow / 2)  # integral of the sign over the velocity
+    change = np.diff(velocity, axis=-2)
+    even = np.abs(change) < 1e-6 * SIGN_SPEED
+    mean = np.where(even, slow[..., 1:, :], np.diff(area, axis=-2) / np.where(even, 1.0, change))
+    return np.concatenate([mean, slow[..., -1:, :]], -2)
 
 
 def _five_point(q, step) -> np.ndarray:

@@ -42,9 +42,11 @@ def instrumental_variables(
     Returns
     -------
     Estimate
-        Standard errors are those of Newey & West (1987), or of White (1980) where these are larger:
+        Standard errors are those of Newey & West (1987), or of White (1980) where these are larger,
+        from what each equation would leave if it were not fitted (MacKinnon & White 1985):
         they allow for noise that differs in size, is shared by neighbours, and, where both joints
-        have equations at the same samples, by the joints.
+        have equations at the same samples, by the joints. There are no intervals from equations of
+        single samples: instruments take away the bias of noise, not that of smoothing.
     """
     integer("rounds", rounds, 1)
     names, regressors, torques = equations[:3]
@@ -73,15 +75,23 @@ def instrumental_variables(
         left = [y - (x @ values[..., None])[..., 0] for x, y in zip(regressors, torques)]
         free = max(1 - len(names) / count, 1e-9)
         noise = [np.sqrt(np.mean(u**2, -1) / free) if u.size else s for u, s in zip(left, noise)]
+    # an equation draws the fit to itself: what it would leave without (MacKinnon & White 1985)
+    drawn = [
+        w[..., 0] * np.sum((x @ inverse) * z, -1) for w, x, z in zip(weights, regressors, others)
+    ]
+    left = [u / (1 - np.clip(h, 0, 0.9)) for u, h in zip(left, drawn)]
     scores = [w * z * u[..., None] for w, z, u in zip(weights, others, left)]
     scores = [sum(scores)] if len(set(shapes)) == 1 else scores
     variances = []
     for near in (np.ones(1), np.bartlett(2 * memory + 3)[1:-1]):
         spread = sum(_t(s) @ convolve1d(s, near, axis=-2, mode="constant") for s in scores)
-        covariance = inverse @ (spread / free) @ _t(inverse)
+        covariance = inverse @ spread @ _t(inverse)
         variances.append(np.diagonal(covariance, axis1=-2, axis2=-1))
     errors = np.sqrt(np.maximum(*variances))
-    return Estimate(tuple(names), values, errors, np.stack(noise, -1), count - len(names))
+    return Estimate(
+        tuple(names), values, errors, np.stack(noise, -1), count - len(names),
+        unsure=np.ones(values.shape, bool) if equations.biased else None, notes=equations.notes,
+    )  # fmt: skip
 
 
 def _t(x) -> np.ndarray:

@@ -25,6 +25,8 @@ SIGN_SPEED = 0.005  #: Below this estimated speed (rad/s) the sign of a velocity
 
 _TIMES = 3.0  # what a seen direction's energy is of what noise in the motion gives it
 _ROUNDING = 1e-10  # of a column's size: what is smaller is rounding
+_SQUARED = 1e-14  # of a column's energy: what is smaller is rounding of its squares
+_ALIKE = 3.5  # deviations: what neighbouring residuals of noise hardly have in common
 _TOUCHED = 0.01  # of a unit direction: parameters that it touches less are told all the same
 
 
@@ -38,6 +40,7 @@ class Equations(NamedTuple):
     #: (parameters, parameters); none: the motion is known exactly.
     blur: tuple[np.ndarray, ...] | None = None
     biased: str = ""  #: Why their estimates have no interval, if they have none.
+    notes: tuple[str, ...] = ()  #: Sentences on what was left out, which go into an estimate.
 
 
 class Combination(NamedTuple):
@@ -123,6 +126,10 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
     is left out, as is one with too few equations: either would be solved exactly, and count
     without limit.
 
+    Intervals count noise that each equation has anew. `Estimate.notes` say where neighbours leave
+    what is alike, as they do if an effect has no term or a torque is logged late. Small such
+    errors go into the parameters without a trace.
+
     Noise in the motion makes estimates too small. The mean of that, to first order, is the inverse
     of the normal equations' matrix times the blur's times the estimates (Fuller 1987); where it
     exceeds half of a standard error there is no interval.
@@ -143,12 +150,14 @@ def least_squares(equations: Equations, rounds: int = 4) -> Estimate:
             f"{why if slow else ''}"
         )
     equations, notes = _driven(equations)
+    notes = [*equations.notes, *notes]
     names, regressors, torques = equations[:3]
     unseen = _unseen(equations)
     if not unseen.shape[1]:
         found = _solved(names, regressors, torques, rounds)
         unsure = _biased(equations, found, np.eye(len(names)))
-        return replace(found, unsure=unsure, notes=(*notes, *_impossible(found)))
+        notes = (*notes, *_impossible(found), *_alike(equations, regressors, found))
+        return replace(found, unsure=unsure, notes=notes)
     if unseen.shape[1] == len(names):
         raise ValueError(f"equations must determine some of {', '.join(names)}; they do not")
     return _partly(equations, unseen, rounds, notes)
@@ -250,7 +259,8 @@ def _unseen(equations, joints=None, like=None) -> np.ndarray:
     rest = null_space(ways.T) if ways.size else np.eye(len(seen))
     if rest.size:
         strength, turned = np.linalg.eigh(rest.T @ seen @ rest)
-        ways = np.hstack([ways, rest @ turned[:, strength < 1 / max(energy, 1e-300)]])
+        least = max(1 / max(energy, 1e-300), _SQUARED)
+        ways = np.hstack([ways, rest @ turned[:, strength < least]])
     found = np.zeros((len(size), ways.shape[1]))
     found[felt] = ways if like is None else ways * (like[felt] / size[felt])[:, None]
     return np.hstack([nothing, np.linalg.qr(found)[0]]) if ways.size else nothing
@@ -300,6 +310,7 @@ def _partly(equations, unseen, rounds, notes) -> Estimate:
         sums.append(Combination(tuple(names), tidy, value, error, half))
     missing = ", ".join(n for n, k in zip(names, told) if not k)
     notes = [*notes, f"{missing} cannot be told from this recording."]
+    notes += _alike(equations, [a @ ways for a in regressors], inner)
     unsure = None
     if blurred is not None:
         unsure = np.broadcast_to(blurred.any(-1, keepdims=True), shape)
@@ -350,6 +361,23 @@ def _impossible(found) -> list[str]:
     return [
         "No arm has these inertias: its mass matrix would not be positive at every elbow angle."
     ]
+
+
+def _alike(equations, regressors, found) -> list[str]:
+    """A word on each joint whose averaged equations leave more than noise: neighbours are alike."""
+    if found.values.ndim > 1 or equations.blur is None:
+        return []
+    told = []
+    for j, (a, y) in enumerate(zip(regressors, equations.torque)):
+        left = y - a @ found.values
+        share = left[1:] @ left[:-1] / (left @ left) if left.any() else 0.0
+        if share * np.sqrt(left.size) > _ALIKE:
+            told.append(
+                f"What is left of joint {j + 1}'s torque is no noise, as neighbours are alike "
+                f"(correlation {share:.2f}): an effect has no term, or the torque is logged early "
+                "or late. The intervals are too narrow."
+            )
+    return told
 
 
 def from_states(q, qd, qdd, torque, names: Sequence[str] = RIGID) -> Equations:

@@ -14,11 +14,14 @@ from scipy.signal import butter, savgol_filter, sosfiltfilt
 from ddlib._check import integer, number, shaped
 from ddlib.identification.equations import (
     _BY_SAMPLE,
+    _acting,
     _blur,
     _bumps,
+    _held,
     _in_runs,
-    _lateness,
+    _mean_sign,
     _reading_noise,
+    _slow,
     _steady,
     encoder_step,
 )
@@ -59,8 +62,8 @@ def by_butterworth(
         `by_modulation`: torque and motion then lose the same frequencies, which biases nothing.
         None: an equation for each sample, which gives no intervals.
     hold : float, optional
-        Time for which the controller holds a torque, s: a sample stands for the torque half of it
-        later. Default: as the recording says; 0 if it says nothing.
+        Time for which the controller holds a torque, s: a sample stands for the torque from then
+        on. Default: as the recording says; 0 if it says nothing.
     rows : Recording, optional
         Whose speeds decide at which samples Coulomb friction has a sure sign, if that is among
         `names`. Default: this one. `instrumental_variables` needs the same rows twice.
@@ -191,13 +194,12 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
     """
     orders = again(recording.q)
     warn_of_log(recording)
-    late = 0.0 if recording.control_step is None else _lateness(recording)
-    late = late if hold is None else number("hold", hold, 0.0) / 2
+    acts = _acting(recording, hold)
     rows, single = _in_runs(recording if rows is None else rows), recording.reference.q.ndim == 2
     steady = _steady(rows, names)
     if steady.shape[-1] != recording.t.size:
         raise ValueError(f"rows must have {recording.t.size} samples, got {steady.shape[-1]}")
-    states = _later(orders, late if width is None else 0.0)
+    states = _later(orders, acts[0] + acts[1] / 2 if width is None else 0.0)
     states = states[..., None, :, :, :] if single else states
     (begin, end), step, motion = recording.span, recording.step, recording.motion
     inside = np.zeros(recording.t.size, bool)
@@ -208,12 +210,14 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         _some(keep := steady & inside, margin * step)
         regressors = tuple(a[..., k, :] for a, k in zip(equations.regressor, keep))
         torques = tuple(y[..., k] for y, k in zip(equations.torque, keep))
-        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE)
+        notes = _slow(keep, names)
+        return Equations(tuple(names), regressors, torques, biased=_BY_SAMPLE, notes=notes)
     if end - begin < 12 * step * (1 - 1e-6):
         raise ValueError(f"recording must have 12 samples of motion, got {end - begin:g} s")
     number("width", width, 12 * step * (1 - 1e-6), (end - begin) * (1 + 1e-6))
     width = int(width / (6 * step) + 1e-6) * 6 * step
-    bumps, later = (_bumps(recording.t - begin + x, width, end - begin)[0] for x in (0, late))
+    place = recording.t - begin, width, end - begin
+    bumps, later, after = _bumps(*place, (0,))[0], _held(*place, *acts), _held(*place, 0.0, step)
     keeps = (steady @ bumps.T / bumps.sum(-1) > 0.9) & ((bumps @ ~inside) / bumps.sum(-1) < 0.02)
     _some(keeps, margin * step)
     # bumps overlap: the inverse Cholesky factor makes their torque noise independent
@@ -221,17 +225,19 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         [np.linalg.inv(np.linalg.cholesky(later[k] @ later[k].T)) for k in runs] for runs in keeps
     ]
 
-    def averaged(rows) -> tuple[np.ndarray, ...]:
-        return tuple(
-            np.concatenate(
-                [w @ (bumps[keep] @ a[..., k, :, :]) for k, (w, keep) in enumerate(zip(ws, runs))],
-                -2,
-            )
-            for a, ws, runs in zip(rows, whiten, keeps)
-        )
+    def averaged(states) -> tuple[np.ndarray, ...]:
+        rows = from_states(*np.moveaxis(states, -1, 0), np.zeros(2), names)[1]
+        sign, found = _mean_sign(states[..., 1]), []
+        for j, (a, ws, runs) in enumerate(zip(rows, whiten, keeps)):
+            mean = bumps @ a
+            if f"F_c{j + 1}" in names:
+                mean[..., names.index(f"F_c{j + 1}")] = sign[..., j] @ after.T
+            parts = [w @ mean[..., k, keep, :] for k, (w, keep) in enumerate(zip(ws, runs))]
+            found.append(np.concatenate(parts, -2))
+        return tuple(found)
 
     def regressor(q) -> tuple[np.ndarray, ...]:
-        return averaged(from_states(*np.moveaxis(_later(again(q)), -1, 0), np.zeros(2), names)[1])
+        return averaged(_later(again(q)))
 
     torques = tuple(
         np.concatenate(
@@ -241,7 +247,7 @@ def _motion(recording, again, names, margin, rows, width, hold) -> Equations:
         for y, ws, runs in zip(equations.torque, whiten, keeps)
     )
     blur = _blur(_in_runs(recording), regressor)
-    return Equations(tuple(names), averaged(equations.regressor), torques, blur)
+    return Equations(tuple(names), averaged(states), torques, blur, notes=_slow(keeps, names))
 
 
 def _some(keep, margin) -> None:

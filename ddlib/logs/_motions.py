@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import BSpline
 from scipy.signal import savgol_filter
 
-from ddlib.logs._readings import unwrapped
+from ddlib.logs._readings import lines_of_a_reading, unwrapped
 from ddlib.logs._stamps import usual_step
 from ddlib.logs._torques import at_rest, weak
 from ddlib.logs.findings import JOINTS, Finding, found
@@ -60,6 +60,9 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
         )  # fmt: skip
         return
     thinned = max(width // ENOUGH, 1)
+    if _resting(stretches).all():
+        return
+    waits = float(np.median([lines_of_a_reading(run) for run in runs])) / thinned
     if thinned > 1:  # bumps do not need more samples
         stretches = [_Stretch(s.run, *_means((s.q, s.tau), thinned)) for s in stretches]
         width, step = width // thinned // 6 * 6, step * thinned
@@ -85,7 +88,7 @@ def motions(runs: Sequence[LoggedRun]) -> Iterator[Finding]:
         yield from others
     if not others and any(works):
         if works == driven:
-            yield from _lag(equations, rigid, driven, step, thinned)
+            yield from _lag(equations, rigid, driven, step, thinned, waits, bool(weight))
         yield from _signs(equations, gravity, works)
     yield from _excitation(stretches, equations, width, step, driven, with_gravity, bool(weight))
 
@@ -175,6 +178,7 @@ def _averaged(stretches, width, step, reading: Callable, shifts, smoothing=4) ->
         zero = np.zeros_like(weight)
         usual = np.sqrt(np.mean(v**2, 0)) + 1e-12
         shoulder = {
+            "cos": under(c2, w),
             "a": under(q1, w2),
             "b": under(s2, w2) - 2 * under(c2 * v1, w1),
             "d": under(q2, w2),
@@ -353,8 +357,11 @@ def _resting(stretches) -> np.ndarray:
     return at_rest(LoggedRun("", np.arange(len(q)), q, q, None))
 
 
-def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
-    """The shift of the torque that fits the motion best, with its uncertainty by blocks of time."""
+def _lag(equations, rigid, driven, step, thinned, waits, heavy) -> Iterator[Finding]:
+    """The shift of the torque that fits the motion best, with its uncertainty by blocks of time.
+
+    A reading stays for `waits` samples; half of that is no lag, as a torque is held so long.
+    """
     blocks = np.unique(equations.block)
     groups = np.array_split(blocks, min(8, blocks.size))
     middle = _fit(equations, rigid, len(SHIFTS) // 2, driven)
@@ -380,11 +387,12 @@ def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
     parts = np.array([best(~np.isin(equations.block, group)) for group in groups])
     n = len(parts)
     error = float(np.sqrt((n - 1) / n * np.sum((parts - parts.mean()) ** 2)))
-    # friction is no smooth step, and a torque is held from sample to sample
-    error = np.hypot(error, 0.12)
+    # friction is no smooth step, and a torque is held from reading to reading
+    error = np.hypot(error, 0.12 * max(waits, 1.0))
     now = middle.share
     at = _fit(equations, rigid, int(np.clip(np.round(lag), -8, 8)) + 8, driven).share
-    if thinned * abs(lag) < 0.6 or abs(lag) < 4 * error or at > 0.9 * now:
+    least = (0.6 if lag > 0 else 0.8) * max(thinned * waits, 1.0)  # a hold alone is 0.5 early
+    if thinned * abs(lag) < least or abs(lag) < 4 * error or at > 0.9 * now:
         return
     which = "later" if lag > 0 else "earlier"
     margin = f" ± {2 * thinned * error:.1f}"
@@ -398,31 +406,42 @@ def _lag(equations, rigid, driven, step, thinned) -> Iterator[Finding]:
         "A torque that is logged late adds to the damping: inertia times delay times the square of "
         "the motion's frequency; an early one takes as much away.",
         "Look for a filter or a queue between the two columns, and shift one. Friction and "
-        "backlash that the equations lack look alike, so record a free swing before you do.",
+        "backlash that the equations lack look alike, so before you do "
+        + ("record a free swing." if heavy else "push the resting arm: which column moves first?"),
     )  # fmt: skip
 
 
 def _signs(equations, gravity, driven) -> Iterator[Finding]:
-    """The inertia of each joint as it alone tells it: a positive torque must accelerate."""
+    """The inertia of each joint as it alone tells it: a positive torque must accelerate.
+
+    That is the mean of the mass matrix's entry, ``a + 2 b cos(q2)`` or ``d``, the other joint's
+    acceleration being known: a joint that is held still gives way to the other's torque.
+    """
     for j in range(2):
         if not driven[j]:
             continue
         columns = equations.columns[j]
-        first = columns["a"] if j == 0 else columns["d"]
-        names = ("b", "d") if j == 0 else ("b",)
-        own = [first, *(columns[n] for n in (*names, *gravity))]
-        own += [columns[f"F_v{j + 1}"], columns[f"F_c{j + 1}"], np.ones(first.size)]
+        names = ("a", "b", "d") if j == 0 else ("d", "b")
+        own = [*(columns[n] for n in (*names, *gravity))]
+        own += [columns[f"F_v{j + 1}"], columns[f"F_c{j + 1}"], np.ones(own[0].size)]
         a, y = np.stack(own, -1), equations.torques[j][len(SHIFTS) // 2]
+        inertia = np.zeros(a.shape[1])
+        inertia[0] = 1.0
+        if j == 0:
+            inertia[1] = 2 * columns["cos"].mean()
         norm = np.linalg.norm(a, axis=0)
         norm[norm == 0] = 1.0
-        # the torque of the inertia against its acceleration, whatever the columns share
-        values = np.linalg.lstsq(a / norm, y, rcond=1e-6)[0] / norm
-        inertial = len(names) + 1
-        torque = a[:, :inertial] @ values[:inertial]
-        left = y - a @ values
-        slope = first @ torque / (first @ first) if first @ first else 0.0
-        error = 2 * np.sqrt(equations.overlap * left.var() / (first @ first + 1e-300))
-        matters = torque.std() > 2 * left.std()
+        basis, size, ways = np.linalg.svd(a / norm, full_matrices=False)
+        ways, basis = ways[size > 1e-3 * size[0]], basis[:, size > 1e-3 * size[0]]
+        size = size[: len(ways)]
+        seen = ways @ (inertia / norm)
+        left = y - basis @ (basis.T @ y)
+        slope = float(seen / size @ (basis.T @ y))
+        error = 2 * np.sqrt(equations.overlap * left.var()) * np.linalg.norm(seen / size)
+        lost = np.linalg.norm(inertia / norm - ways.T @ seen)
+        if lost > 0.1 * np.linalg.norm(inertia / norm):
+            continue
+        matters = y.std() > 2 * left.std()
         if slope < -4 * error and matters:
             yield found(
                 None, "sign of the torque", "wrong", (None, j), [],

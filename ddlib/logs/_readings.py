@@ -278,29 +278,39 @@ def _held_torque(k, j, run, q, tau):
             )  # fmt: skip
 
 
-def _slow_readings(k, run):
-    """Lines that repeat all readings of the line before: the log is faster than what it logs."""
+def lines_of_a_reading(run: LoggedRun) -> float:
+    """How many lines repeat a reading of angles and torques, usually; 1 if each line has its own.
+
+    Readings of a quantiser change one by one, and a joint that rests waits at its ends only.
+    """
     readings = np.concatenate([run.q, run.tau], axis=1)
     if len(readings) < 40:
-        return
+        return 1.0
     with np.errstate(invalid="ignore"):
         changes = np.diff(readings, axis=0) != 0
     changes = changes[:, changes.sum(axis=0) >= 20]
     new = np.flatnonzero(changes.any(axis=1))
     if changes.shape[1] < 2 or new.size < 20:
-        return
+        return 1.0
     waits = np.diff(new)
     usual = float(np.median(waits))
-    # those of a quantiser change one by one, and a joint that rests waits at its ends only
     if usual < 2 or changes[new].mean() < 0.8 or np.percentile(waits, 90) > 3 * usual:
-        return
-    yield found(
-        run, "slow readings", "doubtful", (k, None), [],
-        f"Angles and torques change together, every {usual:.0f} samples only.",
-        "From line to line the arm stands still and jumps; readings are up to "
-        f"{usual - 1:.0f} samples old.",
-        f"Take a step of {usual * usual_step(run.t):.3g} s or more, and no differences of lines.",
-    )  # fmt: skip
+        return 1.0
+    return usual
+
+
+def _slow_readings(k, run):
+    """Lines that repeat all readings of the line before: the log is faster than what it logs."""
+    usual = lines_of_a_reading(run)
+    if usual > 1:
+        yield found(
+            run, "slow readings", "doubtful", (k, None), [],
+            f"Angles and torques change together, every {usual:.0f} samples only.",
+            "From line to line the arm stands still and jumps; readings are up to "
+            f"{usual - 1:.0f} samples old.",
+            f"Take a step of {usual * usual_step(run.t):.3g} s or more, and no differences of "
+            "lines.",
+        )  # fmt: skip
 
 
 def _one_sign(k, j, run, q, tau):

@@ -110,11 +110,13 @@ def test_the_hold_is_the_recordings():
             CMU_DD_ARM_II, SMOOTH, TRAINING, effects=slow, control_step=0.005, log_step=0.005
         )
         found = least_squares(by_modulation(run))
-        np.testing.assert_allclose(found.values[3:5], truth[3:5], rtol=0.02)
+        np.testing.assert_allclose(found.values[3:5], truth[3:5], rtol=2e-5)
         held = 2 * late - 0.005 if late else 0.005
         if held > 0:
             same = least_squares(by_modulation(replace(run, control_step=None), hold=held))
-            np.testing.assert_allclose(same.values, found.values, rtol=1e-9)
+            # for as long; with a computing time for a shorter one around the same middle
+            rtol = 1e-3 if late else 1e-9
+            np.testing.assert_allclose(same.values, found.values, rtol=rtol)
         wrong = least_squares(by_modulation(replace(run, control_step=0.0, computing_time=0.0)))
         assert abs(wrong.values[3] / truth[3] - 1) > abs(found.values[3] / truth[3] - 1)
     with pytest.raises(ValueError, match="hold must be given"):

@@ -20,7 +20,8 @@ from ddlib.identification import (
     repeat,
     true_parameters,
 )
-from ddlib.trajectories import APPENDIX_I
+from ddlib.simulation import follow
+from ddlib.trajectories import APPENDIX_I, Trajectory
 
 REPETITIONS = 200
 LOWEST = 0.95 - 3 * np.sqrt(0.95 * 0.05 / REPETITIONS)  # three deviations of a binomial: .904
@@ -78,3 +79,59 @@ def test_intervals_hold_the_truth_or_are_not_given(kind, way):
     given, held, sums, _ = shares(kind, way)
     assert (held[given > 0.02] >= LOWEST).all(), (given, held)
     assert all(share >= LOWEST for _, share in sums), sums
+
+
+def swung(step):
+    """The arm swings by three sines a joint, 6 s long; each torque is held for a step."""
+    t, size = step * np.arange(round(6 / step)), 0.7 / np.sqrt(3)
+    speed = 2 * np.pi * np.array([[0.4, 0.7, 1.1], [0.5, 0.8, 1.3]])
+    angle = speed * t[:, None, None] + np.array([[0.0, 1.0, 2.0], [1.0, 2.0, 3.0]])
+    waves = np.sin(angle), speed * np.cos(angle), -(speed**2) * np.sin(angle)
+    reference = Trajectory(*(np.tile(size * x.sum(-1), (REPETITIONS, 1, 1, 1)) for x in waves))
+    effects = replace(FINE, torque_sensor=(Noise((0.1, 0.05)),))
+    seeds, start = (
+        np.arange(REPETITIONS)[:, None],
+        (reference.q[..., 0, :], reference.qd[..., 0, :]),
+    )
+    run = follow(
+        CMU_DD_ARM_II, pd((120.0, 40.0), (20.0, 6.0)), reference, t, effects=effects,
+        seed=seeds, log_every=1, start=start,
+    )  # fmt: skip
+    return replace(run, reference=Trajectory(*(x[0] for x in run.reference))), effects
+
+
+@pytest.mark.parametrize("step", (0.02, 0.01, 0.005))
+def test_a_torque_that_is_held_for_long_moves_no_interval(step):
+    """A bump's value in the middle of the hold would move `a` by .09 % at 20 ms, and miss it."""
+    run, effects = swung(step)
+    truth = true_parameters(CMU_DD_ARM_II, effects, RIGID + FRICTION)
+    for way in WAYS.values():
+        found = least_squares(way(run, RIGID + FRICTION))
+        assert np.isfinite(found.half_width()).all()
+        held = found.covers(truth).mean(0)
+        assert (held >= LOWEST).all(), (step, held)
+
+
+def told(equations, count=20):
+    """In how many of the first repetitions an estimate says that what is left is no noise."""
+    parts = (
+        equations._replace(
+            regressor=tuple(a[k] for a in equations.regressor),
+            torque=tuple(y[k] for y in equations.torque),
+        )
+        for k in range(count)
+    )
+    return sum("is no noise" in str(least_squares(part)) for part in parts)
+
+
+@pytest.mark.parametrize("way", ("modulation", "kalman"))
+def test_an_estimate_tells_where_its_equations_leave_more_than_noise(way):
+    by, names = WAYS[way], RIGID + FRICTION
+    for kind in ("quiet", "as reported", "vertical", "ringing"):
+        many, all_names, _ = recorded(kind)
+        assert told(by(many, all_names)) == 0, kind
+    assert told(by(recorded("vertical")[0], names)) == 20, "without gravity"
+    run, _ = swung(0.01)
+    assert told(by(run, names)) == 0
+    late = replace(run, tau=np.roll(run.tau, 2, axis=-2))
+    assert told(by(late, names)) == 20, "a torque that is logged late"

@@ -188,3 +188,17 @@ def test_excitation_is_judged_against_noise():
     slight = pick_and_place([(40.0, 0.3)], T)
     assert np.isfinite(excitation(slight))
     assert np.isinf(excitation(slight, noise=1.0)) and np.isfinite(excitation(slight, noise=1e-6))
+
+
+@pytest.mark.parametrize("by", [by_modulation, by_kalman])
+def test_a_joint_that_is_left_out_is_named_with_the_parameter_that_asked_for_it(by):
+    """With F_c2 the locked elbow's equations go, and b + d, which they alone tell, with them."""
+    with_dry = least_squares(by(locked(), (*RIGID, "F_c2")))
+    left_out = [note for note in with_dry.notes if "joint 2" in note]
+    assert left_out == [
+        "All equations of joint 2 were left out: with F_c2 they ask for a joint that moves on at "
+        "0.1 rad/s or more. Without F_c2 they count."
+    ]
+    assert left_out[0] in repr(with_dry) and len(with_dry.combinations) == 1
+    without = least_squares(by(locked(), RIGID))
+    assert len(without.combinations) == 2 and not any("left out" in n for n in without.notes)

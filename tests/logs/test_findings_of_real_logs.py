@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ddlib.dynamics import Arm
+from ddlib.dynamics import Arm, Link
 from ddlib.logs import Log, LoggedRun, check_recording
 
 T = 0.004 * np.arange(1000)
@@ -110,3 +110,73 @@ def test_a_torque_in_milliamperes_is_doubted(size, told):
     check = check_recording(log(q, size * tau * [1 / np.abs(tau[:, 0]).max(), 0.5]))
     doubted = [f.where for f in check.of("units of torque") if f.severity == "doubtful"]
     assert doubted == told
+
+
+def driven(seed, held=False, slow=1.0, step=0.005, weight=0.0):
+    """Angles and torques of a small arm that swings by three sines a joint.
+
+    A shoulder that is held gives way a little, as the loop that holds it is a spring.
+    """
+    arm = Arm.from_links("small", Link(4.0, 0.35, 0.16, 0.05), Link(2.5, 0.3, 0.14, 0.025), weight)
+    rng, t = np.random.default_rng(seed), step * np.arange(1200)
+    speed = rng.uniform(2.0, 7.0, (3, 2)) * slow
+    angle = speed * t[:, None, None] + rng.uniform(0, 6, (3, 2))
+    waves = np.sin(angle), speed * np.cos(angle), -(speed**2) * np.sin(angle)
+    q, v, a = (0.35 / slow**0.5 * x.sum(1) for x in waves)
+    if held:
+        for x in (q, v, a):
+            x[:, 0] = 0.0
+        q[:, 0] = -arm.inverse_dynamics(q, v, a)[:, 0] / 60.0
+        v[:, 0] = np.gradient(q[:, 0], step)
+        a[:, 0] = np.gradient(v[:, 0], step)
+    tau = arm.inverse_dynamics(q, v, a) + 0.4 * v + 0.1 * np.tanh(v / 0.02)
+    tau += rng.normal(0, [0.1, 0.03], tau.shape)
+    return np.round(q / 1e-4) * 1e-4, tau, t
+
+
+def test_a_shoulder_that_is_held_gives_way_and_has_no_wrong_sign():
+    for seed in range(8):
+        q, tau, t = driven(seed, held=True)
+        assert not check_recording(log(q, tau, t)).wrong, seed
+        told = check_recording(log(q, -tau, t)).of("sign of the torque")
+        assert {finding.where[1] for finding in told} == {0, 1}
+
+
+def test_a_small_torque_that_is_no_noise_hides_no_other_finding():
+    q, tau, t = driven(2, slow=0.25)
+    assert not check_recording(log(q, tau, t)).of("little torque")
+    assert "sign of a torque" in kinds(check_recording(log(q, tau * [1, -1], t)))
+    noise = np.random.default_rng(0).normal(0, 0.03, len(t))
+    drowned = np.stack([tau[:, 0], noise], -1)
+    (told,) = check_recording(log(q, drowned, t)).of("little torque")
+    assert told.where == (0, 1)
+
+
+def repeated(x, times=4):
+    return np.repeat(x, times, axis=0)
+
+
+@pytest.mark.parametrize("late", [0, 3])
+def test_half_a_message_is_no_lag_where_four_lines_repeat_it(late):
+    # a KUKA's file: messages of 100 Hz on lines of 400 Hz
+    q, tau, t = driven(1, step=0.01)
+    middle = (tau[1:] + tau[:-1])[: len(t) - 1] / 2  # of the torque that acts until the next
+    q, tau = q[: len(middle)], np.roll(middle, late, axis=0)
+    check = check_recording(log(repeated(q), repeated(tau), 0.0025 * np.arange(4 * len(q))))
+    assert "slow readings" in kinds(check) and ("lag" in kinds(check)) == (late > 0)
+
+
+def test_an_arm_at_rest_has_neither_lag_nor_excitation():
+    rng = np.random.default_rng(4)
+    q = repeated(0.02 + 1e-6 * rng.normal(size=(400, 2)).cumsum(0))
+    tau = repeated([3.0, 1.0] + 0.05 * rng.normal(size=(400, 2)).cumsum(0))
+    check = check_recording(log(q, tau, 0.0025 * np.arange(len(q))))
+    assert kinds(check) == {"at rest", "slow readings"}
+    assert "of an arm that hangs" in check.wrong[0].effect
+
+
+def test_a_free_swing_is_asked_of_an_arm_that_can_swing_freely():
+    for weight in (0.0, 9.81):
+        q, tau, t = driven(3, weight=weight)
+        (lag,) = check_recording(log(q[:-6], tau[6:], t[6:])).of("lag")
+        assert ("free swing" in lag.advice) == (weight > 0) != ("push" in lag.advice)
