@@ -19,7 +19,7 @@ from sphinx.util.docutils import SphinxDirective
 FILE = "book/objectives.yml"
 HEADING = "## What you can do now"
 BEGINS = "After this lesson you can"
-CALL = f"{HEADING}\n\n{BEGINS}\n\n```{{objectives}} {{}}\n```\n\n"
+CALL = f"{HEADING}\n\n{BEGINS}\n\n```{{objectives}} LESSON\n```\n\n"
 
 
 class Objective(NamedTuple):
@@ -60,7 +60,9 @@ def call(app, page, text):
     notebook = json.loads(text[0])
     for cell in notebook["cells"]:
         if cell["cell_type"] == "markdown":
-            cell["source"] = "".join(cell["source"]).replace(OWN, CALL.format(lesson) + OWN)
+            cell["source"] = "".join(cell["source"]).replace(
+                OWN, CALL.replace("LESSON", lesson) + OWN
+            )
     text[0] = json.dumps(notebook)
 
 

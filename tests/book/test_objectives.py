@@ -1,6 +1,8 @@
 """Objectives: each lesson of the walk has some, and each of them is tested on its page."""
 
+import json
 import sys
+from types import SimpleNamespace
 
 import pytest
 from book_pages import ROOT, TOC, source
@@ -52,6 +54,22 @@ def test_a_readers_notebook_lists_them():
     assert told.count("\n- ") == len(EVERY[page])
     other = "## On your own\n\nAfter."
     assert dd_objectives.with_markdown(other, ROOT, "rivals") == other
+
+
+def test_a_page_calls_for_them_before_its_own_work():
+    page, cell = (
+        TEN[0],
+        {"cell_type": "markdown", "source": ["Before.\n", "## On your own\n", "A."]},
+    )
+    env = SimpleNamespace(doc2path=lambda page: str(source(page)))
+    app, text = SimpleNamespace(srcdir=ROOT, env=env), [json.dumps({"cells": [cell]})]
+    for put in (dd_objectives.call, dd_quiz.call):
+        put(app, f"book/{page}", text)
+    (made,) = json.loads(text[0])["cells"]
+    asked = (
+        f"{dd_objectives.HEADING}\n\n{dd_objectives.BEGINS}\n\n```{{objectives}} {page}\n```\n\n"
+    )
+    assert made["source"] == f"Before.\n{asked}{dd_quiz.CALL}## On your own\nA."
 
 
 @pytest.mark.built
