@@ -80,10 +80,10 @@ class Listed(SphinxDirective):
         return [
             node
             for page, some in every.items()
-            for node in (self.name(page), self.items(page, some, f"{page}.html"))
+            for node in (self.lesson(page), self.items(page, some, f"{page}.html"))
         ]
 
-    def name(self, page: str) -> nodes.paragraph:
+    def lesson(self, page: str) -> nodes.paragraph:
         target = dict(refdomain="std", reftype="doc", refexplicit=False)
         target |= dict(reftarget=f"/book/{page}", refdoc=self.env.docname)
         return nodes.paragraph("", "", pending_xref("", nodes.inline(), **target))
