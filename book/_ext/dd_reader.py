@@ -22,6 +22,7 @@ import latexcodec  # noqa: F401  (it knows TeX's letters: "ulatex")
 import nbformat
 from dd_failures import HYPHEN
 from dd_lessons import chapters
+from dd_objectives import with_markdown as with_objectives
 from dd_public import address, repository
 from dd_quiz import with_markdown
 from pybtex.database import parse_file
@@ -198,7 +199,8 @@ def reader_notebook(notebook, page: str, known: Known, glued: dict):
     plain, cells = Plain(page, known, glued), []
     for cell in notebook.cells:
         if cell.cell_type != "code":
-            told = plain.text(with_markdown(cell.source, known.root, page))
+            told = with_objectives(cell.source, known.root, page)
+            told = plain.text(with_markdown(told, known.root, page))
             cells.append(nbformat.v4.new_markdown_cell(told))
             continue
         tags = cell.metadata.get("tags", [])

@@ -96,6 +96,12 @@
   group.setAttribute("aria-label", "Questions");
   forms[0].before(group);
   document.documentElement.dataset.quiz = "";
-  show(-1);
+  const linked = () => {
+    const at = forms.findIndex((form) => `#${form.id}` === location.hash);
+    show(at);
+    forms[at]?.scrollIntoView();
+  };
+  addEventListener("hashchange", () => location.hash.startsWith("#quiz-") && linked());
+  linked();
   count();
 })();

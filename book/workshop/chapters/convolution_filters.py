@@ -158,9 +158,9 @@ def _said() -> None:
     stated("filters-report-rough", min(rough["Figure 5-7"], rough["Figure 5-8"]) > 2 * small)
 
 
-def _exercise(number: int, window: int) -> Exercise:
-    """An exercise, of a window of so many samples."""
-    k = np.arange(window) - window // 2.0
+def _exercise(number: int, given, step: float = 0.0) -> Exercise:
+    """An exercise: `given` a window's samples, or a row of weights with their step in seconds."""
+    k = np.arange(window := np.size(given) if number == 4 else given) - window // 2.0
     if number == 1:
         slips = [
             (1.0, "this holds for a window of three. In a longer window the line runs on."),
@@ -201,6 +201,25 @@ def _exercise(number: int, window: int) -> Exercise:
             ],
             "its sums with 1, k and k² must all be zero.",
             count=k.size,
+        )
+    else:
+        powers = np.array([0.1 + 0 * k, k, k**2])  # along the motion, in samples
+        parts = powers * step ** np.arange(3.0)[:, None] @ given
+        names = "position", "velocity", "acceleration"
+        told = ", ".join(f"{part:.3g} to the {name}" for part, name in zip(parts, names))
+        slips = [
+            (parts @ (1, 1, 2), "the second moment counts half."),
+            (parts @ (1, -1, 1), "time runs to the right: mind the sign of the velocity."),
+            (parts @ (0, 1, 1), "the position counts, too: take the sum of the weights."),
+            (parts[2], "this is the answer to the acceleration alone."),
+            (powers.sum(0) @ given, "x is in seconds, not in samples."),
+        ]
+        return Exercise(
+            "number",
+            parts.sum(),
+            f"a row adds up its answers, here {told}.",
+            slips,
+            "multiply each derivative by its sum over the weights, as in the formula, and add.",
         )
 
 

@@ -206,6 +206,25 @@ def _exercise(number: int, given) -> Exercise:
             "a weight is too large.",
             count=given,
         )
+    elif number == 4:
+
+        def rows(weights):
+            return weights.hidden_weights.reshape(-1, weights.hidden_weights.shape[-1])
+
+        begun, stepped = (given[e][0] for e in (0, 1))
+        parts = rows(stepped), rows(stepped) - rows(begun)
+        picture, made = (np.median(roughness(part)) for part in parts)
+        slips = (
+            ((made, picture), "the other way round: first the picture."),
+            ((picture, picture), "subtract the start, kept[0], from the weights after the step."),
+        )
+        return Exercise(
+            "numbers",
+            (picture, made),
+            "training writes smooth rows at once, long before the picture shows them.",
+            slips,
+            "take roughness() of the hidden rows, and of what is added to kept[0].",
+        )
     else:
         rough = {e: np.median(roughness(w.direct_weights)) for e, w in sorted(given.items())}
         tenth = next((e for e, value in rough.items() if value < 0.1 * rough[0]), np.inf)

@@ -15,9 +15,9 @@ from ddlib.figures.style import COLOURS, INK, Illustration, illustrate
 from ddlib.learning import TorqueModel, Weights, cases
 from ddlib.setups import INITIAL, JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP
-from ddlib.tables import quote
+from ddlib.tables import quote, scientific
 from workshop.chapters import excitation, start
-from workshop.chapters.exercises import Exercise, judging
+from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
 from workshop.chapters.whose_filters import given, of_torques, trained
 from workshop.chapters.widgets.weigh import WeighTheArm as WeighTheArm
@@ -215,7 +215,11 @@ def _said() -> None:
 
 
 def _exercise(number: int, *given) -> Exercise:
-    """An exercise: `given` stiffness, inertia, frequency; nothing; or the window's time."""
+    """An exercise.
+
+    `given` stiffness, inertia, frequency; nothing; the window's time; or the inertia by penalty,
+    and the formula's penalty.
+    """
     if number == 1:
         K, M, omega = given
         slips = (
@@ -244,6 +248,25 @@ def _exercise(number: int, *given) -> Exercise:
             "the other three quarters hide behind position.",
             slips,
             "put λ = 3 λ½ into the formula of the remaining share.",
+        )
+    elif number == 4:
+        kept, formula = given
+        tried = np.geomspace(1e-9, 1, 4000)
+        left = kept(tried)
+
+        half = tried[np.argmax(left < left[0] / 2)]
+        slips = (
+            (formula, "this is what the formula says. What does ridge find?"),
+            (Between(0, half), "more than half of the inertia is left there."),
+            (Between(half), "less than half of the inertia is left there."),
+        )
+        return Exercise(
+            "number",
+            half,
+            f"a penalty as small as this takes half. The formula predicts {scientific(formula)}.",
+            slips,
+            "a penalty is positive.",
+            tolerance=0.1,
         )
     else:
         (x,) = given

@@ -237,8 +237,8 @@ def _said() -> None:
     stated("whose-small-turns", turn[0])
 
 
-def _exercise(number: int, given) -> Exercise:
-    """An exercise: `given` the seconds of a motion, or step times variance by direction."""
+def _exercise(number: int, given, *others) -> Exercise:
+    """An exercise: `given` seconds of a motion, step times variance by direction, or filters."""
     if number == 1:
         slips = (
             (given, "a shift of half a period only changes the torque's sign."),
@@ -261,6 +261,27 @@ def _exercise(number: int, given) -> Exercise:
         )
         return Exercise(
             "number", half, "so many steps bring acceleration half-way.", slips, unit="steps"
+        )
+    elif number == 4:
+        X, real = others
+        torque = real[..., 0].ravel() - real[..., 0].mean()
+        told = np.asarray(given) @ X.T
+        off = np.sqrt(((told - torque) ** 2).mean(1)) / torque.std()
+        along = told @ torque
+        best, *rest = np.argsort(off)
+
+        def why(k):
+            if along[k] < 0:
+                return "its torques go down where the arm's go up, whatever its shape."
+            return f"its torques miss the arm's by an RMSS of {off[k]:.2f}. Another misses by less."
+
+        return Exercise(
+            "number",
+            1 + int(best),
+            f"its torques have an RMSS of {off[best]:.2f}, the next best {off[rest[0]]:.2f}.",
+            [(1 + int(k), why(k)) for k in rest],
+            "the filters are counted from 1 to 6.",
+            tolerance=1e-6,
         )
     else:
         slips = (

@@ -29,6 +29,7 @@ from ddlib.learning import (
 )
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
+from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, how_many, quote, significant
 from workshop.chapters.exercises import Between, Exercise, OneOf, judging
 from workshop.chapters.widgets.window import HiddenTorque
@@ -400,6 +401,35 @@ def _exercise(number: int, *given) -> Exercise:
             "no hidden unit, and the error is below 0.10.",
             slips,
             tolerance=1e-9,
+        )
+    elif number == 4:
+        x, torque, own = given
+        half = x.shape[1] // 4  # samples on either side
+        shoulder, elbow = (
+            (each[:, 0] - 2 * each[:, half] + each[:, -1]) / (half * LOG_STEP) ** 2
+            for each in np.split(x, 2, axis=1)
+        )
+
+        def inertia(a, joint):
+            return a @ torque[:, joint] / (a @ a)
+
+        right = inertia(shoulder, 0)
+        slips = (
+            (
+                right / (half * LOG_STEP) ** 2,
+                "this is torque per bend. Scale it to acceleration.",
+            ),
+            (right / half**2, "the ends are n samples from the middle, not one."),
+            (right / 2, "the bend is a (n Δt)², without a factor of a half."),
+            (inertia(elbow, 1), "this is the elbow's."),
+        )
+        return Exercise(
+            "number",
+            right,
+            f"three positions already tell an inertia. The arm's own mean is {own:.1f} kg m².",
+            slips,
+            "divide the bend by (n Δt)², and find the multiple by least squares.",
+            unit="kg m²",
         )
     else:
         factor = given[0] / given[1]
