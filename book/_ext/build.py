@@ -192,6 +192,7 @@ def main(root: Path, strict: bool) -> int:
         os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
         # that of the pages, whatever the environment asks for: with Agg they would have no pictures
         os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
+        os.environ["DDLIB_PNG"] = "1"  # figures for who teaches (dd_figures)
         os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
         with made_ready(root, strict) as pages:
             ended = execute_ahead(root, folder)
