@@ -2,8 +2,8 @@
 
 The role ``{section}`page: Heading``` is a link to a section; a heading that the page does not have
 is an error. So is ``{exercise}`page: 1, 3```, which links exercises and says how long they take.
-The directive ``{exercises} kind`` lists exercises as links, and ``{exercise-minutes}`` says by which
-rule their minutes are estimated. An exercise is a paragraph that begins with
+The directive ``{exercises} kind`` lists exercises as links, and ``{exercise-minutes}`` says by
+which rule their minutes are estimated. An exercise is a paragraph that begins with
 ``**2. Its title** (a derivation).``
 """
 
