@@ -11,17 +11,18 @@ from __future__ import annotations
 
 import base64
 import html
-import json
 import re
 import tempfile
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 import dd_teaching
 from dd_reader import Known
 from docutils import nodes
+from jupyter_cache import get_cache
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from ddlib.figures.style import Illustration
@@ -29,6 +30,7 @@ from workshop.chapters import PNG
 
 NAME = "figures-{}.zip"
 SVG = re.compile(r'<div class="(?:ddlib-figure|wide)">(<svg .*?</svg>)', re.DOTALL)
+ROLE = re.compile(r"\{[\w:-]+\}`([^`]*)`")
 ALT = re.compile(r'aria-label="([^"]*)"')
 AS_EVER = (1988, 8, 1, 0, 0, 0)  # so that the same figures make the same archive
 
@@ -43,9 +45,17 @@ class Kept(NamedTuple):
     png: bytes
 
 
-def figures(path: Path) -> Iterator[Kept]:
-    """The numbered figures of an executed notebook, in its order."""
-    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+def executed(cache: Path, path: Path) -> list[dict]:
+    """The cells of a notebook with their outputs, or none where it is not in the cache."""
+    kept = get_cache(str(cache))
+    with suppress(KeyError):
+        return kept.get_cache_bundle(kept.get_cached_project_nb(str(path)).pk).nb["cells"]
+    return []
+
+
+def figures(cells: list[dict]) -> Iterator[Kept]:
+    """The numbered figures among the cells of an executed notebook, in its order."""
+    for cell in cells:
         told = cell["metadata"].get("mystnb", {}).get("figure")
         for output in cell.get("outputs", ()) if told else ():
             found = SVG.search("".join(output.get("data", {}).get("text/html", "")))
@@ -64,15 +74,13 @@ def write(app, env) -> list:
     """The archives, as soon as all pages have been read and their figures have numbers."""
     if app.builder.format != "html":
         return []
-    executed, known = Path(app.outdir).parent / "jupyter_execute" / "book", Known(env)
+    root, known = Path(app.srcdir), Known(env)
     Path(app.outdir).mkdir(parents=True, exist_ok=True)
-    for name, told in dd_teaching.lectures(Path(app.srcdir)).items():
-        paths = (executed / f"{page}.ipynb" for page in told["pages"])
-        pack(
-            Path(app.outdir, archive_of(name)),
-            [each for path in paths if path.is_file() for each in figures(path)],
-            known.figure,
-        )
+    for name, told in dd_teaching.lectures(root).items():
+        paths = (root / "book" / f"{page}.ipynb" for page in told["pages"])
+        cells = (executed(Path(app.config.nb_execution_cache_path), path) for path in paths)
+        drawn = [each for page in cells for each in figures(page)]
+        pack(Path(app.outdir, archive_of(name)), drawn, known.figure)
     return []
 
 
@@ -90,14 +98,18 @@ def pack(path: Path, kept: list[Kept], numbered) -> None:
 
         for each in kept:
             number = numbered(each.name)
-            stem = (
-                f"{number.removeprefix('Fig. ').replace('?', 'x')}-{each.name.removeprefix('fig-')}"
-            )
+            digits = number.removeprefix("Fig. ").replace("?", "x")
+            stem = f"{digits}-{each.name.removeprefix('fig-')}"
             Illustration(each.svg, each.alt).save(drawn)
             put(f"{stem}.svg", drawn.read_bytes())
             if each.png:
                 put(f"{stem}.png", each.png)
-            lines += [f"{number} ({stem})", each.caption.strip(), f"To be seen: {each.alt}", ""]
+            lines += [
+                f"{number} ({stem})",
+                ROLE.sub(r"\1", each.caption).strip(),
+                f"To be seen: {each.alt}",
+                "",
+            ]
         put("captions.txt", "\n".join(lines).encode())
 
 

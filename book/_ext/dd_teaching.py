@@ -71,13 +71,13 @@ class Lecture(SphinxDirective):
 
     def table(self, root: Path, told: dict) -> list[str]:
         """What to show and ask, a line a question, and the quiz."""
-        lines = ["| minutes | show | ask |", "| --- | --- | --- |"]
+        lines = ["| time | show | ask |", "| --- | --- | --- |"]
         for k, row in enumerate(told["rows"], 1):
-            lines.append(f"| {row['minutes']} | {row['show']} | **{k}.** {row['ask']} |")
+            lines.append(f"| {row['minutes']} min | {row['show']} | **{k}.** {row['ask']} |")
         quiz = [page for page in told["pages"] if dd_quiz.questions(root, page)]
         last = ", ".join(f"{{doc}}`{page}`" for page in quiz[-2:])
         shown = f"*Check yourself* of {last}"
-        return [*lines, f"| {QUIZ} | {shown} | hands first, then somebody gives the reason |"]
+        return [*lines, f"| {QUIZ} min | {shown} | hands first, then somebody gives the reason |"]
 
     def answers(self, name: str, rows: list[dict]) -> list[str]:
         """The same questions with their answers, as a fold."""
