@@ -61,7 +61,7 @@ def figures(cells: list[dict]) -> Iterator[Kept]:
             found = SVG.search("".join(output.get("data", {}).get("text/html", "")))
             if found:
                 png = output.get("metadata", {}).get("text/html", {}).get(PNG, "")
-                alt = html.unescape(ALT.search(found[1])[1])
+                alt = f"{html.unescape(ALT.search(found[1])[1])} {told.get('alt', '')}".strip()
                 yield Kept(told["name"], told["caption"], found[1], alt, base64.b64decode(png))
 
 
