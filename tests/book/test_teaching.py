@@ -75,7 +75,7 @@ def test_minutes_come_from_what_an_exercise_asks():
     assert dd_lessons.minutes("derivation", question) == dd_lessons.minutes("derivation", steps)
     many = question + "$a = b$ " * 6
     assert dd_lessons.minutes("derivation", many) == dd_lessons.minutes("derivation", question) + 5
-    words = question + "word " * 10 * dd_lessons.dd_runtime.WORDS_A_MINUTE
+    words = question + "word " * 10 * dd_lessons.WORDS_A_MINUTE
     assert dd_lessons.minutes("prediction", words) == 20
     told = dd_lessons.rule()
     for number in {*dd_lessons.KINDS.values(), dd_lessons.LINE, dd_lessons.EQUATION}:
