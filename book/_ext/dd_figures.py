@@ -132,7 +132,9 @@ class InsertLinks(SphinxPostTransform):
             name = archive_of(node["lecture"])
             path = Path(self.app.outdir, name)
             size = f" ({path.stat().st_size / 1e6:.1f} MB)" if path.is_file() else ""
-            link = f'<a href="../{name}" download>all its figures as PNG and SVG</a>{size}'
+            which = f"lecture {node['lecture']}" if node["lecture"].isdecimal() else "this class"
+            words = f"all figures of {which} as PNG and SVG"
+            link = f'<a href="../{name}" download>{words}</a>{size}'
             node.replace_self(nodes.raw("", link, format="html"))
 
 

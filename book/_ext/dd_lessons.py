@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
@@ -132,7 +133,8 @@ class Asked(SphinxRole):
         for k, number in enumerate(wanted):
             between = " and " if k + 1 == len(wanted) else ", "
             found += [nodes.Text(between)] if k else []
-            found += [link(known[number], number), nodes.Text(f" ({known[number].minutes} min)")]
+            found += [numbered(known[number], path)]
+            found += [nodes.Text(f" ({known[number].minutes} min)")]
         return found, []
 
 
@@ -143,10 +145,12 @@ def chapter(env, page: str) -> pending_xref:
     return pending_xref("", nodes.inline(), **target)
 
 
-def link(each: Exercise, words: str) -> nodes.reference:
-    """A link to an exercise."""
-    to = f"{each.page}.html#exercise-{each.number}"
-    return nodes.reference("", words, internal=True, refuri=to)
+def numbered(each: Exercise, path: Path) -> nodes.raw:
+    """A link to an exercise that shows its number alone, and tells the rest to a screen reader."""
+    told = escape(f"Exercise {each.number} of {headings(path)[0]}", quote=True)
+    to = f'href="{each.page}.html#exercise-{each.number}" aria-label="{told}"'
+    link = f'<a class="reference internal" {to}>{each.number}</a>'
+    return nodes.raw("", link, format="html")
 
 
 class Minutes(SphinxDirective):
@@ -175,7 +179,8 @@ class Listed(SphinxDirective):
     def line(self, each: Exercise) -> nodes.paragraph:
         """The chapter as a link, and the exercise, by number and title, as another."""
         title = re.sub(r"[$`\\]", "", each.title)
-        asked = link(each, f"{each.number}: {title}")
+        to = f"{each.page}.html#exercise-{each.number}"
+        asked = nodes.reference("", f"{each.number}: {title}", internal=True, refuri=to)
         took = nodes.Text(f" ({each.minutes} min)")
         return nodes.paragraph("", "", chapter(self.env, each.page), nodes.Text(", "), asked, took)
 

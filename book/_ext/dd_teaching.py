@@ -104,14 +104,14 @@ class AtAGlance(SphinxDirective):
             asked = nodes.inline()
             for each in dd_lessons.exercises(path):
                 asked += [nodes.Text(", ")] if len(asked) else []
-                asked += [dd_lessons.link(each, str(each.number)), nodes.Text(f" ({each.minutes})")]
+                asked += [dd_lessons.numbered(each, path), nodes.Text(f" ({each.minutes})")]
             quiz = nodes.reference(
-                *("", str(len(dd_quiz.questions(root, page)))),
+                *("", f"{len(dd_quiz.questions(root, page))} questions"),
                 **dict(internal=True, refuri=f"{page}.html#check-yourself"),
             )
             read = dd_runtime.minutes([path])
             rows.append((dd_lessons.chapter(self.env, page), read, quiz, asked))
-        head = ("lesson", "to read", "questions of Check yourself", "exercises (minutes)")
+        head = ("lesson", "to read", "Check yourself", "exercises (minutes)")
         return [dd_runtime.table([head, *rows])]
 
 
