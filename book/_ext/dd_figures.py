@@ -70,10 +70,10 @@ def archive_of(name: str) -> str:
     return NAME.format(f"lecture-{name}" if name.isdecimal() else name)
 
 
-def write(app, env) -> list:
+def write(app, env) -> None:
     """The archives, as soon as all pages have been read and their figures have numbers."""
     if app.builder.format != "html":
-        return []
+        return
     root, known = Path(app.srcdir), Known(env)
     Path(app.outdir).mkdir(parents=True, exist_ok=True)
     for name, told in dd_teaching.lectures(root).items():
@@ -81,7 +81,6 @@ def write(app, env) -> list:
         cells = (executed(Path(app.config.nb_execution_cache_path), path) for path in paths)
         drawn = [each for page in cells for each in figures(page)]
         pack(Path(app.outdir, archive_of(name)), drawn, known.figure)
-    return []
 
 
 def pack(path: Path, kept: list[Kept], numbered) -> None:
@@ -142,5 +141,5 @@ def setup(app):
     app.add_node(Figures)
     app.add_role("figures", asked)
     app.add_post_transform(InsertLinks)
-    app.connect("env-updated", write, priority=900)  # after figures have their numbers
+    app.connect("env-check-consistency", write)  # by now figures have their numbers
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
