@@ -1,10 +1,10 @@
 """All figures of a lecture as PNG and SVG, in an archive beside the first page.
 
-Notebooks are executed with a PNG of each figure beside its page's form (`with_png` in
-`workshop.chapters`, where ``DDLIB_PNG`` is set). When all pages have been read, the figures of a
-lecture's lessons (`book/lectures.yml`) go into `figures-lecture-1.zip`, with a list of their
-numbers, captions and alternative texts. The role ``{figures}`1``` is a link that says how large
-that is.
+Its notebooks are executed with a PNG of each figure beside its page's form (`with_png` in
+`workshop.chapters`; `build.py` sets ``DDLIB_PNG`` to the names of their pages). When all pages have
+been read, the figures of a lecture's lessons (`book/lectures.yml`) go into `figures-lecture-1.zip`,
+with a list of their numbers, captions and alternative texts. The role ``{figures}`1``` is a link
+that says how large that is.
 """
 
 from __future__ import annotations

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import re
 import sys
 import xml.etree.ElementTree as ET
 import zipfile
+from types import SimpleNamespace
 from urllib.parse import parse_qs, unquote, urlsplit
 
+import numpy as np
 import prose
 import pytest
 from book_pages import ROOT, code_cells
+from IPython.core.formatters import DisplayFormatter
 from needed import needed
 from PIL import Image
 
+from ddlib import figures
+from workshop import chapters
+
 sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import build
 import dd_figures
 import dd_lessons
 import dd_quiz
@@ -93,6 +101,23 @@ def test_an_archive_has_pictures_and_what_they_show(tmp_path):
         assert archive.namelist() == ["2.1-one.svg", "2.1-one.png", "captions.txt"]
         assert b"currentColor" not in archive.read("2.1-one.svg")
         assert b"Fig. 2.1 (2.1-one)\nA line.\nTo be seen: A curve." in archive.read("captions.txt")
+
+
+def test_figures_of_lectures_and_no_others_come_as_png(monkeypatch):
+    """In a notebook whose page the build names; a reader's own notebook draws nothing twice."""
+    assert build.taught(ROOT) == {page for told in LECTURES.values() for page in told["pages"]}
+    drawn = figures.curves(np.arange(3.0), {"a, m": {"one": np.arange(3.0)}}, "time, s", "A line.")
+    for named, forms in (("dynamics window-networks", 2), ("dynamics", 1), ("", 1)):
+        monkeypatch.setenv("DDLIB_PNG", named)
+        shell = SimpleNamespace(display_formatter=DisplayFormatter())
+        monkeypatch.setattr("IPython.get_ipython", lambda shell=shell: shell)
+        monkeypatch.setattr("workshop.chapters.window_networks._quoted", lambda: None)
+        chapters.quoted("window_networks")
+        data, metadata = shell.display_formatter.format(drawn)
+        assert data["text/html"] == drawn._repr_html_()
+        png = metadata.get("text/html", {}).get(chapters.PNG)
+        assert bool(png) is (forms == 2)
+        assert not png or Image.open(io.BytesIO(base64.b64decode(png))).width > 800
 
 
 @pytest.mark.built

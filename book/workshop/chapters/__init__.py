@@ -17,10 +17,10 @@ PNG = "ddlib-png"
 def quoted(chapter: str) -> None:
     """Quote the numbers of a chapter's prose, which its module's `_quoted` names.
 
-    Where ``DDLIB_PNG`` is set, as in the book's build, the notebook's figures come as PNG, too.
+    If ``DDLIB_PNG`` names its page, as in the book's build, its figures come as PNG, too.
     """
     import_module(f"workshop.chapters.{chapter}")._quoted()
-    if os.environ.get("DDLIB_PNG"):
+    if chapter.replace("_", "-") in os.environ.get("DDLIB_PNG", "").split():
         from IPython import get_ipython
 
         from ddlib.figures.style import Illustration
