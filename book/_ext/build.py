@@ -108,6 +108,13 @@ def execute_ahead(root: Path, folder: Path) -> list[str]:
     return [path.relative_to(root).with_suffix("").as_posix() for path in ended]
 
 
+def taught(root: Path) -> set[str]:
+    """Pages of the lectures, if the book has some."""
+    path = root / "book" / "lectures.yml"
+    told = yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    return {page for lecture in told.values() for page in lecture["pages"]}
+
+
 def listed(contents) -> Iterator[str]:
     """The pages of a table of contents, in their order."""
     if isinstance(contents, dict):
@@ -192,6 +199,7 @@ def main(root: Path, strict: bool) -> int:
         os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
         # that of the pages, whatever the environment asks for: with Agg they would have no pictures
         os.environ["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
+        os.environ["DDLIB_PNG"] = " ".join(taught(root))  # figures as PNG, for dd_figures
         os.environ.setdefault(SHARED, str(folder / "measured"))  # chapters and ledger share claims
         with made_ready(root, strict) as pages:
             ended = execute_ahead(root, folder)

@@ -10,14 +10,13 @@ from __future__ import annotations
 import re
 from html import escape
 
-from dd_lessons import HEADING
+from dd_lessons import HEADING, SOLUTION
 from docutils import nodes
 from myst_nb.sphinx_ import HideCodeCellNode, depart_HideCellInput
 from sphinx.transforms import SphinxTransform
 
 NUMBER = re.compile(r"(\d+)\. ")
 KIND = re.compile(r"\s*(\(an? \w+\))\.\s*")
-SOLUTION = "<summary>Solution</summary>"
 NAMED = "\n"  # in a prompt: what stands after it is not seen
 
 

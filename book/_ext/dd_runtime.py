@@ -11,6 +11,7 @@ import json
 import re
 from pathlib import Path
 
+from dd_lessons import WORDS_A_MINUTE
 from docutils import nodes
 from myst_nb.sphinx_ import NbMetadataCollector
 from sphinx.addnodes import pending_xref
@@ -18,9 +19,6 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util.docutils import SphinxDirective
 
 MEASURED = "on one core when this page was built"
-
-WORDS_A_MINUTE = 120
-"""With formulas and figures; at 200, as for plain prose, readers took twice as long and more."""
 
 
 class RunTime(nodes.Inline, nodes.TextElement):

@@ -53,3 +53,15 @@
   place.prepend(button);
   show(recall());
 })();
+
+// Buttons that copy code are told apart: by their section, and by their number in it.
+addEventListener("load", () => {
+  const known = new Map();
+  for (const button of document.querySelectorAll("article button.copybtn")) {
+    const section = button.closest("section")?.querySelector("h1, h2, h3");
+    const words = [...(section?.childNodes ?? [])].filter((node) => !node.matches?.("a.headerlink"));
+    const name = words.map((node) => node.textContent).join("").trim();
+    known.set(name, (known.get(name) ?? 0) + 1);
+    button.setAttribute("aria-label", `Copy code: ${name}, ${known.get(name)}`);
+  }
+});

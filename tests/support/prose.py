@@ -117,7 +117,7 @@ class Sentence(NamedTuple):
 
 
 def paragraphs(path: Path) -> Iterator[str]:
-    """Prose of a page: Markdown, captions of figures, and long plain strings in code."""
+    """Prose of a page: Markdown, words of figures, and long plain strings in code."""
     if path.suffix == ".md":
         texts = [path.read_text(encoding="utf-8")]
     else:
@@ -127,7 +127,8 @@ def paragraphs(path: Path) -> Iterator[str]:
             if cell["cell_type"] == "markdown":
                 texts.append(source)
             else:
-                texts.append(cell["metadata"].get("mystnb", {}).get("figure", {}).get("caption"))
+                figure = cell["metadata"].get("mystnb", {}).get("figure", {})
+                texts += figure.get("caption"), figure.get("alt")
                 texts += strings(source)
     for text in filter(None, texts):
         for pattern in BLOCKS:

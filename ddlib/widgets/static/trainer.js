@@ -360,6 +360,8 @@ function build({ model, el }) {
   const status = make("p", { class: "status", id: `${view.id}-status` });
   for (const one of [play, once]) one.setAttribute("aria-describedby", status.id);
   const said = make("p", { class: "verdict", role: "status" });
+  const spoken = make("p", { class: "spoken", "aria-live": "polite" });
+  view.say = (text) => (spoken.textContent = text);
   const [inside, error6] = [make("b"), make("b")];
   const sums = { "Inertia in the network, M₁₁": inside, [`RMSS on trajectory ${spec.runs}`]: error6 };
   const weighed = make("div", { class: "weighed" }, ...Object.entries(sums).map(([text, value]) => make("div", {}, make("span", {}, text), value)));
@@ -379,6 +381,7 @@ function build({ model, el }) {
     guess,
     make("div", { class: "bench" }, hands, make("div", { class: "results" }, drawn[0].el)),
     said,
+    spoken,
     make("div", { class: "title" }, "Weights over the window: the direct ones, then those of the hidden units"),
     make("div", { class: "legend" }, ...key, letters),
     units.el,

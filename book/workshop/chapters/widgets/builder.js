@@ -256,6 +256,7 @@ function build({ model, el }) {
   const fill = make("div", { class: "fill" });
   const meter = make("div", { class: "meter", "aria-hidden": "true" }, fill);
   const spoken = make("p", { class: "spoken", "aria-live": "polite" });
+  view.say = (text) => (spoken.textContent = text);
   const table = make("div", { class: "compared-with", hidden: "" });
   const places = [0, 1].map(() => make("div", { class: "charts" }));
   const title = make("div", { class: "title" }, "Weights");

@@ -211,6 +211,7 @@ function asking(view, questions, show) {
     show(settings);
     write(told, `${good ? "You were right." : "It comes out differently."} ${texts[right]} ${why}`);
     choices.hidden = true; // the answer stands in its place
+    next.focus({ preventScroll: true }); // a button that goes out of use would lose it
     tryIt.disabled = true;
   });
   const next = buttonOf("Next question", () => {

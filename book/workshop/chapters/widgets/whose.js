@@ -53,6 +53,7 @@ function build({ model, el }) {
   const guess = (letter) => () => {
     const k = get("round");
     if (guessOf(k) !== "-") return;
+    (next.disabled ? steps[k] : next).focus({ preventScroll: true }); // this button goes out of use
     keepAll({ guesses: rounds.map((_, i) => (i === k ? letter : guessOf(i))).join("") });
   };
   const galleries = SIDES.map((letter) => galleryOf(letter, guess(letter)));

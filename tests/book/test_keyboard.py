@@ -1,0 +1,122 @@
+"""Three lessons by keyboard alone: predict, operate a widget, answer, open a solution."""
+
+from __future__ import annotations
+
+import chromium
+import pytest
+
+pytestmark = [pytest.mark.browser, pytest.mark.chromium]
+
+NAME = """() => {
+  const e = document.activeElement;
+  const lost = e === document.body;
+  const name = e.getAttribute("aria-label") || e.labels?.[0]?.textContent || e.textContent;
+  return lost ? "" : name.trim().replace(/\\s+/g, " ");
+}"""
+OPEN = "() => document.activeElement.closest('details').open"
+VALUE = (
+    "() => document.activeElement.getAttribute('aria-valuetext') ?? document.activeElement.value"
+)
+
+
+class Keys:
+    """A page whose reader has nothing but a keyboard."""
+
+    def __init__(self, opened):
+        self.opened, self.page = opened, opened.page
+
+    def at(self) -> str:
+        return self.page.evaluate(NAME)
+
+    def go(self, name: str, key: str = "Tab") -> None:
+        """Tab until what has the focus is called so."""
+        for _ in range(300):
+            self.page.keyboard.press(key)
+            if self.at().startswith(name):
+                return
+        raise AssertionError(f"no stop is called {name}")
+
+    def value(self) -> str:
+        """What the handle in focus stands at, once that is drawn."""
+        return self.page.evaluate(VALUE)
+
+    def press(self, *keys: str) -> None:
+        for key in keys:
+            self.page.keyboard.press(key)
+
+    def read(self, selector: str) -> str:
+        self.page.wait_for_selector(f"{selector}:not(:empty)")
+        return self.page.locator(selector).first.inner_text()
+
+    def question_and_solution(self) -> None:
+        """The first question of *Check yourself*, and the first exercise."""
+        self.go("Question 1")
+        self.press("Enter")
+        self.go("A. ")
+        self.press("Space")
+        self.go("Check")
+        self.press("Enter")
+        assert self.page.locator("form.quiz .why:visible").count() == 1
+        self.go("Your answer")
+        self.press("1", "Enter")
+        assert "You gave 1" in self.read(".exercise-answer output")
+        self.go("Solution of exercise 1")
+        self.press("Enter")
+        assert self.page.evaluate(OPEN) and not self.opened.problems
+
+
+@pytest.fixture
+def lesson(site, visit):
+    return lambda name: Keys(visit(f"{site}/book/{name}.html", reduced_motion="reduce"))
+
+
+def test_feedback(lesson):
+    keys = lesson("feedback")
+    keys.go("It swings for a shorter time")
+    keys.press("Space")
+    keys.go("Try it")
+    keys.press("Enter")
+    assert keys.at() == "Next question" and keys.read(".ask .told")
+    keys.go("Proportional gain")
+    before = keys.value()
+    keys.press("End")
+    assert keys.value() != before
+    keys.question_and_solution()
+
+
+def test_window_networks(lesson):
+    keys = lesson("window-networks")
+    keys.go("Middle of the window")
+    before = keys.value()
+    keys.press("ArrowRight", "ArrowRight")
+    assert keys.value() != before
+    keys.go("Direct weights measure acceleration")
+    keys.press("Enter")
+    assert keys.at()
+    keys.go("Error, RMSS over epoch")  # a chart: arrow keys read its values
+    keys.press("ArrowRight")
+    assert keys.read("[data-widget=trainer] .spoken").startswith("epoch")
+    keys.question_and_solution()
+
+
+def test_whose_filters(lesson):
+    keys = lesson("whose-filters")
+    keys.go("A learnt this arm")
+    keys.press("Enter")
+    assert keys.at() == "Next round" and keys.read(".verdict")
+    keys.press("Enter")
+    keys.go("B learnt this arm")
+    keys.press("Enter")
+    keys.go("Start, up to")
+    keys.press("Home")
+    assert keys.value() == "±0.01"
+    keys.question_and_solution()
+
+
+def test_buttons_that_copy_have_names_of_their_own(lesson):
+    page = lesson("feedback").page
+    chromium.settle(page)
+    names = page.locator("article button.copybtn").evaluate_all(
+        "(all) => all.map((one) => one.getAttribute('aria-label'))"
+    )
+    assert len(names) == len(set(names)) > 5 and all(name.startswith("Copy code") for name in names)
