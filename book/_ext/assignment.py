@@ -31,7 +31,7 @@ MADE = ROOT / "_build" / "assignments"
 OWN = f"## {HEADING}\n"
 ANSWER = re.compile(r"<details.*?</details>", re.DOTALL)
 EQUATION = re.compile(r"(?ms)^\$\$\n(.*?)\n\$\$[ \t]*(?:\(([\w-]+)\))?[ \t]*$")
-JUDGE = re.compile(r"(?m)^from workshop\.chapters\.\w+ import check$")
+JUDGE = re.compile(r"from workshop\.chapters\.\w+ import check\b")
 ENGINE = "workshop.chapters.exercises"
 SAID = (
     "# {}: an assignment{}\n\n**Name:**\n\nThis is the code of the lesson {}. Run it from the top. "
@@ -68,7 +68,7 @@ read them, you see what is right. Your explanation is what counts.
 
 def lessons(root: Path = ROOT) -> dict[str, Path]:
     """Notebooks whose exercises are judged, by name."""
-    return {p.stem: p for p in chapters(root) if " import check" in p.read_text("utf-8")}
+    return {p.stem: p for p in chapters(root) if JUDGE.search(p.read_text("utf-8"))}
 
 
 def names(node: ast.AST, use: str) -> set[str]:

@@ -48,7 +48,10 @@ FOREARM = [
     _link(m, 0.4, c, i) for m in (8, 10, 12, 16) for c in (0.07, 0.11, 0.14) for i in (0.4, 0.8)
 ]
 FRICTION = [f"({s:.1f}, {e:.1f})" for s in (4.0, 4.6, 6.0, 6.8, 7.5) for e in (0.8, 1.4)]
-LOADED = [f"with_load(CMU_DD_ARM_II, {kg:.1f})" for kg in (0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8)]
+ARM = 'Arm.from_links("mine", Link(14.0, 0.5, 0.22, 0.4), Link({}, 0.4, {}, {}))'
+ARMS = [
+    ARM.format(m, c, i) for m in (6.0, 10.0, 14.0) for c in (0.06, 0.1, 0.15) for i in (0.2, 0.5)
+]
 CHOICES = {
     "dynamics": {"upper_arm": UPPER, "forearm": FOREARM},
     "feedback": {"viscous": FRICTION, "period": ["0.001", "0.00125", "0.0016", "0.002", "0.0025"]},
@@ -58,11 +61,7 @@ CHOICES = {
     "convolution-filters": {"window": ODD},
     "whose-filters": {"window": ODD},
     "inertia-in-the-weights": {"window": ODD},
-    "whole-state-space": {
-        "import": ["from ddlib.dynamics import with_load"],
-        "arm": LOADED,
-        "states": ["298", "400", "500"],
-    },
+    "whole-state-space": {"import": ["from ddlib.dynamics import Arm, Link"], "arm": ARMS},
     "adaptive-control": {
         "gain": [f"({s:.1f}, {e:.1f})" for s in (25, 30, 40, 45, 50) for e in (8, 12, 14)],
     },

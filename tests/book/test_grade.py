@@ -14,7 +14,7 @@ import grade
 from solved import settings_of
 
 KEPT = ("begin", "settings")  # and what the questions need: students may delete a figure's cell
-ANSWERS = {"1": "mine = 1.0", "2": "mine = float('nan')", "3": "mine = (2, 2, 0.5)"}
+ANSWERS = {"1": "mine = 1.0", "2": "mine = (1.0, float('nan'))", "3": "mine = (2, 2, 0.5)"}
 NETWORK = """import socket
 try:
     socket.create_connection(("192.0.2.1", 9), timeout=3)
@@ -39,7 +39,9 @@ def answered(path, answers, name=""):
             cell.source += "\nimport numpy as np\nfrom ddlib import figures"
         if role in answers:
             cell.source = answers[role]
-        needed = role in (*KEPT, "quiz", "answer", "check", "how", "name") or "J, F" in cell.source
+        needed = (
+            role in (*KEPT, "quiz", "answer", "check", "how", "name") or "J, F = M" in cell.source
+        )
         cells += [cell] * needed
     made.cells = cells
     path.parent.mkdir(exist_ok=True)
