@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import os
 import re
 import shutil
 import sys
@@ -24,7 +25,7 @@ from dd_quiz import questions
 from dd_reader import ANCHOR, CHANGE_THIS, ROLE, TARGET
 from solved import Solved, changed, is_check, is_open, is_starter, settings_of, solve
 
-from workshop.chapters.exercises import MultipleOf, OneOf
+from workshop.chapters.exercises import Between, MultipleOf, OneOf
 
 ROOT = Path(__file__).parents[2]
 MADE = ROOT / "_build" / "assignments"
@@ -178,7 +179,12 @@ def asked(lesson) -> list[str]:
 def where(name: str, title: str) -> str:
     """A link to a lesson, or how to find it without one."""
     hosted = repository()
-    return f"[{title}]({site(hosted)}book/{name}.html)" if hosted else f"*{title}* of the book"
+    linked = hosted or "DDLIB_SITE" in os.environ
+    return (
+        f"[{title}]({site(hosted)}book/{name}.html)"
+        if linked
+        else f"*{title}* (`book/{name}.html` in the book)"
+    )
 
 
 def _cell(kind: str, source: str, role: str = "", **metadata):
@@ -266,7 +272,9 @@ def slips(one: Solved) -> Iterator[tuple[str, str]]:
     for slip, why in one.asked.slips:
         these = slip.these if isinstance(slip, OneOf) else [slip]
         for wrong in these:
-            if isinstance(wrong, MultipleOf) or callable(wrong):
+            if isinstance(wrong, Between) and np.ndim(wrong.low) == 0:
+                yield _range(wrong), f"Wrong: {why}"
+            elif isinstance(wrong, MultipleOf) or callable(wrong):
                 yield "*of this kind*", f"Wrong: {why}"
             elif np.isnan(
                 np.asarray(wrong, dtype=float) if not isinstance(wrong, str) else 0
@@ -278,6 +286,13 @@ def slips(one: Solved) -> Iterator[tuple[str, str]]:
                 if said.startswith("Wrong"):  # another setting may make a slip right
                     yield f"`{shown(wrong)}`", said
     yield "*anything else*", f"Wrong: {one.asked.otherwise}"
+
+
+def _range(these: Between) -> str:
+    low, high = these.low, these.high
+    if not np.isfinite(high):
+        return f"above `{low:.6g}`" if np.isfinite(low) else "*all others*"
+    return f"`{low:.6g}` to `{high:.6g}`" if np.isfinite(low) else f"below `{high:.6g}`"
 
 
 def shown(answer) -> str:
@@ -335,8 +350,11 @@ def explanations(lesson) -> list[str]:
 
 
 def _quoted(words: Words, text: str) -> str:
-    """Text with roles, where a number of the book's is left out."""
-    return words.plain(re.sub(r"\{glue:text\}`[^`]+`", "…", text))
+    """Text with roles, where numbers of the book's are left out, and tables of them."""
+    text = re.sub(r"\{glue:text\}`[^`]+`", "…", text)
+    tables = re.compile(r"(?m)(?:^\|.*\n?)+")
+    text = tables.sub(lambda t: "(The lesson has a table here.)\n" if "…" in t[0] else t[0], text)
+    return words.plain(text)
 
 
 def write(

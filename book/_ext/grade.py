@@ -27,7 +27,7 @@ from tempfile import TemporaryDirectory
 
 import nbformat
 from assignment import HOW, folder, lessons, right_letters
-from solved import assigned
+from solved import STARTER, assigned
 
 from ddlib._files import write_whole
 
@@ -93,7 +93,10 @@ def to_run(notebook, fresh: Fresh) -> list[dict]:
     cells = []
     for cell in (c for c in notebook.cells if c.cell_type == "code"):
         own = role(cell)
-        source = given[own] if own.startswith("check-") and own in given else cell.source
+        source = cell.source
+        if own.startswith("check-") and own in given:  # with what its question was given
+            asked = STARTER.sub("# mine = ...", given[own.replace("check", "answer")])
+            source = f"{asked}\n{given[own]}"
         cells.append({"role": own, "source": source})
         if own == "settings":
             cells.append({"role": "settings", "source": given[own]})

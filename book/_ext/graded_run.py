@@ -8,6 +8,7 @@ import io
 import json
 import sys
 from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
 
 MEMORY, LONGEST = 16 * 2**30, 10**8  # bytes; of a file that a notebook writes
 
@@ -59,10 +60,9 @@ def main(kept: str, blocked: bool):
     import matplotlib
 
     matplotlib.use("Agg")
-    import exercises
     from IPython.core.interactiveshell import InteractiveShell
 
-    said = []
+    said, exercises = [], import_module("exercises")  # beside the notebook, as judge.py is
     exercises.print = lambda text: said.append(str(text))
     exercises.display = lambda waiting: said.append(repr(waiting))
     shell = InteractiveShell.instance()

@@ -54,7 +54,7 @@ ARMS = [
 ]
 CHOICES = {
     "dynamics": {"upper_arm": UPPER, "forearm": FOREARM},
-    "feedback": {"viscous": FRICTION, "period": ["0.001", "0.00125", "0.0016", "0.002", "0.0025"]},
+    "feedback": {"viscous": FRICTION, "period": ["0.0005", "0.001", "0.00125", "0.002"]},
     "feedforward": {"viscous": FRICTION, "seconds": ["2.5", "3.0", "3.5"], "forearm": FOREARM},
     "window-networks": {"window": ODD, "hidden": [str(n) for n in range(5, 15)]},
     "hinton-diagrams": {"window": ODD, "hidden_units": [str(n) for n in range(5, 17)]},
@@ -85,6 +85,14 @@ def told(solved: list[Solved]) -> list[str]:
     ]
 
 
+def failure(lesson: str, settings: dict[str, str]) -> str:
+    """What goes wrong when a whole lesson is run with settings; nothing, as a rule."""
+    try:
+        return next(iter(told(solve(path(lesson), settings, whole=True))), "")
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+
+
 def found(lesson: str, only: int, most: int = MANY) -> list[dict[str, str]]:
     """Variants of a lesson, from random draws of its choices, by one exercise or all."""
     names, values = zip(*CHOICES[lesson].items())
@@ -93,28 +101,29 @@ def found(lesson: str, only: int, most: int = MANY) -> list[dict[str, str]]:
     kept, solutions = [], [solve(path(lesson), only=only)]
     for settings in drawn:
         solved = solve(path(lesson), settings, only=only)
-        wrong = told(solved)
-        if not wrong and all(apart(solved, other) for other in solutions):
-            kept.append(settings)
-            solutions.append(solved)
-        print(f"    {settings}: {wrong[0] if wrong else 'kept' if settings in kept else 'alike'}")
+        said = next(iter(told(solved)), "")
+        if not said and all(apart(solved, other) for other in solutions):
+            said = failure(lesson, settings)
+            if not said:
+                kept.append(settings)
+                solutions.append(solved)
+        print(f"    {settings}: {'kept' if settings in kept else said or 'alike'}", flush=True)
         if len(kept) == most:
             return kept
     raise ValueError(f"{lesson}: only {len(kept)} variants differ")
 
 
-def mistakes(lesson: str, whole: bool = True, numbers: range | None = None) -> list[str]:
-    """What is wrong with the kept variants of a lesson; those of some numbers, or all."""
+def mistakes(lesson: str, whole: bool = True) -> list[str]:
+    """What is wrong with the kept variants of a lesson, each run whole or as far as needed."""
     kept = variants(lesson)
     if isinstance(kept, str):
         return []
-    chosen = range(1, len(kept) + 1) if numbers is None else numbers
-    solutions = {0: solve(path(lesson))}
-    wrong = []
-    for number in chosen:
-        solutions[number] = solve(path(lesson), kept[number - 1], whole)
-        wrong += [f"{lesson}, variant {number}, exercise {one}" for one in told(solutions[number])]
-    for one, other in itertools.combinations(solutions, 2):
+    solutions, wrong = [solve(path(lesson))], []
+    for number, settings in enumerate(kept, 1):
+        solutions.append(solve(path(lesson), settings))
+        said = told(solutions[-1]) or [failure(lesson, settings)] * whole
+        wrong += [f"{lesson}, variant {number}: {one}" for one in said if one]
+    for one, other in itertools.combinations(range(len(solutions)), 2):
         if not apart(solutions[one], solutions[other]):
             wrong.append(f"{lesson}: variants {one} and {other} have the same answers")
     return wrong

@@ -1,6 +1,7 @@
 """Returned notebooks are graded in one go, and none of them stops the others."""
 
 import csv
+import shutil
 import sys
 
 import nbformat
@@ -13,6 +14,7 @@ import assignment
 import grade
 from solved import settings_of
 
+ISOLATED = pytest.mark.skipif(not grade.isolated(), reason="this system isolates no process")
 KEPT = ("begin", "settings")  # and what the questions need: students may delete a figure's cell
 ANSWERS = {"1": "mine = 1.0", "2": "mine = (1.0, float('nan'))", "3": "mine = (2, 2, 0.5)"}
 NETWORK = """import socket
@@ -109,3 +111,17 @@ def test_what_cannot_be_graded_is_refused(tmp_path):
         grade.grades(tmp_path)
     with pytest.raises(ValueError, match="MINUTES must be above 0, got 0"):
         grade.grades(tmp_path, minutes=0)
+
+
+@pytest.mark.parametrize("alone", [pytest.param(True, marks=ISOLATED), False])
+def test_a_notebook_has_no_network(tmp_path, alone):
+    """By the system or by Python's sockets; in the second case it reaches this machine."""
+    shutil.copy(ROOT / "book" / "workshop" / "chapters" / "exercises.py", tmp_path)
+    far = "import socket\nsocket.create_connection(('192.0.2.1', 9), timeout=5)"
+    near = "s = socket.create_server(('127.0.0.1', 0))\nsocket.create_connection(s.getsockname())"
+    cells = [{"role": role, "source": code} for role, code in (("far", far), ("near", near))]
+    done, ended = grade.run(cells, tmp_path, 1.0, alone)
+    assert not ended and [cell["role"] for cell in done] == ["far", "near"]
+    said = "Network is unreachable" if alone else "no network while a notebook is graded"
+    assert said in done[0]["error"]
+    assert alone or not done[1]["error"]
