@@ -28,7 +28,7 @@ export MALLOC_TRIM_THRESHOLD_ = 268435456
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .DEFAULT_GOAL := help
-.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment reproduce bench check mutants strip clean
+.PHONY: help env book test unmeasured lint stripped unit notebooks foreign foreign-ci pages lab live colab firefox pdf epub release assignment grade reproduce bench check mutants strip clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-10s %s\n", $$1, $$2}' Makefile
@@ -115,8 +115,14 @@ else
 endif
 
 LESSON ?=
-assignment: $(READY)  ## a folder to hand out, without solutions: LESSON=feedback, or LESSON=all
-	@$(BIN)/python book/_ext/assignment.py "$(LESSON)"
+VARIANT ?= 0
+assignment: $(READY)  ## a folder to hand out, and its key: LESSON=feedback (or all), VARIANT=7
+	@$(WORKSHOP) book/_ext/assignment.py "$(LESSON)" "$(VARIANT)"
+
+FOLDER  ?=
+MINUTES ?= 5
+grade: $(READY)  ## a table of returned notebooks: FOLDER=returned, at most MINUTES=5 for each
+	@$(WORKSHOP) book/_ext/grade.py "$(FOLDER)" --minutes "$(MINUTES)" --jobs "$(JOBS)"
 
 MIRROR ?=
 live: $(READY)  ## pages that run in the browser, in _build/live; MIRROR=: whence packages come

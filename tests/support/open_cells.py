@@ -4,28 +4,21 @@ from __future__ import annotations
 
 import ast
 import io
-import re
 import sys
 import time
 from contextlib import redirect_stdout
-from typing import NamedTuple
 
 import matplotlib
 import nbformat
 import yaml
 from book_pages import ROOT, source
-from chapter_rules import CHANGE_THIS, headings, is_check, is_starter, tags, visible
+from chapter_rules import CHANGE_THIS, is_starter, tags, visible
+
+sys.path.insert(0, str(ROOT / "book" / "_ext"))
+import solved
 
 SHOWN = ("_repr_html_", "_repr_svg_", "_repr_markdown_", "_repr_png_", "_repr_mimebundle_")
 CHANGES = yaml.safe_load((ROOT / "tests" / "support" / "changes.yml").read_text("utf-8")) or {}
-
-
-class Exercise(NamedTuple):
-    """An exercise of a lesson: where an answer goes, what judges it, and a right one."""
-
-    starter: str
-    check: str
-    solution: str
 
 
 def lesson(page: str):
@@ -75,25 +68,6 @@ def run(page: str, change: str = "") -> tuple[dict, float]:
     return space, time.process_time() - started
 
 
-def exercises(page: str) -> list[Exercise]:
+def exercises(page: str) -> list[solved.Exercise]:
     """The exercises of a lesson that have a cell for an answer, in order."""
-    found, starter, check, below = [], "", "", False
-    for cell in lesson(page).cells:
-        if cell.cell_type == "markdown":
-            below = below or "On your own" in headings(cell.source, 2)
-            answer = re.search(r"<details.*?</details>", cell.source, flags=re.S)
-            if starter and check and answer:
-                found.append(Exercise(starter, check, solution(answer[0])))
-                starter = check = ""
-        elif below and is_starter(cell):
-            starter = cell.source
-        elif below and is_check(cell):
-            check = cell.source
-    return found
-
-
-def solution(answer: str) -> str:
-    """The code of a solution, in a fence or in backticks, that gives `mine`."""
-    fenced = re.findall(r"```python\n(.*?)```", answer, flags=re.S)
-    found = [code for code in fenced if "mine =" in code]
-    return (found or re.findall(r"`(mine = [^`]+)`", answer) or [""])[0]
+    return solved.exercises(lesson(page))

@@ -281,12 +281,17 @@ def show(name: str, *what, **how) -> Illustration:
     return _SHOWN[name](*what, **how)
 
 
-def _exercise(number: int, asked=None) -> Exercise:
-    """An exercise; `asked` gives the share of the motors' limits that a corner asks for."""
+def _exercise(number: int, given=None) -> Exercise:
+    """An exercise; `given` the gains, or by corners the share that they ask of the motors."""
     if number == 1:
-        slips = [(1.5, "the sign: does V grow?"), (-2.5, "K multiplies the squares of s.")]
+        gains, s = np.array(given), np.array([0.2, -0.1])
+        falls = -gains @ s**2
+        slips = [
+            (-falls, "the sign: does V grow?"),
+            (-gains @ np.abs(s), "K multiplies the squares of s."),
+        ]
         told = "wrong estimates do not come in; they are paid for by the update."
-        return Exercise("number", -1.5, told, slips, "All terms but one cancel.", unit="W")
+        return Exercise("number", falls, told, slips, "All terms but one cancel.", unit="W")
     elif number == 2:
         slips = [(other, "which torques does that one act on?") for other in ("b", "d")]
         otherwise = "one of the letters a, b, d."
@@ -301,7 +306,7 @@ def _exercise(number: int, asked=None) -> Exercise:
     else:
 
         def short(seconds):
-            return 0.05 < seconds <= 0.9 and asked(seconds) <= 1 < asked(0.85 * seconds)
+            return 0.05 < seconds <= 0.9 and given(seconds) <= 1 < given(0.85 * seconds)
 
         otherwise = "too much for a motor, or longer than needed. What is the impulse?"
         return Exercise("number", short, "the elbow's motor decides.", [], otherwise, unit="s")
