@@ -82,6 +82,22 @@ def random_extents(n: int, seed: int, max_deg: float = MAX_EXTENT_DEG) -> np.nda
     return np.random.default_rng(seed).uniform(0.0, max_deg, (n, 2))
 
 
+def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
+    """Out and back to the same extents, from rest to rest: ``phi = -theta sin(pi s t / 3)^2``.
+
+    Unlike the paper's family its velocity does not jump, so that an arm can follow it. Extents
+    theta are ``(..., 2)`` in degrees; the motion lasts ``3 / speed`` s, before and after it the
+    reference rests. Velocities grow with the `speed` s, accelerations with its square.
+    """
+    shaped("t", t, "(time,)")
+    number("speed", speed, 0.0, open_low=True)
+    size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2
+    t, rate = finite_array("t", t), speed * 2 * np.pi / MOTION_SECONDS
+    moving = ((t >= 0) & (speed * t < MOTION_SECONDS))[:, None]
+    cosine, sine = np.cos(rate * t)[:, None] * moving, np.sin(rate * t)[:, None] * moving
+    return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
+
+
 def time_grid(step: float, rest: float = 0.0, duration: float = MOTION_SECONDS) -> np.ndarray:
     """Times of one motion with `rest` s before and after it, every `step` s.
 

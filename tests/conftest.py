@@ -36,11 +36,10 @@ def pytest_collection_finish(session):
     gc.set_threshold(50_000, 20, 50)
 
 
-@pytest.fixture(autouse=True)
-def planted_members(request, monkeypatch):
-    """Measures are tested on planted members, few enough to reckon by hand."""
-    if request.module.__name__.startswith("test_measures"):
-        monkeypatch.setattr(verdicts, "FEWEST", 1)
+@pytest.fixture
+def planted_members(monkeypatch):
+    """Measures may be tested on planted members, few enough to reckon by hand."""
+    monkeypatch.setattr(verdicts, "FEWEST", 1)
 
 
 @pytest.fixture(scope="session")

@@ -40,6 +40,9 @@ from .kinematics import (
     jacobian as jacobian,
     reach as reach,
 )
+from .second_order import (
+    SecondOrderModel as SecondOrderModel,
+)
 from .serial import (
     PUMA_560 as PUMA_560,
     PUMA_560_GEARS as PUMA_560_GEARS,

@@ -2,11 +2,13 @@ from .actuators import (
     ComputingTime as ComputingTime,
     DeadZone as DeadZone,
     FlexibleJoint as FlexibleJoint,
+    Load as Load,
     Ripple as Ripple,
     Saturation as Saturation,
 )
 from .friction import (
     CoulombFriction as CoulombFriction,
+    LuGreFriction as LuGreFriction,
     StickSlipFriction as StickSlipFriction,
     StribeckFriction as StribeckFriction,
     ViscousFriction as ViscousFriction,

@@ -52,6 +52,20 @@ class DeadZone:
 
 
 @dataclass(frozen=True)
+class Load:
+    """A constant torque that disturbs the joints, as an effect of the actuator."""
+
+    torque: tuple[float, float]  #: N m per joint, (2,) or (runs, 2).
+
+    def __post_init__(self):
+        finite_array("torque", self.torque, 2)
+
+    def apply(self, x, rng=None):
+        """The torque `x` (N m) and the load."""
+        return x + np.asarray(self.torque)
+
+
+@dataclass(frozen=True)
 class Ripple:
     """Shaft torque ``tau (1 + share sin(cycles q + phase)) + cogging sin(cycles q + phase)``.
 

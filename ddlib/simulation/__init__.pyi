@@ -1,17 +1,14 @@
 from .loops import (
-    Load as Load,
-    SecondOrderModel as SecondOrderModel,
     feedforward_system as feedforward_system,
     predicted_response as predicted_response,
     run_system as run_system,
-    score as score,
     simulated_response as simulated_response,
-    smooth_pick_and_place as smooth_pick_and_place,
 )
 from .recording import (
     Recording as Recording,
     residual_torque as residual_torque,
     rms as rms,
+    score as score,
 )
 from .simulate import (
     CONTROL_STEP as CONTROL_STEP,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import control
@@ -20,47 +20,10 @@ from ddlib._check import (
 )
 from ddlib.control import PID, closed_loop, plant
 from ddlib.dynamics import Arm
-from ddlib.effects import IDEAL, Effects, ViscousFriction
+from ddlib.effects import IDEAL, Effects, Load, ViscousFriction
 from ddlib.simulation.recording import Recording
 from ddlib.simulation.simulate import CONTROL_STEP, follow
-from ddlib.trajectories import MOTION_SECONDS, Trajectory
-
-
-@dataclass(frozen=True)
-class Load:
-    """A constant torque that disturbs the joints, as an effect of the actuator."""
-
-    torque: tuple[float, float]  #: N m per joint, (2,) or (runs, 2).
-
-    def __post_init__(self):
-        finite_array("torque", self.torque, 2)
-
-    def apply(self, x, rng=None):
-        """The torque `x` (N m) and the load."""
-        return x + np.asarray(self.torque)
-
-
-@dataclass(frozen=True)
-class SecondOrderModel:
-    """Inverse dynamics of linear, coupled joints: ``tau = M qdd + F qd`` with constant M and F.
-
-    This book's reading of the "second-order model to compensate for inter-joint coupling" (paper,
-    section 1.1, after Asada, Kanade & Takeyama 1982). A vertical arm's weight is no part of it.
-    """
-
-    arm: Arm
-    posture: tuple[float, float] = (0.0, 0.0)  #: Where its mass matrix is taken, rad.
-    viscous: tuple[float, float] = (0.0, 0.0)  #: Viscous friction, N m s/rad.
-
-    def __post_init__(self):
-        like("arm", self.arm, "Arm")
-        finite_array("posture", self.posture, 2)
-        non_negative("viscous", self.viscous, 2)
-
-    def __call__(self, q, qd, qdd) -> np.ndarray:
-        """Torque (N m) for a motion, arrays ``(..., 2)``; the angles `q` do not matter."""
-        M = self.arm.mass_matrix(self.posture)
-        return np.asarray(qdd) @ M.T + np.asarray(self.viscous) * np.asarray(qd)
+from ddlib.trajectories import Trajectory
 
 
 class _Response(NamedTuple):
@@ -231,60 +194,3 @@ def run_system(
     )
     q, qd, tau = np.split(answer.outputs.T, 3, axis=1)
     return Recording(t, reference, q, tau, q, qd, tau, control_step=0.0)
-
-
-def smooth_pick_and_place(extents_deg, t, speed: float = 1.0) -> Trajectory:
-    """Out and back to the same extents, from rest to rest: ``phi = -theta sin(pi s t / 3)^2``.
-
-    Unlike the paper's family its velocity does not jump, so that an arm can follow it. Extents
-    theta are ``(..., 2)`` in degrees; the motion lasts ``3 / speed`` s, before and after it the
-    reference rests. Velocities grow with the `speed` s, accelerations with its square.
-    """
-    shaped("t", t, "(time,)")
-    number("speed", speed, 0.0, open_low=True)
-    size = -np.deg2rad(finite_array("extents_deg", extents_deg, 2))[..., None, :] / 2
-    t, rate = finite_array("t", t), speed * 2 * np.pi / MOTION_SECONDS
-    moving = ((t >= 0) & (speed * t < MOTION_SECONDS))[:, None]
-    cosine, sine = np.cos(rate * t)[:, None] * moving, np.sin(rate * t)[:, None] * moving
-    return Trajectory(size * (moving - cosine), size * rate * sine, size * rate**2 * cosine)
-
-
-class _Score(NamedTuple):
-    """What a controller made of a motion; every field has the shape of the recording's runs."""
-
-    largest: np.ndarray  #: Largest error of a joint, degrees.
-    whole: np.ndarray  #: Root mean square error over joints and time, degrees.
-    settled: np.ndarray  #: The same without the first third of the motion.
-    hand: np.ndarray  #: RMS distance of the hand from its place, without the first third, mm.
-    turn: np.ndarray  #: Distance of the hand from its place half-way through the motion, mm.
-    effort: np.ndarray  #: Root mean square of the torque vector over the motion, N m.
-
-
-def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Score:
-    """Errors and effort of every run over a motion of `seconds`, or as the recording says.
-
-    Errors of the joints, degrees: the `largest`, the `whole` (root mean square) and `settled`, that
-    without the first third. Of the hand, mm: `hand`, RMS without that third, and at the `turn`
-    half-way. `effort`: RMS of the torque vector, N m.
-    """
-    like("arm", arm, "Arm")
-    like("recording", recording, "Recording")
-    if seconds is not None:
-        recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
-    t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion
-    begin, end = recording.span
-    early = 1e-6 * recording.step
-    settled = slice(int(np.searchsorted(t, begin + (end - begin) / 3 - early)), moving.stop)
-    hand, wanted = (
-        arm.forward_kinematics(q)[..., 1, :] for q in (recording.q_true, recording.reference.q)
-    )
-    gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
-    half = int(np.argmin(np.abs(t - (begin + end) / 2)))
-    return _Score(
-        largest=np.abs(error[..., moving, :]).max((-2, -1)),
-        whole=np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
-        settled=np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),
-        hand=np.sqrt((gap[..., settled] ** 2).mean(-1)),
-        turn=gap[..., half],
-        effort=np.sqrt((recording.tau_true[..., moving, :] ** 2).sum(-1).mean(-1)),
-    )

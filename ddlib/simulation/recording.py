@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -131,3 +132,44 @@ def rms(x, axis: int = -2) -> np.ndarray:
     if isinstance(axis, int) and not -np.ndim(x) <= axis < np.ndim(x):
         raise ValueError(f"axis must lie within the {np.ndim(x)} axes of x, got {axis}")
     return np.sqrt(np.mean(finite_array("x", x) ** 2, axis))
+
+
+class _Score(NamedTuple):
+    """What a controller made of a motion; every field has the shape of the recording's runs."""
+
+    largest: np.ndarray  #: Largest error of a joint, degrees.
+    whole: np.ndarray  #: Root mean square error over joints and time, degrees.
+    settled: np.ndarray  #: The same without the first third of the motion.
+    hand: np.ndarray  #: RMS distance of the hand from its place, without the first third, mm.
+    turn: np.ndarray  #: Distance of the hand from its place half-way through the motion, mm.
+    effort: np.ndarray  #: Root mean square of the torque vector over the motion, N m.
+
+
+def score(arm: Arm, recording: Recording, seconds: float | None = None) -> _Score:
+    """Errors and effort of every run over a motion of `seconds`, or as the recording says.
+
+    Errors of the joints, degrees: the `largest`, the `whole` (root mean square) and `settled`, that
+    without the first third. Of the hand, mm: `hand`, RMS without that third, and at the `turn`
+    half-way. `effort`: RMS of the torque vector, N m.
+    """
+    like("arm", arm, "Arm")
+    like("recording", recording, "Recording")
+    if seconds is not None:
+        recording = replace(recording, duration=number("seconds", seconds, 0.0, open_low=True))
+    t, error, moving = recording.t, np.rad2deg(recording.tracking_error), recording.motion
+    begin, end = recording.span
+    early = 1e-6 * recording.step
+    settled = slice(int(np.searchsorted(t, begin + (end - begin) / 3 - early)), moving.stop)
+    hand, wanted = (
+        arm.forward_kinematics(q)[..., 1, :] for q in (recording.q_true, recording.reference.q)
+    )
+    gap = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
+    half = int(np.argmin(np.abs(t - (begin + end) / 2)))
+    return _Score(
+        largest=np.abs(error[..., moving, :]).max((-2, -1)),
+        whole=np.sqrt((error[..., moving, :] ** 2).mean((-2, -1))),
+        settled=np.sqrt((error[..., settled, :] ** 2).mean((-2, -1))),
+        hand=np.sqrt((gap[..., settled] ** 2).mean(-1)),
+        turn=gap[..., half],
+        effort=np.sqrt((recording.tau_true[..., moving, :] ** 2).sum(-1).mean(-1)),
+    )

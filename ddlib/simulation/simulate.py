@@ -79,7 +79,7 @@ def _held(plant: _Plant, x, v, tau, seconds, parts):
         return x, v
     parts = parts[..., None]
     for k in range(most):  # runs that need fewer steps wait for the others
-        x_next, v_next = plant.advance(x, v, tau, seconds / parts)
+        x_next, v_next = plant.advance(x, v, tau, seconds / parts, k < parts)
         x, v = np.where(k < parts, x_next, x), np.where(k < parts, v_next, v)
     return x, v
 

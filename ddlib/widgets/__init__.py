@@ -1,8 +1,7 @@
 """Interactive figures: exact with a kernel, interpolated in the built page without one.
 
-- ``picker``, ``feedforward``, ``switches``, ``terms``, ``tuner``, ``window``, ``explorer``,
-  ``fold``, ``player``, ``weights``, ``whose``: a widget each, named after what the reader handles;
-  ``hinton``: the diagram that three of them share
+- ``picker``, ``switches``, ``explorer``, ``fold``, ``player``: a widget each, named after what the
+  reader handles; ``hinton``: the diagram that two of them share
 - ``engine``: widgets that compute in the page, and the live engine that they share
 - ``base``: `CurveWidget`, a function of a few parameters that returns curves
 - ``parts``: parameters, panels, pads

@@ -7,24 +7,11 @@ from .base import (
 from .engine._live import (
     LiveWidget as LiveWidget,
 )
-from .engine.builder import (
-    FilterBuilder as FilterBuilder,
-)
-from .engine.sentence import (
-    LoopSentence as LoopSentence,
-    TorqueSentence as TorqueSentence,
-)
-from .engine.throw import (
-    ThrownArm as ThrownArm,
-)
 from .engine.trainer import (
     NetworkTrainer as NetworkTrainer,
 )
 from .explorer import (
     FilterExplorer as FilterExplorer,
-)
-from .feedforward import (
-    FeedforwardSwitches as FeedforwardSwitches,
 )
 from .fold import (
     FilterFold as FilterFold,
@@ -47,21 +34,4 @@ from .player import (
 )
 from .switches import (
     RealArmSwitches as RealArmSwitches,
-)
-from .terms import (
-    TorqueTerms as TorqueTerms,
-)
-from .tuner import (
-    PIDTuner as PIDTuner,
-)
-from .weights import (
-    WeightReader as WeightReader,
-)
-from .whose import (
-    GuessRound as GuessRound,
-    WhoseFilters as WhoseFilters,
-)
-from .window import (
-    HiddenTorque as HiddenTorque,
-    SlidingWindow as SlidingWindow,
 )

@@ -6,6 +6,8 @@ import pytest
 from workshop.beyond._measures import rivals as measures
 from workshop.report import results
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 DAY = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])  # hard days are hard for all
 ROWS = [
     ("network", 2, 40, 3 * DAY), ("network", 10, 100, DAY), ("small", 1, 10, 2 * DAY),

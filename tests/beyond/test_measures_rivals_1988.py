@@ -7,6 +7,8 @@ from workshop.beyond._measures import rivals_1988 as measures
 from workshop.beyond.studies.rivals_1988 import _practised_distance
 from workshop.report import results
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 POSITIONS = measures._KINDS[1]
 
 

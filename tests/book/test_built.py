@@ -207,7 +207,9 @@ def test_the_texts_of_the_search_are_light(built):
 
 def test_text_on_canvases_can_be_read():
     """They are drawn in pixels of the page, so their sizes are those of the scripts."""
-    text = "".join(p.read_text("utf-8") for p in ROOT.glob("ddlib/widgets/static/*.js"))
+    folders = "ddlib/widgets/static", "book/workshop/chapters/widgets"
+    scripts = [path for folder in folders for path in ROOT.glob(f"{folder}/*.js")]
+    text = "".join(path.read_text("utf-8") for path in scripts)
     sizes = re.findall(r'\.font = "(?:bold |italic )?([\d.]+)px', text)
     assert len(sizes) == len(re.findall(r"\.font = ", text)) > 0
     assert min(map(float, sizes)) >= 9

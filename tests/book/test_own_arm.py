@@ -7,8 +7,11 @@ import re
 import numpy as np
 import pytest
 from book_pages import ROOT, source
+from nine_answers import Nine, wrong
+from open_cells import exercises
 
 from ddlib.dynamics import Arm, Link
+from workshop.chapters import exercises as engine
 
 CELLS = [
     ("".join(cell["source"]), cell["id"], cell["metadata"].get("tags", []))
@@ -208,18 +211,23 @@ def test_a_held_elbow_is_said_and_not_guessed(tmp_path, capsys):
     assert "cannot tell, here 0: a, b, d" in space["in_c"](space["p"])
 
 
-ANSWERS = {
-    "use-one-check": ("1000**2", "1000"),
-    "use-two-check": ("0.5 * sum(arm.lengths) ** 2", "0.5 * sum(arm.lengths)"),
-    "use-three-check": ("(2.0, 2.0)", "(0.5, 1.0)"),
-}
+EXERCISES = exercises("book/use-it-on-your-arm")
 
 
-@pytest.mark.parametrize("check", ANSWERS)
-def test_checks_say_right_or_why_not(check, run, capsys):
-    space, (code,) = run("as it stands"), [code for code, name, _ in CELLS if name == check]
-    page = source("book/use-it-on-your-arm").read_text(encoding="utf-8")
-    assert f"`mine = {ANSWERS[check][0]}`" in page
-    for answer, told in zip(("...", *ANSWERS[check]), ("^Put", "^Right", "^(Wrong|Not yet).* ")):
-        exec(f"mine = {answer}\n{code}", dict(space))
-        assert re.match(told, capsys.readouterr().out), (check, answer)
+def test_checks_take_nine_kinds_of_answers(run, monkeypatch):
+    space = dict(run("as it stands"))
+    assert len(EXERCISES) == 3
+    for exercise in EXERCISES:
+        nine = Nine(space, *exercise)
+        monkeypatch.setattr(engine, "judge", nine.judge)
+        assert not wrong(nine), exercise.check
+
+
+def test_checks_say_why_not(run, capsys):
+    space = dict(run("as it stands"))
+    wrongs = "1000", "0.5 * sum(arm.lengths)", "(0.5, 1.0)"
+    for exercise, answer in zip(EXERCISES, wrongs, strict=True):
+        exec(f"mine = {answer}\n{exercise.check}", space)
+        assert re.match("Wrong: this is|Wrong: training keeps", capsys.readouterr().out), answer
+    exec(f"arm, mine = None, 1.0\n{EXERCISES[1].check}", space)
+    assert "set an arm in Change this" in capsys.readouterr().out

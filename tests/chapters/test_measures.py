@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from ddlib.control import Feedforward, pd
-from ddlib.dynamics import CMU_DD_ARM_II as ARM
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, SecondOrderModel
 from ddlib.effects import CMU_DD_ARM_II_EFFECTS, IDEAL, Effects, ViscousFriction
 from ddlib.paper import APPENDIX_I_EXTENTS_DEG
 from ddlib.setups import KD, KP
-from ddlib.simulation import SecondOrderModel, follow, rms, smooth_pick_and_place
-from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents
+from ddlib.simulation import follow, rms
+from ddlib.trajectories import APPENDIX_I, pick_and_place, random_extents, smooth_pick_and_place
 from workshop.chapters import (
     dynamics,
     feedback,
@@ -24,6 +24,8 @@ from workshop.chapters import (
 )
 from workshop.chapters.feedforward import _EXTENTS, _TIMES, _track
 from workshop.report import committed
+
+pytestmark = pytest.mark.usefixtures("planted_members")
 
 EFFECTS = left_out._SETUP.effects
 REFERENCE = pick_and_place(APPENDIX_I[5], np.arange(0.0, 3.0, 0.002))

@@ -6,6 +6,8 @@ import pytest
 from workshop.chapters import joints_three_and_four as chapter
 from workshop.report import results
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 @pytest.fixture
 def plant(monkeypatch):

@@ -5,6 +5,8 @@ import pytest
 
 from workshop.chapters import learning_in_the_loop as learning
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 def test_trials_to_half_the_error(monkeypatch):
     errors = np.array([[9.0, 9, 9, 2], [4, 9, 9, 2], [9, 4, 9, 2], [4, 4, 9, 2]])

@@ -7,6 +7,8 @@ from ddlib.analysis import CLASSES
 from workshop.chapters import real_arm
 from workshop.report import results
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 TRUE = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 OFF = [1.0, 1.1, 0.9, 1.0, 0.7, 1.2]
 

@@ -8,6 +8,8 @@ from workshop.chapters import run_time
 from workshop.report import results
 from workshop.report.evidence.verdicts import rank_correlation
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 def inside(stopped, error, poles):
     found = {"stopped": stopped, "error": error, "poles": poles}

@@ -8,6 +8,8 @@ import pytest
 from workshop.chapters import verdict
 from workshop.report.evidence.claims import Claim
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 def claim(name, setup=None, found="reproduced", measure="chapters.verdict.reproduced_share"):
     return Claim(

@@ -10,10 +10,10 @@ from ddlib.analysis import CLASSES, gains, mean_gradient
 from ddlib.learning import Weights, cases
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets import GuessRound, WhoseFilters
 from workshop.chapters import inertia_in_the_weights, whose_filters as chapter
 from workshop.chapters.widgets.starts import UnitFromFiveStarts
 from workshop.chapters.widgets.weigh import WeighTheArm
+from workshop.chapters.widgets.whose import GuessRound, WhoseFilters
 from workshop.report import committed, results
 
 X = np.arange(-10, 11.0)

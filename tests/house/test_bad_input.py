@@ -173,6 +173,9 @@ def _calls():
         (effects.StribeckFriction, dict(
             level=pair, breakaway=2 * pair, speed=0.02, smoothing=1e-3
         )),
+        (effects.LuGreFriction, dict(
+            level=pair, breakaway=2 * pair, speed=0.02, stiffness=pair, damping=pair
+        )),
         (effects.ViscousFriction, dict(coefficient=pair)),
         (effects.Backlash, dict(gap=pair)),
         (effects.Delay, dict(periods=2)),
@@ -222,8 +225,8 @@ def _calls():
         (simulation.residual_torque, dict(arm=ARM, recording=simulation.record(
             ARM, PID, pair, rest=0.2, control_step=0.02, log_step=0.02
         ))),
-        (simulation.Load, dict(torque=pair)),
-        (simulation.SecondOrderModel, dict(arm=ARM, posture=pair, viscous=pair)),
+        (effects.Load, dict(torque=pair)),
+        (dynamics.SecondOrderModel, dict(arm=ARM, posture=pair, viscous=pair)),
         (simulation.feedforward_system, dict(arm=ARM, model=ARM, kp=pair, kd=pair, viscous=pair)),
         (simulation.predicted_response, dict(
             arm=ARM, controller=PID, viscous=pair, posture=pair, joint=0, period=0.01, seconds=1.0
@@ -232,7 +235,7 @@ def _calls():
             arm=ARM, controller=PID, viscous=pair, posture=pair, joint=0, period=0.01, seconds=4.0,
             step_deg=1.0, effects=effects.IDEAL,
         )),
-        (simulation.smooth_pick_and_place, dict(extents_deg=pair, t=T, speed=1.0)),
+        (trajectories.smooth_pick_and_place, dict(extents_deg=pair, t=T, speed=1.0)),
         (simulation.run_system, dict(
             system=simulation.feedforward_system(ARM, ARM, KP, (60.0, 20.0)),
             reference=Trajectory(*(x[:20] for x in REFERENCE)), t=T[:20], start=STATE[:2],

@@ -201,7 +201,7 @@ def test_what_is_wider_than_the_family():
         trajectories.pick_and_place(wide, T)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        simulation.smooth_pick_and_place(wide, T)
+        trajectories.smooth_pick_and_place(wide, T)
 
 
 def test_a_widget_of_too_few_motions_or_of_motions_in_line():

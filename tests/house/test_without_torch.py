@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
     for suffix in ("svg", "png", "pdf"):
         picture.save(Path(folder) / f"weights.{suffix}")
 widgets.TrajectoryPicker()
-widgets.TorqueTerms()
+widgets.RealArmSwitches()
 assert "torch" not in sys.modules
 print("fine")
 """

@@ -10,6 +10,8 @@ from workshop.report import committed
 from workshop.report._measures import filter_trial as trial
 from workshop.report.studies.nulls import TRIAL
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 def test_gains_of_the_arm_by_other_means():
     """Mean mass matrix over the recorded positions; friction at a speed is the slope times it."""

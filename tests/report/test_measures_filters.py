@@ -6,6 +6,8 @@ import pytest
 from workshop.report import committed
 from workshop.report._measures import filters
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 X = np.linspace(-1, 1, 21)
 SHAPES = {"velocity": X, "acceleration": X**2 - (X**2).mean(), "noise": (-1.0) ** np.arange(21)}
 """A line, a parabola without its mean, and what no cubic fits."""

@@ -14,6 +14,8 @@ from ddlib.simulation import LOG_STEP
 from workshop.report import committed
 from workshop.report._measures import windows
 
+pytestmark = pytest.mark.usefixtures("planted_members")
+
 
 def test_multiplications_and_weights_by_hand():
     """21 samples of two joints to 10 hidden and 2 output units, 20 between; no biases."""

@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 
 from ddlib.control import PID, Feedforward, pd
-from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM
-from ddlib.effects import Effects, ViscousFriction
+from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, SecondOrderModel
+from ddlib.effects import Effects, Load, ViscousFriction
 from ddlib.setups import KD, KP
 from ddlib.simulation import (
-    Load,
     Recording,
-    SecondOrderModel,
     feedforward_system,
     follow,
     predicted_response,
@@ -18,9 +16,14 @@ from ddlib.simulation import (
     run_system,
     score,
     simulated_response,
-    smooth_pick_and_place,
 )
-from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, time_grid
+from ddlib.trajectories import (
+    APPENDIX_I,
+    Trajectory,
+    pick_and_place,
+    smooth_pick_and_place,
+    time_grid,
+)
 
 ARM, VISCOUS = CMU_DD_ARM_II, (0.5, 0.15)
 PD, KI = pd(KP, KD), (150.0, 45.0)

@@ -17,6 +17,9 @@ from ipywidgets.embed import embed_data
 from ddlib.widgets import module
 from ddlib.widgets.engine import _plain as plain
 
+LESSONS = ROOT / "book" / "workshop" / "chapters" / "widgets"
+"""Where widgets of single lessons and their scripts are."""
+
 MOUNT = (ROOT / "book" / "_static" / "widget-mount.js").as_uri()
 
 VIEW = '<script type="application/vnd.jupyter.widget-view+json">%s</script>'

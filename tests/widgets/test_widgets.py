@@ -17,14 +17,13 @@ from ddlib.widgets import (
     Choice,
     CurveWidget,
     FilterExplorer,
-    HiddenTorque,
     Pad,
     Panel,
     Parameter,
     Scalar,
-    SlidingWindow,
     TrainingPlayer,
 )
+from workshop.chapters.widgets.window import HiddenTorque, SlidingWindow
 
 
 def test_parameters_are_traits_and_the_page_is_answered():

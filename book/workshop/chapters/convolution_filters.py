@@ -25,9 +25,10 @@ from ddlib.figures.style import (
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
-from ddlib.widgets.engine import builder
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.chapters.index import both
+from workshop.chapters.widgets import builder
+from workshop.chapters.widgets.builder import FilterBuilder as FilterBuilder
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated

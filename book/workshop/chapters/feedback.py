@@ -6,13 +6,12 @@ import control
 import numpy as np
 
 from ddlib.control import linear
-from ddlib.effects import Effects
-from ddlib.simulation import Load
+from ddlib.effects import Effects, Load
 from ddlib.tables import quote, significant
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets import PIDTuner
 from workshop.chapters.exercises import Exercise, OneOf, judging
 from workshop.chapters.feedforward import _errors, _geared, _rms
+from workshop.chapters.widgets.tuner import PIDTuner
 from workshop.report.evidence.verdicts import Measured
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyBboxPatch
 
 from ddlib.control import PID, ComputedTorque, Feedforward, pd
-from ddlib.dynamics import CMU_DD_ARM_II as ARM, PUMA_560_ROTORS
+from ddlib.dynamics import CMU_DD_ARM_II as ARM, PUMA_560_ROTORS, SecondOrderModel
 from ddlib.effects import (
     CMU_DD_ARM_II_EFFECTS,
     IDEAL,
@@ -26,17 +26,9 @@ from ddlib.setups import (
     KD,
     KP,
 )
-from ddlib.simulation import (
-    CONTROL_STEP,
-    LOG_STEP,
-    SecondOrderModel,
-    feedforward_system,
-    follow,
-    run_system,
-    smooth_pick_and_place,
-)
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, feedforward_system, follow, run_system
 from ddlib.tables import quote, scientific, significant
-from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place
+from ddlib.trajectories import APPENDIX_I, Trajectory, pick_and_place, smooth_pick_and_place
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report.evidence.verdicts import Measured
 

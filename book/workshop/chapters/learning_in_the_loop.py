@@ -10,9 +10,9 @@ from scipy.signal import butter, cont2discrete, lfilter, sosfiltfilt
 from ddlib.dynamics import CMU_DD_ARM_II, PUMA_560, count, newton_euler
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
 from ddlib.setups import KD, KP
-from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
+from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import Table, quote, significant, spread
-from ddlib.trajectories import APPENDIX_I
+from ddlib.trajectories import APPENDIX_I, smooth_pick_and_place
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import resampled, stated

@@ -1,17 +1,20 @@
-"""The first figure of *Use it on your arm*."""
+"""What *Use it on your arm* shows and asks."""
 
 from __future__ import annotations
+
+from functools import cache
 
 import numpy as np
 
 from ddlib import figures
 from ddlib.analysis import gains, mean_gradient, ridge_filters
 from ddlib.control import pd
-from ddlib.dynamics import Arm, Link
+from ddlib.dynamics import Arm, Link, with_load
 from ddlib.effects import CoulombFriction, Effects, Quantisation, ViscousFriction
 from ddlib.learning import TrainingSet, Weights, cases, surrogate, train_ensemble
 from ddlib.simulation import record
 from ddlib.trajectories import random_extents
+from workshop.chapters.exercises import Exercise, judging
 
 _ENTRIES = {"shoulder": (0, 0), "coupling": (0, 1), "elbow": (1, 1)}
 
@@ -68,3 +71,63 @@ def _drawn(found) -> figures.Illustration:
     )
     alt = f"Inertia of an arm in kg m². {told}.".replace("-", "−")
     return figures.illustrate(draw, alt, 7.0, 2.7)
+
+
+# --- what is judged
+
+
+def _exercise(number: int, given=None) -> Exercise:
+    """An exercise; `given` is the second's arm, or what drives the third's."""
+    if number == 1:
+        return Exercise(
+            "number",
+            1e6,
+            "s is squared, so its factor counts twice.",
+            [
+                (1e3, "this is the factor of the damping. Which power of s has M?"),
+                (1e-6, "you read times that are too long, so M is too large."),
+            ],
+            "write s in milliseconds, and take the factor out of the sum.",
+        )
+    if number == 2:
+        if given is None:  # a file's
+            unless = [(lambda mine: True, "set an arm in Change this.")]
+            return Exercise("number", np.nan, "", unless=unless)
+        reach = sum(given.lengths)
+        stretched = np.zeros(2)
+        loaded, bare = (a.mass_matrix(stretched)[0, 0] for a in (with_load(given, 0.5), given))
+        return Exercise(
+            "number",
+            loaded - bare,
+            "the load adds its mass times its distance squared.",
+            [
+                (0.5 * reach, "this is mass times distance. Which unit does it have?"),
+                (loaded, "this is all of the inertia. Count the load alone, not the arm."),
+                (0.5 * given.lengths[0] ** 2, "the hand is farther from the shoulder."),
+            ],
+            "how far is the hand from the shoulder?",
+            unit="kg m²",
+        )
+
+    @cache
+    def reached(shake):
+        shares, most = given(*shake)
+        return min(shares), most
+
+    return Exercise(
+        "numbers",
+        lambda shake: reached(shake)[0] > 95 and reached(shake)[1] < 6,
+        "the acceleration of a sine grows with the square of its frequency.",
+        [
+            (
+                lambda shake: reached(shake)[0] <= 95,
+                "training keeps too little. What makes the acceleration of a sine larger?",
+            ),
+        ],
+        "a torque is too large. What does a fast, large sine ask of the motors?",
+        count=2,
+        unless=[(lambda shake: min(shake) <= 0, "give a positive size and frequency.")],
+    )
+
+
+check = judging(_exercise)

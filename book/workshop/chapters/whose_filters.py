@@ -24,11 +24,11 @@ from ddlib.learning import (
 from ddlib.setups import INITIAL, JOINT_DAMPING, SETUPS, split, true_states
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import quote
-from ddlib.widgets import GuessRound
 from workshop.chapters import index, start
 from workshop.chapters.convolution_filters import _dots
 from workshop.chapters.exercises import Exercise, judging
 from workshop.chapters.widgets.starts import UnitFromFiveStarts as UnitFromFiveStarts
+from workshop.chapters.widgets.whose import GuessRound, WhoseFilters as WhoseFilters
 from workshop.report import results
 from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence.statements import resampled, stated

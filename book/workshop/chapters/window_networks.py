@@ -30,8 +30,8 @@ from ddlib.learning import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, SETUPS, WINDOWS, split
 from ddlib.tables import Table, how_many, quote, significant
-from ddlib.widgets import HiddenTorque
 from workshop.chapters.exercises import Between, Exercise, OneOf, judging
+from workshop.chapters.widgets.window import HiddenTorque
 from workshop.report import results
 from workshop.report._measures import filter_trial
 from workshop.report.evidence import claims

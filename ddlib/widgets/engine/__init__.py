@@ -1,9 +1,6 @@
 """Widgets that compute in the page, and the live engine that they share.
 
 - `LiveWidget`: a `CurveWidget` without a table, whose script computes the curves
-- ``sentence``: sentences whose numbers the reader moves, and whose end is computed
-- ``throw``: the arm that the reader throws, with a window network that tells its torque
-- ``builder``: a window whose weights the reader draws, to measure acceleration
 - ``trainer``: a network that the reader trains from random weights, on trajectories of her own
 
 The engine is ``static/physics.js``, its equations, ``static/engine.js``, the loop and the network,

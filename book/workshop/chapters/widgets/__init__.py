@@ -1,1 +1,1 @@
-"""Widgets of one chapter each: they show committed results, so they work only with the book."""
+"""Widgets of single chapters, with their scripts beside them; those for any arm are in ddlib."""

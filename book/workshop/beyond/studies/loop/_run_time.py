@@ -14,8 +14,8 @@ from ddlib.effects import CoulombFriction, Delay, ViscousFriction
 from ddlib.learning import sliding_windows
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
-from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
+from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory, smooth_pick_and_place
 from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.guarded import _Guarded
 from workshop.beyond.control.windowed import (

@@ -17,8 +17,14 @@ from ddlib.setups import (
     STATE_FEEDBACK,
     Setup,
 )
-from ddlib.simulation import CONTROL_STEP, REST, smooth_pick_and_place
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.simulation import CONTROL_STEP, REST
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MOTION_SECONDS,
+    Trajectory,
+    pick_and_place,
+    smooth_pick_and_place,
+)
 from workshop.beyond.control.adaptive import SlotineLi
 from workshop.beyond.studies.loop.run_time_parts import rounded
 from workshop.beyond.studies.loop.runs import adaptive as batch

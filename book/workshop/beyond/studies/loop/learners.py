@@ -12,8 +12,8 @@ from ddlib.effects import EncoderZero
 from ddlib.identification import RecursiveLeastSquares
 from ddlib.learning import TorqueModel, Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup
-from ddlib.simulation import CONTROL_STEP, smooth_pick_and_place
-from ddlib.trajectories import MOTION_SECONDS, Trajectory, time_grid
+from ddlib.simulation import CONTROL_STEP
+from ddlib.trajectories import MOTION_SECONDS, Trajectory, smooth_pick_and_place, time_grid
 from workshop.beyond.control.adaptive import Watched
 from workshop.beyond.control.feedback_error import (
     FeedbackErrorLearning,

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
-from ddlib.simulation import smooth_pick_and_place
 from ddlib.trajectories import (
     APPENDIX_I,
     MOTION_SECONDS,
@@ -17,6 +16,7 @@ from ddlib.trajectories import (
     Trajectory,
     pick_and_place,
     random_extents as random_members,
+    smooth_pick_and_place,
 )
 from workshop.beyond.control.feedback_error import RigidBodyTerms
 from workshop.beyond.control.windowed import WindowFeedforward

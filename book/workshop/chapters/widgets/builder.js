@@ -220,7 +220,7 @@ function build({ model, el }) {
     return [
       "import numpy as np",
       "",
-      "from ddlib.widgets.engine import builder",
+      "from workshop.chapters.widgets import builder",
       "",
       `f = ${f}  # oldest sample first`,
       ...lines,

@@ -8,7 +8,7 @@ from widget_pages import assert_curves, drag, page_of, settings
 
 from ddlib.learning import sliding_windows
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, split
-from ddlib.widgets.window import HiddenTorque, SlidingWindow
+from workshop.chapters.widgets.window import HiddenTorque, SlidingWindow
 from workshop.report import results
 
 MEMBER = 1

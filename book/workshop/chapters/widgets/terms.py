@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import traitlets as t
 
@@ -16,6 +18,8 @@ from ddlib.widgets.engine._live import LiveWidget
 from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice
+
+_HERE = Path(__file__).parent
 
 _TERMS = ("centrifugal", "coupling", "Coriolis", "inertial")  # in no order that gives one away
 _SUM = "whole torque"
@@ -53,8 +57,10 @@ class TorqueTerms(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, "clock.js", "stage.js", "terms.js"))
-    _css = module(*STYLE, "terms.css")
+    _esm = module(*SCRIPT) + lean(
+        module(*ENGINE, "clock.js", _HERE / "stage.js", _HERE / "terms.js")
+    )
+    _css = module(*STYLE, _HERE / "terms.css")
 
     moving = t.Dict(help="arms by load, friction, extents in rad", read_only=True).tag(sync=True)
 

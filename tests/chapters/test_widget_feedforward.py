@@ -10,7 +10,7 @@ from ddlib.control import Feedforward, proportional
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_KP as KP
 from ddlib.simulation import record
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets.feedforward import _FRICTION, _TIMES, FeedforwardSwitches
+from workshop.chapters.widgets.feedforward import _FRICTION, _TIMES, FeedforwardSwitches
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
@@ -16,6 +17,8 @@ from ddlib.widgets.engine._live import LiveWidget
 from ddlib.widgets.engine._plain import ENGINE, SLIDING, lean, networks
 from ddlib.widgets.hinton import JOINTS, _check_models, common_step, width_choice
 from ddlib.widgets.parts.parameters import Choice
+
+_HERE = Path(__file__).parent
 
 
 class SlidingWindow(LiveWidget):
@@ -36,7 +39,7 @@ class SlidingWindow(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "window.js"))
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "window.js"))
 
     layouts = t.List(help="the networks' layouts and scalings", read_only=True).tag(sync=True)
     weights = t.Bytes(help="the networks' weights as float32", read_only=True).tag(sync=True)
@@ -172,7 +175,7 @@ class HiddenTorque(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, "hidden.js"))
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, SLIDING, _HERE / "hidden.js"))
 
     recorded = t.Bytes(help="positions with half a window on either side, torques", read_only=True)
     recorded.tag(sync=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import traitlets as t
 
@@ -16,6 +18,8 @@ from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS
 from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import STYLE, _PageWidget, module
 from ddlib.widgets.engine._plain import ENGINE, _weight_bytes, gains, lean, network, plant
+
+_HERE = Path(__file__).parent
 
 _REST = 0.4  # s between two motions that are played: longer than half a window
 _FORCE = 35.0  # N, most that the reader's pull can be: its torques are among those of the training
@@ -50,10 +54,16 @@ class ThrownArm(_PageWidget):
 
     _esm = lean(
         module(
-            "elements.js", *ENGINE, "world.js", "canvas.js", "running.js", "inside.js", "throw.js"
+            "elements.js",
+            *ENGINE,
+            _HERE / "world.js",
+            "canvas.js",
+            _HERE / "running.js",
+            _HERE / "inside.js",
+            _HERE / "throw.js",
         )
     )
-    _css = module(*STYLE, "throw.css")
+    _css = module(*STYLE, _HERE / "throw.css")
 
     weights = t.Bytes(help="the network's weights as float32", read_only=True).tag(sync=True)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
@@ -18,13 +19,21 @@ from ddlib.setups import (
     JOINT_DAMPING_KP as KP,
     JOINT_DAMPING_VISCOUS,
 )
-from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow, smooth_pick_and_place
-from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, Trajectory, pick_and_place
+from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
+from ddlib.trajectories import (
+    APPENDIX_I,
+    MOTION_SECONDS,
+    Trajectory,
+    pick_and_place,
+    smooth_pick_and_place,
+)
 from ddlib.widgets.base import SCRIPT, STYLE, module
 from ddlib.widgets.engine._live import LiveWidget
 from ddlib.widgets.engine._plain import ENGINE, gains, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
+
+_HERE = Path(__file__).parent
 
 _EXTENTS = APPENDIX_I[0]  # degrees: 45 and 45
 _FRICTION = Effects(
@@ -37,7 +46,7 @@ _TIMES = _T[::_EVERY]  # when the curves are sampled, s
 _SWITCH = {False: "off", True: "on"}
 
 _CODE = """\
-from ddlib.widgets import FeedforwardSwitches
+from workshop.chapters.widgets.feedforward import FeedforwardSwitches
 
 FeedforwardSwitches().interpolate(
     model={model}, masses={masses}, known={known}, feedback={feedback},
@@ -60,8 +69,8 @@ class FeedforwardSwitches(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, "feedforward.js"))
-    _css = module(*STYLE, "feedforward.css")
+    _esm = module(*SCRIPT) + lean(module(*ENGINE, _HERE / "feedforward.js"))
+    _css = module(*STYLE, _HERE / "feedforward.css")
 
     loop = t.Dict(help="plant, gains and references", read_only=True).tag(sync=True)
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import CALM, NEXT_FRAME, functions, page_of
+from widget_pages import CALM, LESSONS, NEXT_FRAME, functions, page_of
 
 from ddlib.analysis import savitzky_golay, shares
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.learning import sliding_windows
 from ddlib.setups import JOINT_DAMPING, POSITION_FEEDBACK, STATE_FEEDBACK
 from ddlib.trajectories import APPENDIX_I
-from ddlib.widgets import ThrownArm
-from ddlib.widgets.engine.throw import _REST
 from workshop.chapters.index import both as station_row
+from workshop.chapters.widgets.throw import _REST, ThrownArm
 from workshop.report import results
 
 WORLD = """([spec, weights, moves]) => {
@@ -34,7 +33,7 @@ def widget():
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, "world.js") as call:
+    with functions(browser, LESSONS / "world.js") as call:
         yield call
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
@@ -17,6 +18,8 @@ from ddlib.widgets._baking.still import still_picture
 from ddlib.widgets.base import SCRIPT, STYLE, _PageWidget, module
 from ddlib.widgets.engine._plain import lean, plant
 from ddlib.widgets.parts.panels import Panel
+
+_HERE = Path(__file__).parent
 
 _WIDTH = 21  # stems of the window
 _ZEROS = 20  # other zeros of the encoder by which the same motion is read again
@@ -117,9 +120,9 @@ class FilterBuilder(_PageWidget):
 
     _esm = lean(
         module(*(name for name in SCRIPT if name not in ("controls.js", "curves.js")))
-        + module("physics.js", "builder.js")
+        + module("physics.js", _HERE / "builder.js")
     )
-    _css = module(*STYLE, "builder.css")
+    _css = module(*STYLE, _HERE / "builder.css")
 
     motion = t.Bytes(help="true positions, then accelerations, as float64", read_only=True)
     motion.tag(sync=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 from matplotlib.gridspec import GridSpec
@@ -26,6 +27,8 @@ from ddlib.widgets.hinton import (
 )
 from ddlib.widgets.parts.parameters import Choice
 
+_HERE = Path(__file__).parent
+
 _MARGIN = 1.06  # of the axis over the largest weight of a row
 
 
@@ -45,8 +48,8 @@ class WeightReader(_HintonWidget):
         Passed on to `CurveWidget`.
     """
 
-    _esm = module(*SCRIPT, "hinton.js", "weights.js")
-    _css = module(*STYLE, "hinton.css", "weights.css")
+    _esm = module(*SCRIPT, "hinton.js", _HERE / "weights.js")
+    _css = module(*STYLE, "hinton.css", _HERE / "weights.css")
 
     def __init__(
         self,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from widget_pages import functions, page_of
+from widget_pages import LESSONS, functions, page_of
 
 from ddlib.dynamics import CMU_DD_ARM_II
 from ddlib.setups import JOINT_DAMPING_VISCOUS
-from ddlib.widgets import LoopSentence, TorqueSentence
 from ddlib.widgets.engine import _loops as loops
+from workshop.chapters.widgets.sentence import LoopSentence, TorqueSentence
 
 SPACE = "\u00a0"
 ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
@@ -17,7 +17,7 @@ ENDS = "([spec, all]) => all.map((values) => ENDS[spec.kind](spec, values))"
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, loops.LOOPS, "sentence.js") as call:
+    with functions(browser, loops.LOOPS, LESSONS / "sentence.js") as call:
         yield call
 
 

@@ -9,7 +9,7 @@ from widget_pages import NEXT_FRAME, assert_curves, page_of
 from ddlib.dynamics import CMU_DD_ARM_II, REYES_KELLY_ARM, with_load
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.trajectories import APPENDIX_I, pick_and_place
-from ddlib.widgets import TorqueTerms
+from workshop.chapters.widgets.terms import TorqueTerms
 
 TERMS = ("centrifugal", "coupling", "Coriolis", "inertial")
 SETTINGS = [

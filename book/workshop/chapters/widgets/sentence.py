@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
@@ -21,6 +22,8 @@ from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts._common import key_of
 from ddlib.widgets.parts.parameters import Parameter
 
+_HERE = Path(__file__).parent
+
 # Friction of the joints, over the shoulder's
 _SHARE = np.array([1.0, JOINT_DAMPING_VISCOUS[1] / JOINT_DAMPING_VISCOUS[0]])
 
@@ -34,8 +37,8 @@ class _LiveSentence(_PageWidget):
     the Python `code` names of numbers in braces stand for their values.
     """
 
-    _esm = lean(module(*_FRAME, *ENGINE, LOOPS, "sentence.js"))
-    _css = module(*STYLE, "sentence.css")
+    _esm = lean(module(*_FRAME, *ENGINE, LOOPS, _HERE / "sentence.js"))
+    _css = module(*STYLE, _HERE / "sentence.css")
 
     values = t.Dict(help="the numbers by name").tag(sync=True)
 
@@ -114,8 +117,8 @@ class TorqueSentence(_LiveSentence):
 class LoopSentence(_LiveSentence):
     """Friction, a period and two gains, and whether the sampled loop is stable.
 
-    The loop is the linear one of the stretched arm, as in `ddlib.widgets.tuner`; friction and gains
-    are the shoulder's, the elbow's in the ratio of the book's; its damper has a fifth.
+    The loop is the linear one of the stretched arm, as in the tuner; friction and gains are the
+    shoulder's, the elbow's in the ratio of the book's; its damper has a fifth.
     """
 
     FRICTION = JOINT_DAMPING_VISCOUS[0]  # of the shoulder at which the modes are given, N m s/rad

@@ -12,7 +12,7 @@ from widget_pages import NEXT_FRAME, opened, page_of, settings
 
 from ddlib.learning import Weights
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets import WeightReader
+from workshop.chapters.widgets.weights import WeightReader
 
 WIDTH, HIDDEN = 11, 5
 SIDE = 18.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 import traitlets as t
@@ -23,6 +24,8 @@ from ddlib.widgets.engine._plain import ENGINE, lean, plant
 from ddlib.widgets.parts.panels import Panel, Scalar
 from ddlib.widgets.parts.parameters import Choice, Parameter
 
+_HERE = Path(__file__).parent
+
 _VISCOUS = JOINT_DAMPING_VISCOUS  # friction of the joints, N m s/rad, the only effect here
 _MOST_DEG = 30.0  # error at which a run is stopped: larger than any of a stable loop here
 _LATE = (0, 1, 5, 10, 20)  # control periods between a reading and its torque
@@ -38,7 +41,7 @@ _START = {"kp": KP[0], "ki": 0.0, "kd": 0.0, "late": 0, "feedforward": False}  #
 
 _CODE = """\
 from ddlib.dynamics import CMU_DD_ARM_II
-from ddlib.widgets.tuner import tuned
+from workshop.chapters.widgets.tuner import tuned
 
 run = tuned(
     CMU_DD_ARM_II, kp={kp}, ki={ki}, kd={kd}, late={late}, feedforward={feedforward}
@@ -167,8 +170,10 @@ class PIDTuner(LiveWidget):
         Passed on to `LiveWidget`.
     """
 
-    _esm = module(*SCRIPT) + lean(module(*ENGINE, LOOPS, "stage.js", "clock.js", "tuner.js"))
-    _css = module(*STYLE, "tuner.css")
+    _esm = module(*SCRIPT) + lean(
+        module(*ENGINE, LOOPS, _HERE / "stage.js", "clock.js", _HERE / "tuner.js")
+    )
+    _css = module(*STYLE, _HERE / "tuner.css")
 
     before = t.Dict(help="the setting before this one, which the ghost has").tag(sync=True)
     loop = t.Dict(help="plant, modes, reference and questions", read_only=True).tag(sync=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,8 @@ from ddlib.analysis import classify
 from ddlib.figures import INK, illustrate
 from ddlib.widgets._baking.still import START, encoded
 from ddlib.widgets.base import STYLE, _PageWidget, module
+
+_HERE = Path(__file__).parent
 
 _COLUMNS = 5  # of a gallery
 
@@ -40,8 +43,8 @@ class WhoseFilters(_PageWidget):
         Decides which side is the arm's.
     """
 
-    _esm = module("elements.js", "frame.js", "whose.js")
-    _css = module(*STYLE, "whose.css")
+    _esm = module("elements.js", "frame.js", _HERE / "whose.js")
+    _css = module(*STYLE, _HERE / "whose.css")
 
     round = t.Int(0, help="which round is shown, from 0").tag(sync=True)
     guesses = t.Unicode(help="A or B for each round, - where there is no guess").tag(sync=True)

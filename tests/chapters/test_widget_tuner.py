@@ -15,7 +15,15 @@ from ddlib.effects import Effects, ViscousFriction
 from ddlib.simulation import CONTROL_STEP, record
 from ddlib.trajectories import APPENDIX_I
 from ddlib.widgets.engine import _loops as loops
-from ddlib.widgets.tuner import _QUESTIONS, _START, _TIMES, _VISCOUS, PIDTuner, _gains, tuned
+from workshop.chapters.widgets.tuner import (
+    _QUESTIONS,
+    _START,
+    _TIMES,
+    _VISCOUS,
+    PIDTuner,
+    _gains,
+    tuned,
+)
 
 ARM = CMU_DD_ARM_II
 LATE = (_TIMES >= 1) & (_TIMES < 3)

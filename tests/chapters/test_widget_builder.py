@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from widget_pages import NEXT_FRAME, copied, functions, opened
+from widget_pages import LESSONS, NEXT_FRAME, copied, functions, opened
 
 from ddlib.analysis import followed, frequency_response
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import IDEAL
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
-from ddlib.widgets import FilterBuilder
-from ddlib.widgets.engine import builder
+from workshop.chapters.widgets import builder
+from workshop.chapters.widgets.builder import FilterBuilder
 
 SCORE = "document.querySelector('.ddlib-builder').score"
 
@@ -26,7 +26,7 @@ def widget():
 
 @pytest.fixture(scope="module")
 def evaluate(browser):
-    with functions(browser, "elements.js", "builder.js") as call:
+    with functions(browser, "elements.js", LESSONS / "builder.js") as call:
         yield call
 
 
