@@ -14,9 +14,15 @@ NAME = """() => {
   return lost ? "" : name.trim().replace(/\\s+/g, " ");
 }"""
 OPEN = "() => document.activeElement.closest('details').open"
-VALUE = (
-    "() => document.activeElement.getAttribute('aria-valuetext') ?? document.activeElement.value"
-)
+VALUE = """() => {
+  const e = document.activeElement;
+  return e.getAttribute("aria-valuetext") ?? e.value;
+}"""
+OTHER = f"""async (before) => {{
+  const read = {VALUE};
+  for (let k = 0; k < 300 && read() === before; k++) await new Promise(requestAnimationFrame);
+  return read();
+}}"""
 
 
 class Keys:
@@ -36,9 +42,13 @@ class Keys:
                 return
         raise AssertionError(f"no stop is called {name}")
 
-    def value(self) -> str:
-        """What the handle in focus stands at, once that is drawn."""
-        return self.page.evaluate(VALUE)
+    def moves(self, *keys: str) -> str:
+        """Where the handle in focus stands after some keys, which is not where it stood."""
+        before = self.page.evaluate(VALUE)
+        self.press(*keys)
+        now = self.page.evaluate(OTHER, before)
+        assert now != before
+        return now
 
     def press(self, *keys: str) -> None:
         for key in keys:
@@ -78,18 +88,14 @@ def test_feedback(lesson):
     keys.press("Enter")
     assert keys.at() == "Next question" and keys.read(".ask .told")
     keys.go("Proportional gain")
-    before = keys.value()
-    keys.press("End")
-    assert keys.value() != before
+    keys.moves("End")
     keys.question_and_solution()
 
 
 def test_window_networks(lesson):
     keys = lesson("window-networks")
     keys.go("Middle of the window")
-    before = keys.value()
-    keys.press("ArrowRight", "ArrowRight")
-    assert keys.value() != before
+    keys.moves("ArrowRight", "ArrowRight")
     keys.go("Direct weights measure acceleration")
     keys.press("Enter")
     assert keys.at()
@@ -108,8 +114,7 @@ def test_whose_filters(lesson):
     keys.go("B learnt this arm")
     keys.press("Enter")
     keys.go("Start, up to")
-    keys.press("Home")
-    assert keys.value() == "±0.01"
+    assert keys.moves("Home") == "±0.01"
     keys.question_and_solution()
 
 
