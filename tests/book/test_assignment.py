@@ -16,20 +16,40 @@ import assignment
 
 LESSONS = [page.removeprefix("book/") for page in WALK]
 QUICK = ("dynamics", "window-size")
-# What a notebook does: its cells one after the other, and what each of them prints.
+# What a notebook does: its cells one after the other, and what each prints. Each has a process of
+# its own, forked from one that has imported the libraries of others and nothing else.
 RUN = """
-import contextlib, io, json, sys
-import matplotlib
+import contextlib, io, json, multiprocessing, os, sys, traceback
+import control, matplotlib.pyplot, scipy.signal, sympy, torch
 matplotlib.use("Agg")
-sys.path.insert(0, "")  # as a kernel has it
-space = {"__name__": "__main__"}
-told = []
-for source in json.load(sys.stdin):
-    with contextlib.redirect_stdout(io.StringIO()) as printed:
-        exec(source, space)
-    told.append(printed.getvalue())
-import ddlib, judge
-print(json.dumps([told, ddlib.__file__, "workshop" in sys.modules]))
+assert not {"ddlib", "judge", "workshop"} & set(sys.modules)
+
+def run(cells, pipe):
+    sys.path.insert(0, "")  # as a kernel has it
+    space, told = {"__name__": "__main__"}, []
+    try:
+        for source in cells:
+            with contextlib.redirect_stdout(io.StringIO()) as printed:
+                exec(source, space)
+            told.append(printed.getvalue())
+        import ddlib, judge
+        pipe.send([told, ddlib.__file__, "workshop" in sys.modules, ""])
+    except BaseException:
+        pipe.send([told, "", False, traceback.format_exc()])
+
+for line in sys.stdin:
+    folder, cells = json.loads(line)
+    os.chdir(folder)
+    ours, theirs = multiprocessing.Pipe(False)
+    process = multiprocessing.get_context("fork").Process(target=run, args=(cells, theirs))
+    process.start()
+    theirs.close()
+    try:
+        answer = ours.recv()
+    except EOFError:
+        answer = [[], "", False, "the process ended"]
+    process.join()
+    print(json.dumps(answer), flush=True)
 """
 
 
@@ -38,6 +58,25 @@ def handed_out(tmp_path_factory):
     folder = tmp_path_factory.mktemp("assignments")
     assert {path.name for path in assignment.write("all", folder)} >= set(LESSONS)
     return folder
+
+
+@pytest.fixture(scope="module")
+def cells_run(tmp_path_factory):
+    """``cells_run(folder, cells)`` in a process that finds the folder and installed packages alone.
+
+    What each cell prints, where ddlib was found, whether the book was; the error if there is one.
+    """
+    home = tmp_path_factory.mktemp("home")
+    env = {"PATH": "", "HOME": str(home), "OMP_NUM_THREADS": "1"}
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, "-c", RUN], cwd=home, env=env, **pipes) as server:
+
+        def run(folder, cells):
+            print(json.dumps([str(folder), cells]), file=server.stdin, flush=True)
+            return json.loads(server.stdout.readline())
+
+        yield run
+        server.stdin.close()
 
 
 def read(folder, name):
@@ -63,7 +102,7 @@ def test_every_question_is_there_and_no_solution(handed_out):
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.slow] * (n not in QUICK)) for n in LESSONS]
 )
-def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
+def test_it_runs_alone_and_judges(handed_out, name, cells_run):
     """In a process that finds neither the book nor the repository's ddlib.
 
     As handed out a check says "in place of the dots"; with a solution put in, "Right".
@@ -74,12 +113,8 @@ def test_it_runs_alone_and_judges(handed_out, name, tmp_path):
         if is_check(cell):
             answers.append((len(cells) - 1, len(cells) + 1))
             cells += [found[len(answers) - 1].solution, cell.source, "print(mine)"]
-    done = subprocess.run(
-        [sys.executable, "-c", RUN], input=json.dumps(cells), capture_output=True, text=True,
-        cwd=handed_out / name, env={"PATH": "", "HOME": str(tmp_path), "OMP_NUM_THREADS": "1"},
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    told, package, book = json.loads(done.stdout.splitlines()[-1])
+    told, package, book, error = cells_run(handed_out / name, cells)
+    assert not error, error
     assert package.startswith(str(handed_out)) and not book
     assert len(answers) == len(found) >= 3
     for before, after in answers:
