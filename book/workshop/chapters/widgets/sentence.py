@@ -143,7 +143,7 @@ class LoopSentence(_LiveSentence):
                 "friction": self.FRICTION,
                 "ratios": {"kp": KP[1] / KP[0], "kd": 0.2},
             },
-            "from ddlib.widgets import LoopSentence\n\n"
+            "from workshop.chapters.widgets.sentence import LoopSentence\n\n"
             "LoopSentence().growth(period={period}, kp={kp}, kd={kd}, friction={friction})",
         )  # fmt: skip
 
