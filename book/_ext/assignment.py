@@ -44,6 +44,7 @@ for needed in ("ddlib", "judge", "numpy", "scipy", "sympy", "torch", "control", 
     if find_spec(needed) is None:
         raise ModuleNotFoundError(f"{needed} is not there: see README.md beside this notebook.")"""
 HOW = "**How I found it ({}).** *Say why this is the answer, and how a wrong one would show.*"
+LEAVE = "These are the settings of your assignment. Leave them as they are."
 QUIZ = "## Check yourself\n\nWrite one letter for each question into the cell below."
 READ_ME = """# {0}: an assignment{1}
 
@@ -58,9 +59,8 @@ With Python 3.11 or newer, in this folder:
 On Linux, pip takes a PyTorch of several GB. For the smaller one, made for the CPU, run this before
 the second line: `.venv/bin/python -m pip install {3} --index-url https://download.pytorch.org/whl/cpu`
 
-Run the cells from the top, and leave the settings in *Change this* as they are. Put each answer in
-place of the dots; the cell below judges it. An answer is judged once: to try again, run both cells.
-Below each question, say how you found the answer.
+Run the cells from the top. Put each answer in place of the dots; the cell below judges it. An
+answer is judged once: to try again, run both cells. Below each question, say how you found it.
 
 The judge is judge.py, which asks, and exercises.py, which compares. Both can be read, so if you
 read them, you see what is right. Your explanation is what counts.
@@ -223,8 +223,9 @@ def notebook(path: Path, variant: int = 0):
             cells.append(_cell("code", source, f"check-{count}"))
             cells.append(_cell("markdown", HOW.format(count), f"how-{count}"))
         elif not below and is_open(cell):
-            cells += [_cell("markdown", told)] if told else []
             role = "settings" if CHANGE_THIS in cell.metadata.get("tags", ()) else ""
+            told += f"\n\n{LEAVE}" * bool(role)
+            cells += [_cell("markdown", told)] if told else []
             cells.append(_cell("code", cell.source, role))
             figure = cell.metadata.get("mystnb", {}).get("figure")
             if figure in words.figures:

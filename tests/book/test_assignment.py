@@ -21,8 +21,10 @@ LESSONS = [page.removeprefix("book/") for page in WALK]
 QUICK = ("dynamics", "window-size")
 VARIED = [name for name in LESSONS if not isinstance(solved.variants(name), str)]
 FAST = ("dynamics", "feedback", "inertia-in-the-weights")  # all their variants, at each run
-# Where settings change one question alone, in a lesson that takes long.
-ONLY = {"adaptive-control": 1, "learning-in-the-loop": 1}
+# Where a question is quick whose answer depends on the settings, and others take long.
+ONLY = dict.fromkeys(
+    ("adaptive-control", "learning-in-the-loop", "window-networks", "feedforward"), 1
+)
 # What a notebook does: its cells one after the other, and what each prints. Each has a process of
 # its own, forked from one that has imported the libraries of others and nothing else.
 RUN = """
@@ -120,6 +122,7 @@ def test_students_find_what_they_need(handed_out):
             assert [r for r in roles if r.startswith(kind)] == [
                 f"{kind}-{k}" for k in range(1, count + 1)
             ]
+        assert assignment.LEAVE in made.cells[roles.index("settings") - 1].source
         assert roles.count("settings") == 1 and roles.count("quiz") == 1, name
         text = "\n".join(cell.source for cell in made.cells)
         shown = [*map(int, re.findall(r"\\tag\{(\d+)\}", text))]
