@@ -28,6 +28,7 @@ from solved import Solved, changed, is_check, is_open, is_starter, settings_of, 
 from workshop.chapters.exercises import Between, MultipleOf, OneOf
 
 ROOT = Path(__file__).parents[2]
+TUTORIAL = "use-it-on-your-arm"
 MADE = ROOT / "_build" / "assignments"
 OWN = f"## {HEADING}\n"
 ANSWER = re.compile(r"<details.*?</details>", re.DOTALL)
@@ -68,8 +69,9 @@ read them, you see what is right. Your explanation is what counts.
 
 
 def lessons(root: Path = ROOT) -> dict[str, Path]:
-    """Notebooks whose exercises are judged, by name."""
-    return {p.stem: p for p in chapters(root) if JUDGE.search(p.read_text("utf-8"))}
+    """Notebooks whose exercises are judged, by name; the tutorial for one's own arm is no lesson."""
+    judged = (p for p in chapters(root) if JUDGE.search(p.read_text("utf-8")))
+    return {p.stem: p for p in judged if p.stem != TUTORIAL}
 
 
 def names(node: ast.AST, use: str) -> set[str]:
