@@ -69,7 +69,7 @@ read them, you see what is right. Your explanation is what counts.
 
 
 def lessons(root: Path = ROOT) -> dict[str, Path]:
-    """Notebooks whose exercises are judged, by name; the tutorial for one's own arm is no lesson."""
+    """Notebooks whose exercises are judged, by name, but for the tutorial on one's own arm."""
     judged = (p for p in chapters(root) if JUDGE.search(p.read_text("utf-8")))
     return {p.stem: p for p in judged if p.stem != TUTORIAL}
 
