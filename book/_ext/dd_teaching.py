@@ -30,8 +30,9 @@ ANSWERS = {"answer": "Expected", "wrong": "Commonest wrong answer", "say": "Say"
 
 
 def lectures(root: Path) -> dict[str, dict]:
-    """All lectures, by name."""
-    return yaml.safe_load((root / FILE).read_text(encoding="utf-8"))
+    """All lectures, by name; a part of the book may have none."""
+    path = root / FILE
+    return yaml.safe_load(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
 def address(found: re.Match) -> str:
