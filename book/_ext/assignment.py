@@ -60,8 +60,10 @@ With Python 3.11 or newer, in this folder:
 On Linux, pip takes a PyTorch of several GB. For the smaller one, made for the CPU, run this before
 the second line: `.venv/bin/python -m pip install {3} --index-url https://download.pytorch.org/whl/cpu`
 
-Run the cells from the top. Put each answer in place of the dots; the cell below judges it. An
-answer is judged once: to try again, run both cells. Below each question, say how you found it.
+Run the cells from the top. Put each answer in place of the dots; the cell below judges it. You
+may try as often as you like: change the answer, then run both cells. Below each question, say how
+you found it. In the end write your name into the first cell, run all cells, save, and hand in the
+notebook alone.
 
 The judge is judge.py, which asks, and exercises.py, which compares. Both can be read, so if you
 read them, you see what is right. Your explanation is what counts.
@@ -278,7 +280,7 @@ def slips(one: Solved) -> Iterator[tuple[str, str]]:
             if isinstance(wrong, Between) and np.ndim(wrong.low) == 0:
                 yield _range(wrong), f"Wrong: {why}"
             elif isinstance(wrong, MultipleOf) or callable(wrong):
-                yield "*of this kind*", f"Wrong: {why}"
+                yield "*an answer with this fault*", f"Wrong: {why}"
             elif np.isnan(
                 np.asarray(wrong, dtype=float) if not isinstance(wrong, str) else 0
             ).any():
@@ -329,12 +331,13 @@ def key(path: Path, variant: int) -> str:
             f"The judge says: {one.said}",
             f"**What to say.** {_quoted(words, explained[number - 1])}",
             f"```python\n{one.code}\n```",
+            "What fits within the tolerance is right; of the lines below the first counts.",
             f"| a wrong answer | the judge says |\n| --- | --- |\n{rows}",
         ]
     for k, one in enumerate(questions(ROOT, f"book/{name}"), 1):
         parts += ["## Check yourself"] * (k == 1) + [f"**{k}.** {one['question']}"]
         parts.append(
-            "\n".join(f"- **{a['verdict']}** {a['text']} {a['why']}" for a in one["answers"])
+            "\n".join(f"- **{a['verdict']}** *{a['text']}* {a['why']}" for a in one["answers"])
         )
     return "\n\n".join(parts) + "\n"
 

@@ -21,8 +21,11 @@ FIRST = 2  # sentences of a section that are kept in any case; of evidence, one
 WORD = re.compile(r"[^\W\d_]{8,}")
 STEM = 7  # letters by which words are told apart
 
-ELSEWHERE = {"paper-and-reproduction", "further-reading"}
-"""Sections whose sentences the ledger and the bibliography have as well."""
+ELSEWHERE = re.compile(
+    "paper-and-reproduction|further-reading"
+    "|what-you-can-do-now|what-each-lesson-teaches|lecture-.*|a-class-on-one-lesson.*"
+)
+"""Sections whose sentences the ledger, the bibliography or the lessons have as well."""
 
 OWN = (nodes.section, addnodes.desc, nodes.table, nodes.literal_block, nodes.citation)
 """What is found by itself, or is no prose."""
@@ -60,7 +63,7 @@ def texts_of(doctree: nodes.document, first: int = FIRST) -> dict[str, str]:
     found = {}
     known = set()
     for section in doctree.findall(nodes.section):
-        if section["ids"][0] in ELSEWHERE:
+        if ELSEWHERE.fullmatch(section["ids"][0]):
             continue
         inside = "".join(prose(child) for child in section.children)
         found[section["ids"][0]] = shortened(inside, known, first)

@@ -72,8 +72,8 @@ def by_modulation(
         Width of a bump, s: 12 samples or more, and no longer than the motion; cut to a multiple of
         six samples. Narrow bumps let quantisation through, wide ones lose detail.
     hold : float, optional
-        Time for which the controller holds a torque, s: a sample stands for the torque from then
-        on. Default: as the recording says, its computing time included.
+        Time for which a logged torque acts, s, from its sample on: the shorter of the log's step
+        and the controller's period. Default: as the recording says, its computing time included.
     """
     warn_of_log(recording)
     begin, end = recording.span

@@ -62,8 +62,8 @@ def by_butterworth(
         `by_modulation`: torque and motion then lose the same frequencies, which biases nothing.
         None: an equation for each sample, which gives no intervals.
     hold : float, optional
-        Time for which the controller holds a torque, s: a sample stands for the torque from then
-        on. Default: as the recording says; 0 if it says nothing.
+        Time for which a logged torque acts, s, from its sample on: the shorter of the log's step
+        and the controller's period. Default: as the recording says; 0 if it says nothing.
     rows : Recording, optional
         Whose speeds decide at which samples Coulomb friction has a sure sign, if that is among
         `names`. Default: this one. `instrumental_variables` needs the same rows twice.

@@ -60,7 +60,10 @@ def anchors(path: Path, read) -> set[str]:
     path = path.resolve()
     if path not in ANCHORS:
         tags = read(path).find_all(True)
+        states = (tag.get_text() for tag in tags if "widget-state" in tag.get("type", ""))
+        keys = (key for state in states for key in re.findall(r'"key": "([\w-]+)"', state))
         ANCHORS[path] = {tag.get(key) for tag in tags for key in ("id", "name")}
+        ANCHORS[path] |= {f"{key}-widget" for key in keys}  # as frame.js names them
     return ANCHORS[path]
 
 

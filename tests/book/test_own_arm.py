@@ -230,4 +230,4 @@ def test_checks_say_why_not(run, capsys):
         exec(f"mine = {answer}\n{exercise.check}", space)
         assert re.match("Wrong: this is|Wrong: training keeps", capsys.readouterr().out), answer
     exec(f"arm, mine = None, 1.0\n{EXERCISES[1].check}", space)
-    assert "set an arm in Change this" in capsys.readouterr().out
+    assert "set known in Change this" in capsys.readouterr().out

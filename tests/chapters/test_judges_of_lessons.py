@@ -29,7 +29,7 @@ def test_the_bend_of_a_parabola_has_the_inertia_that_made_its_torque(capsys):
     a, v, q = rng.normal(size=(3, 50, 2, 1))
     windows = (q + v * X + a * X**2 / 2).reshape(50, -1)
     given = windows, a[..., 0] * (5.0, 2.0), 4.4
-    told = {5.0: "Right: three positions already tell an inertia. The arm's own mean is 4.4 kg",
+    told = {5.0: "Right: three positions weigh it roughly. The arm's own mean is 4.4 kg",
             500.0: "Wrong: this is torque per bend.", 0.05: "Wrong: the ends are n samples",
             2.5: "Wrong: the bend is a (n", 2.0: "Wrong: this is the elbow's.",
             5.2: "Wrong: close", 7.0: "Wrong: divide the bend"}  # fmt: skip

@@ -10,8 +10,20 @@ from widget_samples import make, make_kinds
 from ddlib import widgets as room
 from ddlib.learning import TorqueModel, TrainingSet, Weights
 from ddlib.setups import STATE_FEEDBACK, split
+from workshop.chapters.widgets import (
+    builder,
+    feedforward,
+    sentence,
+    terms,
+    throw,
+    tuner,
+    weights,
+    whose,
+    window,
+)
 from workshop.chapters.widgets.weight import OneWeight
 
+LESSONS = builder, feedforward, sentence, terms, throw, tuner, weights, whose, window
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 HIDE = "<style>main > div { display: none }</style>"
@@ -48,30 +60,36 @@ def every():
         *(data.inputs, data.outputs),
     )
     rows = np.random.default_rng(0).normal(size=(2, 5, 9))
-    rounds = [room.GuessRound(*rows, "learnt noise", "A remark.")] * 2
+    rounds = [whose.GuessRound(*rows, "learnt noise", "A remark.")] * 2
     made = {
-        "FilterBuilder": lambda: room.FilterBuilder(np.arange(-10, 11.0) ** 2),
+        "FilterBuilder": lambda: builder.FilterBuilder(np.arange(-10, 11.0) ** 2),
         "FilterExplorer": lambda: room.FilterExplorer({7: ensemble, 11: wide}, (0, 1), step=0.01),
         "FilterFold": lambda: room.FilterFold({"up": rows[0, 0], "down": -rows[0, 0]}, 0.01),
-        "FeedforwardSwitches": lambda: room.FeedforwardSwitches(),
-        "HiddenTorque": lambda: room.HiddenTorque(split(recording)[1]),
-        "LoopSentence": lambda: room.LoopSentence(),
+        "FeedforwardSwitches": lambda: feedforward.FeedforwardSwitches(),
+        "HiddenTorque": lambda: window.HiddenTorque(split(recording)[1]),
+        "LoopSentence": lambda: sentence.LoopSentence(),
         "NetworkTrainer": lambda: room.NetworkTrainer(),
-        "PIDTuner": lambda: room.PIDTuner(),
+        "PIDTuner": lambda: tuner.PIDTuner(),
         "RealArmSwitches": lambda: room.RealArmSwitches(),
-        "SlidingWindow": lambda: room.SlidingWindow({7: single, 11: wide[0]}, split(recording)[1]),
-        "ThrownArm": lambda: room.ThrownArm(single),
-        "TorqueSentence": lambda: room.TorqueSentence(),
-        "TorqueTerms": lambda: room.TorqueTerms(),
+        "SlidingWindow": lambda: window.SlidingWindow(
+            {7: single, 11: wide[0]}, split(recording)[1]
+        ),
+        "ThrownArm": lambda: throw.ThrownArm(single),
+        "TorqueSentence": lambda: sentence.TorqueSentence(),
+        "TorqueTerms": lambda: terms.TorqueTerms(),
         "TrainingPlayer": lambda: room.TrainingPlayer([0, 10, 20], film, recording, member=1),
         "TrajectoryPicker": lambda: room.TrajectoryPicker(),
-        "WeightReader": lambda: room.WeightReader(start, trained, 0.01),
-        "WhoseFilters": lambda: room.WhoseFilters(rounds),
+        "WeightReader": lambda: weights.WeightReader(start, trained, 0.01),
+        "WhoseFilters": lambda: whose.WhoseFilters(rounds),
         "CurveWidget": make,
         "LiveWidget": OneWeight,
         "kinds": make_kinds,
     }
     public = {n for n in dir(room) if hasattr(getattr(room, n), "_esm")}
+    for module in LESSONS:
+        for name, one in vars(module).items():
+            if hasattr(one, "_esm") and one.__module__ == module.__name__ and name[0] != "_":
+                public.add(name)
     assert public - {"CurveWidget", "LiveWidget"} <= set(made), "a widget without a sample"
     return [maker() for maker in made.values()]
 

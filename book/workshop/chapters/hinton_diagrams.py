@@ -216,8 +216,11 @@ def _exercise(number: int, given) -> Exercise:
         parts = rows(stepped), rows(stepped) - rows(begun)
         picture, made = (np.median(roughness(part)) for part in parts)
         slips = (
-            ((made, picture), "the other way round: first the picture."),
-            ((picture, picture), "subtract the start, kept[0], from the weights after the step."),
+            ((made, picture), "the other way round: rows as they stand first."),
+            (
+                (picture, picture),
+                "subtract the start, kept[0][0], from the weights after the step.",
+            ),
         )
         return Exercise(
             "numbers",

@@ -91,7 +91,7 @@ def _exercise(number: int, given=None) -> Exercise:
         )
     if number == 2:
         if given is None:  # a file's
-            unless = [(lambda mine: True, "set an arm in Change this.")]
+            unless = [(lambda mine: True, "set known in Change this.")]
             return Exercise("number", np.nan, "", unless=unless)
         reach = sum(given.lengths)
         stretched = np.zeros(2)

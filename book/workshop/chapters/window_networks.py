@@ -426,7 +426,7 @@ def _exercise(number: int, *given) -> Exercise:
         return Exercise(
             "number",
             right,
-            f"three positions already tell an inertia. The arm's own mean is {own:.1f} kg m².",
+            f"three positions weigh it roughly. The arm's own mean is {own:.1f} kg m².",
             slips,
             "divide the bend by (n Δt)², and find the multiple by least squares.",
             unit="kg m²",

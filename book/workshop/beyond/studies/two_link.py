@@ -2,12 +2,12 @@
 
 Which runs take part was chosen anew, and written down here, before any result of theirs was seen.
 All recordings in which both torques were commanded and the torque column is a current: twelve.
-Five that were here before are out (A0_11, C0_12, C0_13, C1_154220, C1_154548), because their column
-is a command: it has as many values as samples, where currents come in steps of 0.006 N m; it ends
-at exactly 8 N m on both sides in C0; and it changes against the measured velocity, as a damper's
-torque would. Every run but one trains and that one tests, in turn: in A0 five of six, as in the
-report; in C0 and C1 two of three, which is all there is. Networks that are read learnt all runs.
-`checks/instruments.py` needs the commanded torques, so these are in the file, too.
+Five that were here before are out (A0_11, C0_12, C0_13, C1_154220, C1_154548): the builders' tables
+of these have 21 columns in place of 15, and the copy that the data came from, read by place, has
+tau_con for tau_meas. Read by name they could come back. Every run but one trains and that one
+tests, in turn: in A0 five of six, as in the report; in C0 and C1 two of three, which is all there
+is. Networks that are read learnt all runs. `checks/instruments.py` needs the commanded torques, so
+these are in the file, too.
 """
 
 from __future__ import annotations
