@@ -49,11 +49,14 @@ def broken_links(path: Path, read) -> list[str]:
             if not target.is_file():
                 broken.append(link)
             elif anchor and target.suffix == ".html":
-                broken += [link] * (unquote(anchor) not in anchors(target, read))
+                searched = target.stem == "ledger" and anchor.startswith("q=")  # its own search
+                broken += [link] * (not searched and unquote(anchor) not in anchors(target, read))
     return broken
 
 
 ANCHORS: dict[Path, set[str]] = {}
+# Of a widget in its saved state: its own, or that of its style sheet where its script has the key.
+KEY = re.compile(r'(?:"key": "|\.ddlib-(?=trainer|builder))([\w-]+)')
 
 
 def anchors(path: Path, read) -> set[str]:
@@ -61,7 +64,7 @@ def anchors(path: Path, read) -> set[str]:
     if path not in ANCHORS:
         tags = read(path).find_all(True)
         states = (tag.get_text() for tag in tags if "widget-state" in tag.get("type", ""))
-        keys = (key for state in states for key in re.findall(r'"key": "([\w-]+)"', state))
+        keys = (key for state in states for key in KEY.findall(state))
         ANCHORS[path] = {tag.get(key) for tag in tags for key in ("id", "name")}
         ANCHORS[path] |= {f"{key}-widget" for key in keys}  # as frame.js names them
     return ANCHORS[path]
