@@ -285,6 +285,8 @@ def _said() -> None:
     stated("two-longer-less", found["longer holds less"])
     stated("two-beyond-nulls", found["beyond nulls"])
     stated("two-like-nulls", found["like nulls"])
+    stated("two-short-shrinks", found["short shrinks"])
+    stated("two-runs-hardly", found["two runs hardly"])
     stated("two-window-matters", found["window matters"])
     stated("two-long-err", found["long windows err"])
     stated("two-smooth-loses-nothing", found["smooth loses nothing"])

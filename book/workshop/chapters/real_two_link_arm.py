@@ -145,6 +145,8 @@ def findings() -> dict[str, bool]:
         np.abs(_nulls(d)[:, [0, 1], [0, 1], 2]).max(0) / _inertia()[d].min(0) for d in _designs()
     ]
     gains = [[np.median(_inertia(w)[d][:, 0]) for w in (11, 41)] for d in _designs()]
+    short = [float(np.median(found[:, 1])) for found in _inertia(11).values()]
+    pairs = [row["moments"][1][1][2] for row in _designs()["C1"]["predicted"]]
     long = [_gravity(d, "measured")[-1, 0] for d in _designs()]
     cut = {d: _by(d, "Butterworth")[:, 0] for d in _designs()}
     known = [_gravity(d, kind)[0, 0] for kind in ("smooth", "rounded") for d in _designs()]
@@ -155,6 +157,8 @@ def findings() -> dict[str, bool]:
         "longer holds less": bool((np.array(longer) < shorter).all()),
         "beyond nulls": bool((null[0] < 1).all()),
         "like nulls": bool((np.array(null[1:]) > 1).any(1).all()),
+        "short shrinks": all(m < 0.9 * short[0] for m in short[1:]),
+        "two runs hardly": min(pairs) < 1.1 * np.median(_inertia()["A0"][:, 1]),
         "window matters": bool(all(short < 0.6 * long for short, long in gains)),
         "long windows err": bool(long[0] < 0.8 and min(long[1:]) > 1.05),
         "smooth loses nothing": bool(min(known[:3]) > 0.97 and min(known[3:]) > 0.9),

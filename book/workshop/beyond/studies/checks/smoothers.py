@@ -83,9 +83,9 @@ def _kalman(noise):
     return partial(_smoothed, lambda q: kalman_states(q, LOG_STEP, noise * _ROUNDING))
 
 
-_CUTOFFS, _NOISES = (4.0, 6.0, 9.0, 13.0), (2.0, 4.0, 8.0, 16.0)  # Hz; in roundings
+CUTOFFS, _NOISES = (4.0, 6.0, 9.0, 13.0), (2.0, 4.0, 8.0, 16.0)  # Hz; in roundings
 _WAYS: dict[str, dict[tuple, Callable]] = {
-    "Butterworth filter": {(f,): _butterworth(f) for f in _CUTOFFS},
+    "Butterworth filter": {(f,): _butterworth(f) for f in CUTOFFS},
     "Kalman smoother": {(n,): _kalman(n) for n in _NOISES},
     _LEARNT: {
         (w, pull): partial(_learnt, w, pull)
