@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.chapters import joints_three_and_four as chapter
+from beyond.chapters import joints_three_and_four as chapter
 from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")

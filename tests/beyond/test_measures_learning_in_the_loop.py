@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.chapters import learning_in_the_loop as learning
+from beyond.chapters import learning_in_the_loop as learning
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from beyond.chapters import real_arm
 from ddlib.analysis import CLASSES
-from workshop.chapters import real_arm
 from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")

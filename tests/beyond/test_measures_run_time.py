@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 
-from workshop.chapters import run_time
+from beyond.chapters import run_time
 from workshop.report import results
 from workshop.report.evidence.verdicts import rank_correlation
 

@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from workshop.chapters import verdict
+from beyond.chapters import verdict
 from workshop.report.evidence.claims import Claim
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 
 
-def claim(name, setup=None, found="reproduced", measure="chapters.verdict.reproduced_share"):
+def claim(name, setup=None, found="reproduced", measure="beyond.chapters.verdict.reproduced_share"):
     return Claim(
         id=name, claim=name, verdict=found, refuted="-", measure=measure, band={"from": 0.0},
         arguments={} if setup is None else {"setup": setup},

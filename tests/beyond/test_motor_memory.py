@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from workshop.chapters import networks_that_walk as chapter
+from beyond.chapters import networks_that_walk as chapter
 
 
 @pytest.mark.parametrize("lag", [0, 7, 40])

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from traitlets import TraitError
 
+from beyond.chapters.widgets import loop
+from beyond.studies.loop.runs import adaptive as runs
+from beyond.studies.page import learner
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
 from ddlib.widgets._baking.baked import _MAX_BYTES
-from workshop.beyond.studies.loop.runs import adaptive as runs
-from workshop.beyond.studies.page import learner
-from workshop.chapters.widgets import loop
 from workshop.report import results
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from workshop.beyond.studies.lineup import _REFERENCE
-from workshop.beyond.studies.rivals import _GRID, _TORQUES
-from workshop.chapters.widgets.rivals import _MEASURED, RivalPicker
+from beyond.chapters.widgets.rivals import _MEASURED, RivalPicker
+from beyond.studies.lineup import _REFERENCE
+from beyond.studies.rivals import _GRID, _TORQUES
 
 
 @pytest.fixture(scope="module")

@@ -6,10 +6,10 @@ from axe import violations
 from traitlets import TraitError
 from widget_pages import NEXT_FRAME, PATHS, page_of
 
+from beyond.chapters.widgets.stirring import _LINES, StirringPicker
+from beyond.studies.loop.stirring import _PICKER, PLACES
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, reach
 from ddlib.widgets._baking.baked import _MAX_BYTES
-from workshop.beyond.studies.loop.stirring import _PICKER, PLACES
-from workshop.chapters.widgets.stirring import _LINES, StirringPicker
 
 
 @pytest.fixture(scope="module")

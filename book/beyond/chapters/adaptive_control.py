@@ -9,6 +9,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
+from beyond.studies.loop import fair_rivals
+from beyond.studies.loop.runs.adaptive import _FULL
 from ddlib.figures import (
     COLOUR_MAP,
     COLOURS,
@@ -22,8 +24,6 @@ from ddlib.figures import (
 )
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.tables import Table, quote, significant
-from workshop.beyond.studies.loop import fair_rivals
-from workshop.beyond.studies.loop.runs.adaptive import _FULL
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import stated

@@ -8,13 +8,13 @@ from functools import cache
 import numpy as np
 import torch
 
+from beyond.studies.walking import STEP, gradient, layers, torque
 from ddlib import figures
 from ddlib.tables import quote
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
 from workshop import BOOK
-from workshop.beyond.studies.walking import STEP, gradient, layers, torque
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured

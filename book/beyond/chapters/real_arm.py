@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from beyond.chapters import real_two_link_arm as swinging
+from beyond.studies.tx40 import Windowed, identified
 from ddlib import paper
 from ddlib.analysis import CLASSES
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, check_label, illustrate, legend_above
 from ddlib.identification import joint_terms
 from ddlib.learning import p_value
 from ddlib.tables import quote, significant
-from workshop.beyond.studies.tx40 import Windowed, identified
-from workshop.chapters import real_two_link_arm as swinging
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import results
 from workshop.report.evidence.statements import stated

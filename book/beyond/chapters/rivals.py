@@ -11,6 +11,12 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from beyond.measures.rivals import better, row
+from beyond.rivals.bases import Polynomial
+from beyond.rivals.cmac import CMAC
+from beyond.rivals.identified import Identified, Linear
+from beyond.rivals.protocol import Cases
+from beyond.rivals.tables import CellTable
 from ddlib.figures import (
     COLOURS,
     FAINT,
@@ -23,12 +29,6 @@ from ddlib.figures.style import DASHES, INK, JOINTS, NARROW
 from ddlib.setups import JOINT_DAMPING
 from ddlib.simulation import LOG_STEP
 from ddlib.tables import Table, quote
-from workshop.beyond._measures.rivals import better, row
-from workshop.beyond.rivals.bases import Polynomial
-from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.rivals.tables import CellTable
 from workshop.chapters.backpropagation import NETWORKS
 from workshop.chapters.exercises import Between, Exercise, judging
 from workshop.report import committed, results

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from beyond.figures import maps
+from beyond.studies.loop import fair_rivals
 from ddlib import paper
 from ddlib.figures import (
     COLOURS,
@@ -18,8 +20,6 @@ from ddlib.figures import (
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_VISCOUS, STATE_FEEDBACK
 from ddlib.simulation import CONTROL_STEP
 from ddlib.tables import quote, significant
-from workshop.beyond.figures import maps
-from workshop.beyond.studies.loop import fair_rivals
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from beyond.studies.loop.run_time_parts import exact
 from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.tables import Table, how_many, quote, spread
 from ddlib.trajectories import APPENDIX_I, MOTION_SECONDS, pick_and_place
-from workshop.beyond.studies.loop.run_time_parts import exact
 from workshop.chapters.exercises import Exercise, judging
 from workshop.report import results
 from workshop.report.evidence import claims

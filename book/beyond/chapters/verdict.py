@@ -11,22 +11,22 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
+from beyond.chapters.rivals import over
+from beyond.measures import rivals
 from ddlib.figures import COLOURS, FAINT, INK, Illustration, illustrate, legend_above
 from ddlib.figures.style import NARROW
 from ddlib.setups import SETUPS, WINDOWS
 from ddlib.tables import Table, quote, typeset
-from workshop.beyond._measures import rivals
 from workshop.chapters import excitation, start, window_size
 from workshop.chapters.exercises import Exercise, judging
-from workshop.chapters.rivals import over
 from workshop.report import results
-from workshop.report._measures import filter_trial as trial
 from workshop.report.evidence import cards, claims
 from workshop.report.evidence.cards import by_reading, of_kind, tally, worded
 from workshop.report.evidence.claims import SECTIONS, Claim, load
 from workshop.report.evidence.statements import resampled, stated
 from workshop.report.evidence.verdicts import Measured
 from workshop.report.evidence.wall import home, window
+from workshop.report.measures import filter_trial as trial
 
 # How a bar's parts look, in the order of the words
 _LOOKS = (

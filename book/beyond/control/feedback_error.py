@@ -12,17 +12,17 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from beyond.control.adaptive import _PARAMETERS, mixed_regressor
 from ddlib._check import finite_array, integer, non_negative, number, shaped
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.adaptive import _PARAMETERS, mixed_regressor
 
 
 @dataclass(frozen=True)
 class RigidBodyTerms:
     """The regressor's columns and friction: terms that can represent the arm exactly.
 
-    `names` are those of `workshop.beyond.control.adaptive._PARAMETERS`.
+    `names` are those of `beyond.control.adaptive._PARAMETERS`.
     """
 
     names: Sequence[str] = _PARAMETERS[:3]

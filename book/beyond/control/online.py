@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beyond.control.windowed import _reference_windows
 from ddlib._check import integer, non_negative, number, one_of
 from ddlib.control.controllers import ControlLaw, Controller, as_controller
 from ddlib.trajectories import Trajectory
-from workshop.beyond.control.windowed import _reference_windows
 
 _TEACHERS = ("torque", "feedback", "nobody")
 _NEAREST = 0.02  # least distance of a scaled torque from the ends of the output unit

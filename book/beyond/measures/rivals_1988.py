@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from beyond.rivals.tables import table_size
+from beyond.studies.rivals_1988 import _KINDS, _practised_distance
 from ddlib import paper
 from ddlib.learning import Weights
 from ddlib.tables import significant, spread
-from workshop.beyond.rivals.tables import table_size
-from workshop.beyond.studies.rivals_1988 import _KINDS, _practised_distance
 from workshop.report import results
 from workshop.report.evidence.verdicts import Measured, judged, median
 

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.polynomial.polynomial import polyvander
 
+from beyond.rivals.protocol import Rival, _NotFitted
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
-from workshop.beyond.rivals.protocol import Rival, _NotFitted
 
 _MOST = 5000  # functions at most
 _BLOCK = 2000  # cases whose functions are computed at once

@@ -6,9 +6,9 @@ import numpy as np
 from scipy import sparse
 from scipy.linalg import solve_triangular
 
+from beyond.rivals.tables import _Bounded
 from ddlib._check import integer, number
 from ddlib.dynamics import Operations
-from workshop.beyond.rivals.tables import _Bounded
 
 _BLOCK = 300  # cases whose updates are solved at once, by one triangular system
 _WORSE = 1e3  # a training error that has grown this many times has diverged

@@ -16,11 +16,11 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
+from beyond.rivals.identified import Identified
+from beyond.rivals.protocol import _KINDS, Rival
 from ddlib._check import integer, one_of, positive, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
-from workshop.beyond.rivals.identified import Identified
-from workshop.beyond.rivals.protocol import _KINDS, Rival
 
 _STEPS = 100  # iterations that a search for hyperparameters may take
 _TINY = 1e-9  # share of the torque below which what is left over counts as rounding

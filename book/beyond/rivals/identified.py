@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from beyond.rivals.protocol import _KINDS, Rival, _derivative_filters
 from ddlib._check import integer, number, one_of
 from ddlib.dynamics import Operations, Tape
 from ddlib.identification import FRICTION, GRAVITY, RIGID, SIGN_SPEED, from_states, least_squares
 from ddlib.learning import check_width
-from workshop.beyond.rivals.protocol import _KINDS, Rival, _derivative_filters
 
 _RIDGES = tuple(10.0**k for k in range(-12, 1))  # of the largest singular value squared
 

@@ -15,10 +15,10 @@ import torch
 from torch import nn
 from torch.nn import functional
 
+from beyond.rivals.protocol import Rival, _NotFitted
 from ddlib._check import finite_array, integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
-from workshop.beyond.rivals.protocol import Rival, _NotFitted
 
 _GRAVITIES = ("potential", "vector", "none")
 _DIAGONALS = ("softplus", "relu")

@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from torch import nn
 
+from beyond.rivals.protocol import _KINDS, Rival
 from ddlib._check import integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.learning import (
@@ -24,7 +25,6 @@ from ddlib.learning import (
     train_ensemble,
 )
 from ddlib.paper import EPOCHS, HIDDEN_UNITS
-from workshop.beyond.rivals.protocol import _KINDS, Rival
 
 
 class _Network(Rival):

@@ -10,10 +10,10 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial import cKDTree
 
+from beyond.rivals.protocol import _MARGIN, Rival
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
-from workshop.beyond.rivals.protocol import _MARGIN, Rival
 
 _OVER = {"states": 3, "motions": 2, "configurations": 1}  # quantities of a joint that are axes
 _BEYOND = ("refuse", "edge")

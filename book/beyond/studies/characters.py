@@ -11,17 +11,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beyond.others import _Characters, _read_characters as data
+from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.cmac import CMAC
+from beyond.rivals.gaussian import GaussianProcess, _RandomFeatures
+from beyond.rivals.identified import Identified, Linear
+from beyond.rivals.lagrangian import _AS_PUBLISHED, LagrangianNetwork
+from beyond.rivals.networks import BySolver, _ByAdam
+from beyond.rivals.protocol import Cases, Rival
+from beyond.rivals.tables import CellTable, _Nearest
 from ddlib.dynamics import Arm
 from ddlib.identification import GRAVITY, RIGID
-from workshop.beyond.others import _Characters, _read_characters as data
-from workshop.beyond.rivals.bases import Polynomial, _Fourier
-from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures
-from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.lagrangian import _AS_PUBLISHED, LagrangianNetwork
-from workshop.beyond.rivals.networks import BySolver, _ByAdam
-from workshop.beyond.rivals.protocol import Cases, Rival
-from workshop.beyond.rivals.tables import CellTable, _Nearest
 from workshop.report.code_hash import study
 
 _SPLITS = {"loader": ("e", "q", "v"), "figure": ("a", "d", "e")}  # characters of the test

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.cmac import CMAC
+from beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
+from beyond.rivals.identified import Identified, Linear
+from beyond.rivals.lagrangian import LagrangianNetwork
+from beyond.rivals.networks import BySolver, _ByAdam, _ByDescent, _Convolution, _Recurrent
+from beyond.rivals.protocol import Rival
+from beyond.rivals.tables import CellTable, GridTable, _Nearest
 from ddlib.identification import FRICTION, RIGID
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
-from workshop.beyond.rivals.bases import Polynomial, _Fourier
-from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.gaussian import GaussianProcess, _RandomFeatures, _SemiParametric
-from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.lagrangian import LagrangianNetwork
-from workshop.beyond.rivals.networks import BySolver, _ByAdam, _ByDescent, _Convolution, _Recurrent
-from workshop.beyond.rivals.protocol import Rival
-from workshop.beyond.rivals.tables import CellTable, GridTable, _Nearest
 
 _DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes seconds to train
 

@@ -6,22 +6,9 @@ import warnings
 
 import numpy as np
 
-from ddlib import paper
-from ddlib.analysis import (
-    CLASSES,
-    LAYERS,
-    classify,
-    explained,
-    followed,
-    gains,
-    mean_gradient,
-    shares,
-)
-from ddlib.learning import TorqueModel, Weights, surrogates
-from ddlib.trajectories import OutsideFamilyWarning
-from workshop.beyond.rivals.gaussian import GaussianProcess
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.studies.tx40 import (
+from beyond.rivals.gaussian import GaussianProcess
+from beyond.rivals.protocol import Cases
+from beyond.studies.tx40 import (
     _BLOCKS,
     _EPOCHS,
     _HIDDEN,
@@ -37,6 +24,19 @@ from workshop.beyond.studies.tx40 import (
     trained,
     wrong,
 )
+from ddlib import paper
+from ddlib.analysis import (
+    CLASSES,
+    LAYERS,
+    classify,
+    explained,
+    followed,
+    gains,
+    mean_gradient,
+    shares,
+)
+from ddlib.learning import TorqueModel, Weights, surrogates
+from ddlib.trajectories import OutsideFamilyWarning
 from workshop.report.code_hash import study
 
 _COURSE = (10, 30, 100, 300, 1000, 2000, 5000)  # epochs of tests on the way to those of 1988

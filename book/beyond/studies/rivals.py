@@ -8,16 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beyond.rivals.gaussian import GaussianProcess, _SemiParametric
+from beyond.rivals.identified import Identified
+from beyond.rivals.protocol import Cases, Estimating, trial
+from beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, _REFERENCE
 from ddlib.analysis import noise_floor
 from ddlib.identification import FRICTION, RIGID
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
 from ddlib.trajectories import MAX_EXTENT_DEG, OutsideFamilyWarning
-from workshop.beyond.rivals.gaussian import GaussianProcess, _SemiParametric
-from workshop.beyond.rivals.identified import Identified
-from workshop.beyond.rivals.protocol import Cases, Estimating, trial
-from workshop.beyond.studies.lineup import _DAYS as _RECORDINGS, _LINES, _REFERENCE
 from workshop.report import results
 from workshop.report.code_hash import study
 

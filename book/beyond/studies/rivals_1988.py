@@ -8,17 +8,17 @@ from functools import cache
 
 import numpy as np
 
+from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.cmac import CMAC, _Diverged
+from beyond.rivals.identified import Identified
+from beyond.rivals.protocol import Cases, Rival
+from beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
+from beyond.studies.loop.run_time_parts import _square_extents, exact as equations
+from beyond.studies.rivals import _square
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states
 from ddlib.simulation import Recording
 from ddlib.trajectories import OutsideFamilyWarning, random_extents
-from workshop.beyond.rivals.bases import Polynomial, _Fourier
-from workshop.beyond.rivals.cmac import CMAC, _Diverged
-from workshop.beyond.rivals.identified import Identified
-from workshop.beyond.rivals.protocol import Cases, Rival
-from workshop.beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
-from workshop.beyond.studies.loop.run_time_parts import _square_extents, exact as equations
-from workshop.beyond.studies.rivals import _square
 from workshop.report.code_hash import study
 
 _DAYS = (1, 2, 3, 4, 5)

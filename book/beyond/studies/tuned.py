@@ -24,18 +24,15 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
-from ddlib.identification import FilteredEquations
-from ddlib.metrics import rmss
-from ddlib.trajectories import OutsideFamilyWarning
-from workshop.beyond.rivals.bases import Polynomial, _Fourier
-from workshop.beyond.rivals.cmac import CMAC
-from workshop.beyond.rivals.gaussian import GaussianProcess, _SemiParametric
-from workshop.beyond.rivals.identified import Linear, _Rubbing
-from workshop.beyond.rivals.networks import _Convolution, _Recurrent
-from workshop.beyond.rivals.protocol import Cases, Estimating
-from workshop.beyond.rivals.tables import CellTable, GridTable, _LocalPlanes, _Nearest
-from workshop.beyond.studies.checks.learnt_filters import _NAMES, _recorded
-from workshop.beyond.studies.lineup import (
+from beyond.rivals.bases import Polynomial, _Fourier
+from beyond.rivals.cmac import CMAC
+from beyond.rivals.gaussian import GaussianProcess, _SemiParametric
+from beyond.rivals.identified import Linear, _Rubbing
+from beyond.rivals.networks import _Convolution, _Recurrent
+from beyond.rivals.protocol import Cases, Estimating
+from beyond.rivals.tables import CellTable, GridTable, _LocalPlanes, _Nearest
+from beyond.studies.checks.learnt_filters import _NAMES, _recorded
+from beyond.studies.lineup import (
     _REFERENCE,
     _SEARCH,
     _descent,
@@ -43,7 +40,10 @@ from workshop.beyond.studies.lineup import (
     _lagrangian,
     _solver,
 )
-from workshop.beyond.studies.rivals import _BUDGET
+from beyond.studies.rivals import _BUDGET
+from ddlib.identification import FilteredEquations
+from ddlib.metrics import rmss
+from ddlib.trajectories import OutsideFamilyWarning
 from workshop.report.code_hash import study
 
 _DAYS, _FEWER = 8, 5  # recordings of a rival, and of one that takes long to train

@@ -8,10 +8,10 @@ from functools import cache
 import numpy as np
 from scipy.optimize import minimize
 
+from beyond.others import _RealArm, staubli
 from ddlib.analysis import savitzky_golay
 from ddlib.identification import joint_columns
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
-from workshop.beyond.others import _RealArm, staubli
 
 _BLOCKS = 5  # of the recording; each is predicted by what was learnt on the others
 _RATES = {

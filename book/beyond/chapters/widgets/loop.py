@@ -6,12 +6,12 @@ from functools import cache
 
 import numpy as np
 
+from beyond.studies.page.learner import SPEEDS
 from ddlib.dynamics import with_load
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS
 from ddlib.widgets.base import CurveWidget
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.beyond.studies.page.learner import SPEEDS
 from workshop.report import results
 
 _SHOWN = {"a": 0, "b": 1, "d": 2, "F_v1": 3, "F_c1": 5}  # estimates, by place among the parameters

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import traitlets as t
 
+from beyond.studies.loop.motions import Circles, stirred
+from beyond.studies.loop.stirring import PLACES, SHOWN
 from ddlib.dynamics import reach
 from ddlib.figures import JOINTS
 from ddlib.setups import JOINT_DAMPING
@@ -15,8 +17,6 @@ from ddlib.trajectories import MOTION_SECONDS
 from ddlib.widgets.base import SCRIPT, STYLE, CurveWidget, module
 from ddlib.widgets.parts.panels import Panel
 from ddlib.widgets.parts.parameters import Choice
-from workshop.beyond.studies.loop.motions import Circles, stirred
-from workshop.beyond.studies.loop.stirring import PLACES, SHOWN
 from workshop.report import results
 
 _HERE = Path(__file__).parent

@@ -1,9 +1,9 @@
 """Four joints, five motions, the draws of the study of joints: training that is chosen."""
 
+from beyond.studies.loop import joints
+from beyond.studies.loop.chain import chain
+from beyond.studies.loop.runs._conditions import _chosen_decay
 from ddlib.metrics import rmss
-from workshop.beyond.studies.loop import joints
-from workshop.beyond.studies.loop.chain import chain
-from workshop.beyond.studies.loop.runs._conditions import _chosen_decay
 from workshop.report.code_hash import study
 
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from beyond.control.windowed import WindowFeedforward
+from beyond.studies.loop import motions, stirring
 from ddlib.learning import TrainingSet, Weights, train_ensemble
 from ddlib.setups import JOINT_DAMPING
 from ddlib.trajectories import pick_and_place, random_extents
-from workshop.beyond.control.windowed import WindowFeedforward
-from workshop.beyond.studies.loop import motions, stirring
 from workshop.report.code_hash import study
 
 

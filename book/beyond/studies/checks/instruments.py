@@ -15,9 +15,9 @@ from __future__ import annotations
 import joblib
 import numpy as np
 
+from beyond.studies import two_link as arm
 from ddlib.identification import butterworth_states, kalman_states
 from workshop import BOOK
-from workshop.beyond.studies import two_link as arm
 from workshop.report.code_hash import study
 
 _CUTOFFS = (3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 13.0, 16.0, 20.0, 25.0)  # Hz

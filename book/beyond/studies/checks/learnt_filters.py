@@ -14,6 +14,11 @@ from itertools import combinations
 import joblib
 import numpy as np
 
+from beyond.rivals.identified import Linear
+from beyond.rivals.protocol import Cases
+from beyond.studies.lineup import _DAYS
+from beyond.studies.rivals import _EVERY, _GRID, _SAMPLES, _square
+from beyond.studies.tx40 import _BLOCKS, Windowed, known_structure, wrong
 from ddlib.analysis import frequency_response
 from ddlib.identification import (
     FRICTION,
@@ -25,11 +30,6 @@ from ddlib.identification import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, split
 from ddlib.simulation import LOG_STEP, Recording
-from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.studies.lineup import _DAYS
-from workshop.beyond.studies.rivals import _EVERY, _GRID, _SAMPLES, _square
-from workshop.beyond.studies.tx40 import _BLOCKS, Windowed, known_structure, wrong
 from workshop.report.code_hash import study
 
 _NAMES = RIGID + FRICTION

@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.signal import butter, filtfilt
 
+from beyond.studies import two_link as arm
 from ddlib.analysis import gains, mean_gradient
 from ddlib.learning import TorqueModel, TrainingSet, Weights, train_ensemble
-from workshop.beyond.studies import two_link as arm
 from workshop.report.code_hash import study
 
 _WIDTHS, _MARGIN, _SEEDS = (41, 61, 81), 40, 3  # the same cases for each window

@@ -4,8 +4,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from workshop.beyond.others import _FOLDER
-from workshop.beyond.studies.characters import _SEEDS, _SPLITS, _tested, data, states
+from beyond.others import _FOLDER
+from beyond.studies.characters import _SEEDS, _SPLITS, _tested, data, states
 from workshop.report.code_hash import study
 
 _TEN = 10  # published networks, by their seeds

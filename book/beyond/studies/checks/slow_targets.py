@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from workshop.beyond.studies.walking import (
+from beyond.studies.walking import (
     _CASES,
     _FREQUENCIES,
     _MEMBERS,

@@ -21,6 +21,8 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
+from beyond.studies.rivals import _EVERY, _GRID, _square
+from beyond.studies.tuned import _BOOKS_OWN, _DAYS, _FEWER, _RIVALS, _RUNS
 from ddlib.effects import Delay, Quantisation
 from ddlib.identification import (
     FRICTION,
@@ -36,8 +38,6 @@ from ddlib.identification import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, split
 from ddlib.simulation import LOG_STEP, Recording
-from workshop.beyond.studies.rivals import _EVERY, _GRID, _square
-from workshop.beyond.studies.tuned import _BOOKS_OWN, _DAYS, _FEWER, _RIVALS, _RUNS
 from workshop.report.code_hash import study
 
 _LATE = 2  # samples by which a torque sensor is late

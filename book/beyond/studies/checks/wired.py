@@ -6,8 +6,8 @@ from itertools import combinations, product
 
 import numpy as np
 
+from beyond.studies import tx40
 from ddlib.learning import Weights
-from workshop.beyond.studies import tx40
 from workshop.report.code_hash import study
 
 _WIDTHS, _DECAYS = (5, 11, 21), (1e-5, 1e-4)  # to choose from, at 100 samples a second

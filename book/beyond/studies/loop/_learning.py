@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from beyond.control.adaptive import Watched
+from beyond.control.feedback_error import GenericTerms, RigidBodyTerms
+from beyond.control.guarded import _Guarded
+from beyond.control.online import _Abreast
+from beyond.studies.loop import learners
 from ddlib.control import Feedforward
 from ddlib.dynamics import Arm, end_point_error, with_load
 from ddlib.learning import Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import follow
 from ddlib.trajectories import Trajectory, pick_and_place
-from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.feedback_error import GenericTerms, RigidBodyTerms
-from workshop.beyond.control.guarded import _Guarded
-from workshop.beyond.control.online import _Abreast
-from workshop.beyond.studies.loop import learners
 from workshop.report.code_hash import study
 
 _LOAD = 5.0  # kg, in the hand from half-way on

@@ -8,6 +8,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from beyond.control.adaptive import Watched
+from beyond.control.guarded import _Guarded
+from beyond.control.windowed import (
+    WindowFeedforward,
+    _MeasuredWindows,
+    _past_slopes,
+    _poles_inside,
+)
+from beyond.rivals.gaussian import GaussianProcess
+from beyond.rivals.identified import Identified, Linear
+from beyond.rivals.lagrangian import LagrangianNetwork
+from beyond.rivals.networks import BySolver
+from beyond.rivals.protocol import Cases, Estimating
+from beyond.studies.loop import run_time_parts as parts
 from ddlib.control import PID, plant
 from ddlib.dynamics import end_point_error, with_load
 from ddlib.effects import CoulombFriction, Delay, ViscousFriction
@@ -16,20 +30,6 @@ from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, errors, split
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, follow
 from ddlib.trajectories import APPENDIX_I, OutsideFamilyWarning, Trajectory, smooth_pick_and_place
-from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.guarded import _Guarded
-from workshop.beyond.control.windowed import (
-    WindowFeedforward,
-    _MeasuredWindows,
-    _past_slopes,
-    _poles_inside,
-)
-from workshop.beyond.rivals.gaussian import GaussianProcess
-from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.lagrangian import LagrangianNetwork
-from workshop.beyond.rivals.networks import BySolver
-from workshop.beyond.rivals.protocol import Cases, Estimating
-from workshop.beyond.studies.loop import run_time_parts as parts
 from workshop.report import results
 from workshop.report.code_hash import study
 

@@ -7,6 +7,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from beyond.control.adaptive import SlotineLi
+from beyond.studies.loop.run_time_parts import rounded
+from beyond.studies.loop.runs import adaptive as batch
+from beyond.studies.loop.runs.adaptive import _LAWS
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import IDEAL, Backlash, DeadZone, Delay, Effects, Ripple, StribeckFriction
 from ddlib.setups import (
@@ -25,10 +29,6 @@ from ddlib.trajectories import (
     pick_and_place,
     smooth_pick_and_place,
 )
-from workshop.beyond.control.adaptive import SlotineLi
-from workshop.beyond.studies.loop.run_time_parts import rounded
-from workshop.beyond.studies.loop.runs import adaptive as batch
-from workshop.beyond.studies.loop.runs.adaptive import _LAWS
 from workshop.report.code_hash import study
 
 _SEEDS, TRIALS = 10, 4  # runs of a setting; motions of a course, and with a load after it

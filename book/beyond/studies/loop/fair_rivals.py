@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beyond.studies.loop.run_time_parts import rounded
+from beyond.studies.loop.runs.adaptive import LIMITS, SIZES, TRUTH
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
 from ddlib.simulation import CONTROL_STEP, REST
 from ddlib.trajectories import MOTION_SECONDS
-from workshop.beyond.studies.loop.run_time_parts import rounded
-from workshop.beyond.studies.loop.runs.adaptive import LIMITS, SIZES, TRUTH
 
 TRIALS, LOAD = 4, 5.0  # motions with an empty hand, and as many with a load, kg
 _EXTENTS, _CORNER = (40.0, 30.0), 0.2  # degrees; s over which the plan's corners are averaged

@@ -10,6 +10,9 @@ from itertools import pairwise, product
 
 import numpy as np
 
+from beyond.rivals.identified import Linear
+from beyond.rivals.protocol import Cases, _derivative_filters
+from beyond.studies.loop import chain as arms
 from ddlib import paper
 from ddlib.analysis import gains, mean_gradient
 from ddlib.dynamics import (
@@ -26,9 +29,6 @@ from ddlib.learning import NotConverged, Solution, TrainingSet, Weights, solve, 
 from ddlib.metrics import rmss
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK
 from ddlib.simulation import LOG_STEP
-from workshop.beyond.rivals.identified import Linear
-from workshop.beyond.rivals.protocol import Cases, _derivative_filters
-from workshop.beyond.studies.loop import chain as arms
 from workshop.report.code_hash import study
 from workshop.report.exact_states import INITIAL as STATES_INITIAL
 

@@ -6,6 +6,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from beyond.control.adaptive import Watched
+from beyond.control.feedback_error import (
+    FeedbackErrorLearning,
+    GenericTerms,
+    MotionMemory,
+    RigidBodyTerms,
+)
+from beyond.control.online import (
+    LastLayer,
+    OnlineFeedforward,
+    _LinearFilter,
+    _OnlineDescent,
+)
 from ddlib.control import Feedforward
 from ddlib.dynamics import follow_hand
 from ddlib.effects import EncoderZero
@@ -14,19 +27,6 @@ from ddlib.learning import TorqueModel, Weights
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.simulation import CONTROL_STEP
 from ddlib.trajectories import MOTION_SECONDS, Trajectory, smooth_pick_and_place, time_grid
-from workshop.beyond.control.adaptive import Watched
-from workshop.beyond.control.feedback_error import (
-    FeedbackErrorLearning,
-    GenericTerms,
-    MotionMemory,
-    RigidBodyTerms,
-)
-from workshop.beyond.control.online import (
-    LastLayer,
-    OnlineFeedforward,
-    _LinearFilter,
-    _OnlineDescent,
-)
 from workshop.report import results
 
 _SEEDS = 10

@@ -9,6 +9,8 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
+from beyond.rivals.protocol import Cases
+from beyond.studies.loop.run_time_parts import _on_days
 from ddlib._check import finite_array, integer, one_of, positive, seed_number, shaped
 from ddlib.analysis import cells_reached
 from ddlib.dynamics import ELBOWS, Arm, follow_hand
@@ -23,8 +25,6 @@ from ddlib.trajectories import (
     random_extents,
     time_grid,
 )
-from workshop.beyond.rivals.protocol import Cases
-from workshop.beyond.studies.loop.run_time_parts import _on_days
 
 # 1,500 cases each; "both": every second case of the first two
 _FAMILIES = ("pick and place", "circles", "both", "via points")

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beyond.control.windowed import WindowFeedforward
+from beyond.rivals.protocol import _derivative_filters
 from ddlib._check import number
 from ddlib.control import PID, ComputedTorque, Feedforward, closed_loop, plant
 from ddlib.dynamics import Arm, end_point_error, jacobian
@@ -16,8 +18,6 @@ from ddlib.learning import TorqueModel, sliding_windows
 from ddlib.setups import Setup, inside_hull
 from ddlib.simulation import CONTROL_STEP, LOG_STEP, REST, Recording, follow
 from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place, time_grid
-from workshop.beyond.control.windowed import WindowFeedforward
-from workshop.beyond.rivals.protocol import _derivative_filters
 from workshop.report import results
 
 _WIDTH = 21  # samples of a window: the paper's best

@@ -10,6 +10,13 @@ from itertools import product
 
 import numpy as np
 
+from beyond.control.windowed import WindowFeedforward
+from beyond.rivals.identified import Identified, Linear
+from beyond.rivals.networks import BySolver
+from beyond.rivals.protocol import Cases, Estimating, Rival
+from beyond.studies.loop import motions
+from beyond.studies.loop.motions import training
+from beyond.studies.loop.run_time_parts import _through_window, exact
 from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
@@ -24,13 +31,6 @@ from ddlib.trajectories import (
     pick_and_place,
     random_extents,
 )
-from workshop.beyond.control.windowed import WindowFeedforward
-from workshop.beyond.rivals.identified import Identified, Linear
-from workshop.beyond.rivals.networks import BySolver
-from workshop.beyond.rivals.protocol import Cases, Estimating, Rival
-from workshop.beyond.studies.loop import motions
-from workshop.beyond.studies.loop.motions import training
-from workshop.beyond.studies.loop.run_time_parts import _through_window, exact
 from workshop.report import results
 from workshop.report.code_hash import study
 
@@ -38,7 +38,7 @@ _DAYS, _MEMBERS = 10, 40  # of training; members of each family in a test
 _WIDTH, _WIDER = 21, (11, 41)
 
 _NAMES = ("network", "two units", "linear filter", "identified")
-_PICKER = results.FOLDER / "stirring-picker.npz"  # read by `workshop.chapters.widgets.stirring`
+_PICKER = results.FOLDER / "stirring-picker.npz"  # read by `beyond.chapters.widgets.stirring`
 
 # Circles of the picker: centre (m, degrees), radius (m), time of a turn (s), sign of the elbow.
 PLACES = {

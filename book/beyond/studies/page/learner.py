@@ -6,12 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddlib.control import pd
-from ddlib.dynamics import with_load
-from ddlib.effects import CoulombFriction, Effects, ViscousFriction
-from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
-from workshop.beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
-from workshop.beyond.studies.loop.runs.adaptive import (
+from beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
+from beyond.studies.loop.runs.adaptive import (
     _FULL,
     SMOOTH,
     _Behind,
@@ -20,6 +16,10 @@ from workshop.beyond.studies.loop.runs.adaptive import (
     make,
     trial,
 )
+from ddlib.control import pd
+from ddlib.dynamics import with_load
+from ddlib.effects import CoulombFriction, Effects, ViscousFriction
+from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
 from workshop.report.code_hash import study
 
 _LOADS = (0, 5)  # kg, in the hand

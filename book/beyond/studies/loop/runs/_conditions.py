@@ -8,6 +8,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from beyond.control.feedback_error import RigidBodyTerms
+from beyond.control.windowed import WindowFeedforward
+from beyond.rivals.identified import Identified
+from beyond.rivals.networks import BySolver
+from beyond.rivals.protocol import Cases, Estimating
+from beyond.studies.loop import (
+    _learning as learning,
+    joints,
+    learners,
+    motions,
+    run_time_parts as run_time,
+    stirring,
+)
+from beyond.studies.loop.chain import _Sample, chain, extents, recorded
 from ddlib.setups import INITIAL, JOINT_DAMPING, STATE_FEEDBACK, Setup
 from ddlib.trajectories import (
     APPENDIX_I,
@@ -18,20 +32,6 @@ from ddlib.trajectories import (
     random_extents as random_members,
     smooth_pick_and_place,
 )
-from workshop.beyond.control.feedback_error import RigidBodyTerms
-from workshop.beyond.control.windowed import WindowFeedforward
-from workshop.beyond.rivals.identified import Identified
-from workshop.beyond.rivals.networks import BySolver
-from workshop.beyond.rivals.protocol import Cases, Estimating
-from workshop.beyond.studies.loop import (
-    _learning as learning,
-    joints,
-    learners,
-    motions,
-    run_time_parts as run_time,
-    stirring,
-)
-from workshop.beyond.studies.loop.chain import _Sample, chain, extents, recorded
 from workshop.report.code_hash import study
 
 _COPIES = (0.0, 0.02, 0.05, 0.07, 0.1)  # s: smoothing of the plan that exact equations are given

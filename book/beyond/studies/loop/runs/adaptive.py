@@ -8,13 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddlib.control import ComputedTorque, ControlLaw, Controller, pd
-from ddlib.dynamics import CMU_DD_ARM_II, Arm
-from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
-from ddlib.setups import KD, Setup
-from ddlib.simulation import CONTROL_STEP, follow
-from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place
-from workshop.beyond.control.adaptive import (
+from beyond.control.adaptive import (
     _PARAMETERS,
     SlotineLi,
     Watched,
@@ -22,8 +16,14 @@ from workshop.beyond.control.adaptive import (
     _ModelReference,
     mixed_regressor,
 )
-from workshop.beyond.control.guarded import _Guarded
-from workshop.beyond.control.online import _Abreast
+from beyond.control.guarded import _Guarded
+from beyond.control.online import _Abreast
+from ddlib.control import ComputedTorque, ControlLaw, Controller, pd
+from ddlib.dynamics import CMU_DD_ARM_II, Arm
+from ddlib.effects import CMU_DD_ARM_II_EFFECTS, Effects
+from ddlib.setups import KD, Setup
+from ddlib.simulation import CONTROL_STEP, follow
+from ddlib.trajectories import MAX_EXTENT_DEG, MOTION_SECONDS, Trajectory, pick_and_place
 
 _RIGID = _PARAMETERS[:3]
 _FRICTION = _PARAMETERS[5:]
