@@ -215,8 +215,8 @@ def runtime(root: Path, mirror: str, kept: Path, out: Path) -> dict[str, int]:
     ours = {path: content for path, content in ours.items() if not path.startswith(STILL)}
     depends = [name for name in FIRST if name != "ddlib"]
     packages["ddlib"] = wheel("ddlib", distribution("ddlib").version, ours, depends, pyodide)
-    workshop = sources(root / "book" / "workshop", root / "book")
-    (out / "workshop.zip").write_bytes(zipped(workshop))
+    rooms = [sources(root / "book" / name, root / "book") for name in ("workshop", "beyond")]
+    (out / "workshop.zip").write_bytes(zipped(rooms[0] | rooms[1]))
     (pyodide / LOCK).write_text(json.dumps({**lock, "packages": packages}), encoding="utf-8")
     for path in PAGE.iterdir():
         if path.is_file():

@@ -72,7 +72,7 @@ def test_only_what_is_absent_is_installed():
 def test_the_first_cell_fetches_the_book(tmp_path):
     """From a repository in place of the address; then a lesson's judge is found, and data."""
     home = tmp_path / "repository"
-    for part in ("ddlib", "book/workshop", "book/_ext", "book/results", "book/data"):
+    for part in ("ddlib", "book/workshop", "book/beyond", "book/_ext", "book/results", "book/data"):
         shutil.copytree(ROOT / part, home / part, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "book/claims.yml", "book/cards.yml", "book/errata.yml"):
         shutil.copyfile(ROOT / name, home / name)
