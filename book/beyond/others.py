@@ -71,9 +71,9 @@ class _RealArm:
         if now % integer("rate", rate, 1, now):
             raise ValueError(f"rate must divide {now} samples a second, got {rate}")
         many = now // rate
-        count = len(self.t) // many
+        samples = len(self.t) // many
         t, q, current = (
-            x[: count * many].reshape(count, many, *x.shape[1:]).mean(1)
+            x[: samples * many].reshape(samples, many, *x.shape[1:]).mean(1)
             for x in (self.t, self.q, self.current)
         )
         return _RealArm(t, q, current, many * self.step)

@@ -109,8 +109,8 @@ def _read(part: str):
 def _row(part: str, **wanted) -> dict:
     """The one row of a part whose entries have these values."""
     rows = [r for r in _read(part) if all(r[key] == value for key, value in wanted.items())]
-    (found,) = rows
-    return found
+    (row,) = rows
+    return row
 
 
 def errors(joints: int, motions: int, what: str = "test", reading: str = _DAMPED) -> np.ndarray:
@@ -227,8 +227,8 @@ def four_joints_table() -> Table:
     ]
     others = results.read("loop-conditions")["windows"]
     for windows in (750, 300):
-        found = spread(others[f"{windows} of twenty"])
-        rows.append((f"twenty motions, {windows} windows, other draws", found, ""))
+        cell = spread(others[f"{windows} of twenty"])
+        rows.append((f"twenty motions, {windows} windows, other draws", cell, ""))
     return Table(("four joints, error in the test", "all joints", "joints 3 and 4"), rows)
 
 
@@ -299,8 +299,8 @@ def _answer_figure() -> Illustration:
         plain_ticks(left.yaxis)
         legend_above(figure, *left.get_legend_handles_labels())
 
-    told = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
-    alt = f"Errors of networks fall with the number of motions. Four joints, medians: {told}."
+    medians = ", ".join(f"{name} {np.median(each):.2f}" for name, each in _draws().items())
+    alt = f"Errors of networks fall with the number of motions. Four joints, medians: {medians}."
     return illustrate(draw, alt, 7.2, 2.8)
 
 

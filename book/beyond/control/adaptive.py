@@ -159,9 +159,9 @@ class SlotineLi(_Adaptive):
         number("leakage", self.leakage, 0.0)
         for name in self.names:
             one_of("names", name, _PARAMETERS)
-        count = f"(..., {len(self.names)})"
-        non_negative("rate", shaped("rate", self.rate, count))
-        shaped("estimate", self.estimate, count)
+        shape = f"(..., {len(self.names)})"
+        non_negative("rate", shaped("rate", self.rate, shape))
+        shaped("estimate", self.estimate, shape)
 
     def output(self, estimate, wanted: Trajectory, q, qd) -> tuple[np.ndarray, np.ndarray]:
         """Torque ``(..., 2)`` and the estimate's rate of change per second, in continuous time.

@@ -71,11 +71,11 @@ class _OnlineNetwork:
         o = self.activity(features)
         error = self.scaled(torque) - o if error is None else error * self.outputs.gain
         delta = error * o * (1 - o)
-        count, units = delta.shape[-2], self.hidden.shape[-2]
+        cases, units = delta.shape[-2], self.hidden.shape[-2]
         h = features[..., :units]
         back = delta @ self.output[..., :units] * h * (1 - h)
         back, delta = np.swapaxes(back, -1, -2), np.swapaxes(delta, -1, -2)
-        return back @ seen / count, delta @ features / count
+        return back @ seen / cases, delta @ features / cases
 
 
 class _OnlineDescent(_OnlineNetwork):

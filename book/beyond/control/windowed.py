@@ -138,13 +138,13 @@ class _MeasuredWindows:
 def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     """Mean slopes of a model's torque by past samples, N m/rad: (torque, joint, width // 2 + 1)."""
     joints, width = windows.shape[1:]
-    found = np.empty((joints, joints, width // 2 + 1))
-    for joint, tap in np.ndindex(*found.shape[1:]):
+    slopes = np.empty((joints, joints, width // 2 + 1))
+    for joint, tap in np.ndindex(*slopes.shape[1:]):
         shift = np.zeros((joints, width))
         shift[joint, tap] = step
         change = np.asarray(model(windows + shift)) - model(windows - shift)
-        found[:, joint, tap] = change.mean(0) / (2 * step)
-    return found
+        slopes[:, joint, tap] = change.mean(0) / (2 * step)
+    return slopes
 
 
 def _poles_inside(

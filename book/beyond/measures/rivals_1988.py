@@ -158,5 +158,5 @@ def coefficients() -> Measured:
     """Numbers in the smallest polynomial as good as the network on trajectory 6, over its own."""
     rows = _rows("rivals-bases", kind=_KINDS[1], ridge=0)
     enough = [row["count"] for row in rows if np.median(row["trajectory 6"]) <= PRINTED]
-    least = min(int(np.median(count)) for count in enough)
+    least = min(int(np.median(numbers)) for numbers in enough)
     return Measured(least / STORED, f"{least} for {STORED}")

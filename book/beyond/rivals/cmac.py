@@ -55,9 +55,9 @@ class CMAC(_Bounded):
         rows = self._rows(cubes)
         visited = self.known
         slot = np.arange(len(visited)) if self.slots is None else _hashed(visited, self.slots)
-        _, where, count = np.unique(slot, return_inverse=True, return_counts=True)
-        self.visited, self.occupied = len(visited), len(count)  # cubes, and weights that are theirs
-        self.sharing = float((count[where] > 1).mean())  # of the visited cubes
+        _, where, users = np.unique(slot, return_inverse=True, return_counts=True)
+        self.visited, self.occupied = len(visited), len(users)  # cubes, and weights that are theirs
+        self.sharing = float((users[where] > 1).mean())  # of the visited cubes
         # largest squared length of a case's row: 1 if all its cubes have weights of their own
         self.overlap = float(rows.power(2).sum(1).max() / self.layers)
         self.weights = np.zeros((rows.shape[1], torque.shape[1]))
@@ -134,8 +134,8 @@ class CMAC(_Bounded):
 
 def _error(left, deviation) -> float:
     """Root mean square of what is left, in deviations; infinite if it is no number."""
-    found = np.sqrt(np.mean((left / deviation) ** 2))
-    return float(found) if np.isfinite(found) else np.inf
+    error = np.sqrt(np.mean((left / deviation) ** 2))
+    return float(error) if np.isfinite(error) else np.inf
 
 
 def _hashed(numbers, slots: int) -> np.ndarray:

@@ -99,8 +99,8 @@ class GaussianProcess(Rival):
         )
         with warnings.catch_warnings():  # a length at its bound: the feature does not matter
             warnings.simplefilter("ignore", ConvergenceWarning)
-            found = search.fit(features[some], y[some]).kernel_
-        return GaussianProcessRegressor(found, optimizer=None).fit(features, y)
+            fitted = search.fit(features[some], y[some]).kernel_
+        return GaussianProcessRegressor(fitted, optimizer=None).fit(features, y)
 
     def _torque(self, x):
         features = self.inputs(x)
@@ -209,18 +209,18 @@ class _RandomFeatures(Rival):
         self.level, self.unit = torque.mean(0), torque.std(0)
         self.unit = np.where(self.unit > 0, self.unit, 1.0)
         z, target = self.inputs(x), (torque - self.level) / self.unit
-        found = []
+        candidates = []
         for length in self.lengths:
             cosines = RBFSampler(
                 gamma=0.5 / length**2, n_components=self.features, random_state=self.seed
             ).fit(z)
             ridge = RidgeCV(self.PENALTIES, alpha_per_target=True).fit(cosines.transform(z), target)
-            found.append((float(np.sum(ridge.best_score_)), length, cosines, ridge))
-        _, self.length, self.cosines, self.ridge = max(found, key=lambda each: each[0])
+            candidates.append((float(np.sum(ridge.best_score_)), length, cosines, ridge))
+        _, self.length, self.cosines, self.ridge = max(candidates, key=lambda each: each[0])
 
     def _torque(self, x):
-        found = self.ridge.predict(self.cosines.transform(self.inputs(x)))
-        return self.level + self.unit * found.reshape(len(x), -1)
+        scaled = self.ridge.predict(self.cosines.transform(self.inputs(x)))
+        return self.level + self.unit * scaled.reshape(len(x), -1)
 
     def count(self):
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
@@ -238,7 +238,7 @@ class _RandomFeatures(Rival):
 
 def _ascend(objective, start, bounds):
     """Search of hyperparameters, cut off after `_STEPS` iterations."""
-    found = minimize(
+    optimum = minimize(
         objective, start, method="L-BFGS-B", jac=True, bounds=bounds, options={"maxiter": _STEPS}
     )
-    return found.x, found.fun
+    return optimum.x, optimum.fun

@@ -105,10 +105,10 @@ class BySolver(_Network):
     def _train(self, data):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", NotConverged)  # the number of steps is the setting
-            found = solve(
+            solution = solve(
                 self._start(data)[0], data, steps=self.steps, decay=self.decay, progress=False
             )
-        return found.model
+        return solution.model
 
 
 class _ByAdam(_Network):
@@ -196,8 +196,8 @@ class _Sequence(Rival):
 
     def _torque(self, x):
         with torch.no_grad():
-            found = self.network(torch.tensor(self._channels(x), dtype=torch.float32))
-        return self.offset + self.spread * found.numpy().astype(float)
+            output = self.network(torch.tensor(self._channels(x), dtype=torch.float32))
+        return self.offset + self.spread * output.numpy().astype(float)
 
     def count(self):
         numbers = sum(p.numel() for p in self.network.parameters())

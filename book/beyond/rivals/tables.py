@@ -51,9 +51,9 @@ def _cube_corners(u, cells: int) -> tuple[np.ndarray, np.ndarray]:
     for k in range(u.shape[1]):
         both = np.stack([low[:, k], low[:, k] + 1], -1)
         share = np.stack([1 - part[:, k], part[:, k]], -1)
-        count = weights.shape[1]
+        corners = weights.shape[1]
         nodes = np.concatenate(
-            [np.repeat(nodes, 2, 1), np.tile(both, count)[..., None]], -1
+            [np.repeat(nodes, 2, 1), np.tile(both, corners)[..., None]], -1
         )  # the last axis changes fastest
         weights = (weights[..., None] * share[:, None]).reshape(len(u), -1)
     return nodes, weights
@@ -70,13 +70,13 @@ def _full_table(
     if not interpolated:
         middle = (np.clip(np.floor(u * cells), 0, cells - 1) + 0.5) / cells
         return function((middle * size + low.ravel()).reshape(x.shape))
-    found = []
+    answers = []
     for block in np.array_split(u, max(1, len(u) // 1000)):
         nodes, weights = _cube_corners(block, cells)
         states = (nodes / cells * size + low.ravel()).reshape(-1, *x.shape[1:])
         values = function(states).reshape(*weights.shape, -1)
-        found.append(np.einsum("nc,ncj->nj", weights, values))
-    return np.concatenate(found)
+        answers.append(np.einsum("nc,ncj->nj", weights, values))
+    return np.concatenate(answers)
 
 
 class _Bounded(Rival):
@@ -276,14 +276,14 @@ class GridTable(_Bounded):
         self.values = self.mean + hats.T @ cho_solve(cho_factor(gram), torque - self.mean)
 
     def _torque(self, x):
-        found = []
+        answers = []
         for block in np.array_split(self._scaled(x), max(1, len(x) // 1000)):
             index, weights = self._corners(block)
             place = np.minimum(np.searchsorted(self.known, index), len(self.known) - 1)
             known = (self.known[place] == index)[..., None]
             values = np.where(known, self.values[place], self.mean)
-            found.append(np.einsum("nc,ncj->nj", weights, values))
-        return np.concatenate(found)
+            answers.append(np.einsum("nc,ncj->nj", weights, values))
+        return np.concatenate(answers)
 
     def _corners(self, u) -> tuple[np.ndarray, np.ndarray]:
         nodes, weights = _cube_corners(u.reshape(len(u), -1), self.cells)

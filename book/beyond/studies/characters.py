@@ -69,8 +69,8 @@ def states(drawn: _Characters, turned: float = np.pi / 2) -> Cases:
 
 def _parts(torque: Callable, x) -> dict[str, np.ndarray]:
     """Torque, its parts (N m) and mass matrix (kg m^2) that a predictor gives for states."""
-    rest, moved, pushed = x.copy(), x.copy(), x.copy()
-    rest[..., 1:], moved[..., 2], pushed[..., 1] = 0.0, 0.0, 0.0
+    rest, moving, pushed = x.copy(), x.copy(), x.copy()
+    rest[..., 1:], moving[..., 2], pushed[..., 1] = 0.0, 0.0, 0.0
     gravity = torque(rest)
     columns = []
     for j in range(x.shape[1]):
@@ -80,7 +80,7 @@ def _parts(torque: Callable, x) -> dict[str, np.ndarray]:
     return {
         "torque": torque(x),
         "inertial": torque(pushed) - gravity,
-        "coriolis": torque(moved) - gravity,
+        "coriolis": torque(moving) - gravity,
         "gravity": gravity,
         "mass_matrix": np.stack(columns, -1),
     }
@@ -162,16 +162,16 @@ def _as_published() -> dict:
 @study
 def _characters() -> dict:
     """Every rival on both splits; the Lagrangian network also as published, on the loader's."""
-    found = {}
+    by_split = {}
     for split, test in _SPLITS.items():
-        found[split] = {name: _entry(entry, test) for name, entry in _ENTRIES.items()}
+        by_split[split] = {name: _entry(entry, test) for name, entry in _ENTRIES.items()}
         drawn = data().of(test)
-        found[split]["exact equations"] = {"test": [_tested(_exact, drawn)]}
-        found[split]["variance"] = float(drawn.tau.var(0).sum())
+        by_split[split]["exact equations"] = {"test": [_tested(_exact, drawn)]}
+        by_split[split]["variance"] = float(drawn.tau.var(0).sum())
     return {
         "splits": _SPLITS,
         "published": _PUBLISHED,
         "seeds": _SEEDS,
-        "rivals": found,
+        "rivals": by_split,
         "as published": _as_published(),
     }

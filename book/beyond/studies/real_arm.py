@@ -53,8 +53,8 @@ def _grid(members: int) -> list[dict]:
     for rate, widths in _RATES.items():
         for width in widths:
             data = Windowed.of(rate, width)
-            found = [_cell(data, fold, members) for fold in data.folds()]
-            row = {name: np.stack([cell[name] for cell in found]) for name in found[0]}
+            cells = [_cell(data, fold, members) for fold in data.folds()]
+            row = {name: np.stack([cell[name] for cell in cells]) for name in cells[0]}
             rows.append({"rate": rate, "width": width, **row})
     return rows
 
@@ -217,29 +217,29 @@ def _filters(width: int, members: int, draws: int) -> dict:
 
 def _by_block() -> dict:
     """Inertia and friction from each part of the recording but one, and what friction is worth."""
-    data, found = Windowed.of(*_MAIN), []
+    data, fits = Windowed.of(*_MAIN), []
     states = data.states
     for training, _ in data.folds():
         made = identified(states[training], data.current[training])
-        found.append((made.inertia, made.slope, made.viscous, made.coulomb))
-    return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*found))))
+        fits.append((made.inertia, made.slope, made.viscous, made.coulomb))
+    return dict(zip(("inertia", "slope", "viscous", "coulomb"), map(np.array, zip(*fits))))
 
 
 def _hidden_units(members: int) -> dict:
     """Errors of an output layer fitted anew, without hidden units ``(blocks,)`` and with them."""
-    data, found = Windowed.of(*_MAIN), {"training": [], "test": []}
+    data, errors = Windowed.of(*_MAIN), {"training": [], "test": []}
     flat = data.flat
     for cases in data.folds():
         training, given = cases[0], data.current[cases[0]]
         model, *_ = trained(data.x[training], given, members, 0, data.width)
         hidden = model.weights.activity(model.scaled(data.x))[0]
         features = [flat, *(np.column_stack([flat, h]) for h in hidden)]
-        for row, part in zip(found.values(), cases):
+        for row, part in zip(errors.values(), cases):
             fits = [least_squares(x[training], given, x[part]) for x in features]
             row.append([wrong(fit, data, part).mean() for fit in fits])
     return {
         side: {"alone": np.array(x)[:, 0], "with hidden units": np.array(x)[:, 1:]}
-        for side, x in found.items()
+        for side, x in errors.items()
     }
 
 

@@ -77,13 +77,13 @@ def _floors(sets: dict) -> dict:
     """The noise floor of each set (`ddlib.analysis.noise_floor`), for each of `_INPUTS`."""
     (noise,), (encoder,) = JOINT_DAMPING.effects.torque_sensor, JOINT_DAMPING.effects.encoder
     bits = float(np.log2(2 * np.pi / encoder.step))
-    found = {inputs: {} for inputs in _INPUTS}
+    floors = {inputs: {} for inputs in _INPUTS}
     for name, cases in sets.items():
         deviation = cases.torque.std(0)
         share = float(np.sqrt(np.mean((np.array(noise.std) / deviation) ** 2)))
         known = JOINT_DAMPING.arm, deviation, _SAMPLES, bits, share, LOG_STEP
-        found["positions"][name], found["exact states"][name] = noise_floor(*known), share
-    return found
+        floors["positions"][name], floors["exact states"][name] = noise_floor(*known), share
+    return floors
 
 
 @study
@@ -98,12 +98,12 @@ def _rivals() -> dict:
                 rival = _seen(line, inputs, size, day)
                 if rival is None:
                     continue
-                found = trial(rival, sets[inputs]["training"], sets[inputs])
-                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, found))
-                row["seconds"].append(found.seconds)
-                for part, error in found.rmss.items():
+                tried = trial(rival, sets[inputs]["training"], sets[inputs])
+                row = rows.setdefault((name, inputs, size), _row(name, inputs, size, tried))
+                row["seconds"].append(tried.seconds)
+                for part, error in tried.rmss.items():
                     row["errors"][part].append(error)
-                affordable = name not in torques or found.count <= _BUDGET
+                affordable = name not in torques or tried.count <= _BUDGET
                 if day == 1 and inputs == "positions" and affordable:
                     torques[name] = _asked(rival, asked)
         if day == 1:
@@ -164,11 +164,11 @@ def _interval_row(rival, cases: Cases) -> dict:
     within = isinstance(rival, Estimating)
     deviation = getattr(rival.rival if within else rival, "deviation", None)
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
-        found = rival.torque(cases.x)
-        row = {"rmss": float(rmss(found, cases.torque))}
+        predicted = rival.torque(cases.x)
+        row = {"rmss": float(rmss(predicted, cases.torque))}
         if deviation is not None:
             width = _SIGMAS * deviation(cases.x @ rival.filters.T if within else cases.x)
-            row["covered"] = float((np.abs(found - cases.torque) <= width).mean())
+            row["covered"] = float((np.abs(predicted - cases.torque) <= width).mean())
             row["half width"] = width.mean(0)
     return row
 

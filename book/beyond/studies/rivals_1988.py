@@ -109,11 +109,11 @@ def _rivals_tables(days=_DAYS) -> dict:
     for kind in _KINDS:
         sets = {day: _day(day, kind) for day in days}
         for over, cells in [("nearest", 0), *((o, n) for o, some in _CELLS.items() for n in some)]:
-            found = []
+            by_day = []
             for day in days:
                 rival = _table(over, cells).fit(sets[day]["training"])
-                found.append(_errors(rival, sets[day]) | {"count": rival.count()})
-            rows.append({"kind": kind, "over": over, "cells": cells, **_over_days(found)})
+                by_day.append(_errors(rival, sets[day]) | {"count": rival.count()})
+            rows.append({"kind": kind, "over": over, "cells": cells, **_over_days(by_day)})
     return {
         "days": list(days),
         "floor": [_floor(day) for day in days],
@@ -141,7 +141,7 @@ def _families() -> dict[str, list[Rival]]:
 def _around(kind: str, days) -> dict:
     """What learnt one trajectory: its error there by repetitions, and all over the square."""
     names = (*_families(), *(f"{name}, varied" for name in _VARIED))
-    found, floor = {name: [] for name in names}, []
+    by_name, floor = {name: [] for name in names}, []
     for day in days:
         numbers = [1000 * day + k for k in range(PRACTICE + 2)]
         setups = [JOINT_DAMPING.repeated(number) for number in numbers]
@@ -167,14 +167,14 @@ def _around(kind: str, days) -> dict:
                 _map(best.fit(training), everywhere, scale)[practised][0]
                 for training in by_amount[:-1]
             ]
-            found[name].append(
+            by_name[name].append(
                 {"there": [*there, errors[practised][0]], "errors": errors,
                  "cells": getattr(best, "cells", 0)}
             )  # fmt: skip
             if name in _VARIED:
                 errors = _map(best.fit(varied), everywhere, scale)
-                found[f"{name}, varied"].append({"errors": errors})
-    return {name: _over_days(some) for name, some in found.items()} | {"floor": floor}
+                by_name[f"{name}, varied"].append({"errors": errors})
+    return {name: _over_days(some) for name, some in by_name.items()} | {"floor": floor}
 
 
 def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
@@ -198,8 +198,8 @@ def _full() -> dict:
 
     exact, reached = torque(states), []
     for cells in _FULL:
-        table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
-        reached.append(1 - float(table.empty(states).mean()))
+        cell_table = CellTable(cells, limits=limits).fit(Cases(seen, torque(seen), "states", 0.01))
+        reached.append(1 - float(cell_table.empty(states).mean()))
     errors = {
         name: [
             float(rmss(_full_table(torque, states, limits, n, interpolated=smooth), exact))
@@ -229,8 +229,8 @@ def _rivals_cmac(days=_DAYS) -> dict:
     for kind in _KINDS:
         sets = {day: _day(day, kind) for day in days}
         for setting in settings if kind == _KINDS[1] else settings[: len(_WIDTHS)]:
-            found = [_cmac(sets[day], setting) for day in days]
-            rows.append({"kind": kind, **setting, **_over_days(found)})
+            by_day = [_cmac(sets[day], setting) for day in days]
+            rows.append({"kind": kind, **setting, **_over_days(by_day)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
     return {"days": list(days), "floor": list(map(_floor, days)), "rows": rows, "chosen": chosen}
 
@@ -309,11 +309,11 @@ def _rivals_bases(days=_DAYS) -> dict:
         sets = {day: _day(day, kind) for day in days}
         for name, (make, highest) in list(_BASES.items())[: None if kind == _KINDS[1] else 1]:
             for order in range(1, highest + 1):
-                found = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
+                by_day = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
                 for k, ridge in enumerate(_RIDGES):
                     rows.append(
                         {"kind": kind, "basis": name, "order": order, "ridge": ridge}
-                        | _over_days([each[k] for each in found])
+                        | _over_days([each[k] for each in by_day])
                     )
     for name in ("chebyshev", "fourier"):
         chosen[name] = [_left_out(*_BASES[name], sets[day]["training"]) for day in days]
@@ -324,13 +324,13 @@ def _by_ridge(rival: Rival, training: Cases, sets: dict[str, Cases]) -> list[dic
     """Errors for each penalty; the functions of a set are computed once."""
     rival.fit(training)
     fitted = [rival.with_ridge(ridge) for ridge in _RIDGES]
-    found = [{"count": each.count()} for each in fitted]
+    rows = [{"count": each.count()} for each in fitted]
     for name, cases in sets.items():
         design = np.concatenate([rival.design(x) for x in np.array_split(cases.x, 5)])
-        for row, each in zip(found, fitted):
+        for row, each in zip(rows, fitted):
             predicted = each.mean + design @ each.coefficients
             row[name] = float(rmss(predicted, cases.torque))
-    return found
+    return rows
 
 
 def _left_out(make, highest: int, training: Cases) -> dict:

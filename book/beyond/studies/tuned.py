@@ -179,10 +179,10 @@ def _tuned() -> dict:
     """Chosen settings, stored numbers and errors of each rival, day by day."""
     jobs = [(name, day) for name, r in _RIVALS.items() for day in range(1, r.days + 1)]
     with joblib.parallel_config("loky", n_jobs=-1, inner_max_num_threads=1):
-        found = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
+        entries = dict(zip(jobs, joblib.Parallel()(joblib.delayed(_job)(*job) for job in jobs)))
     rows = {}
     for name, line in _RIVALS.items():
-        days = [found[name, day] for day in range(1, line.days + 1)]
+        days = [entries[name, day] for day in range(1, line.days + 1)]
         row = {key: [each[key] for each in days] for key in days[0]}
         row["errors"] = {k: [each["errors"][k] for each in days] for k in days[0]["errors"]}
         row["within"] = max(row["count"]) <= _BUDGET

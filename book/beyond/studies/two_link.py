@@ -64,8 +64,15 @@ _MEMBERS, _ELBOW = 10, np.linspace(-1.5, 1.5, 7)  # networks that are read; rad
 def _published(m1, m2, l1, r1, r2, i1, i2, rotor, f1, f2) -> dict[str, float]:
     """The builders' parameters (kg, m, kg m^2, N m) in the order of `_regressor`."""
     a, d, g1 = i1 + i2 + m2 * l1**2 + 37 * rotor, i2 - 6 * rotor, 9.81 * (m1 * r1 + m2 * l1)
-    found = {"a": a, "b": m2 * l1 * r2, "d": d, "g1": g1, "g2": 9.81 * m2 * r2, "r": 42 * rotor}
-    return found | {"F_v1": 0.001, "F_v2": 0.001, "F_c1": f1, "F_c2": f2, "o1": 0.0, "o2": 0.0}
+    parameters = {
+        "a": a,
+        "b": m2 * l1 * r2,
+        "d": d,
+        "g1": g1,
+        "g2": 9.81 * m2 * r2,
+        "r": 42 * rotor,
+    }
+    return parameters | {"F_v1": 0.001, "F_v2": 0.001, "F_c1": f1, "F_c2": f2, "o1": 0.0, "o2": 0.0}
 
 
 # What the builders identified, by design: kg m^2, N m, N m s/rad; their gears are 6 to 1
@@ -82,9 +89,9 @@ def _recording(run: str, step: float = _STEP) -> tuple[np.ndarray, np.ndarray]:
     with np.load(BOOK / "data" / "double-pendulum.npz") as kept:
         t, *columns = kept[run][:, :5].astype(float).T
     many = round(1000 * step)  # milliseconds
-    count = int((t[-1] - t[0]) / step)
-    fine = t[0] + 1e-3 * np.arange(count * many)
-    q1, q2, tau1, tau2 = (np.interp(fine, t, x).reshape(count, many).mean(1) for x in columns)
+    samples = int((t[-1] - t[0]) / step)
+    fine = t[0] + 1e-3 * np.arange(samples * many)
+    q1, q2, tau1, tau2 = (np.interp(fine, t, x).reshape(samples, many).mean(1) for x in columns)
     return np.stack([q1, q2], -1), np.stack([tau1, tau2], -1)
 
 
@@ -96,8 +103,8 @@ def _regressor(states) -> np.ndarray:
 
 
 def _states(q, width, step=_STEP, degree=3) -> np.ndarray:
-    found = [savgol_filter(q, width, degree, k, step, axis=0) for k in range(3)]
-    return np.stack(found, -1)
+    derivatives = [savgol_filter(q, width, degree, k, step, axis=0) for k in range(3)]
+    return np.stack(derivatives, -1)
 
 
 def _solved(rows, torque) -> np.ndarray:
@@ -201,8 +208,8 @@ def _linear(runs, others, setting) -> list[float]:
 
 def _rigid(runs, others, setting) -> list[float]:
     torque = "smooth torque" if setting[1] == "averaged" else "torque"
-    found = _solved(_all(runs, setting), _all(runs, torque))
-    return [_error(_cases(run)[setting] @ found, run) for run in others]
+    parameters = _solved(_all(runs, setting), _all(runs, torque))
+    return [_error(_cases(run)[setting] @ parameters, run) for run in others]
 
 
 def _tuned(model, settings, runs, others) -> list[float]:
@@ -291,29 +298,31 @@ def _predicted(design) -> list[dict]:
 
 def _slopes(states, parameters) -> np.ndarray:
     """How torques change with states, ``(cases, torque, joint, 3)``; friction by its best line."""
-    rigid, found = np.where(np.arange(12) < 6, parameters, 0.0), np.zeros((len(states), 2, 2, 3))
+    rigid, slopes = np.where(np.arange(12) < 6, parameters, 0.0), np.zeros((len(states), 2, 2, 3))
     for j, k in np.ndindex(2, 3):
         nudge = np.zeros((2, 3))
         nudge[j, k] = 1e-4
         up, down = (_regressor(states + sign * nudge) @ rigid for sign in (1, -1))
-        found[..., j, k] = (up - down) / 2e-4
+        slopes[..., j, k] = (up - down) / 2e-4
     force = _regressor(states)[..., 6:10] @ parameters[6:10]
     v = states[..., 1]
-    found[:, [0, 1], [0, 1], 1] += (force * v).mean(0) / (v**2).mean(0)
-    return found
+    slopes[:, [0, 1], [0, 1], 1] += (force * v).mean(0) / (v**2).mean(0)
+    return slopes
 
 
 def _unrelated(runs, kind, seed) -> np.ndarray:
     """Torques of the same runs, or of others, moved in time around their ends."""
     rng, torques = np.random.default_rng(seed), [_cases(run)["torque"] for run in runs]
     sources = np.roll(np.arange(len(runs)), rng.integers(1, len(runs)))
-    moved = []
+    shifted = []
     for torque, source in zip(torques, sources):
         if kind == "other run":
             torque = np.resize(torques[source], torque.shape)
-        count = len(torque)
-        moved.append(np.roll(torque, rng.integers(count // 10, count - count // 10), axis=0))
-    return np.concatenate(moved)
+        samples = len(torque)
+        shifted.append(
+            np.roll(torque, rng.integers(samples // 10, samples - samples // 10), axis=0)
+        )
+    return np.concatenate(shifted)
 
 
 def _read(design, width) -> dict:
@@ -334,14 +343,17 @@ def _read(design, width) -> dict:
         "linear": gains(ridge_filters(data, [1e-6])[0], _STEP),
         "training": errors,
     }
-    told = np.concatenate([cut(_still(r)[-1]) for r in runs])
+    published_torque = np.concatenate([cut(_still(r)[-1]) for r in runs])
     smooth = [_still(r)[0] for r in runs]
     still = [_windows(q, width, cut(np.arange(len(q)))) for q in smooth]
-    for name, seen, goal in (("solved", x, torque), ("solved, known", np.concatenate(still), told)):
+    for name, seen, goal in (
+        ("solved", x, torque),
+        ("solved, known", np.concatenate(still), published_torque),
+    ):
         solved = _optimal(seen, goal, _MEMBERS // 2, _DECAYS[0], 2 * _STEPS)
         row[name] = gains(mean_gradient(solved, seen), _STEP)
     if width == _WIDTHS[-1]:
-        exact, *_ = _learnt(x, told, _MEMBERS)
+        exact, *_ = _learnt(x, published_torque, _MEMBERS)
         row["exact"] = gains(mean_gradient(exact, x), _STEP)
         for kind in ("shifted", "other run"):
             targets = np.stack([_unrelated(runs, kind, k) for k in range(_MEMBERS)])

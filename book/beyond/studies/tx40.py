@@ -43,11 +43,11 @@ class Windowed:
     @classmethod
     def of(cls, rate: int, width: int) -> Windowed:
         """The cases of 100, 200 or 500 samples a second and of a window size."""
-        found, many = _recorded(rate), rate // 100
+        recording, many = _recorded(rate), rate // 100
         centres = np.arange(SLOTS.start, SLOTS.stop) * many + many // 2
         around = np.arange(width) - width // 2
-        x = found.q[centres[:, None] + around]
-        return cls(rate, width, np.moveaxis(x, 1, 2), found.current[centres])
+        x = recording.q[centres[:, None] + around]
+        return cls(rate, width, np.moveaxis(x, 1, 2), recording.current[centres])
 
     @property
     def step(self) -> float:
@@ -160,7 +160,7 @@ class _Identified:
 
 def identified(states, current) -> _Identified:
     """The known structure fitted to states ``(cases, 6, 3)`` and currents ``(cases, 6)``."""
-    speed, found = states[..., 1], []
+    speed, by_joint = states[..., 1], []
     for j in range(current.shape[1]):
         a, free = joint_columns(states, j), joint_columns(states, j, friction=False)
         factors = _fitted(a, current[:, j])
@@ -172,8 +172,8 @@ def identified(states, current) -> _Identified:
         more = (joint_columns(pushed, j) - a) @ factors
         slope = np.linalg.lstsq(speed - speed.mean(0), rubbing - rubbing.mean(), rcond=None)[0][j]
         rest = a @ factors - rubbing
-        found.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
-    inertia, slope, viscous, coulomb, rubbing, rest = zip(*found)
+        by_joint.append((more.mean(), slope, *factors[place : place + 2], rubbing, rest))
+    inertia, slope, viscous, coulomb, rubbing, rest = zip(*by_joint)
     arrays = map(np.array, (inertia, slope, viscous, coulomb))
     return _Identified(*arrays, np.stack(rubbing, -1), np.stack(rest, -1))
 
@@ -238,5 +238,5 @@ def _decayed(x, y, start: Weights, decay: float, steps: int = 300) -> TorqueMode
         return value / 2, np.concatenate([s.ravel() for s in slopes])
 
     begin = np.concatenate([getattr(start, name).ravel() for name in names])
-    found = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
-    return TorqueModel(Weights(*parts(found.x)), data.inputs, data.outputs)
+    optimum = minimize(objective, begin, jac=True, method="L-BFGS-B", options={"maxiter": steps})
+    return TorqueModel(Weights(*parts(optimum.x)), data.inputs, data.outputs)

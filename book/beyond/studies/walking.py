@@ -56,11 +56,11 @@ def _histories(cases: int, seed: int, target: str = "smooth") -> np.ndarray:
         since = np.arange(cases)[:, None] % _HOLD  # samples since the last jump
         when = -STEP * (since + _HOLD * np.ceil((np.arange(3) - since) / _HOLD))
     for _ in range(3):
-        moved, wanted = rng.uniform(*_SIZES, (2, cases, 1))
+        swings, wanted = rng.uniform(*_SIZES, (2, cases, 1))
         w = 2 * np.pi * rng.uniform(*_FREQUENCIES, (cases, 1))
         first, second = rng.uniform(0, 2 * np.pi, (2, cases, 1))
-        error += moved * np.sin(w * t + first) - wanted * np.sin(w * when + second)
-        velocity += moved * w * np.cos(w * t + first)
+        error += swings * np.sin(w * t + first) - wanted * np.sin(w * when + second)
+        velocity += swings * w * np.cos(w * t + first)
     return np.concatenate([error, velocity], axis=1)
 
 
@@ -131,5 +131,5 @@ def _walking() -> dict:
         ]
         drawn.append(gradient(x, random).mean(0) * y.std() / torque(x, random).std())
     own = gradient(x, network).mean(0)
-    told = {f"network, {target}": gradient(z, network).mean(0) for target, z in others.items()}
-    return {"step": STEP, "network": own, **told, "random": np.array(drawn), **rows}
+    by_target = {f"network, {target}": gradient(z, network).mean(0) for target, z in others.items()}
+    return {"step": STEP, "network": own, **by_target, "random": np.array(drawn), **rows}

@@ -57,13 +57,13 @@ def places() -> dict[str, tuple[str, str]]:
 
     They have no other use, so their names begin with an underscore, which results do without.
     """
-    found = {}
+    studies = {}
     for root, folder in _ROOTS.items():
         for path in sorted(folder.rglob("studies/**/*.py")):
             module = ".".join((root, *path.relative_to(folder).with_suffix("").parts))
             for name in _studies(path.read_text(encoding="utf-8")):
-                found[name.strip("_").replace("_", "-")] = module, name
-    return found
+                studies[name.strip("_").replace("_", "-")] = module, name
+    return studies
 
 
 def _run(result: str) -> dict:

@@ -28,12 +28,12 @@ from workshop.report.code_hash import _run, code_hash, places
 def _picture() -> None:
     """The README's picture: two filters found in the networks of window 21."""
     networks = results.networks(21).weights
-    found = {
+    filters = {
         f"{name} filter": upright(purest(networks.hidden_weights, name))
         for name in ("velocity", "acceleration")
     }
     target = results.FOLDER.parent / "_static" / "readme.svg"
-    figures.decomposed(found, LOG_STEP).save(target)
+    figures.decomposed(filters, LOG_STEP).save(target)
 
 
 def _make(name: str, code: str) -> None:

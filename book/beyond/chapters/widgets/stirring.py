@@ -72,7 +72,7 @@ class StirringPicker(CurveWidget):
             *(
                 Panel(
                     f"{joint.title()} torque, N m",
-                    {f"{joint}, {line}": told for line, told in _LINES.items()},
+                    {f"{joint}, {line}": label for line, label in _LINES.items()},
                     seconds,
                     times,
                     y_fit=True,

@@ -14,10 +14,10 @@ def _joints_chosen() -> dict:
     for seed in range(1, 1 + joints._SEEDS):
         five = joints.sets(chain(4), 5, seed)
         decay, steps = _chosen_decay(five, seed)
-        found = joints.solved(*five.pair, test.pair, seed=seed, decay=decay, steps=steps)
+        solution = joints.solved(*five.pair, test.pair, seed=seed, decay=decay, steps=steps)
         rows["chosen"].append((decay, steps))
         rows["by joint"].append(
-            rmss(found.model[0].torque(test.windows), test.torque, pooled=False)
+            rmss(solution.model[0].torque(test.windows), test.torque, pooled=False)
         )
-        rows["test"].append(float(found.history.test[-1, 0]))
+        rows["test"].append(float(solution.history.test[-1, 0]))
     return rows

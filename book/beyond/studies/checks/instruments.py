@@ -52,17 +52,17 @@ def _by_instruments(runs, width) -> np.ndarray:
     torque = _joined([measured for _, measured in recordings])
     spread = torque.std(0)
     a, y = (rows / spread[:, None]).reshape(torque.size, -1), (torque / spread).ravel()
-    found = np.linalg.lstsq(a, y)[0]
+    parameters = np.linalg.lstsq(a, y)[0]
     smooth = [arm._states(q, _SMOOTH) for q, _ in recordings]
     for _ in range(_ROUNDS):
         made = [
-            np.concatenate([s[..., :2], _caused(found, s, _commanded(run))[..., None]], -1)
+            np.concatenate([s[..., :2], _caused(parameters, s, _commanded(run))[..., None]], -1)
             for run, s in zip(runs, smooth)
         ]
         z = _joined([arm._regressor(s) for s in made])
         z = (z / spread[:, None]).reshape(torque.size, -1)
-        found = np.linalg.solve(z.T @ a, z.T @ y)
-    return found
+        parameters = np.linalg.solve(z.T @ a, z.T @ y)
+    return parameters
 
 
 def _by_states(runs, states_of, both) -> np.ndarray:
@@ -93,9 +93,9 @@ def _sure(runs, way, *how) -> dict:
 def _two_link_instruments() -> dict:
     """Parameters of each design by window, by cutoff, and by the likeliest smoother."""
     tasks = {"instruments": (_by_instruments, [(w,) for w in arm._LENGTHS])}
-    for both, told in ((False, ""), (True, ", both sides")):
-        tasks["Butterworth" + told] = _butterworth, [(f, both) for f in _CUTOFFS]
-        tasks["Kalman" + told] = _kalman, [(both,)]
+    for both, suffix in ((False, ""), (True, ", both sides")):
+        tasks["Butterworth" + suffix] = _butterworth, [(f, both) for f in _CUTOFFS]
+        tasks["Kalman" + suffix] = _kalman, [(both,)]
     jobs = [
         (design, name, way, how)
         for design in arm._RUNS
@@ -106,6 +106,6 @@ def _two_link_instruments() -> dict:
         run = joblib.delayed(lambda d, way, how: _sure(arm._RUNS[d], way, *how))
         made = joblib.Parallel()(run(design, way, how) for design, _, way, how in jobs)
     designs = {design: {name: [] for name in tasks} for design in arm._RUNS}
-    for (design, name, *_), found in zip(jobs, made):
-        designs[design][name].append(found)
+    for (design, name, *_), parameters in zip(jobs, made):
+        designs[design][name].append(parameters)
     return {"lengths": arm._LENGTHS, "cutoffs": _CUTOFFS, "designs": designs}

@@ -73,12 +73,12 @@ def _fitted(parts, width, pull=None, learn=_FILTERS) -> tuple[FilteredEquations,
 
 def _day(day: int) -> dict:
     """All of one day of the simulated arm."""
-    parts, found = _recorded(day), {"errors": {}, "found": {}}
+    parts, result = _recorded(day), {"errors": {}, "found": {}}
     for width in _WIDTHS:
-        made, found["errors"][str(width)] = _fitted(parts, width)
-        fixed, found["errors"][f"{width}, none learnt"] = _fitted(parts, width, 1.0, ())
+        made, result["errors"][str(width)] = _fitted(parts, width)
+        fixed, result["errors"][f"{width}, none learnt"] = _fitted(parts, width, 1.0, ())
         true = true_parameters(JOINT_DAMPING.arm, JOINT_DAMPING.effects, _NAMES)
-        found["found"][str(width)] = {
+        result["found"][str(width)] = {
             "pull": made.pull,
             "filters": made.filters,
             "errors of filters": made.filter_errors,
@@ -87,17 +87,17 @@ def _day(day: int) -> dict:
             "covered": replace(made.estimate, unsure=None).covers(true),
         }
         if width == _SAMPLES:
-            for count in (1, 2):
-                for learn in combinations(_FILTERS, count):
+            for number in (1, 2):
+                for learn in combinations(_FILTERS, number):
                     name = " and ".join(learn)
-                    found["errors"][name] = _fitted(parts, width, made.pull, learn)[1]
+                    result["errors"][name] = _fitted(parts, width, made.pull, learn)[1]
     others = {name: (_other_encoder(r, day), every) for name, (r, every) in parts.items()}
-    made, found["errors"]["other encoder"] = _fitted(others, _SAMPLES)
-    found["found"]["other encoder"] = {"filters": made.filters}
-    found["errors"]["other encoder, none learnt"] = _fitted(others, _SAMPLES, 1.0, ())[1]
+    made, result["errors"]["other encoder"] = _fitted(others, _SAMPLES)
+    result["found"]["other encoder"] = {"filters": made.filters}
+    result["errors"]["other encoder, none learnt"] = _fitted(others, _SAMPLES, 1.0, ())[1]
     linear = Linear().fit(Cases.windows(others["training"][0], _SAMPLES))
-    found["errors"]["other encoder, linear filter"] = _errors(linear._torque, others, _SAMPLES)
-    return found
+    result["errors"]["other encoder, linear filter"] = _errors(linear._torque, others, _SAMPLES)
+    return result
 
 
 def _read(filters, step: float) -> dict:
@@ -141,7 +141,7 @@ def _learnt_filters() -> dict:
         name: {part: [day["errors"][name][part] for day in days] for part in row}
         for name, row in days[0]["errors"].items()
     }
-    found = {}
+    readings = {}
     for name, row in days[0]["found"].items():
         each = {key: np.array([day["found"][name][key] for day in days]) for key in row}
         width = each["filters"].shape[-1]
@@ -150,7 +150,7 @@ def _learnt_filters() -> dict:
         each["filters"] = each["filters"].mean(0)
         if "errors of filters" in each:
             each["errors of filters"] = np.median(each["errors of filters"], 0)
-        found[name] = each | {
+        readings[name] = each | {
             "read": _read(each["filters"], LOG_STEP),
             "first": _read(first, LOG_STEP),
         }
@@ -168,7 +168,7 @@ def _learnt_filters() -> dict:
         "numbers": {str(w): 3 * w + len(_NAMES) for w in _WIDTHS},
         "hertz": _HERTZ,
         "errors": errors,
-        "found": found,
+        "found": readings,
         "carried": _CARRIED,
         "real": real,
     }

@@ -23,8 +23,8 @@ def _solved(runs, width) -> np.ndarray:
     cases = [np.arange(_MARGIN, len(q) - _MARGIN, arm._EVERY) for q, _ in records]
     x = np.concatenate([arm._windows(q, width, at) for (q, _), at in zip(records, cases)])
     torque = np.concatenate([measured[at] for (_, measured), at in zip(records, cases)])
-    found = arm._optimal(x, torque, _SEEDS, arm._DECAYS[0], arm._STEPS)
-    return gains(mean_gradient(found, x), arm._STEP)
+    networks = arm._optimal(x, torque, _SEEDS, arm._DECAYS[0], arm._STEPS)
+    return gains(mean_gradient(networks, x), arm._STEP)
 
 
 def _descended(runs, width=41) -> list[np.ndarray]:
@@ -48,9 +48,9 @@ def _shaken(run) -> dict:
     fits = [(wave, np.linalg.lstsq(wave, error)[0]) for wave in seen]
     left = [((error - wave @ factors) ** 2).sum() for wave, factors in fits]
     has = [_band(torque, band)[inside].std(0) for band in arm._BANDS]
-    found = {"needed": [x[inside].std(0) for x in needed], "has": has}
-    found["amplitude"] = [np.hypot(*factors) for _, factors in fits]  # rad
-    return found | {"share": 1 - np.array(left) / (error**2).sum()}
+    result = {"needed": [x[inside].std(0) for x in needed], "has": has}
+    result["amplitude"] = [np.hypot(*factors) for _, factors in fits]  # rad
+    return result | {"share": 1 - np.array(left) / (error**2).sum()}
 
 
 @study

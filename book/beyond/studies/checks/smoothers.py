@@ -138,7 +138,7 @@ def _job(arm: str, day: int) -> dict:
     setup, names, _ = _ARMS[arm]
     setup = setup.repeated(day)
     training, six = split(setup.record())
-    whole, found = _square(setup, _GRID), {}
+    whole, result = _square(setup, _GRID), {}
     parts = {"training": (training, 1), "trajectory 6": (six, 1)}
     for name, chosen in (("inside", whole.inside), ("outside", ~whole.inside)):
         parts[name] = (whole.recording[chosen], _EVERY)
@@ -147,13 +147,13 @@ def _job(arm: str, day: int) -> dict:
         lost = {s: _left_out(way, names, training) for s, way in settings.items()}
         best = min(lost, key=lost.get)
         kept = settings[best](names, training)
-        found[name] = {
+        result[name] = {
             "setting": best,
             "errors": {part: _wrong(kept, *at) for part, at in parts.items()},
             "applied": {part: _wrong(kept, *at, logged=False) for part, at in parts.items()},
             "off": kept.values / true - 1,
         }
-    return found
+    return result
 
 
 @study

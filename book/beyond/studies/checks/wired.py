@@ -46,11 +46,11 @@ def _tried(name: str, width: int, penalty: float, out: tuple, seed: int = 0) -> 
     training = np.all([data.fold(block)[0] for block in out], axis=0)
     if model is None:
         states = data.states
-        found = tx40.known_structure(states[training], data.current[training], states)
+        predicted = tx40.known_structure(states[training], data.current[training], states)
     else:
-        found = model(data.x, data.current, training, penalty, seed)
+        predicted = model(data.x, data.current, training, penalty, seed)
     tests = (data.fold(block)[1] for block in out)
-    return [float(tx40.wrong(found[test], data, test).mean()) for test in tests]
+    return [float(tx40.wrong(predicted[test], data, test).mean()) for test in tests]
 
 
 def _chosen(name: str) -> dict:

@@ -49,9 +49,9 @@ def _practise(draw, pupils, reference, t, tested: Trajectory | None = None):
         if tested:
             more = _repeated(tested, len(now))
             every = Trajectory(*(np.concatenate(pair) for pair in zip(every, more)))
-        found = _trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
+        of_trial = _trial(draw, now + frozen, rows, every, t)[0].reshape(-1, len(now), draw.seeds)
         for k, (name, learner) in enumerate(pupils.items()):
-            errors[name].append(found[:, k])
+            errors[name].append(of_trial[:, k])
             learner.keep(now[k])
     return {name: np.array(each) for name, each in errors.items()}
 
@@ -66,14 +66,14 @@ def _motion(draw: learners.Draw) -> dict:
     for name, (times, wanted) in asked.items():
         frozen = [learner.controller(False) for learner in pupils.values()]
         learning = [copy.deepcopy(learner).controller() for learner in pupils.values()]
-        count = len(plain) + 2 * len(pupils)
-        every = _repeated(wanted, count)
-        found, _ = _trial(draw, plain + frozen + learning, [1] * count, every, times)
+        runs = len(plain) + 2 * len(pupils)
+        every = _repeated(wanted, runs)
+        errors, _ = _trial(draw, plain + frozen + learning, [1] * runs, every, times)
         tests[name] = {
-            "no feedforward": found[0],
-            "exact equations": found[1],
-            "frozen": dict(zip(pupils, found[2:])),
-            "learning": dict(zip(pupils, found[2 + len(pupils) :])),
+            "no feedforward": errors[0],
+            "exact equations": errors[1],
+            "frozen": dict(zip(pupils, errors[2:])),
+            "learning": dict(zip(pupils, errors[2 + len(pupils) :])),
         }
     second = _practise(draw, pupils, asked["other extents"][1], t, reference)
     return {
@@ -99,14 +99,14 @@ def _family(draw: learners.Draw) -> dict:
         controllers = [draw.plain]
         for learner in pupils.values():
             controllers += [learner.controller(learning), learner.controller(False)]
-        found = _trial(draw, controllers, rows, every, t, arm)[0]
-        return found.reshape(1 + len(pupils), size, draw.seeds)
+        errors = _trial(draw, controllers, rows, every, t, arm)[0]
+        return errors.reshape(1 + len(pupils), size, draw.seeds)
 
     for k in range(2 * learners._TRIALS):
         arm = draw.setup.arm if k < learners._TRIALS else loaded
-        for name, found in zip(practice, once(k, arm)):
-            practice[name].append(found[0])
-            tested[name].append(found[1:].mean(0))
+        for name, errors in zip(practice, once(k, arm)):
+            practice[name].append(errors[0])
+            tested[name].append(errors[1:].mean(0))
     after = once(0, draw.setup.arm, learning=False)
     last = once(0, loaded, learning=False)
     return {
@@ -143,9 +143,9 @@ def _rates(draw: learners.Draw) -> dict:
 @study
 def _learning_in_the_loop() -> dict:
     """End-point errors of all learners, mm, for each reading of section 4."""
-    found = {}
+    by_setup = {}
     for setup in (JOINT_DAMPING, STATE_FEEDBACK):
         draw = learners.Draw(setup)
         parts = {"motion": _motion(draw), "family": _family(draw), "rates": _rates(draw)}
-        found[setup.name] = parts
-    return {"setups": found, "rates": _RATES, "trials": learners._TRIALS, "load": _LOAD}
+        by_setup[setup.name] = parts
+    return {"setups": by_setup, "rates": _RATES, "trials": learners._TRIALS, "load": _LOAD}

@@ -137,14 +137,14 @@ def _course(setup: Setup) -> dict:
     shown = (log.t >= _SHOWN[0] - 1e-9) & (log.t <= _SHOWN[1] + 1e-9)
     gap = 1e3 * np.linalg.norm(end_point_error(setup.arm, log.reference.q, log.q_true), axis=-1)
     joints = np.rad2deg(log.tracking_error)
-    found = {
+    by_line = {
         name: {
             "hand": np.median(gap[part], (0, 1))[shown],
             "joints": np.median(joints[part], (0, 1))[shown],
         }
         for name, part in slices.items()
     }
-    return {**found, "time": log.t[shown]}
+    return {**by_line, "time": log.t[shown]}
 
 
 def _made(lines: dict, reference) -> dict:
@@ -169,8 +169,10 @@ def _corner(setup: Setup) -> dict:
     def along(reference):
         return parts._errors(setup, _made(lines, reference), reference)
 
-    found = {f"{seconds:g}": along(parts.rounded(parts._FEWER, seconds)) for seconds in _ROUNDED}
-    return {"rounded": found, "smooth": along(smooth_pick_and_place(parts._FEWER, parts._T))}
+    by_seconds = {
+        f"{seconds:g}": along(parts.rounded(parts._FEWER, seconds)) for seconds in _ROUNDED
+    }
+    return {"rounded": by_seconds, "smooth": along(smooth_pick_and_place(parts._FEWER, parts._T))}
 
 
 def _rates(setup: Setup, reference) -> dict:
@@ -183,13 +185,13 @@ def _rates(setup: Setup, reference) -> dict:
 
 def _changed(setup: Setup, made: dict, reference) -> dict:
     """Load, friction and delay that no feedforward was made for."""
-    found: dict = {"load": {}, "friction": {}, "delay": {}}
+    result: dict = {"load": {}, "friction": {}, "delay": {}}
     for load in _LOADS:
         arm = with_load(setup.arm, load)
         knows = _made(
             {"exact, window, knows": [parts._through_window(parts.exact(setup, arm))]}, reference
         )
-        found["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
+        result["load"][f"{load:g}"] = _with_computed(setup, made | knows, reference, arm=arm)
     viscous, coulomb = setup.effects.friction
     for factor in _FRICTIONS:
         friction = (
@@ -197,37 +199,37 @@ def _changed(setup: Setup, made: dict, reference) -> dict:
             CoulombFriction(factor * np.asarray(coulomb.level)),
         )
         effects = replace(setup.effects, friction=friction)
-        found["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
+        result["friction"][f"{factor:g}"] = _with_computed(setup, made, reference, effects=effects)
     for late in _LATE:
         effects = replace(setup.effects, actuator=(*setup.effects.actuator, Delay(late)))
-        found["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
-    return found
+        result["delay"][f"{late}"] = _with_computed(setup, made, reference, effects=effects)
+    return result
 
 
 def _gains(setup: Setup, made: dict, reference) -> dict:
     """Softer and stiffer feedback, without and with feedforwards."""
-    found = {}
+    by_factor = {}
     for factor in _GAINS:
         kp, kd = (factor * np.asarray(k) for k in (setup.controller.kp, setup.controller.kd))
         other = replace(setup, controller=PID(tuple(kp), kd=tuple(kd)))
-        found[f"{factor:g}"] = parts._errors(other, made, reference)
-    return found
+        by_factor[f"{factor:g}"] = parts._errors(other, made, reference)
+    return by_factor
 
 
 def _scatter(setup: Setup, rows: dict, torques: dict, reference) -> dict:
     """Each network's error as the report measures it, and other predictors of the end point's."""
-    found = {}
+    by_window = {}
     recording = setup.record()
     for width in WINDOWS:
         name = f"network, window {width}"
         model = results.networks(width, setup.name)
-        found[str(width)] = {
+        by_window[str(width)] = {
             "end point": rows[name]["whole"],
             "RMSS": errors(model, recording).test,
             "through the loop": parts._logged_error(setup, model, split(recording)[1]),
             "planned": np.median(parts._predicted(setup, torques[name], reference), -1),
         }
-    return found
+    return by_window
 
 
 def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
@@ -256,7 +258,7 @@ def _bound(setup: Setup, torques: np.ndarray, reference) -> dict:
 def _inside(setup: Setup) -> dict:
     """Models inside the loop: which runs the guard stops, the error of the others."""
     reference = parts.rounded(parts._EXTENTS[list(_CORNERS)], 0.0)
-    shares, found = np.array(_SHARES)[:, None], {}
+    shares, rows = np.array(_SHARES)[:, None], {}
     models = {name: _few(setup)[name] for name in ("exact, window", "network")}
     day = setup.repeated(1).effects
     for name, several in models.items():
@@ -271,8 +273,8 @@ def _inside(setup: Setup) -> dict:
                 row["stopped"].append(law.law.stops.stopped.mean(1))
                 row["error"].append(np.median(parts.score(setup.arm, log).whole, 1))
                 row["poles"].append(_largest_poles(setup, model, reference, late))
-            found[f"{name}, {late}"] = row
-    return found
+            rows[f"{name}, {late}"] = row
+    return rows
 
 
 def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int) -> list[float]:
@@ -293,20 +295,20 @@ def _largest_poles(setup: Setup, model: WindowFeedforward, reference, late: int)
 def _run_time() -> dict:
     """Feedforwards of the square of extents, two readings: end-point errors, RMS, mm."""
     reference = parts.rounded(parts._EXTENTS, 0.0)
-    found: dict = {
+    result: dict = {
         "points": parts._POINTS,
         "extents": parts._EXTENTS,
         "shares": _SHARES,
         "limit": _LIMIT,
     }
-    found["readings"] = {}
+    result["readings"] = {}
     fewer = parts.rounded(parts._FEWER, 0.0)
     for setup in _READINGS:
         made = _made(_few(setup), fewer)
         rows, torques = _square(setup, reference)
         with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
             rows |= _rivals(setup, reference)
-        found["readings"][setup.name] = {
+        result["readings"][setup.name] = {
             "square": rows,
             "course": _course(setup),
             "corner": _corner(setup),
@@ -317,4 +319,4 @@ def _run_time() -> dict:
             "bound": _bound(setup, torques[f"network, window {parts._WIDTH}"], reference),
             "inside": _inside(setup),
         }
-    return found
+    return result

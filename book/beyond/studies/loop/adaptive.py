@@ -67,24 +67,24 @@ def _course(setup: Setup, seed: int = 1) -> dict:
         "with friction, jumps": batch.make("with friction", setup, start, jumps=True),
     }
     extents = batch._drawn(_SEEDS, 2 * TRIALS, seed)
-    found = _taken_up(setup, laws, extents[:TRIALS], extents[TRIALS:], seed)
+    trials = _taken_up(setup, laws, extents[:TRIALS], extents[TRIALS:], seed)
     known = [n for n in laws if n.startswith(_LAWS)]
     return {
-        "settled": batch._by_law(found, laws),
-        "hand": batch._by_law(found, laws, "hand"),
-        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
+        "settled": batch._by_law(trials, laws),
+        "hand": batch._by_law(trials, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in trials)),
         "estimates": {
-            n: np.stack([np.median(t.laws[n].estimate, 0) for t in found]) for n in known
+            n: np.stack([np.median(t.laws[n].estimate, 0) for t in trials]) for n in known
         },
-        "unloaded": {n: found[TRIALS - 1].laws[n].estimate for n in known},
+        "unloaded": {n: trials[TRIALS - 1].laws[n].estimate for n in known},
     }
 
 
 def _taken_up(setup: Setup, laws, before, after, seed: int, **options) -> list:
     """Motions before and after a load is taken up."""
     effects = batch._rounding(setup, _SEEDS, seed)
-    found, laws = batch._trials(laws, before, setup.arm, effects, **options)
-    return found + batch._trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
+    trials, laws = batch._trials(laws, before, setup.arm, effects, **options)
+    return trials + batch._trials(laws, after, with_load(setup.arm, _PICKED), effects, **options)[0]
 
 
 def _again(setup: Setup, seconds: float, seed: int = 1) -> dict:
@@ -102,11 +102,11 @@ def _again(setup: Setup, seconds: float, seed: int = 1) -> dict:
     if seconds:
         laws = {n: x.controller if isinstance(x, batch._Behind) else x for n, x in laws.items()}
     extents = batch._drawn(_SEEDS, TRIALS, seed)
-    found = _taken_up(setup, laws, extents, extents, seed, plan=plan)
+    trials = _taken_up(setup, laws, extents, extents, seed, plan=plan)
     return {
-        "settled": batch._by_law(found, laws),
-        "hand": batch._by_law(found, laws, "hand"),
-        "stopped": int(sum(t.stops.stopped.sum() for t in found)),
+        "settled": batch._by_law(trials, laws),
+        "hand": batch._by_law(trials, laws, "hand"),
+        "stopped": int(sum(t.stops.stopped.sum() for t in trials)),
     }
 
 
@@ -118,8 +118,8 @@ def _loads(setup: Setup, delays=(), seed: int = 2) -> dict:
     settings = [(m, 0) for m in _LOADS] + [(_PICKED, late) for late in delays]
     for mass, late in settings:
         slow = replace(effects, actuator=(*effects.actuator, Delay(late)))
-        found, _ = batch._trials(laws, extents, with_load(setup.arm, mass), slow)
-        rows.append({"load": mass, "late": late, "settled": batch._by_law(found, laws)})
+        trials, _ = batch._trials(laws, extents, with_load(setup.arm, mass), slow)
+        rows.append({"load": mass, "late": late, "settled": batch._by_law(trials, laws)})
     return {"rows": rows}
 
 
@@ -141,13 +141,13 @@ def _sensors(seed: int = 3) -> dict:
         "Craig, exact": batch.make("measured acceleration", setup, start, acceleration=exact),
     }
     for velocity in ("tachometer", "difference"):
-        found, after = batch._trials(laws, extents, setup.arm, effects, velocity=velocity)
+        trials, after = batch._trials(laws, extents, setup.arm, effects, velocity=velocity)
         rows[velocity] = {
             name: {
                 "settled": errors[-1].reshape(len(_BITS), _SEEDS),
                 "estimate": after[name].estimate.reshape(len(_BITS), _SEEDS, -1),
             }
-            for name, errors in batch._by_law(found, laws).items()
+            for name, errors in batch._by_law(trials, laws).items()
         }
     return rows
 
@@ -166,10 +166,10 @@ def _lyapunov() -> dict:
 
     t = np.arange(1, 1500) * 0.002
     y0 = np.concatenate([np.zeros(4), law.estimate])
-    found = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
+    states = solve_ivp(rates, (0.0, t[-1]), y0, "DOP853", t, rtol=1e-11, atol=1e-13).y.T
     wanted = smooth_pick_and_place(extents, t)
     truth = law.lyapunov(
-        CMU_DD_ARM_II, batch.TRUTH, found[:, 4:], wanted, found[:, :2], found[:, 2:4]
+        CMU_DD_ARM_II, batch.TRUTH, states[:, 4:], wanted, states[:, :2], states[:, 2:4]
     )
     rows = {"continuous": _rises(truth)}
     grid = np.arange(-50, 1550) * 0.002
@@ -212,10 +212,10 @@ def _excited(seed: int = 4, count: int = 10) -> dict:
         "knowing": batch.make("rigid body", STATE_FEEDBACK, factor=0.0),
         "not learning": batch.make("rigid body", STATE_FEEDBACK, start, factor=0.0),
     }
-    found, laws = batch._trials(laws, course, CMU_DD_ARM_II, IDEAL)
+    trials, laws = batch._trials(laws, course, CMU_DD_ARM_II, IDEAL)
     return {
         "eigenvalues": np.linalg.eigvalsh(batch.excitation(APPENDIX_I)),
-        "settled": batch._by_law(found, laws),
+        "settled": batch._by_law(trials, laws),
         "estimate": laws["learning"].estimate / batch.TRUTH,
     }
 
@@ -235,11 +235,11 @@ def _drift(seed: int = 5, count: int = 10) -> dict:
     }
     step = np.where(np.arange(runs) < _SEEDS, setup.effects.encoder[0].step, 0.0)
     course = np.broadcast_to(APPENDIX_I[4], (count, runs, 2))
-    found, _ = batch._trials(laws, course, setup.arm, batch._rounding(setup, runs, seed, step))
+    trials, _ = batch._trials(laws, course, setup.arm, batch._rounding(setup, runs, seed, step))
     return {
-        "settled": batch._by_law(found, laws),
+        "settled": batch._by_law(trials, laws),
         "estimates": {
-            n: np.stack([t.laws[n].estimate for t in found])[..., :3] / batch.TRUTH for n in laws
+            n: np.stack([t.laws[n].estimate for t in trials])[..., :3] / batch.TRUTH for n in laws
         },
     }
 
@@ -257,11 +257,11 @@ def _compensation(setup: Setup, seed: int = 6) -> dict:
     }
     inner = laws["adapted"].controller
     laws["adapted"] = replace(laws["adapted"], controller=replace(inner, rate=only * inner.rate))
-    found, after = batch._trials(
+    trials, after = batch._trials(
         laws, batch._drawn(_SEEDS, TRIALS, seed), setup.arm, batch._rounding(setup, _SEEDS, seed)
     )
     return {
-        "settled": batch._by_law(found, laws),
+        "settled": batch._by_law(trials, laws),
         "estimate": after["adapted"].estimate[:, 3:],
         "truth": right[3:],
     }
@@ -282,9 +282,9 @@ def _bed(seed: int = 7, count: int = 3) -> dict:
     for k, (name, added) in enumerate(_BED.items()):
         given = laws if k else {**laws, **bare}
         effects = added(batch._rounding(setup, _SEEDS, seed))
-        found, after = batch._trials(given, batch._drawn(_SEEDS, count, seed), setup.arm, effects)
+        trials, after = batch._trials(given, batch._drawn(_SEEDS, count, seed), setup.arm, effects)
         rows[name] = {
-            "settled": {n: x[-1] for n, x in batch._by_law(found, given).items()},
+            "settled": {n: x[-1] for n, x in batch._by_law(trials, given).items()},
             "estimate": after["adapted"].estimate / _FRICTION_TRUTH,
         }
         if given is not laws:

@@ -62,7 +62,7 @@ class _Chain:
             states = np.stack([-np.sin(t), -omega * np.cos(t), omega**2 * np.sin(t)], -1)
             return np.repeat(states[:, None], self.joints, 1)
         end = round(MOTION_SECONDS / LOG_STEP)
-        found = np.zeros((t_steps, self.joints, 3))
+        response = np.zeros((t_steps, self.joints, 3))
         for j, (f, z, lead) in enumerate(zip(self.frequency, self.damping, self.lead)):
             pull = [-(f**2), -2 * z * f, f**2, 2 * z * f * lead]
             flow = np.array([[0, 1, 0, 0], pull, [0, 0, 0, 1], [0, 0, -(omega**2), 0]])
@@ -70,9 +70,9 @@ class _Chain:
             for k in range(t_steps - before):
                 if k == end:
                     state[2:] = 0.0
-                found[before + k, j] = *state[:2], flow[1] @ state
+                response[before + k, j] = *state[:2], flow[1] @ state
                 state = step @ state
-        return found
+        return response
 
 
 @cache

@@ -90,10 +90,10 @@ def _mass(numbers, q) -> tuple:
 
 def _free(numbers, q, qd) -> np.ndarray:
     """What friction and the turning of the links add to the joints' momentum, N m."""
-    found = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _SIGN)
+    torque = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _SIGN)
     turning = numbers[..., 1] * np.sin(q[..., 1]) * qd[..., 0] * (qd[..., 0] + qd[..., 1])
-    found[..., 1] -= turning
-    return found
+    torque[..., 1] -= turning
+    return torque
 
 
 def _accelerations(numbers, q, qd, torque) -> np.ndarray:
@@ -156,11 +156,11 @@ def errors(rivals=RIVALS, bits: float | None = None, filtered: float = 0.0) -> d
     plan.append(_regressor(plan[0], plan[1], plan[1], plan[2]))
     step = 0.0 if bits is None else 2 * np.pi / 2**bits
     share = -np.expm1(-CONTROL_STEP / filtered) if filtered else 1.0
-    batch, found = _Batch(rivals.values()), []
+    batch, by_trial = _Batch(rivals.values()), []
     for arm in TRIALS * [CMU_DD_ARM_II] + TRIALS * [with_load(CMU_DD_ARM_II, LOAD)]:
         true = np.array([arm.a, arm.b, arm.d, *_FRICTION])
-        found.append(_motion(batch, true, plan, step, share))
-    return dict(zip(rivals, np.stack(found, -1)))
+        by_trial.append(_motion(batch, true, plan, step, share))
+    return dict(zip(rivals, np.stack(by_trial, -1)))
 
 
 def _motion(batch: _Batch, true, plan, step: float, share: float) -> np.ndarray:

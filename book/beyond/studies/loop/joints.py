@@ -87,7 +87,7 @@ def _identified(
     made: arms._Chain, training: arms._Sample, test: arms._Sample
 ) -> tuple[float, float]:
     """Errors (training, test) of the equations with friction, of the better of two degrees."""
-    scale, found = training.torque.std(0), []
+    scale, candidates = training.torque.std(0), []
     for degree in (3, 4):
         first = _equations(made, training.windows, degree)
         matrix = (first / scale[:, None]).reshape(-1, first.shape[-1])
@@ -95,8 +95,8 @@ def _identified(
         size[size < 1e-9] = 1.0
         wanted = (training.torque / scale).ravel()
         values = np.linalg.lstsq(matrix / size, wanted, rcond=1e-6)[0] / size
-        found.append((float(rmss(first @ values, training.torque)), degree, values))
-    error, degree, values = min(found, key=lambda each: each[0])
+        candidates.append((float(rmss(first @ values, training.torque)), degree, values))
+    error, degree, values = min(candidates, key=lambda each: each[0])
     answer = _equations(made, test.windows, degree) @ values
     return error, float(rmss(answer, test.torque))
 
@@ -112,11 +112,11 @@ def _equations(made: arms._Chain, windows, degree: int) -> np.ndarray:
 
 def _trained(training, test, hidden=paper.HIDDEN_UNITS, **options) -> dict:
     """Last errors of networks, one for each training set; all are pairs of inputs and torques."""
-    found = [
+    histories = [
         solved(*pair, test, hidden, seed, **options).history
         for seed, pair in enumerate(training, 1)
     ]
-    return {side: [getattr(h, side)[-1, 0] for h in found] for side in ("training", "test")}
+    return {side: [getattr(h, side)[-1, 0] for h in histories] for side in ("training", "test")}
 
 
 # --- the parts of the study ---------------------------------------------------------------
@@ -133,10 +133,10 @@ def _by_motions(reading: str, ladder: dict, seeds: int) -> list[dict]:
             row |= {"training": [], "test": [], "by joint": [], "linear": []}
             for seed in range(1, 1 + seeds):
                 training = sets(made, count_of, seed)
-                found = solved(*training.pair, test.pair, seed=seed)
-                answer = found.model[0].torque(test.windows)
-                row["training"].append(float(found.history.training[-1, 0]))
-                row["test"].append(float(found.history.test[-1, 0]))
+                solution = solved(*training.pair, test.pair, seed=seed)
+                answer = solution.model[0].torque(test.windows)
+                row["training"].append(float(solution.history.training[-1, 0]))
+                row["test"].append(float(solution.history.test[-1, 0]))
                 row["by joint"].append(rmss(answer, test.torque, pooled=False))
                 row["linear"].append(linear(training, test))
             rows.append(row)
@@ -239,7 +239,7 @@ def _pairs(joints: int = 4, seeds: int = _SEEDS) -> dict:
     made = arms.chain(joints)
     test = tested(made)
     inertia = mass_matrix(made.arm, test.states[..., 0]).mean(0)
-    found: dict = {"real": [], "unrelated": []}
+    by_kind: dict = {"real": [], "unrelated": []}
     used: dict = {"real": [], "unrelated": []}
     for seed in range(1, 1 + seeds):
         whole = arms.recorded(made, arms.extents(joints, _MAIN, seed), seed)
@@ -249,13 +249,13 @@ def _pairs(joints: int = 4, seeds: int = _SEEDS) -> dict:
         for kind, torque in torques.items():
             x, y = whole.windows[::step], torque.reshape(-1, joints)[::step]
             model = solved(x, y, test.pair, seed=seed).model[0]
-            found[kind].append(gains(mean_gradient(model, test.windows), _REST)[..., 2])
+            by_kind[kind].append(gains(mean_gradient(model, test.windows), _REST)[..., 2])
             used[kind].append(_shuffled(model.torque, test.windows, y.std(0), seed))
 
     return {
         "joints": joints,
         "inertia": inertia,
-        "gains": found,
+        "gains": by_kind,
         "used": used,
         "exact": _shuffled(made.torque, test.states, test.torque.std(0), 1),
         "deviation": test.torque.std(0),
@@ -276,7 +276,7 @@ def _shuffled(predict, x, scale, seed: int) -> np.ndarray:
 
 def _interactions() -> dict:
     """How much of each torque is owed to the other joints: RMS without them, over the deviation."""
-    found = {}
+    shares = {}
     for joints in (2, 3, 4, 5, 7):
         made = arms.chain(joints)
         states = tested(made).states
@@ -286,8 +286,8 @@ def _interactions() -> dict:
             only[:, j] = states[:, j]
             alone[:, j] = made.torque(only)[:, j]
         left = whole - alone
-        found[str(joints)] = (left - left.mean(0)).std(0) / whole.std(0)
-    return found
+        shares[str(joints)] = (left - left.mean(0)).std(0) / whole.std(0)
+    return shares
 
 
 def _costs(width: int = 21, hidden: int = paper.HIDDEN_UNITS) -> list[dict]:

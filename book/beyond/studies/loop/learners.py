@@ -96,20 +96,20 @@ def grid(duration: float = MOTION_SECONDS) -> np.ndarray:
 
 def motions(draw: Draw) -> dict[str, tuple[np.ndarray, Trajectory]]:
     """Times and references ``(seeds, time, 2)`` from rest to rest without a jump, by name."""
-    found = {}
+    references = {}
     for name, speed in (("the same", 1.0), ("in 2/3 of the time", 1.5), ("in half the time", 2.0)):
         t = grid(MOTION_SECONDS / speed)
-        found[name] = t, smooth_pick_and_place(draw.learnt, t, speed)
+        references[name] = t, smooth_pick_and_place(draw.learnt, t, speed)
     t = grid()
-    found["other extents"] = t, smooth_pick_and_place(draw.other, t)
+    references["other extents"] = t, smooth_pick_and_place(draw.other, t)
     slow = smooth_pick_and_place(0.6 * draw.learnt, t)
     third = 3 * t * ((t >= 0) & (t < MOTION_SECONDS))  # three turns in the time of one
     fast = smooth_pick_and_place(draw.second, third % MOTION_SECONDS)
     both = zip(slow, fast, (1, 3, 9))
     moving = ((t >= 0) & (t < MOTION_SECONDS))[:, None]
-    found["two harmonics"] = t, Trajectory(*(a + moving * n * b for a, b, n in both))
-    found["circle"] = t, _round(draw, t)
-    return found
+    references["two harmonics"] = t, Trajectory(*(a + moving * n * b for a, b, n in both))
+    references["circle"] = t, _round(draw, t)
+    return references
 
 
 def _round(draw: Draw, t) -> Trajectory:

@@ -132,9 +132,9 @@ def _around(arm: Arm, centre, radius, phase, elbow: str = "positive") -> Traject
     along = np.concatenate([np.cos(angle), np.sin(angle)], -1)
     across = np.concatenate([-np.sin(angle), np.cos(angle)], -1)
     size = radius[..., None, None]
-    hand = finite_array("centre", centre, 2)[..., None, :] + size * along
+    places = finite_array("centre", centre, 2)[..., None, :] + size * along
     pull = size * (change * across - rate**2 * along)
-    return follow_hand(arm, hand, size * rate * across, pull, elbow)
+    return follow_hand(arm, places, size * rate * across, pull, elbow)
 
 
 def _via_points(points, t, seconds: float = MOTION_SECONDS) -> Trajectory:
@@ -178,11 +178,11 @@ def recorded(
 
 def _learnt(runs: dict[str, Recording], width: int) -> dict[str, Cases]:
     """Windows of each of `_FAMILIES`, from recordings by name: the same number of cases."""
-    found = {name: Cases.windows(run, width) for name, run in runs.items()}
-    halves = [found[name] for name in ("pick and place", "circles")]
+    cases = {name: Cases.windows(run, width) for name, run in runs.items()}
+    halves = [cases[name] for name in ("pick and place", "circles")]
     x, torque = (np.concatenate([getattr(c, n)[::2] for c in halves]) for n in ("x", "torque"))
-    found["both"] = Cases(x, torque, "windows", LOG_STEP)
-    return {name: found[name] for name in _FAMILIES}
+    cases["both"] = Cases(x, torque, "windows", LOG_STEP)
+    return {name: cases[name] for name in _FAMILIES}
 
 
 def _small_circles(runs: int, seed: int) -> Circles:
@@ -201,17 +201,17 @@ def _asked(setup: Setup, members: int, vias: bool = True) -> dict[str, Recording
         "circles, other elbow": stirred(arm, circles, t, "positive"),
         "small circles": stirred(arm, _small_circles(members, TEST_DAY), t),
     }
-    found = {
+    recordings = {
         "pick and place": today.record(random_extents(members, TEST_DAY)),
         "trajectory 6": today.record(APPENDIX_I[5:]),
         **{name: recorded(today, reference) for name, reference in references.items()},
     }
-    for count in range(1, MOST + 1) if vias else ():
-        points, seconds = _random_points(members, count, TEST_DAY), _LEG * (count + 1)
-        found[f"{count} via points"] = recorded(today, _via_points(points, t))
+    for number in range(1, MOST + 1) if vias else ():
+        points, seconds = _random_points(members, number, TEST_DAY), _LEG * (number + 1)
+        recordings[f"{number} via points"] = recorded(today, _via_points(points, t))
         steady = _via_points(points, times(seconds), seconds)
-        found[f"{count} via points, steady"] = recorded(today, steady, seconds)
-    return found
+        recordings[f"{number} via points, steady"] = recorded(today, steady, seconds)
+    return recordings
 
 
 def states(recording: Recording, setup: Setup) -> np.ndarray:
@@ -254,12 +254,12 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
     low, high, deviation = every.min(0), every.max(0), every.std(0)
     named = first | {f"{name} again": x for name, x in second.items()}
     cube = {n: np.clip((2 * x - low - high) / (high - low), -1, 1) for n, x in named.items()}
-    found: dict = {"tied": {}}
+    result: dict = {"tied": {}}
     for name, x in first.items():
-        found["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
+        result["tied"][name] = [np.corrcoef(x[:, k], x[:, k + 2])[0, 1] for k in (0, 3)]
     for (part, axes), (name, other) in product(_AXES.items(), (pair, pair[::-1])):
         mine = (first[name] / deviation)[:, axes]
-        found.setdefault(part, {})[name] = {
+        result.setdefault(part, {})[name] = {
             kind: {
                 "shared": _shared_cells(cube[name][:, axes], cube[label][:, axes], CELLS),
                 "distance": np.median(_nearest_distances(mine, (x / deviation)[:, axes])),
@@ -269,7 +269,7 @@ def _coverage(setup: Setup, tests: dict, members: int) -> dict:
                 ("same family", f"{name} again", second[name]),
             )
         }
-    return found
+    return result
 
 
 _TRAINED = 5  # motions of a family on a day: as many as Appendix I has for training

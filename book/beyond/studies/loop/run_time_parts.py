@@ -229,11 +229,11 @@ def through_loop(system, torque) -> np.ndarray:
     """Joint errors (rad) that the linear loop makes of torques ``(..., time, 2)``, N m."""
     torque = np.asarray(torque)
     x = np.zeros((*torque.shape[:-2], system.nstates))
-    found = np.empty(torque.shape)
+    errors = np.empty(torque.shape)
     for k in range(torque.shape[-2]):
-        found[..., k, :] = x @ system.C.T
+        errors[..., k, :] = x @ system.C.T
         x = x @ system.A.T + torque[..., k, :] @ system.B.T
-    return found
+    return errors
 
 
 def _predicted(setup: Setup, torque, reference: Trajectory) -> np.ndarray:

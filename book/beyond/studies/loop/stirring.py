@@ -64,13 +64,13 @@ def _maker(setup: Setup, name: str, seed: int) -> Rival:
 
 def _errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     """RMSS by the test's own deviation, and RMS errors of both joints (N m), of each test."""
-    found = {}
+    errors = {}
     with warnings.catch_warnings(action="ignore", category=OutsideFamilyWarning):
         for name, cases in tests.items():
             torque = model(cases.x)
             left = np.sqrt(((torque - cases.torque) ** 2).mean(0))
-            found[name] = [float(rmss(torque, cases.torque)), *left]
-    return found
+            errors[name] = [float(rmss(torque, cases.torque)), *left]
+    return errors
 
 
 def _fitted(rival: Rival, cases: Cases) -> Rival:
@@ -88,29 +88,29 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     """Every rival trained on each family, day by day, and tested: rivals, and errors by day."""
     answers = _answers(tests, width)
     rivals: dict = {pair: [] for pair in product(names, families)}
-    found: dict = {name: {family: {} for family in families} for name in names}
+    errors: dict = {name: {family: {} for family in families} for name in names}
     for day, run in enumerate(runs):
         cases = motions._learnt(run, width)
         for (name, family), trained in rivals.items():
             trained.append(_fitted(_maker(setup, name, day), cases[family]))
             every = _errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
-                found[name][family].setdefault(part, []).append(error)
-    return rivals, found
+                errors[name][family].setdefault(part, []).append(error)
+    return rivals, errors
 
 
 def _wider(setup: Setup, runs: list, tests: dict) -> dict:
     """Networks of other windows: those of Table 4-1, and as many that learnt circles."""
-    found = {}
+    by_width = {}
     for width in _WIDER:
-        answers, table = _answers(tests, width), results.networks(width, setup.name)
+        answers, networks = _answers(tests, width), results.networks(width, setup.name)
         mine: dict = {}
         for k in range(len(runs)):
-            for part, error in _errors(table[k].torque, answers).items():
+            for part, error in _errors(networks[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
         other = _transfer(setup, _NAMES[:1], width, motions._FAMILIES[1:2], runs, tests)[1]
-        found[str(width)] = {"pick and place": mine, **other["network"]}
-    return found
+        by_width[str(width)] = {"pick and place": mine, **other["network"]}
+    return by_width
 
 
 def through(setup: Setup, torques, reference: Trajectory) -> Recording:
@@ -157,12 +157,12 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
         if name != "two units"
     }
     named = boxes(setup, models)
-    found: dict = {name: {} for name in named}
+    errors: dict = {name: {} for name in named}
     for motion, reference in references.items():
         torques = {name: [f(*reference) for f in ms] for name, ms in named.items()}
         for name, off_by in _hand_errors(today, torques, reference).items():
-            found[name][motion] = off_by
-    return found
+            errors[name][motion] = off_by
+    return errors
 
 
 def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
@@ -184,7 +184,7 @@ def _described(rivals: list, runs: list, family: str, setup: Setup) -> dict:
 
 def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
     """Filters on the real torques and on torques with random phases, a draw for each day."""
-    found: dict = {"classes": list(CLASSES)}
+    row: dict = {"classes": list(CLASSES)}
     for family in ("circles", "pick and place"):
         null, left = [], []
         for day, run in enumerate(runs):
@@ -192,12 +192,12 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
             null.append(_fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
-        found[family] = {
+        row[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),
             "related": left,
         }
-    return found
+    return row
 
 
 def network_path(family: str):
@@ -230,12 +230,12 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
     shown = slice(first, first + round(MOTION_SECONDS / CONTROL_STEP), SHOWN * 5)
     reached = np.zeros((len(distance), len(elbows)), bool)
     torque = np.zeros((3, *reached.shape, len(t[shown]), 2))
-    hand = np.zeros((len(named), *reached.shape))
+    hand_errors = np.zeros((len(named), *reached.shape))
     for e, elbow in enumerate(elbows):
         reference = motions.stirred(setup.arm, circles, t, elbow)
         torques = np.stack([model(*reference) for model in named.values()])
         reached[fine, e] = True
-        hand[:, fine, e] = off(setup, through(setup, torques, reference))
+        hand_errors[:, fine, e] = off(setup, through(setup, torques, reference))
         torque[:, fine, e] = torques[1:4][:, :, shown]
     part = _PICKER.with_name(_PICKER.name + ".part")
     with open(part, "wb") as file:
@@ -243,7 +243,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
             file,
             names=list(named),
             reached=reached.reshape(shape),
-            hand=hand.reshape(-1, *shape).astype(np.float32),
+            hand=hand_errors.reshape(-1, *shape).astype(np.float32),
             torque=torque.reshape(3, *shape, -1, 2).astype(np.float16),
         )
     os.replace(part, _PICKER)
@@ -252,7 +252,7 @@ def _picker(setup: Setup, kept: dict[str, TorqueModel], places=None) -> None:
 @study
 def _stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     """Networks and rivals of each family of motions on all others, and their hands' errors."""
-    found: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
+    result: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (
         (JOINT_DAMPING, _NAMES, motions._FAMILIES),
         (STATE_FEEDBACK, _NAMES[::2], motions._FAMILIES[:3]),
@@ -264,16 +264,16 @@ def _stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
         tests = motions._asked(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
-        rivals, table = _transfer(setup, names, _WIDTH, families, runs, tests)
+        rivals, errors = _transfer(setup, names, _WIDTH, families, runs, tests)
         row = {
             "deviations": {n: Cases.windows(r, _WIDTH).torque.std(0) for n, r in tests.items()},
-            "errors": table,
+            "errors": errors,
             "coverage": motions._coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),
         }
         if main:
             row["wider"] = _wider(setup, runs, tests)
             row["filters"] = _filters(setup, rivals, runs)
-            _picker(setup.repeated(motions.TEST_DAY), _keep(setup, rivals, table))
-        found["setups"][setup.name] = row
-    return found
+            _picker(setup.repeated(motions.TEST_DAY), _keep(setup, rivals, errors))
+        result["setups"][setup.name] = row
+    return result

@@ -102,18 +102,18 @@ class Card:
     def word(self, of: Callable = attrgetter("verdict")) -> str:
         """The card's word as it is shown: with "in part" goes how many rows hold."""
         verdict = self.verdict(of)
-        told = OWN[verdict] if self.kind == "own" else verdict
+        shown = OWN[verdict] if self.kind == "own" else verdict
         if verdict != "in part":
-            return told
+            return shown
         verdicts = [of(claim) for claim in self.deciding]
         held = sum(v in ("reproduced", "qualitative") for v in verdicts)
-        return f"{told} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
+        return f"{shown} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
 
     def spread(self, of: Callable = attrgetter("verdict")) -> dict[str, str]:
         """Its word under each of its readings, the best first."""
-        found = {reading: self.under(reading) for reading in self.readings}
-        order = sorted(found, key=lambda name: _BEST_FIRST.index(found[name].verdict(of)))
-        return {name: found[name].word(of) for name in order}
+        by_name = {reading: self.under(reading) for reading in self.readings}
+        order = sorted(by_name, key=lambda name: _BEST_FIRST.index(by_name[name].verdict(of)))
+        return {name: by_name[name].word(of) for name in order}
 
 
 def _reading(rows: str) -> str:
@@ -141,7 +141,7 @@ def _settled(verdicts: set[str]) -> str:
 @cache
 def _cards(path: Path = _FILE) -> tuple[Card, ...]:
     """All cards, in the order of the file, that have rows to judge."""
-    known, found = {claim.id: claim for claim in load()}, []
+    known, cards = {claim.id: claim for claim in load()}, []
 
     def rows(card: str, ids: Iterable[str]) -> tuple[Claim, ...]:
         if unknown := set(ids) - set(known):
@@ -157,8 +157,8 @@ def _cards(path: Path = _FILE) -> tuple[Card, ...]:
             filled = {name: row for name, row in filled.items() if row}
             beside = rows(entry["id"], entry.get("beside", ()))
             texts = (entry["id"], kind, entry["where"], entry["says"])
-            found.append(Card(*texts, filled or {"": beside}, beside if filled else ()))
-    return tuple(card for card in found if card.claims)
+            cards.append(Card(*texts, filled or {"": beside}, beside if filled else ()))
+    return tuple(card for card in cards if card.claims)
 
 
 def of_kind(*kinds: str) -> list[Card]:
@@ -168,8 +168,8 @@ def of_kind(*kinds: str) -> list[Card]:
 
 def tally(some: Iterable[Card], of: Callable = attrgetter("verdict")) -> dict[str, int]:
     """How many cards have which word of `WORDS`."""
-    found = [card.verdict(of) for card in some]
-    return {word: found.count(word) for word in WORDS}
+    verdicts = [card.verdict(of) for card in some]
+    return {word: verdicts.count(word) for word in WORDS}
 
 
 def by_reading(
@@ -180,12 +180,12 @@ def by_reading(
     That is the one with most cards that are reproduced, then with most that hold in kind.
     """
     some = list(some)
-    found = {name: tally([card.under(name) for card in some], of) for name in READINGS}
+    tallies = {name: tally([card.under(name) for card in some], of) for name in READINGS}
 
     def fits(name):
-        return found[name]["reproduced"], found[name]["qualitative"]
+        return tallies[name]["reproduced"], tallies[name]["qualitative"]
 
-    return {name: found[name] for name in sorted(READINGS, key=fits, reverse=True)}
+    return {name: tallies[name] for name in sorted(READINGS, key=fits, reverse=True)}
 
 
 def worded(claim: Claim, text: str) -> str:

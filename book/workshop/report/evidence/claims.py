@@ -187,17 +187,17 @@ class Claim:
         What comes first in ``where`` counts. Tables and figures come after their section's
         text, whose subsections come in order: sort by this.
         """
-        found = _PLACE.search(self.where)
-        if found is None:
+        match = _PLACE.search(self.where)
+        if match is None:
             raise ValueError(
                 f"where of claim {self.id!r} must name a section from 1 to 7, a table, a figure, "
                 f"'Appendix I' or 'Abstract' of the paper, got {self.where!r}"
             )
-        if found["abstract"] or found["appendix"]:
-            return "0" if found["abstract"] else "8", 0, 0
-        if found["float"]:
-            return found["in"], 10 if found["float"] == "Table" else 20, int(found["no"])
-        return found["section"], int(found["part"] or 0), 0
+        if match["abstract"] or match["appendix"]:
+            return "0" if match["abstract"] else "8", 0, 0
+        if match["float"]:
+            return match["in"], 10 if match["float"] == "Table" else 20, int(match["no"])
+        return match["section"], int(match["part"] or 0), 0
 
     def measured(self) -> Measured:
         """What we find, by the claim's measuring function or expression."""
@@ -217,16 +217,16 @@ class Claim:
 
         Whether it stands: see `verdicts`. Without replicates it has to be `fresh`.
         """
-        found = self.shares()
-        stands = found and not results._committed() and _stands(self.verdict, found)
+        shares = self.shares()
+        stands = shares and not results._committed() and _stands(self.verdict, shares)
         return self.verdict if stands else self.fresh()
 
     def fresh(self) -> str:
         """The verdict of the bands for the measured value alone, whatever is written."""
         if not self.band:
             return "not testable"
-        found = self.shares()
-        return _fresh(found) if found else self.of(self.measured().value)
+        shares = self.shares()
+        return _fresh(shares) if shares else self.of(self.measured().value)
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
@@ -247,12 +247,12 @@ class Claim:
 
     def edges(self) -> list[float]:
         """Values at which the verdict turns."""
-        found = []
+        edges = []
         for bounds in (self.band, self.loose):
-            found += [bounds[name] for name in ("from", "to") if name in bounds]
+            edges += [bounds[name] for name in ("from", "to") if name in bounds]
             if "factor" in bounds:
-                found += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
-        return sorted(set(found))
+                edges += [self.printed / bounds["factor"], self.printed * bounds["factor"]]
+        return sorted(set(edges))
 
     def as_printed(self) -> str:
         """What the paper prints, for a table."""
@@ -266,13 +266,13 @@ class Claim:
 
     def sure(self) -> str:
         """The verdict, and in which share of the draws it comes out where that was found."""
-        verdict, found = self.judge(), self.shares()
-        if not found:
+        verdict, shares = self.judge(), self.shares()
+        if not shares:
             return verdict
         if verdict == "undecided":
-            words = ", ".join(f"{share_told(share)} {name}" for name, share in found.items())
+            words = ", ".join(f"{share_told(share)} {name}" for name, share in shares.items())
             return f"undecided: {words} of draws"
-        return f"{verdict}, {share_told(found[verdict])} of draws"
+        return f"{verdict}, {share_told(shares[verdict])} of draws"
 
     def _within(self, bounds, values: np.ndarray) -> np.ndarray:
         if "is" in bounds:
@@ -335,8 +335,8 @@ def load(path: Path = _FILE) -> list[Claim]:
 def _sentence(says: str, **outcome) -> tuple[str, dict]:
     """What would refute a claim in words, and as sides and bounds of the measured value."""
     words = outcome.pop("as", None)
-    told = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
-    return says.format(*told), outcome
+    filled = [words] if words else [f"{bound:,g}" for bound in outcome.values()]
+    return says.format(*filled), outcome
 
 
 @lru_cache(maxsize=4)
@@ -387,7 +387,7 @@ def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
 
 def _of_chapter(chapter: str) -> list[Claim]:
     """The claims that a page of the book deals with; an error if there are none."""
-    found = [claim for claim in load() if claim.chapter == chapter]
-    if not found:
+    claims = [claim for claim in load() if claim.chapter == chapter]
+    if not claims:
         raise ValueError(f"chapter must have claims in {_FILE.name}, got {chapter!r}")
-    return found
+    return claims

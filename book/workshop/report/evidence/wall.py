@@ -82,10 +82,10 @@ def _text(text: str) -> str:
 def _tile(claim: Claim, on: str) -> str:
     verdict = claim.judge()
     changed = f'<span title="Band {_AFTER[claim.after]}">†</span>' if claim.after else ""
-    told = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
+    summary = f"{mark(verdict)} <b>{worded(claim, verdict)}</b>{changed} {_text(claim.claim)}"
     lines = [
         f'<details class="claim" id="claim-{claim.id}">',
-        f"<summary>{told}</summary>",
+        f"<summary>{summary}</summary>",
         "",
         *_body(claim, on),
         "",
@@ -97,11 +97,11 @@ def _tile(claim: Claim, on: str) -> str:
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
     source = "This book's own claim" if claim.printed == _OWN else f"Printed: {claim.as_printed()}"
-    width, found = window(claim), claim.here()
-    known = width is None or str(width) in f"{claim.claim} {found}"
+    width, ours = window(claim), claim.here()
+    known = width is None or str(width) in f"{claim.claim} {ours}"
     lines = [
         f"{typeset(source)} ({claim.where}). "
-        f"**Here: {typeset(found)}{'' if known else f' (window {width})'}**",
+        f"**Here: {typeset(ours)}{'' if known else f' (window {width})'}**",
         "",
     ]
     picture = _draws(claim)
@@ -153,7 +153,7 @@ def _draws(claim: Claim) -> str:
     ]
     if given is not None:
         parts.append(("printed", place(given)))
-    told = (
+    description = (
         f"95 % of the draws from {significant(low)} to {significant(high)}, median "
         f"{significant(median)}; {worded(claim, 'reproduced')} {_words(band)}"
         + (f"; printed {claim.printed.text}" if given is not None else "")
@@ -161,7 +161,7 @@ def _draws(claim: Claim) -> str:
     spans = "".join(_span(*part) for part in parts)
     left, right = (significant(end, 2) for end in ends)
     return (
-        f'<div class="claim-draws" role="img" aria-label="{html.escape(typeset(told))}">'
+        f'<div class="claim-draws" role="img" aria-label="{html.escape(typeset(description))}">'
         f"<small>{typeset(left)}</small><span>{spans}</span><small>{typeset(right)}</small></div>"
     )
 
@@ -215,8 +215,8 @@ def _bands(claim: Claim) -> str:
     if not claim.band:
         return "not judged"
     value = claim.measured().value
-    told = _number_beside(float(value), claim.edges())
-    shown = ("no", "yes")[bool(value)] if "is" in claim.band else told
+    number = _number_beside(float(value), claim.edges())
+    shown = ("no", "yes")[bool(value)] if "is" in claim.band else number
     best = "holds" if claim.verdict == "by construction" else "reproduced"
     text = f"{shown}; {best} {_bounds(claim.band)}"
     return f"{text}, qualitative {_bounds(claim.loose)}" if claim.loose else text
@@ -225,10 +225,10 @@ def _bands(claim: Claim) -> str:
 def _number_beside(value: float, edges: Iterable[float], digits: int = 2, most: int = 6) -> str:
     """A number with the digits (`most` of them) that show on which side of others it lies."""
     edges = np.array(list(edges), dtype=float)
-    for count in range(digits, most + 1):
-        shown = float(f"{value:.{count - 1}e}")
+    for places in range(digits, most + 1):
+        shown = float(f"{value:.{places - 1}e}")
         if (np.sign(shown - edges) == np.sign(value - edges)).all():
-            return significant(value, count)
+            return significant(value, places)
     return significant(value, most)
 
 

@@ -76,8 +76,8 @@ def not_analysable(wide: int = 41, narrow: int = 21) -> Measured:
 
 def untrained(width: int = 41) -> Measured:
     """Share of random weight functions that the rule calls not analysable."""
-    found = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
-    rough = found == "not analysable"
+    names = classify(Weights.random(25, width).hidden_weights.reshape(-1, width))
+    rough = names == "not analysable"
     return Measured(float(rough.mean()), f"{rough.sum()} of {rough.size} random functions")
 
 

@@ -136,14 +136,14 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
 
 def _solve(samples, draws, hidden=paper.HIDDEN_UNITS) -> dict:
     """Errors after `_STEPS` steps of the solver, and the gradients that it stopped with."""
-    found = []
+    solutions = []
     for draw in range(draws):
         data, test = _data(samples, 100 + draw)
         weights = Weights.random(1, 3, hidden, initial=INITIAL, seed=draw)
         label = f"{samples:,} samples, {hidden} units, solver {draw + 1} of {draws}"
-        found.append(solve(weights, data, test=test, steps=_STEPS, label=label))
-    errors = _ends([solution.history for solution in found])
-    return {**errors, "gradient": np.concatenate([solution.gradient for solution in found])}
+        solutions.append(solve(weights, data, test=test, steps=_STEPS, label=label))
+    errors = _ends([solution.history for solution in solutions])
+    return {**errors, "gradient": np.concatenate([solution.gradient for solution in solutions])}
 
 
 @study

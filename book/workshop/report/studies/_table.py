@@ -57,19 +57,19 @@ def _cell(setup, recording, width, members, snapshots=()):
 @study
 def _table_4_1(members=25) -> dict:
     """Table 4-1 for the readings of the controller; the networks go into ``.npz`` files."""
-    table = {}
+    cells = {}
     for setup in SETUPS.values():
         recording = setup.record()
-        table[setup.name] = {}
+        cells[setup.name] = {}
         for width in WINDOWS:
-            followed = COURSE if setup is STATE_FEEDBACK else ()
-            cell, model, kept = _cell(setup, recording, width, members, followed)
-            table[setup.name][str(width)] = cell
+            epochs = COURSE if setup is STATE_FEEDBACK else ()
+            cell, model, kept = _cell(setup, recording, width, members, epochs)
+            cells[setup.name][str(width)] = cell
             model.save(results._networks_path(setup.name, width))
             if kept:
                 course = Weights.stack([kept[epoch][:2] for epoch in COURSE])
                 TorqueModel(course, model.inputs, model.outputs).save(results._course_path(width))
-    return {"members": members, "setups": table}
+    return {"members": members, "setups": cells}
 
 
 def _ablations() -> dict:
@@ -144,13 +144,13 @@ def _whitening(days=5, networks=2, members=8, width=41) -> dict:
         "plain, twice the steps": (replace(JOINT_DAMPING, steps=2 * JOINT_DAMPING.steps), False),
         "descent": (replace(JOINT_DAMPING, steps=0, decay=0.0), True),
     }
-    found = {}
+    directions = {}
     for name, (setup, whiten) in ways.items():
         model, history, _ = train_windows(setup, recording, width, members, whiten=whiten)
         change = along.energy(model.weights, start) / along.energy(start)
         hidden = model.weights.hidden_weights
         rough = {"trained": hidden, "change": hidden - start.hidden_weights}
-        found[name] = {
+        directions[name] = {
             **_row(model, history, recording),
             "learnt": (change > 1).sum(-1),
             "change over start": np.sqrt(np.median(change, 0)),
@@ -159,7 +159,7 @@ def _whitening(days=5, networks=2, members=8, width=41) -> dict:
     return {
         **{"days": days, "networks": networks, "members": members, "width": width},
         "variance": (along.values / along.values[0]) ** 2,
-        "directions": found,
+        "directions": directions,
         "plain": _on_days(JOINT_DAMPING, days, networks, whiten=False),
     }
 

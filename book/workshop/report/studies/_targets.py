@@ -42,11 +42,11 @@ class _Targets:
 
     def process(self, time: float) -> np.ndarray:
         """Gaussian processes with a correlation of exp(-(s / time)² / 2) at a lag of s seconds."""
-        runs, count, joints = self.trial.torques.shape
+        runs, samples, joints = self.trial.torques.shape
         rng = np.random.default_rng(round(1000 * time))
-        noise = rng.normal(size=(self.draws, runs, 3 * count, joints))
+        noise = rng.normal(size=(self.draws, runs, 3 * samples, joints))
         smooth = gaussian_filter1d(noise, time / np.sqrt(2) / LOG_STEP, axis=2)
-        return self.scaled(smooth[:, :, count : 2 * count])
+        return self.scaled(smooth[:, :, samples : 2 * samples])
 
     def surrogates(self, kind: str) -> np.ndarray:
         return self.scaled(surrogates(kind, self.trial.torques, self.draws))
@@ -82,10 +82,11 @@ class _Targets:
         """Networks of each target, all trained as one ensemble, and what became of them."""
         wanted = np.concatenate(list(targets.values()))
         weights, start = self.trial.train(wanted, seed)
-        found = self.described(weights, start, wanted)
+        described = self.described(weights, start, wanted)
         parts = np.split(np.arange(len(wanted)), len(targets))
         return {
-            name: {what: x[part] for what, x in found.items()} for name, part in zip(targets, parts)
+            name: {what: x[part] for what, x in described.items()}
+            for name, part in zip(targets, parts)
         }
 
     def described(self, weights: Weights, start: Weights, wanted) -> dict:
@@ -119,7 +120,7 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
         for name in _MIXED
         for share, target in zip(_SHARES, made.mixtures(row[name]))
     }
-    found = made.learnt({**row, **mixed}, 0)
+    learnt = made.learnt({**row, **mixed}, 0)
     starts = [
         _Targets(_Trial(replace(setup, initial=size), recording, width), members).learnt(
             {name: row[name] for name in _MIXED}, 0
@@ -128,7 +129,7 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
     ]
     return {
         **{"members": members, "width": width, "shares": _SHARES, "initial": _INITIAL},
-        "targets": {name: found[name] for name in row},
-        "mixed": {name: [found[name, share] for share in _SHARES] for name in _MIXED},
+        "targets": {name: learnt[name] for name in row},
+        "mixed": {name: [learnt[name, share] for share in _SHARES] for name in _MIXED},
         "by initial": {name: [each[name] for each in starts] for name in _MIXED},
     }

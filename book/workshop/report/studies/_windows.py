@@ -109,13 +109,13 @@ def _memory(members=5) -> dict:
 
 def _capacity(weights, shuffled, decay) -> dict:
     """What the solver memorises in `_MEMORY_STEPS`, and how far from an optimum it was left."""
-    found = solve(weights, shuffled, decay=decay, steps=_MEMORY_STEPS, label=f"decay {decay:g}")
+    solution = solve(weights, shuffled, decay=decay, steps=_MEMORY_STEPS, label=f"decay {decay:g}")
     return {
-        "training": found.history.training[-1],
-        "course": np.median(found.history.training, 1),
-        "largest weight": found.model.weights.largest,
-        "gradient": found.gradient,
-        "converged": found.converged,
+        "training": solution.history.training[-1],
+        "course": np.median(solution.history.training, 1),
+        "largest weight": solution.model.weights.largest,
+        "gradient": solution.gradient,
+        "converged": solution.converged,
     }
 
 

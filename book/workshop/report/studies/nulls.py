@@ -79,19 +79,19 @@ class _Trial:
 
     def train(self, targets, seed: int) -> tuple[Weights, Weights]:
         """Networks of one target each, ``(members, runs, time, joint)`` N m: trained, untrained."""
-        setup, count = self.setup, len(targets)
-        scaled = self.data.outputs.scale(targets.reshape(count, -1, 2))
-        start = Weights.random(count, self.width, setup.hidden, initial=setup.initial, seed=seed)
+        setup, networks = self.setup, len(targets)
+        scaled = self.data.outputs.scale(targets.reshape(networks, -1, 2))
+        start = Weights.random(networks, self.width, setup.hidden, initial=setup.initial, seed=seed)
         label = f"{setup.name}, window {self.width}"
         if setup.steps:
-            found = [
+            weights = [
                 learning.solve(
                     start[k : k + 1], replace(self.data, y=scaled[k]), steps=setup.steps,
                     decay=setup.decay, label=label,
                 ).model.weights
-                for k in range(count)
+                for k in range(networks)
             ]  # fmt: skip
-            return Weights.concatenate(found), start
+            return Weights.concatenate(weights), start
         model, *_ = learning.train_ensemble(
             start, self.data, targets=scaled, rate=setup.rate / self.width,
             momentum=setup.momentum, warm_up=setup.warm_up, epochs=setup.epochs, label=label,
@@ -105,24 +105,24 @@ class _Trial:
         """What is counted and measured on networks, one value or array for each of them."""
         model = self.model(weights)
         wanted = targets.reshape(len(targets), -1, 2)
-        found: dict = {"error": rmss(model.torque(self.windows), wanted)}
+        row: dict = {"error": rmss(model.torque(self.windows), wanted)}
         hidden = weights.activity(self.data.x)[0]
         held = weights.activity(model.scaled(self.test_windows))[0]
         inputs = unit_inputs(model, self.windows)
         for layer, attribute in LAYERS.items():
             f, before = getattr(weights, attribute), getattr(start, attribute)
-            found[layer] = {"classes": _counted(f), **_responded(inputs[layer], self.states)}
-            moved = (np.abs(f - before) > 1e-9).any()
-            found[layer]["changes"] = _counted(f - before) if moved else _counted(f)
-            found[layer]["roughness"] = np.median(roughness(f), (1, 2))
-        found["saturated"] = np.median(saturated(hidden), -1)
-        found["cancelled"] = cancellation(model, self.windows).mean(-1)
-        found["transition"] = np.median(transition_width(inputs["hidden"]), -1)
+            row[layer] = {"classes": _counted(f), **_responded(inputs[layer], self.states)}
+            changed = (np.abs(f - before) > 1e-9).any()
+            row[layer]["changes"] = _counted(f - before) if changed else _counted(f)
+            row[layer]["roughness"] = np.median(roughness(f), (1, 2))
+        row["saturated"] = np.median(saturated(hidden), -1)
+        row["cancelled"] = cancellation(model, self.windows).mean(-1)
+        row["transition"] = np.median(transition_width(inputs["hidden"]), -1)
         gained = calibrated(model, self.windows, LOG_STEP)
-        found |= {"gains, direct": gained.direct, "gains": gained.whole}
-        found |= self._probed(hidden, held)
-        found["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])
-        return found
+        row |= {"gains, direct": gained.direct, "gains": gained.whole}
+        row |= self._probed(hidden, held)
+        row["refitted"] = np.array([self.refit(h, t) for h, t in zip(hidden, held)])
+        return row
 
     def _probed(self, hidden, held) -> dict:
         target = self.states[..., 1:3].reshape(len(self.states), -1)
@@ -169,12 +169,12 @@ def _counted(f) -> dict:
 
 def _responded(inputs, states) -> dict:
     """Medians over the units of a network of what they follow, and how many follow what best."""
-    found = heard(inputs, states)
-    best = found.strongest
+    responses = heard(inputs, states)
+    best = responses.strongest
     return {
-        "alone": np.median(found.alone, 1),
-        "unique": np.median(found.unique, 1),
-        "together": np.median(found.together, 1),
+        "alone": np.median(responses.alone, 1),
+        "unique": np.median(responses.unique, 1),
+        "together": np.median(responses.together, 1),
         "strongest": np.stack([(best == k).mean(1) for k in range(states.shape[-1])], -1),
     }
 
@@ -188,15 +188,17 @@ def _mean(found, draws: int):
 
 def _nulls(trial: _Trial, kinds, draws: int, each: int) -> tuple[dict, dict]:
     """Networks of each kind of surrogate, `each` for a draw: means by draw, and the weights."""
-    found, kept = {}, {}
+    by_kind, kept = {}, {}
     for number, kind in enumerate(kinds):
         drawn = surrogates(kind, trial.torques, draws, seed=100 * number)
         targets = np.repeat(drawn, each, 0)
         weights, start = trial.train(targets, _STARTS * (number + 1))
-        found[kind] = _mean(trial.described(weights, start, targets), draws)
-        found[kind]["related"] = np.array([related(d.reshape(-1, 2), trial.windows) for d in drawn])
+        by_kind[kind] = _mean(trial.described(weights, start, targets), draws)
+        by_kind[kind]["related"] = np.array(
+            [related(d.reshape(-1, 2), trial.windows) for d in drawn]
+        )
         kept[kind] = weights[::each]
-    return found, kept
+    return by_kind, kept
 
 
 def _row(setup: Setup, recording: Recording, width: int, members: int, draws: int, each: int,
@@ -249,16 +251,16 @@ def _elsewhere(trial: _Trial, networks: dict) -> dict:
         "quintic": _record_quintic(setup),
         "circle": _record_circle(setup),
     }
-    found: dict = {}
+    by_name: dict = {}
     for name, motion in motions.items():
         windows = cases(motion, trial.width)[0]
         states = with_jerk(true_states(motion, setup)).reshape(-1, 2, 4)
-        found[name] = {}
+        by_name[name] = {}
         for kind, weights in networks.items():
             inputs = unit_inputs(trial.model(weights), windows)
-            told = {layer: _responded(inputs[layer], states) for layer in LAYERS}
-            found[name][kind] = {layer: _mean(x, 5) for layer, x in told.items()}
-    return found
+            responses = {layer: _responded(inputs[layer], states) for layer in LAYERS}
+            by_name[name][kind] = {layer: _mean(x, 5) for layer, x in responses.items()}
+    return by_name
 
 
 @study
@@ -297,11 +299,11 @@ def _filter_trial_elsewhere(
         "window 31": (TRIAL, TRIAL.record(), 31),
         "state feedback": (old, old.record(), width),
     }
-    found = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
+    results = {name: _row(*row, members, draws, each, kinds) for name, row in rows.items()}
     slow = {"longer": replace(TRIAL, epochs=_LONGER), "solver": JOINT_DAMPING}
     for name, setup in slow.items():
-        found[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
-    return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": found}
+        results[name] = _row(setup, setup.record(), width, members // 2, draws // 2, 1, ("phases",))
+    return {"members": members, "draws": draws, "each": each, "longer": _LONGER, "rows": results}
 
 
 _SLOW = (1, 2, 6)  # Trajectories that move the shoulder by more than 30 degrees
@@ -331,11 +333,11 @@ def _filter_responses(members: int = 15) -> dict:
         "recorded": (recording.q, true_states(recording, TRIAL), slice(None)),
         "slow": (recording.reference.q, desired, slice(margin, -margin)),
     }
-    found: dict = {name: {"arm": [], "windows": {}} for name in motions}
+    by_motion: dict = {name: {"arm": [], "windows": {}} for name in motions}
     for name, (_, states, inside) in motions.items():
         for k in chosen:
             torque = TRIAL.arm.inverse_dynamics(*np.moveaxis(states[k], -1, 0))[:, 0]
-            found[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
+            by_motion[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
     for width in WINDOWS:
         trial = _Trial(_as_long_as(width), recording, width)
         weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
@@ -348,10 +350,10 @@ def _filter_responses(members: int = 15) -> dict:
                 linear = np.einsum("mjw,njw->mn", filters, windows)
                 for way, torque in (("network", model.torque(windows)[..., 0]), ("filter", linear)):
                     cell[way].append(_response(torque[:, inside], states[k, inside, 0]))
-            found[name]["windows"][str(width)] = {
+            by_motion[name]["windows"][str(width)] = {
                 way: np.stack(each, -1) for way, each in cell.items()
             }
-    return {"members": members, "trajectories": _SLOW, **found}
+    return {"members": members, "trajectories": _SLOW, **by_motion}
 
 
 @study

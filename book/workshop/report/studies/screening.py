@@ -143,9 +143,9 @@ def _setup(values: Mapping[str, float], method: str) -> Setup:
 
 def _without_start(recording: Recording, seconds: float) -> Recording:
     """A recording whose motion begins `seconds` later: less of the start transient."""
-    late = number("seconds", seconds, 0.0, 2.0)
+    delay = number("seconds", seconds, 0.0, 2.0)
     begin, end = recording.span
-    return replace(recording, t=recording.t - late, duration=end - begin - late)
+    return replace(recording, t=recording.t - delay, duration=end - begin - delay)
 
 
 def _run(method: str, places: list, seeds: list) -> dict:

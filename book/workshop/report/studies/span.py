@@ -94,7 +94,7 @@ def _cell(setup, recording, width, members) -> dict:
     correlation = _correlations(seen, along.values**2)
     del seen["shuffled"]
     start = along.energy(kept[0])
-    found = {
+    row = {
         "setup": setup.name,
         "scaling": setup.scaling,
         "width": width,
@@ -105,7 +105,7 @@ def _cell(setup, recording, width, members) -> dict:
     every = {w: {k: np.array([c[k] for c in each]) for k in each[0]} for w, each in seen.items()}
     for who, courses in every.items():
         change = courses["change"] / start[:, None]
-        found[who] = {
+        row[who] = {
             "change over start": np.sqrt(np.median(change[..., :_SHOWN], 0)),
             "last change over start": np.sqrt(np.median(change[:, -1], 0)),
             "learnt": (change[:, -1] > 1).sum(-1),
@@ -115,12 +115,12 @@ def _cell(setup, recording, width, members) -> dict:
             "moved": np.median(courses["moved"], 0),
             **{name: courses[name] for name in ("roughness, change", "roughness, trained")},
         }
-    learnt = int(np.median(found["predicted"]["learnt"]))
+    learnt = int(np.median(row["predicted"]["learnt"]))
     ends = [along.along(w)[..., learnt:].reshape(members, -1) for w in (kept[0], kept[EPOCHS])]
-    found["start kept"] = [_alike(*pair) for pair in zip(*ends)]
+    row["start kept"] = [_alike(*pair) for pair in zip(*ends)]
     ratio = every["measured"]["change"] / every["predicted"]["change"]
     apart = np.exp(np.abs(np.log(ratio[:, 1:, :_SHOWN])) / 2)
-    return {**found, "factor": np.median(apart, -1)}
+    return {**row, "factor": np.median(apart, -1)}
 
 
 def _halves(error) -> np.ndarray:
@@ -128,15 +128,15 @@ def _halves(error) -> np.ndarray:
 
     Between recorded epochs it goes linearly on logarithmic scales; NaN if it never is.
     """
-    epochs, found = np.log(_COURSE[1:]), []
+    epochs, halves = np.log(_COURSE[1:]), []
     for each in np.log(2 * error[1:] / error[0]).T:
         k = np.argmax(each <= 0)
         if each[k] > 0:
-            found.append(np.nan)
+            halves.append(np.nan)
         else:
             before = max(k - 1, 0)
-            found.append(np.exp(np.interp(0.0, each[[k, before]], epochs[[k, before]])))
-    return np.array(found)
+            halves.append(np.exp(np.interp(0.0, each[[k, before]], epochs[[k, before]])))
+    return np.array(halves)
 
 
 def _correlations(seen, variance) -> dict:

@@ -116,17 +116,17 @@ def _hands(setup: Setup, models: dict, reference: Trajectory) -> dict:
 def _windows(seeds: int) -> dict:
     """Errors with four joints: fewer windows of twenty motions, and five with chosen training."""
     made = chain(4)
-    test, found = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
-    found["as it is"] = []
+    test, errors = joints.tested(made), {"300 of twenty": [], "750 of twenty": [], "chosen": []}
+    errors["as it is"] = []
     for seed in range(_LATER, _LATER + seeds):
-        for count in (300, 750):
-            part = recorded(made, extents(4, 20, seed), seed).thinned(count)
-            found[f"{count} of twenty"].append(_error(part, test, seed))
+        for number in (300, 750):
+            part = recorded(made, extents(4, 20, seed), seed).thinned(number)
+            errors[f"{number} of twenty"].append(_error(part, test, seed))
         five = recorded(made, extents(4, 5, seed), seed).thinned(joints._CASES)
-        found["as it is"].append(_error(five, test, seed))
+        errors["as it is"].append(_error(five, test, seed))
         decay, steps = _chosen_decay(five, seed)
-        found["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
-    return found
+        errors["chosen"].append(_error(five, test, seed, decay=decay, steps=steps))
+    return errors
 
 
 def _course(training: _Sample, test: _Sample, seed: int, **options) -> np.ndarray:
@@ -191,7 +191,7 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
         "memory": learners._Memory(draw),
     }
     learning._practise(draw, taught, reference, t)
-    found: dict = {}
+    by_motion: dict = {}
     for motion, (times, wanted) in asked.items():
         speed = {"in 2/3 of the time": 1.5, "in half the time": 2.0}.get(motion, 1.0)
         scaled = copy.deepcopy(taught["memory"].memory)
@@ -200,8 +200,8 @@ def _after(draw, t, reference: Trajectory, asked: dict) -> dict:
         every["memory, scaled"] = scaled
         many = learning._repeated(wanted, len(every))
         errors, _ = learning._trial(draw, list(every.values()), [1] * len(every), many, times)
-        found[motion] = dict(zip(every, errors))
-    return found
+        by_motion[motion] = dict(zip(every, errors))
+    return by_motion
 
 
 @study

@@ -146,8 +146,8 @@ def trial(laws: Mapping[str, Controller], extents, arm: Arm, effects: Effects,
     reference = Trajectory(*(np.broadcast_to(x, (len(laws), *x.shape)) for x in reference))
     guard = Watched(_Guarded(_Abreast(list(laws.values()), [1] * len(laws))))
     log = follow(arm, guard, reference, t, effects=effects, duration=MOTION_SECONDS, **options)
-    hand, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
-    off = 1e3 * np.linalg.norm(hand - wanted, axis=-1)
+    reached, wanted = (arm.forward_kinematics(x)[..., 1, :] for x in (log.q_true, log.reference.q))
+    off = 1e3 * np.linalg.norm(reached - wanted, axis=-1)
     stops = guard.law.stops
     running = stops.running(log.t)
     off = np.where(running, off, np.nan)[..., log.motion]
@@ -172,8 +172,8 @@ class _Rounded:
 
     def apply(self, x, rng=None):
         step = np.where(self.step > 0, self.step, 1.0)
-        found = np.round((x + self.shift) / step) * step - self.shift
-        return np.where(self.step > 0, found, x)
+        rounded = np.round((x + self.shift) / step) * step - self.shift
+        return np.where(self.step > 0, rounded, x)
 
 
 def _rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
@@ -185,11 +185,11 @@ def _rounding(setup: Setup, runs: int, seed: int, step=None) -> Effects:
 
 def _trials(laws, extents, arm: Arm, effects: Effects, **options) -> tuple[list[_Trial], dict]:
     """Motions ``(trials, runs, 2)`` one after another, and the laws with what they have learnt."""
-    found = []
+    trials = []
     for each in extents:
-        found.append(trial(laws, each, arm, effects, **options))
-        laws = found[-1].laws
-    return found, laws
+        trials.append(trial(laws, each, arm, effects, **options))
+        laws = trials[-1].laws
+    return trials, laws
 
 
 def _drawn(runs: int, count: int, seed: int) -> np.ndarray:
