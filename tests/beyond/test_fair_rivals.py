@@ -23,7 +23,7 @@ def by_ddlib(rival, arm):
     plan = Trajectory(*rounded(study._EXTENTS, study._CORNER))
     friction = (
         ViscousFriction(JOINT_DAMPING_VISCOUS),
-        CoulombFriction(JOINT_DAMPING_COULOMB, study._SIGN),
+        CoulombFriction(JOINT_DAMPING_COULOMB, study._TANH_SPEED),
     )
     effects = Effects(friction=friction, actuator=(Saturation(tuple(study.LIMITS)),))
     law = pd(np.multiply(rival.gain, rival.slope), rival.gain)

@@ -41,7 +41,7 @@ def test_a_late_sensor_logs_what_was_applied_two_samples_before():
     setup = smoothers._ARMS["late sensor"][0]
     quiet = [e for e in setup.effects.torque_sensor if not hasattr(e, "std")]
     recording = setup.record(effects=replace(setup.effects, torque_sensor=tuple(quiet)))
-    late = smoothers._LATE
+    late = smoothers._SENSOR_LATE
     np.testing.assert_allclose(recording.tau[:, late:], recording.tau_true[:, :-late])
 
 

@@ -146,16 +146,16 @@ def _crossing(motions, level) -> Callable:
 
     def crossing(*cells):
         y = np.log(np.stack([median(c) for c in cells])) - np.log(level)
-        late = np.full(y.shape[1], np.inf)
+        crossed = np.full(y.shape[1], np.inf)
         for k in range(y.shape[1]):
             above = np.flatnonzero(y[:, k] > 0)
             last = above.max() if above.size else -1
             if last < 0:
-                late[k] = motions[0]
+                crossed[k] = motions[0]
             elif last + 1 < len(x):
                 share = y[last, k] / (y[last, k] - y[last + 1, k])
-                late[k] = np.exp(x[last] + share * (x[last + 1] - x[last]))
-        return late
+                crossed[k] = np.exp(x[last] + share * (x[last + 1] - x[last]))
+        return crossed
 
     return crossing
 

@@ -82,8 +82,8 @@ def _moments(g) -> np.ndarray:
     g = np.asarray(g, dtype=float)
     position, velocity = np.split(g, 2, axis=-1)
     stiffness = position.sum(-1)
-    late = position @ (1e3 * STEP * np.arange(position.shape[-1])) / stiffness
-    return np.stack([stiffness, late, velocity.sum(-1)], axis=-1)
+    delay = position @ (1e3 * STEP * np.arange(position.shape[-1])) / stiffness
+    return np.stack([stiffness, delay, velocity.sum(-1)], axis=-1)
 
 
 def _of_go1(size, frequency, speed=0.0) -> np.ndarray:
@@ -110,9 +110,9 @@ def _own(kind: str) -> np.ndarray:
 
 
 def _named(g) -> dict[str, np.ndarray]:
-    stiffness, late, damping = np.moveaxis(_moments(g), -1, 0)
-    net = damping - stiffness * late / 1e3
-    return {"stiffness": stiffness, "delay": late, "net damping": net}
+    stiffness, delay, damping = np.moveaxis(_moments(g), -1, 0)
+    net = damping - stiffness * delay / 1e3
+    return {"stiffness": stiffness, "delay": delay, "net damping": net}
 
 
 def moments_agree(kind: str = "copies", names: Sequence[str] = ("stiffness", "delay")) -> Measured:
@@ -163,7 +163,7 @@ def by_lag() -> figures.Illustration:
         "trained briefly": _rows("copies"),
         "longer, or jumps": np.concatenate([_rows("longer"), _rows("held")]),
     }
-    (go1, late, _), (anymal, later, _) = _moments(own), _moments(memory)
+    (go1, delay, _), (anymal, its_delay, _) = _moments(own), _moments(memory)
 
     def draw(figure):
         left, right = figure.subplots(1, 2, width_ratios=(1, 2))
@@ -172,9 +172,9 @@ def by_lag() -> figures.Illustration:
             drawn = left.plot(age[:3], answers[:, :3].T, color=figures.COLOURS[k], lw=0.8)
             drawn[0].set_label(name)
         figures.legend_above(figure, *left.get_legend_handles_labels())
-        left.set(title=f"Go1: {go1:.0f} N m/rad, {late:.0f} ms late", xticks=age[:3])
+        left.set(title=f"Go1: {go1:.0f} N m/rad, {delay:.0f} ms late", xticks=age[:3])
         right.bar(age, memory[:_REACH], 3.5, color=figures.COLOURS[0])
-        right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {later:.0f} ms late")
+        right.set(title=f"ANYmal: {anymal:.0f} N m/rad, {its_delay:.0f} ms late")
         for axis in (left, right):
             axis.axhline(0, color=figures.INK, lw=0.7)
             axis.set(xlabel="the error is so old, ms", ylabel="answer, N m/rad")
@@ -182,7 +182,8 @@ def by_lag() -> figures.Illustration:
     alt = (
         f"Answers to the position error by its age. Go1: nearly all of {go1:.0f} N m/rad at 5 ms, "
         "as in copies trained for longer or on jumps; brief ones spread it over 0 to 10 ms. "
-        f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean {later:.0f} ms."
+        f"ANYmal: a hump over 70 ms with the sum {anymal:.0f} N m/rad and the mean "
+        f"{its_delay:.0f} ms."
     )
     return figures.illustrate(draw, alt, 7.2, 2.4)
 
@@ -239,8 +240,8 @@ def _ranges(g, sure: bool = True) -> list[str]:
     for k, values in enumerate((g[:, 1], *_named(g).values(), _moments(g)[:, 2])):
         least, most = (f"{v:.{2 if k > 2 else 1}f}" for v in (values.min(), values.max()))
         ranges.append(least if least == most else f"{least} to {most}")
-    middle, stiffness, late, net, damping = ranges
-    return [middle, stiffness, late if sure else "", damping, net if sure else ""]
+    middle, stiffness, delay, net, damping = ranges
+    return [middle, stiffness, delay if sure else "", damping, net if sure else ""]
 
 
 def _exercise(number: int, left: float | None = None) -> Exercise:

@@ -256,9 +256,9 @@ def _draw_polynomial(axis: Axes) -> None:
 
 def _draw_filter(axis: Axes) -> None:
     linear = Linear().fit(_learnt()[0])
-    late = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
+    milliseconds = 1000 * LOG_STEP * (np.arange(_WIDTH) - _WIDTH // 2)
     for j, weights in enumerate(linear.matrix[:, 1].reshape(2, _WIDTH)):
-        axis.plot(late, weights, DASHES[j], color=COLOURS[j], label=JOINTS[j])
+        axis.plot(milliseconds, weights, DASHES[j], color=COLOURS[j], label=JOINTS[j])
     axis.axhline(0, color=FAINT, lw=0.6)
     axis.set(xlabel="time in the window, ms", ylabel="weight, N m/rad")
     axis.legend(loc="lower left", handlelength=1.2, fontsize=8, borderaxespad=0.1)
@@ -386,8 +386,8 @@ def _quoted() -> None:
         quote(f"rivals-network-{end}", value(_errors(study["reference"])))
     for short, name in _SMOOTHED.items():
         quote(f"rivals-{short}", np.median(_errors(name)))
-    late = smoothed("late sensor")[study["own"]]
-    quote("rivals-late-applied", np.median(late["applied"]["trajectory 6"]))
+    of_late_sensor = smoothed("late sensor")[study["own"]]
+    quote("rivals-late-applied", np.median(of_late_sensor["applied"]["trajectory 6"]))
     won = over("Lagrangian network") < 1
     quote("rivals-lagrangian-won", int(won.sum()))
     quote("rivals-lagrangian-days", len(won))

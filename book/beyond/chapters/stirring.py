@@ -176,8 +176,8 @@ def _said() -> None:
     stated("stir-stopped-helps", stopped < 1)
     kept = _stopped()
     stated("stir-never-sixty", 60 not in kept["steps"])
-    early, late = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
-    stated("stir-stopped-loses-nothing", early < 1.1 * late)
+    chosen, at_sixty = (resampled(kept["hands"][pick][name]) for name in ("chosen", "60"))
+    stated("stir-stopped-loses-nothing", chosen < 1.1 * at_sixty)
     sixty = resampled(kept["hands"][circles]["60"]) < kept["hands"][circles]["none"][0]
     stated("stir-harm-later", sixty & (of_pick > hand("none")[0]))
     stated("stir-network-stays", draws(pick, circles) > 5 * draws(circles, circles))

@@ -244,12 +244,20 @@ def _chosen(ids: Iterable[str]) -> Table:
     """Some rows of the ledger: claim and its chapter, printed value, ours, verdict, reason."""
     known, rows = {claim.id: claim for claim in load()}, []
     for claim in (known[name] for name in ids):
-        width, ours = window(claim), claim.here()
+        width, ours = window(claim), claim.our_value()
         pattern = rf"(window|at) {width}\b|\b{width} samples"
         if width and not re.search(pattern, f"{claim.claim} {ours}"):
             ours += f" (window {width})"
         sentence = f"{claim.claim} ({{doc}}`{home(claim)}`)"
-        rows.append((sentence, claim.as_printed(), ours, worded(claim, claim.sure()), claim.why))
+        rows.append(
+            (
+                sentence,
+                claim.as_printed(),
+                ours,
+                worded(claim, claim.verdict_with_share()),
+                claim.why,
+            )
+        )
     header = ("claim", "printed", "here", "verdict", "why")
     return Table(header, [tuple(map(typeset, row)) for row in rows])
 
@@ -317,7 +325,7 @@ def _by_reading(sentences: Iterable[Claim]) -> list[dict[str, Claim]]:
     groups: dict[tuple, dict[str, Claim]] = {}
     for claim in sentences:
         if claim.is_measured:
-            key, setup = claim.but_for_reading()
+            key, setup = claim.key_and_setup()
             groups.setdefault(key, {})[setup] = claim
     return [group for group in groups.values() if len(group) > 1]
 

@@ -24,7 +24,7 @@ _PARAMETERS = ("a", "b", "d", "g1", "g2", "F_v1", "F_v2", "F_c1", "F_c2")
 """What can be adapted: base parameters (kg m^2), gravity moments (N m), viscous (N m s/rad) and
 Coulomb (N m) friction of both joints."""
 
-_SIGN_SPEED = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
+_LINEAR_BELOW = 0.02  # rad/s: below it Coulomb friction is taken for linear in the velocity
 
 
 def mixed_regressor(q, qd, v, a, names: Sequence[str] = _PARAMETERS[:3]) -> np.ndarray:
@@ -63,7 +63,7 @@ def _unchecked_regressor(q, qd, v, a, names: Sequence[str]) -> np.ndarray:
         else:
             joint = int(name[-1]) - 1
             rate = v[..., joint]
-            own = rate if name.startswith("F_v") else np.clip(rate / _SIGN_SPEED, -1.0, 1.0)
+            own = rate if name.startswith("F_v") else np.clip(rate / _LINEAR_BELOW, -1.0, 1.0)
             Y[..., joint, k] = own
     return Y
 

@@ -65,8 +65,8 @@ class WindowFeedforward:
         q = shaped("q", q, "(..., time, joint)")
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
-        late = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
-        windows = _reference_windows(np.concatenate([q, late], -2), self.width, self.every)
+        at_rest = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
+        windows = _reference_windows(np.concatenate([q, at_rest], -2), self.width, self.every)
         windows = windows[..., ::stride, :, :]
         centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])

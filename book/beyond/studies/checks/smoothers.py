@@ -40,7 +40,7 @@ from ddlib.setups import JOINT_DAMPING, Setup, split
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 
-_LATE = 2  # samples by which a torque sensor is late
+_SENSOR_LATE = 2  # samples by which a torque sensor is late
 _WEIGHT = (98.9, 12.4)  # N m: gravity moments of the arm's assumed links, at 9.81 m/s^2
 _ROUNDING = JOINT_DAMPING.effects.encoder[0].step / np.sqrt(12)  # its deviation, rad
 _LEARNT = _BOOKS_OWN  # as in `tuned`
@@ -102,7 +102,7 @@ def _coarse(setup: Setup) -> Setup:
 
 
 def _sensor(setup: Setup) -> Setup:
-    sensor = (Delay(_LATE), *setup.effects.torque_sensor)
+    sensor = (Delay(_SENSOR_LATE), *setup.effects.torque_sensor)
     return replace(setup, effects=replace(setup.effects, torque_sensor=sensor))
 
 

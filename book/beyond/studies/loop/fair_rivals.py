@@ -21,7 +21,7 @@ from ddlib.trajectories import MOTION_SECONDS
 TRIALS, LOAD = 4, 5.0  # motions with an empty hand, and as many with a load, kg
 _EXTENTS, _CORNER = (40.0, 30.0), 0.2  # degrees; s over which the plan's corners are averaged
 _AROUND = 75  # control samples of rest before and after a motion
-_SIGN = 0.02  # rad/s, over which Coulomb friction changes its sign
+_TANH_SPEED = 0.02  # rad/s, over which Coulomb friction changes its sign
 _RATE = 3.0 * SIZES**2  # of learning, as in the lesson
 _FRICTION = np.array([*JOINT_DAMPING_VISCOUS, *JOINT_DAMPING_COULOMB])
 _KNOWN = np.concatenate([TRUTH, _FRICTION])
@@ -77,7 +77,7 @@ def _regressor(q, qd, v, a) -> np.ndarray:
     Y[..., 1, 1] = c * a1 + s * w1 * v1
     for joint in (0, 1):
         Y[..., joint, 3 + joint] = v[..., joint]
-        Y[..., joint, 5 + joint] = np.tanh(v[..., joint] / _SIGN)
+        Y[..., joint, 5 + joint] = np.tanh(v[..., joint] / _TANH_SPEED)
     return Y
 
 
@@ -90,7 +90,7 @@ def _mass(numbers, q) -> tuple:
 
 def _free(numbers, q, qd) -> np.ndarray:
     """What friction and the turning of the links add to the joints' momentum, N m."""
-    torque = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _SIGN)
+    torque = -numbers[..., 3:5] * qd - numbers[..., 5:] * np.tanh(qd / _TANH_SPEED)
     turning = numbers[..., 1] * np.sin(q[..., 1]) * qd[..., 0] * (qd[..., 0] + qd[..., 1])
     torque[..., 1] -= turning
     return torque

@@ -90,30 +90,32 @@ class Card:
         kept = {k: row for k, row in self.rows.items() if _reading(k) in (reading, "")}
         return replace(self, rows=kept)
 
-    def verdict(self, of: Callable = attrgetter("verdict")) -> str:
+    def verdict(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The card's word, of `WORDS`, by the written verdicts or by another function of a row."""
-        return _overall(map(of, self.deciding))
+        return _overall(map(verdict_of, self.deciding))
 
-    def sign(self, of: Callable = attrgetter("verdict")) -> str:
+    def sign(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The word whose sign stands for the card; an own finding whose rows disagree is open."""
-        verdict = self.verdict(of)
+        verdict = self.verdict(verdict_of)
         return "undecided" if self.kind == "own" and verdict == "in part" else verdict
 
-    def word(self, of: Callable = attrgetter("verdict")) -> str:
+    def word(self, verdict_of: Callable = attrgetter("verdict")) -> str:
         """The card's word as it is shown: with "in part" goes how many rows hold."""
-        verdict = self.verdict(of)
+        verdict = self.verdict(verdict_of)
         shown = OWN[verdict] if self.kind == "own" else verdict
         if verdict != "in part":
             return shown
-        verdicts = [of(claim) for claim in self.deciding]
+        verdicts = [verdict_of(claim) for claim in self.deciding]
         held = sum(v in ("reproduced", "qualitative") for v in verdicts)
         return f"{shown} ({held} of {len(verdicts)}{' held' * (self.kind == 'own')})"
 
-    def spread(self, of: Callable = attrgetter("verdict")) -> dict[str, str]:
+    def spread(self, verdict_of: Callable = attrgetter("verdict")) -> dict[str, str]:
         """Its word under each of its readings, the best first."""
         by_name = {reading: self.under(reading) for reading in self.readings}
-        order = sorted(by_name, key=lambda name: _BEST_FIRST.index(by_name[name].verdict(of)))
-        return {name: by_name[name].word(of) for name in order}
+        order = sorted(
+            by_name, key=lambda name: _BEST_FIRST.index(by_name[name].verdict(verdict_of))
+        )
+        return {name: by_name[name].word(verdict_of) for name in order}
 
 
 def _reading(rows: str) -> str:
@@ -150,10 +152,10 @@ def _cards(path: Path = _FILE) -> tuple[Card, ...]:
 
     for kind, entries in yaml.safe_load(path.read_text(encoding="utf-8")).items():
         for entry in entries:
-            by_reading = entry["rows"]
-            if not isinstance(by_reading, dict):
-                by_reading = {"": by_reading}
-            filled = {name: rows(entry["id"], ids) for name, ids in by_reading.items()}
+            by_name = entry["rows"]
+            if not isinstance(by_name, dict):
+                by_name = {"": by_name}
+            filled = {name: rows(entry["id"], ids) for name, ids in by_name.items()}
             filled = {name: row for name, row in filled.items() if row}
             beside = rows(entry["id"], entry.get("beside", ()))
             texts = (entry["id"], kind, entry["where"], entry["says"])
@@ -166,21 +168,21 @@ def of_kind(*kinds: str) -> list[Card]:
     return [card for card in _cards() if card.kind in kinds]
 
 
-def tally(some: Iterable[Card], of: Callable = attrgetter("verdict")) -> dict[str, int]:
+def tally(cards: Iterable[Card], verdict_of: Callable = attrgetter("verdict")) -> dict[str, int]:
     """How many cards have which word of `WORDS`."""
-    verdicts = [card.verdict(of) for card in some]
+    verdicts = [card.verdict(verdict_of) for card in cards]
     return {word: verdicts.count(word) for word in WORDS}
 
 
 def by_reading(
-    some: Iterable[Card], of: Callable = attrgetter("verdict")
+    cards: Iterable[Card], verdict_of: Callable = attrgetter("verdict")
 ) -> dict[str, dict[str, int]]:
     """The tally if one reading is the right one, for each of `READINGS`, the best-fitting first.
 
     That is the one with most cards that are reproduced, then with most that hold in kind.
     """
-    some = list(some)
-    tallies = {name: tally([card.under(name) for card in some], of) for name in READINGS}
+    cards = list(cards)
+    tallies = {name: tally([card.under(name) for card in cards], verdict_of) for name in READINGS}
 
     def fits(name):
         return tallies[name]["reproduced"], tallies[name]["qualitative"]

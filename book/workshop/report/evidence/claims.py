@@ -162,7 +162,7 @@ class Claim:
         """Whether anything measures it."""
         return bool(self.measure or self.find)
 
-    def but_for_reading(self) -> tuple[str, str]:
+    def key_and_setup(self) -> tuple[str, str]:
         """What measures it without the argument ``setup``, and that: a reading of the loop."""
         rest = {name: value for name, value in self.arguments.items() if name != "setup"}
         key = json.dumps([self.measure, self.find, rest], sort_keys=True)
@@ -226,18 +226,18 @@ class Claim:
         if not self.band:
             return "not testable"
         shares = self.shares()
-        return _fresh(shares) if shares else self.of(self.measured().value)
+        return _fresh(shares) if shares else self.verdict_for(self.measured().value)
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else _shares(self._of_each(replicates))
+        return {} if replicates is None else _shares(self._verdicts_for(replicates))
 
-    def of(self, value: float) -> str:
+    def verdict_for(self, value: float) -> str:
         """The verdict that the bands give for one value."""
-        return str(self._of_each([value])[0])
+        return str(self._verdicts_for([value])[0])
 
-    def _of_each(self, values) -> np.ndarray:
+    def _verdicts_for(self, values) -> np.ndarray:
         """The verdicts that the bands give for many values."""
         values = np.asarray(values)
         best = "by construction" if self.verdict == "by construction" else "reproduced"
@@ -260,11 +260,11 @@ class Claim:
             return getattr(self.printed, "text", self.printed)
         return f"{self.printed:,g}"
 
-    def here(self) -> str:
+    def our_value(self) -> str:
         """What we find, for a table."""
         return self.measured().text if self.is_measured else "–"
 
-    def sure(self) -> str:
+    def verdict_with_share(self) -> str:
         """The verdict, and in which share of the draws it comes out where that was found."""
         verdict, shares = self.judge(), self.shares()
         if not shares:

@@ -97,7 +97,7 @@ def _tile(claim: Claim, on: str) -> str:
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
     source = "This book's own claim" if claim.printed == _OWN else f"Printed: {claim.as_printed()}"
-    width, ours = window(claim), claim.here()
+    width, ours = window(claim), claim.our_value()
     known = width is None or str(width) in f"{claim.claim} {ours}"
     lines = [
         f"{typeset(source)} ({claim.where}). "
@@ -109,7 +109,7 @@ def _body(claim: Claim, on: str) -> list[str]:
         lines += [picture, ""]
     judged = ""
     if claim.band:
-        judged = typeset(worded(claim, f"Judged: {claim.sure()} ({_bands(claim)}). "))
+        judged = typeset(worded(claim, f"Judged: {claim.verdict_with_share()} ({_bands(claim)}). "))
         judged += f"† The band was {_AFTER[claim.after]}. " if claim.after else ""
     head = _HEADS.get(claim.verdict, "What would have refuted it")
     lines += [f"{judged}{typeset(claim.why)}", "", f"*{head}:* {typeset(claim.refuted)}", ""]

@@ -173,11 +173,11 @@ def _practised(setup: Setup, seeds: int) -> dict:
 def _out_of_step(draw) -> Trajectory:
     """The extents of the practised motion; the elbow starts three tenths of it later."""
     share, t = 0.7, learners.grid()
-    early, late = (
+    shoulder, elbow = (
         smooth_pick_and_place(draw.learnt, (t - wait) / share, 1.0)
         for wait in (0.0, (1 - share) * MOTION_SECONDS)
     )
-    pairs = zip(early, late, (1, share, share**2))
+    pairs = zip(shoulder, elbow, (1, share, share**2))
     return Trajectory(*(np.stack([a[..., 0], b[..., 1]], -1) / s for a, b, s in pairs))
 
 
