@@ -9,7 +9,7 @@ from book_pages import CHAPTERS
 
 from workshop.report import results
 from workshop.report.evidence import claims, wall
-from workshop.report.evidence.claims import _LEDGER, SECTIONS, Claim, _MeasureError
+from workshop.report.evidence.claims import LEDGER, SECTIONS, Claim, _MeasureError
 from workshop.report.evidence.verdicts import Measured
 
 ALL = claims.load()
@@ -65,7 +65,7 @@ def test_the_paper_is_covered():
     pages = {chapter.removeprefix("book/") for chapter in CHAPTERS}
     # evidence pages without a lesson of their name
     alone = {"start", "real-two-link-arm", "joints-three-and-four"}
-    assert {claim.chapter for claim in ALL} <= pages | {_LEDGER} | alone
+    assert {claim.chapter for claim in ALL} <= pages | {LEDGER} | alone
 
 
 def test_places_in_the_paper():
@@ -111,7 +111,7 @@ def test_what_we_find_for_a_claim_by_its_id():
     with pytest.raises(ValueError, match=r"id must be of a claim in claims.yml, got 'nowhere'"):
         claims.measured("nowhere")
     with pytest.raises(ValueError, match=r"chapter must have claims in claims.yml, got 'nowhere'"):
-        claims._of_chapter("nowhere")
+        claims.of_chapter("nowhere")
 
 
 def test_bands(finds):

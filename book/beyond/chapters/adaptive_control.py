@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from beyond.studies.loop import fair_rivals
-from beyond.studies.loop.runs.adaptive import _FULL
+from beyond.studies.loop.runs.adaptive import WITH_FRICTION
 from ddlib.figures import (
     COLOUR_MAP,
     COLOURS,
@@ -139,7 +139,7 @@ def bent(effect: str) -> Measured:
     return judged(
         lambda x: np.abs(np.median(x, axis=1)).max(-1),
         _added(effect),
-        text=f"{100 * off[k]:+.0f} % of {_told(_FULL[k])}",
+        text=f"{100 * off[k]:+.0f} % of {_told(WITH_FRICTION[k])}",
     )
 
 

@@ -19,7 +19,7 @@ from ddlib.trajectories import Trajectory
 _BETWEEN = ("window", "line", "hold")
 
 
-def _reference_windows(q, width: int, every: int) -> np.ndarray:
+def reference_windows(q, width: int, every: int) -> np.ndarray:
     """Windows around a reference's samples, ``(..., time, joint, width)``; it rests outside."""
     reach = width // 2 * every
     ends = [np.repeat(q[..., end, :], reach, -2) for end in (slice(1), slice(-1, None))]
@@ -66,7 +66,7 @@ class WindowFeedforward:
         time = q.shape[-2]
         stride = 1 if self.between == "window" else self.every
         at_rest = np.repeat(q[..., -1:, :], stride - 1, -2)  # a window after the end, too
-        windows = _reference_windows(np.concatenate([q, at_rest], -2), self.width, self.every)
+        windows = reference_windows(np.concatenate([q, at_rest], -2), self.width, self.every)
         windows = windows[..., ::stride, :, :]
         centres = windows.shape[-3]
         cases = windows.reshape(-1, *windows.shape[-2:])
@@ -101,7 +101,7 @@ class PlannedTorque:
 
 
 @dataclass(frozen=True)
-class _MeasuredWindows:
+class MeasuredWindows:
     """A model of windows inside the loop: what has been is measured, what is to come is desired.
 
     So much of the measured deviation as `share` says is put into the windows; its axes are runs.
@@ -112,6 +112,7 @@ class _MeasuredWindows:
     share: float | np.ndarray = 1.0
 
     def start(self, reference: Trajectory, step: float) -> ControlLaw:
+        """The law of one run: feedback, and the model's torque for measured windows."""
         made = self.feedforward
         made.check(step)
         feedback = as_controller(self.feedback).start(reference, step)
@@ -135,7 +136,7 @@ class _MeasuredWindows:
         return law
 
 
-def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
+def past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     """Mean slopes of a model's torque by past samples, N m/rad: (torque, joint, width // 2 + 1)."""
     joints, width = windows.shape[1:]
     slopes = np.empty((joints, joints, width // 2 + 1))
@@ -147,10 +148,10 @@ def _past_slopes(model: Callable, windows, step: float = 1e-5) -> np.ndarray:
     return slopes
 
 
-def _poles_inside(
+def poles_inside(
     joints: control.StateSpace, feedback: PID, past, period: float, every: int = 5, late: int = 0
 ) -> np.ndarray:
-    """Poles of a sampled loop with a linear model of these slopes (`_past_slopes`) inside."""
+    """Poles of a sampled loop with a linear model of these slopes (`past_slopes`) inside."""
     n = joints.ninputs
     sampled = control.sample_system(joints, period, "zoh")
     ages = late + every * np.arange(past.shape[-1])[::-1]  # of the samples, oldest first

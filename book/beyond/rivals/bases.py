@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 from numpy.polynomial.polynomial import polyvander
 
-from beyond.rivals.protocol import Rival, _NotFitted
+from beyond.rivals.protocol import NotFitted, Rival
 from ddlib._check import integer, number, one_of, shaped
 from ddlib.dynamics import Operations
 
@@ -99,7 +99,7 @@ class _Basis(Rival):
     def with_ridge(self, ridge: float) -> _Basis:
         """The same fitted rival with another penalty, at nearly no cost."""
         if not hasattr(self, "coefficients"):
-            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         other = copy(self)
         other.ridge = number("ridge", ridge, 0.0)
         other.coefficients = self._solution.coefficients(ridge)
@@ -155,7 +155,7 @@ class Polynomial(_Basis):
         )
 
 
-class _Fourier(_Basis):
+class Fourier(_Basis):
     """A Fourier series of the state; `period` of the longest wave is in edges of the box."""
 
     def __init__(self, order: int = 2, period: float = 2.0, ridge: float = 0.0):
@@ -171,6 +171,7 @@ class _Fourier(_Basis):
         return np.concatenate([np.ones((len(u), 1)), np.cos(angle), np.sin(angle)], 1)
 
     def operations(self):
+        """Operations for one torque of all joints."""
         (waves, variables), (terms, joints) = self.waves.shape, self.coefficients.shape
         steps = int(np.abs(self.waves).sum()) - waves  # sums of the scaled axes
         return Operations(

@@ -17,7 +17,7 @@ from sklearn.kernel_approximation import RBFSampler
 from sklearn.linear_model import RidgeCV
 
 from beyond.rivals.identified import Identified
-from beyond.rivals.protocol import _KINDS, Rival
+from beyond.rivals.protocol import INPUTS, Rival
 from ddlib._check import integer, one_of, positive, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import FRICTION, GRAVITY, RIGID
@@ -74,7 +74,7 @@ class GaussianProcess(Rival):
         restarts: int = 1,  # further searches, from random starts
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, _KINDS)
+        self.kind = one_of("kind", kind, INPUTS)
         self.directions = directions
         self.subset = integer("subset", subset, 2)
         self.restarts = integer("restarts", restarts, 0)
@@ -146,7 +146,7 @@ class GaussianProcess(Rival):
         )
 
 
-class _SemiParametric(Rival):
+class SemiParametric(Rival):
     """The arm's equations, and Gaussian processes for the rest (Nguyen-Tuong & Peters 2010)."""
 
     def __init__(self, names: Sequence[str] = (*RIGID, *GRAVITY, *FRICTION), **options):
@@ -174,9 +174,11 @@ class _SemiParametric(Rival):
         return np.zeros(x.shape[:2]) if self.exact else self.rest._deviation(x)
 
     def count(self):
+        """Stored numbers of the equations and of the processes."""
         return self.known.count() + (0 if self.exact else self.rest.count())
 
     def operations(self):
+        """Operations of the equations, of the processes, and to add both."""
         own = self.known.operations()
         if self.exact:
             return own
@@ -184,7 +186,7 @@ class _SemiParametric(Rival):
         return both._replace(additions=both.additions + 2)
 
 
-class _RandomFeatures(Rival):
+class RandomFeatures(Rival):
     """Ridge regression on random cosines of the inputs (Rahimi & Recht 2007)."""
 
     PENALTIES = tuple(np.logspace(-10, 2, 13))
@@ -198,7 +200,7 @@ class _RandomFeatures(Rival):
         lengths: Sequence[float] = (1.0, 2.0, 4.0, 8.0, 16.0),  # to try, of standardised inputs
         seed: int = 0,
     ):
-        self.kind = one_of("kind", kind, _KINDS)
+        self.kind = one_of("kind", kind, INPUTS)
         self.features = integer("features", features, 1)
         self.directions = directions
         self.lengths = tuple(positive("lengths", lengths, "(lengths,)"))
@@ -223,10 +225,12 @@ class _RandomFeatures(Rival):
         return self.level + self.unit * scaled.reshape(len(x), -1)
 
     def count(self):
+        """Stored numbers: of the inputs, the cosines, and their factors."""
         inputs, joints = self.inputs.matrix.shape[1], len(self.level)
         return self.inputs.count() + self.features * (inputs + 1 + joints) + 3 * joints
 
     def operations(self):
+        """Operations for one torque of all joints."""
         inputs, joints, own = self.inputs.matrix.shape[1], len(self.level), self.inputs.operations()
         return Operations(
             own.multiplications + self.features * (inputs + joints),

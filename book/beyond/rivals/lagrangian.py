@@ -15,14 +15,14 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from beyond.rivals.protocol import Rival, _NotFitted
+from beyond.rivals.protocol import NotFitted, Rival
 from ddlib._check import finite_array, integer, number, one_of, seed_number
 from ddlib.dynamics import Operations
 from ddlib.identification import SIGN_SPEED
 
 _GRAVITIES = ("potential", "vector", "none")
 _DIAGONALS = ("softplus", "relu")
-_AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
+AS_PUBLISHED = {  # options like those of the public code; there 10,000 epochs follow
     "hidden": (64, 64),
     "gravity": "potential",
     "diagonal": "relu",
@@ -123,7 +123,7 @@ class LagrangianNetwork(Rival):
     """A Deep Lagrangian Network, trained on states and torques.
 
     Adam on minibatches with squared weights as penalty, then, if asked for, L-BFGS in double
-    precision on all cases. `_AS_PUBLISHED` has the settings of the public code; the defaults differ
+    precision on all cases. `AS_PUBLISHED` has the settings of the public code; the defaults differ
     in scaled units, a larger step that falls to zero along half a cosine, and a smooth diagonal.
     """
 
@@ -249,7 +249,7 @@ class LagrangianNetwork(Rival):
     def _parts(self, q):
         """Triangle, its derivatives by position, gravity and potential, in scaled units."""
         if not hasattr(self, "network"):
-            raise _NotFitted(f"{self!r} has learnt nothing: call fit first")
+            raise NotFitted(f"{self!r} has learnt nothing: call fit first")
         q = finite_array("q", q, self.network.joints)
         flat = (q.reshape(-1, q.shape[-1]) - self.units.mean) / self.units.spread
         position = torch.tensor(flat).to(self.network.places)

@@ -9,15 +9,15 @@ import numpy as np
 from beyond.rivals.gaussian import GaussianProcess
 from beyond.rivals.protocol import Cases
 from beyond.studies.tx40 import (
-    _BLOCKS,
-    _EPOCHS,
-    _HIDDEN,
-    _RATES,
+    BLOCKS,
+    EPOCHS,
+    HIDDEN,
+    RATES,
     Ridge,
     Windowed,
-    _best_penalty,
-    _both,
-    _decayed,
+    best_penalty,
+    decayed_network,
+    errors_of_fold,
     identified,
     known_structure,
     least_squares,
@@ -50,7 +50,7 @@ _STARTS = 1000  # seed of the first null network: none shares its start with a r
 def _grid(members: int) -> list[dict]:
     """Every window of `_RATES`: errors of networks and of the models that are no networks."""
     rows = []
-    for rate, widths in _RATES.items():
+    for rate, widths in RATES.items():
         for width in widths:
             data = Windowed.of(rate, width)
             cells = [_cell(data, fold, members) for fold in data.folds()]
@@ -65,8 +65,8 @@ def _cell(data: Windowed, fold, members: int) -> dict:
     flat, states, given = data.flat, data.states, data.current[training]
     plain = states.reshape(len(states), -1)
     model, *_ = trained(data.x[training], given, members, 0, data.width)
-    network = _both(model, data, fold)
-    penalty = _best_penalty(data, training)
+    network = errors_of_fold(model, data, fold)
+    penalty = best_penalty(data, training)
     others = {
         "ridge": Ridge(flat[training], given).predict(flat[test], penalty),
         "least squares": least_squares(flat[training], given, flat[test]),
@@ -102,13 +102,16 @@ def _variants(members: int) -> dict:
         x, y = data.x[training], data.current[training]
         last, kept, _ = trained(x, y, members, 0, data.width, _COURSE, epochs=paper.EPOCHS)
         for epoch, model in {**kept, paper.EPOCHS: last}.items():
-            put(f"{epoch} epochs", _both(model, data, fold))
+            put(f"{epoch} epochs", errors_of_fold(model, data, fold))
         for units in (1, 3, 20):
             model, *_ = trained(x, y, members, 0, data.width, hidden=units)
-            put(f"{units} units", _both(model, data, fold))
-        start = Weights.random(members, data.width, _HIDDEN, 6, 6)
+            put(f"{units} units", errors_of_fold(model, data, fold))
+        start = Weights.random(members, data.width, HIDDEN, 6, 6)
         for decay in _DECAYS:
-            each = [_both(_decayed(x, y, start[k], decay), data, fold) for k in range(members)]
+            each = [
+                errors_of_fold(decayed_network(x, y, start[k], decay), data, fold)
+                for k in range(members)
+            ]
             put(f"decay {decay:g}", map(np.stack, zip(*each)))
         for decay in _DECAYS[-2:]:
             put(f"on the rest, decay {decay:g}", _structured(data, fold, members, decay))
@@ -121,8 +124,10 @@ def _structured(data: Windowed, fold, members: int, decay: float) -> list[np.nda
     states, given = data.states, data.current[training]
     known = known_structure(states[training], given, states)
     left = data.current - known
-    start = Weights.random(members, data.width, _HIDDEN, 6, 6)
-    models = [_decayed(data.x[training], left[training], start[k], decay) for k in range(members)]
+    start = Weights.random(members, data.width, HIDDEN, 6, 6)
+    models = [
+        decayed_network(data.x[training], left[training], start[k], decay) for k in range(members)
+    ]
     return [
         np.stack([wrong(known[part] + m.torque(data.x[part]), data, part) for m in models])
         for part in fold
@@ -184,12 +189,12 @@ def _filters(width: int, members: int, draws: int) -> dict:
     y = data.current
     same = np.repeat(y[None], members, 0)
     model, _, made = trained(data.x, y, members, 0, width)
-    start = Weights.random(members, width, _HIDDEN, 6, 6)
+    start = Weights.random(members, width, HIDDEN, 6, 6)
     untrained = TorqueModel(start, made.inputs, made.outputs)
     structure = identified(data.states, y)
     known = structure.friction, structure.rest
     flat = data.flat
-    penalty = _best_penalty(data, np.ones(len(flat), bool))
+    penalty = best_penalty(data, np.ones(len(flat), bool))
 
     fitted = Ridge(flat, y).filters(penalty).T.reshape(6, 6, width)
     own = np.arange(6)
@@ -246,7 +251,7 @@ def _hidden_units(members: int) -> dict:
 def _differences() -> dict:
     """Errors with states from three samples, one for each block, by samples a second."""
     rows: dict = {}
-    for rate in _RATES:
+    for rate in RATES:
         data, row = Windowed.of(rate, 3), {"states": [], "identified": []}
         states = data.states
         plain = states.reshape(len(states), -1)
@@ -303,8 +308,8 @@ def _real_arm(members: int = 3, filters: int = 10, draws: int = 20) -> dict:
         "members": members,
         "filters": filters,
         "draws": draws,
-        "epochs": _EPOCHS,
-        "blocks": _BLOCKS,
+        "epochs": EPOCHS,
+        "blocks": BLOCKS,
         "grid": _grid(members),
         "differences": _differences(),
         "variants": _variants(members),

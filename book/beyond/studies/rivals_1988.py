@@ -8,13 +8,13 @@ from functools import cache
 
 import numpy as np
 
-from beyond.rivals.bases import Polynomial, _Fourier
-from beyond.rivals.cmac import CMAC, _Diverged
+from beyond.rivals.bases import Fourier, Polynomial
+from beyond.rivals.cmac import CMAC, Diverged
 from beyond.rivals.identified import Identified
 from beyond.rivals.protocol import Cases, Rival
-from beyond.rivals.tables import CellTable, GridTable, _full_table, _Nearest
-from beyond.studies.loop.run_time_parts import _square_extents, exact as equations
-from beyond.studies.rivals import _square
+from beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
+from beyond.studies.loop.run_time_parts import exact as equations, square_extents
+from beyond.studies.rivals import square_recordings
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states
 from ddlib.simulation import Recording
@@ -24,7 +24,7 @@ from workshop.report.code_hash import study
 _DAYS = (1, 2, 3, 4, 5)
 _LATER = 100  # days until the same is recorded again; twice that: to choose settings
 _WIDTH = 21  # from which states are estimated: the best of Table 4-1
-_KINDS = ("exact", "positions only")
+KINDS = ("exact", "positions only")
 POINTS, _STRIDE = 9, 5  # of each joint in the square; of its samples every fifth
 
 
@@ -39,7 +39,7 @@ def _recorded(day: int, what: str) -> Recording:
     """The six runs, the square, or the practised trajectory again and again, on some day."""
     setup = JOINT_DAMPING.repeated(day)
     if what == "square":
-        return _square(setup, POINTS).recording
+        return square_recordings(setup, POINTS).recording
     return setup.record(*([[PRACTISED] * REPEATED[-1]] if what == "practised" else []))
 
 
@@ -52,7 +52,7 @@ def _day(day: int, kind: str) -> dict[str, Cases]:
     """Training cases of a day and what it is tested on."""
     today, later = (JOINT_DAMPING.repeated(d) for d in (day, day + _LATER))
     recording, motions = _recorded(day, "six"), _recorded(day, "square")
-    inside = inside_hull(_square_extents(POINTS))
+    inside = inside_hull(square_extents(POINTS))
     return {
         "training": _cases(today, recording[:5], kind),
         "again": _cases(later, _recorded(day + _LATER, "six")[:5], kind),
@@ -96,7 +96,7 @@ _FULL = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48)  # cells of an axis
 
 def _table(over: str, cells: int) -> Rival:
     if over == "nearest":
-        return _Nearest(beyond="edge")
+        return Nearest(beyond="edge")
     if over == "multilinear":
         return GridTable(cells, beyond="edge")
     return CellTable(cells, over, beyond="edge")
@@ -106,7 +106,7 @@ def _table(over: str, cells: int) -> Rival:
 def _rivals_tables(days=_DAYS) -> dict:
     """Errors of tables on all sets and days; maps around one trajectory; full tables."""
     rows = []
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
         for over, cells in [("nearest", 0), *((o, n) for o, some in _CELLS.items() for n in some)]:
             by_day = []
@@ -118,7 +118,7 @@ def _rivals_tables(days=_DAYS) -> dict:
         "days": list(days),
         "floor": [_floor(day) for day in days],
         "rows": rows,
-        "around": {kind: _around(kind, days) for kind in _KINDS},
+        "around": {kind: _around(kind, days) for kind in KINDS},
         "full": _full(),
     }
 
@@ -147,7 +147,7 @@ def _around(kind: str, days) -> dict:
         setups = [JOINT_DAMPING.repeated(number) for number in numbers]
         runs = [_recorded(number, "practised") for number in numbers[:-1]]
         later, recording = setups[-1], _recorded(numbers[-1], "square")
-        practised = _practised_distance() == 0
+        practised = practised_distance() == 0
         everywhere = _cases(later, recording, kind, _STRIDE)
         choice = _cases(setups[-2], runs[-1][0], kind)
         by_amount = [
@@ -187,7 +187,7 @@ def _map(rival: Rival, everywhere: Cases, scale) -> np.ndarray:
 def _full() -> dict:
     """Tables with the right torque in every cell, and how many cells the training runs reach."""
     setup = JOINT_DAMPING
-    training, everywhere = setup.record()[:5], _square(setup, POINTS).recording
+    training, everywhere = setup.record()[:5], square_recordings(setup, POINTS).recording
     states = _cases(setup, everywhere, "exact", 10).x
     seen = _cases(setup, training, "exact").x
     both = np.concatenate([states, seen])
@@ -202,7 +202,7 @@ def _full() -> dict:
         reached.append(1 - float(cell_table.empty(states).mean()))
     errors = {
         name: [
-            float(rmss(_full_table(torque, states, limits, n, interpolated=smooth), exact))
+            float(rmss(full_table(torque, states, limits, n, interpolated=smooth), exact))
             for n in _FULL
         ]
         for name, smooth in (("constant", False), ("multilinear", True))
@@ -226,9 +226,9 @@ def _rivals_cmac(days=_DAYS) -> dict:
         *({"layers": _LAYERS, "width": _HASHED_WIDTH, "slots": slots} for slots in _SLOTS),
     ]
     rows = []
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for setting in settings if kind == _KINDS[1] else settings[: len(_WIDTHS)]:
+        for setting in settings if kind == KINDS[1] else settings[: len(_WIDTHS)]:
             by_day = [_cmac(sets[day], setting) for day in days]
             rows.append({"kind": kind, **setting, **_over_days(by_day)})
     chosen = _over_days([_chosen_cmac(day, kind, sets[day]) for day in days])
@@ -240,7 +240,7 @@ def _cmac(sets: dict[str, Cases], setting: dict) -> dict:
     rival = CMAC(**setting, epochs=_EPOCHS, beyond="edge")
     try:
         errors, diverged = _errors(rival.fit(sets["training"]), sets), False
-    except _Diverged:
+    except Diverged:
         errors, diverged = dict.fromkeys(sets, np.nan), True
     return {
         **errors,
@@ -297,7 +297,7 @@ _RIDGES = (0.0, 1e-8, 1e-6, 1e-4, 1e-2)  # on squared coefficients
 _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
     "chebyshev": (Polynomial, 6),
     "monomials": (lambda order: Polynomial(order, "monomials"), 5),
-    "fourier": (_Fourier, 3),
+    "fourier": (Fourier, 3),
 }
 
 
@@ -305,9 +305,9 @@ _BASES: dict[str, tuple[Callable[[int], Rival], int]] = {
 def _rivals_bases(days=_DAYS) -> dict:
     """Errors of polynomials and Fourier series by degree and penalty; which one is chosen."""
     rows, chosen = [], {}
-    for kind in _KINDS:
+    for kind in KINDS:
         sets = {day: _day(day, kind) for day in days}
-        for name, (make, highest) in list(_BASES.items())[: None if kind == _KINDS[1] else 1]:
+        for name, (make, highest) in list(_BASES.items())[: None if kind == KINDS[1] else 1]:
             for order in range(1, highest + 1):
                 by_day = [_by_ridge(make(order), sets[day]["training"], sets[day]) for day in days]
                 for k, ridge in enumerate(_RIDGES):
@@ -346,6 +346,6 @@ def _left_out(make, highest: int, training: Cases) -> dict:
     return {"order": order, "ridge": ridge, "left out": float(np.sqrt(total[order, ridge] / 5))}
 
 
-def _practised_distance() -> np.ndarray:
+def practised_distance() -> np.ndarray:
     """Larger difference of extents to the practised one, degrees, ``(runs,)``, as in `_square`."""
-    return np.abs(_square_extents(POINTS) - PRACTISED).max(1)
+    return np.abs(square_extents(POINTS) - PRACTISED).max(1)

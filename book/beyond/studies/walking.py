@@ -64,7 +64,7 @@ def _histories(cases: int, seed: int, target: str = "smooth") -> np.ndarray:
     return np.concatenate([error, velocity], axis=1)
 
 
-def _trained(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
+def trained_copy(x, y, seed: int, longer: bool = False) -> tuple[list, float]:
     """A network of the same sizes that learnt y from x, and its training RMSS.
 
     The longer training is annealed, and in single precision, which takes half the time.
@@ -119,7 +119,7 @@ def _walking() -> dict:
         learnt = {"copies": (x, y), "shuffled": (x, shuffled), "longer": (x, y)}
         learnt |= {target: (z, torque(z, network)) for target, z in others.items()}
         for name, (z, goal) in learnt.items():
-            copy, error = _trained(z, goal, seed, name == "longer")
+            copy, error = trained_copy(z, goal, seed, name == "longer")
             row = {"error": error, "gradient": gradient(z, copy).mean(0)}
             rows.setdefault(name, []).append(row)
     drawn = []

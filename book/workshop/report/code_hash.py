@@ -66,7 +66,7 @@ def places() -> dict[str, tuple[str, str]]:
     return studies
 
 
-def _run(result: str) -> dict:
+def run_study(result: str) -> dict:
     """Call the study that makes a result."""
     module, name = places()[result]
     return getattr(importlib.import_module(module), name)()

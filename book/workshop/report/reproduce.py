@@ -22,7 +22,7 @@ from ddlib import figures
 from ddlib.analysis import purest, upright
 from ddlib.simulation import LOG_STEP
 from workshop.report import results
-from workshop.report.code_hash import _run, code_hash, places
+from workshop.report.code_hash import code_hash, places, run_study
 
 
 def _picture() -> None:
@@ -39,7 +39,7 @@ def _picture() -> None:
 def _make(name: str, code: str) -> None:
     """Run one study and write its result with the hash `code` of what made it."""
     started = time.process_time()
-    content = _run(name)
+    content = run_study(name)
     made_by = {"code": code, **results.stamp(time.process_time() - started)}
     results.write_json(results.FOLDER / f"{name}.json", {"made by": made_by, **content})
 

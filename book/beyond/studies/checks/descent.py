@@ -30,6 +30,6 @@ def _stirring_descent(days: int = 10, members: int = 20) -> dict:
     result: dict = {"training": left, "hands": {}}
     for motion, reference in asked.items():
         torques = {"none": [0 * reference.q], "network": [box(*reference) for box in models]}
-        hands = stirring._hand_errors(setup.repeated(motions.TEST_DAY), torques, reference)
+        hands = stirring.hand_errors(setup.repeated(motions.TEST_DAY), torques, reference)
         result["hands"][motion] = {name: np.median(off, -1) for name, off in hands.items()}
     return result

@@ -4,8 +4,8 @@ import numpy as np
 import torch
 from torch import nn
 
-from beyond.others import _FOLDER
-from beyond.studies.characters import _SEEDS, _SPLITS, _tested, data, states
+from beyond.others import DATA
+from beyond.studies.characters import SEEDS, SPLITS, data, states, tested
 from workshop.report.code_hash import study
 
 _TEN = 10  # published networks, by their seeds
@@ -15,7 +15,7 @@ _HIDDEN, _STEPS = 32, 2000  # tanh units of both layers of a plain network; iter
 
 def _published(seed: int) -> dict[str, np.ndarray]:
     """Weights of a published network."""
-    with np.load(_FOLDER / "delan-published.npz") as file:
+    with np.load(DATA / "delan-published.npz") as file:
         return {name: values[seed].astype(float) for name, values in file.items()}
 
 
@@ -89,14 +89,14 @@ def _characters_published() -> dict:
     _, test = data().split()
     turned = states(test).x[0] - states(test, 0.0).x[0]
     ten = [_published(seed) for seed in range(_TEN)]
-    lagrangian = [_tested(lambda x, w=w: _lagrangian(w, x - turned), test) for w in ten]
+    lagrangian = [tested(lambda x, w=w: _lagrangian(w, x - turned), test) for w in ten]
     stored = sum(values.size for values in ten[0].values())
     result: dict = {"published": {"count": stored, "loader": lagrangian}, "plain": {}}
-    for split, labels in _SPLITS.items():
+    for split, labels in SPLITS.items():
         training, test = data().split(labels)
-        made = [_plain(states(training), seed) for seed in range(_SEEDS)]
+        made = [_plain(states(training), seed) for seed in range(SEEDS)]
         result["plain"] |= {
-            split: [_tested(torque, test) for torque, _ in made],
+            split: [tested(torque, test) for torque, _ in made],
             "count": made[0][1],
         }
     return result

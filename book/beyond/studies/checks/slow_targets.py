@@ -14,10 +14,10 @@ from beyond.studies.walking import (
     _MEMBERS,
     _SIZES,
     STEP,
-    _trained,
     gradient,
     layers,
     torque,
+    trained_copy,
 )
 from workshop.report.code_hash import study
 
@@ -39,7 +39,7 @@ def _slowly_told(cases: int, seed: int) -> np.ndarray:
 
 def _copy(seed: int) -> dict:
     x = _slowly_told(_CASES, 0)
-    copy, error = _trained(x, torque(x, layers()), seed, longer=True)
+    copy, error = trained_copy(x, torque(x, layers()), seed, longer=True)
     return {"error": error, "gradient": gradient(x, copy).mean(0)}
 
 

@@ -21,8 +21,8 @@ from typing import NamedTuple
 import joblib
 import numpy as np
 
-from beyond.studies.rivals import _EVERY, _GRID, _square
-from beyond.studies.tuned import _BOOKS_OWN, _DAYS, _FEWER, _RIVALS, _RUNS
+from beyond.studies.rivals import _EVERY, SQUARE_POINTS, square_recordings
+from beyond.studies.tuned import _DAYS, _FEWER, _RUNS, OWN_RIVAL, RIVALS
 from ddlib.effects import Delay, Quantisation
 from ddlib.identification import (
     FRICTION,
@@ -43,7 +43,7 @@ from workshop.report.code_hash import study
 _SENSOR_LATE = 2  # samples by which a torque sensor is late
 _WEIGHT = (98.9, 12.4)  # N m: gravity moments of the arm's assumed links, at 9.81 m/s^2
 _ROUNDING = JOINT_DAMPING.effects.encoder[0].step / np.sqrt(12)  # its deviation, rad
-_LEARNT = _BOOKS_OWN  # as in `tuned`
+_LEARNT = OWN_RIVAL  # as in `tuned`
 
 
 class _Kept(NamedTuple):
@@ -89,8 +89,8 @@ _WAYS: dict[str, dict[tuple, Callable]] = {
     "Kalman smoother": {(n,): _kalman(n) for n in _NOISES},
     _LEARNT: {
         (w, pull): partial(_learnt, w, pull)
-        for w in _RIVALS[_LEARNT].windows
-        for pull in _RIVALS[_LEARNT].knobs["pull"]
+        for w in RIVALS[_LEARNT].windows
+        for pull in RIVALS[_LEARNT].knobs["pull"]
     },
 }
 
@@ -138,7 +138,7 @@ def _job(arm: str, day: int) -> dict:
     setup, names, _ = _ARMS[arm]
     setup = setup.repeated(day)
     training, six = split(setup.record())
-    whole, result = _square(setup, _GRID), {}
+    whole, result = square_recordings(setup, SQUARE_POINTS), {}
     parts = {"training": (training, 1), "trajectory 6": (six, 1)}
     for name, chosen in (("inside", whole.inside), ("outside", ~whole.inside)):
         parts[name] = (whole.recording[chosen], _EVERY)

@@ -16,7 +16,7 @@ from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating, Rival
 from beyond.studies.loop import motions
 from beyond.studies.loop.motions import training
-from beyond.studies.loop.run_time_parts import _through_window, exact
+from beyond.studies.loop.run_time_parts import exact, through_window
 from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach
@@ -73,7 +73,7 @@ def _errors(model: Callable, tests: dict[str, Cases]) -> dict[str, list[float]]:
     return errors
 
 
-def _fitted(rival: Rival, cases: Cases) -> Rival:
+def fitted(rival: Rival, cases: Cases) -> Rival:
     """The rival, trained for as many steps as it has."""
     with warnings.catch_warnings(action="ignore", category=NotConverged):
         return rival.fit(cases)
@@ -90,9 +90,9 @@ def _transfer(setup: Setup, names, width: int, families, runs: list, tests: dict
     rivals: dict = {pair: [] for pair in product(names, families)}
     errors: dict = {name: {family: {} for family in families} for name in names}
     for day, run in enumerate(runs):
-        cases = motions._learnt(run, width)
+        cases = motions.training_cases(run, width)
         for (name, family), trained in rivals.items():
-            trained.append(_fitted(_maker(setup, name, day), cases[family]))
+            trained.append(fitted(_maker(setup, name, day), cases[family]))
             every = _errors(trained[-1].torque, {"training": cases[family], **answers})
             for part, error in every.items():
                 errors[name][family].setdefault(part, []).append(error)
@@ -108,7 +108,7 @@ def _wider(setup: Setup, runs: list, tests: dict) -> dict:
         for k in range(len(runs)):
             for part, error in _errors(networks[k].torque, answers).items():
                 mine.setdefault(part, []).append(error)
-        other = _transfer(setup, _NAMES[:1], width, motions._FAMILIES[1:2], runs, tests)[1]
+        other = _transfer(setup, _NAMES[:1], width, motions.FAMILIES[1:2], runs, tests)[1]
         by_width[str(width)] = {"pick and place": mine, **other["network"]}
     return by_width
 
@@ -127,7 +127,7 @@ def off(setup: Setup, log: Recording) -> np.ndarray:
     return 1000 * np.sqrt((error**2).sum(-1).mean(-1))
 
 
-def _hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict:
+def hand_errors(setup: Setup, torques: dict[str, list], reference: Trajectory) -> dict:
     """Errors of the hand (mm), shape (models, runs), by the name of the feedforward torques."""
     every = np.stack([torque for several in torques.values() for torque in several])
     ends = np.cumsum([len(several) for several in torques.values()])[:-1]
@@ -139,7 +139,7 @@ def boxes(setup: Setup, models: dict[str, list]) -> dict[str, list[Callable]]:
     return {
         "none": [lambda q, qd, qdd: np.zeros_like(q)],
         "exact equations": [exact(setup)],
-        "exact behind a window": [_through_window(exact(setup))],
+        "exact behind a window": [through_window(exact(setup))],
         **{n: [WindowFeedforward(model, _WIDTH) for model in ms] for n, ms in models.items()},
     }
 
@@ -160,7 +160,7 @@ def _hands(setup: Setup, rivals: dict, members: int) -> dict:
     errors: dict = {name: {} for name in named}
     for motion, reference in references.items():
         torques = {name: [f(*reference) for f in ms] for name, ms in named.items()}
-        for name, off_by in _hand_errors(today, torques, reference).items():
+        for name, off_by in hand_errors(today, torques, reference).items():
             errors[name][motion] = off_by
     return errors
 
@@ -191,7 +191,7 @@ def _filters(setup: Setup, rivals: dict, runs: list) -> dict:
             cases = Cases.windows(run[family], _WIDTH)
             drawn = surrogate("phases", cases.torque.reshape(5, -1, 2), day).reshape(-1, 2)
             left.append(related(drawn, cases.x))
-            null.append(_fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
+            null.append(fitted(_maker(setup, "network", day), replace(cases, torque=drawn)))
         row[family] = {
             "real": _described(rivals["network", family], runs, family, setup),
             "phases": _described(null, runs, family, setup),
@@ -208,7 +208,7 @@ def network_path(family: str):
 def _keep(setup: Setup, rivals: dict, table: dict) -> dict[str, TorqueModel]:
     """Save, of each family, the network with the median error on its own test."""
     kept = {}
-    for family in motions._FAMILIES[:3]:
+    for family in motions.FAMILIES[:3]:
         part = family if family != "both" else "circles"
         order = np.argsort([error[0] for error in table["network"][family][part]])
         kept[family] = rivals["network", family][order[len(order) // 2]].model
@@ -254,21 +254,21 @@ def _stirring(days: int = _DAYS, members: int = _MEMBERS) -> dict:
     """Networks and rivals of each family of motions on all others, and their hands' errors."""
     result: dict = {"days": days, "members": members, "width": _WIDTH, "setups": {}}
     every = (
-        (JOINT_DAMPING, _NAMES, motions._FAMILIES),
-        (STATE_FEEDBACK, _NAMES[::2], motions._FAMILIES[:3]),
+        (JOINT_DAMPING, _NAMES, motions.FAMILIES),
+        (STATE_FEEDBACK, _NAMES[::2], motions.FAMILIES[:3]),
     )
     for setup, names, families in every:
         main = setup is JOINT_DAMPING
         setup = replace(setup, steps=JOINT_DAMPING.steps, decay=JOINT_DAMPING.decay)
         runs = training(setup, range(days))
-        tests = motions._asked(setup, members, vias=main)
+        tests = motions.test_recordings(setup, members, vias=main)
         if not main:
             names = (*names, "identified")
         rivals, errors = _transfer(setup, names, _WIDTH, families, runs, tests)
         row = {
             "deviations": {n: Cases.windows(r, _WIDTH).torque.std(0) for n, r in tests.items()},
             "errors": errors,
-            "coverage": motions._coverage(setup, tests, members),
+            "coverage": motions.coverage(setup, tests, members),
             "hands": _hands(setup, rivals, members // 2),
         }
         if main:

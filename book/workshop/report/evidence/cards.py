@@ -29,7 +29,7 @@ import yaml
 
 from ddlib.setups import SETUPS
 from workshop import BOOK
-from workshop.report.evidence.claims import _OWN, Claim, load
+from workshop.report.evidence.claims import NOT_IN_PAPER, Claim, load
 
 _FILE = BOOK / "cards.yml"  # Where the cards are kept
 
@@ -192,7 +192,7 @@ def by_reading(
 
 def worded(claim: Claim, text: str) -> str:
     """A text about a claim's verdict, in the words for own findings if it is one."""
-    if claim.printed != _OWN and claim.id not in _of_findings():
+    if claim.printed != NOT_IN_PAPER and claim.id not in _of_findings():
         return text
     words = {**OWN, "qualitative": "held in kind"}
     return re.sub("|".join(words), lambda match: words[match[0]], text)

@@ -11,11 +11,12 @@ An entry has these fields:
     "a real arm"; and the id of the claim whose sentence of the paper it judges once more. It is
     judged like the others and not counted twice among the paper's.
 ``chapter``
-    The page of the book that deals with it; `_LEDGER` if there is no other.
+    The page of the book that deals with it; `LEDGER` if there is no other.
 ``claim``
     What the paper says, in a few words of our own or a short quotation.
 ``printed``
-    The printed value: a number, or text such as "by eye"; `_OWN` for what this book claims itself.
+    The printed value: a number, or text such as "by eye"; `NOT_IN_PAPER` for what this book claims
+    itself.
 ``measure`` or ``find``, ``with``
     A function of `workshop.report.measures` as "module.function", and its keyword arguments, or
     one of `workshop.chapters` with "chapters." before, or one of Part IV by its full name,
@@ -66,17 +67,17 @@ from workshop import BOOK
 from workshop.report import results
 from workshop.report.evidence.expressions import find
 from workshop.report.evidence.verdicts import (
-    _VERDICTS,
+    VERDICTS,
     Measured,
-    _fresh,
-    _shares,
-    _stands,
+    not_contradicted,
     share_told,
+    shares_of_draws,
+    verdict_of_shares,
 )
 
-_FILE = BOOK / "claims.yml"  # Where the claims are kept
+CLAIMS_FILE = BOOK / "claims.yml"  # Where the claims are kept
 
-_LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
+LEDGER = "ledger"  # The page of all claims, and the chapter of those that no other page deals with
 
 # Environment variable with a folder in which notebooks that are built together share what they
 # measured: each runs in a process of its own, which an argument does not reach. Who sets it takes
@@ -85,7 +86,7 @@ SHARED = "DDLIB_MEASURED"
 
 # As `printed`: a claim of this book, to explain what the paper's section reports. It is judged
 # like the others, in its chapter, and is not counted among the paper's.
-_OWN = "not in the paper"
+NOT_IN_PAPER = "not in the paper"
 
 # Titles of the paper's sections; abstract and appendix are numbered so that they sort
 SECTIONS = {
@@ -139,7 +140,7 @@ class Claim:
             if not isinstance(value, str) or not value.strip():
                 raise ValueError(f"{name} of claim {self.id!r} must be text, got {value!r}")
         self.place()
-        one_of(f"verdict of claim {self.id!r}", self.verdict, _VERDICTS)
+        one_of(f"verdict of claim {self.id!r}", self.verdict, VERDICTS)
         testable = self.verdict != "not testable"
         if testable != bool(self.band) or (testable and not self.is_measured):
             raise ValueError(
@@ -218,7 +219,7 @@ class Claim:
         Whether it stands: see `verdicts`. Without replicates it has to be `fresh`.
         """
         shares = self.shares()
-        stands = shares and not results._committed() and _stands(self.verdict, shares)
+        stands = shares and not results._committed() and not_contradicted(self.verdict, shares)
         return self.verdict if stands else self.fresh()
 
     def fresh(self) -> str:
@@ -226,12 +227,12 @@ class Claim:
         if not self.band:
             return "not testable"
         shares = self.shares()
-        return _fresh(shares) if shares else self.verdict_for(self.measured().value)
+        return verdict_of_shares(shares) if shares else self.verdict_for(self.measured().value)
 
     def shares(self) -> dict[str, float]:
         """Share of the replicates in which each verdict comes out; empty without replicates."""
         replicates = self.measured().replicates if self.band else None
-        return {} if replicates is None else _shares(self._verdicts_for(replicates))
+        return {} if replicates is None else shares_of_draws(self._verdicts_for(replicates))
 
     def verdict_for(self, value: float) -> str:
         """The verdict that the bands give for one value."""
@@ -256,7 +257,7 @@ class Claim:
 
     def as_printed(self) -> str:
         """What the paper prints, for a table."""
-        if isinstance(self.printed, (str, _Printed)):
+        if isinstance(self.printed, (str, Printed)):
             return getattr(self.printed, "text", self.printed)
         return f"{self.printed:,g}"
 
@@ -290,7 +291,7 @@ def _measured(way: str) -> Measured:
     return joblib.Memory(folder, verbose=0).cache(_measure)(way) if folder else _measure(way)
 
 
-def _function(measure: str) -> Callable:
+def measuring_function(measure: str) -> Callable:
     """The function that a claim names: "module.function", with another room's name in front."""
     room = measure.partition(".")[0]
     places = {"beyond": measure, "chapters": f"workshop.{measure}"}
@@ -301,7 +302,7 @@ def _function(measure: str) -> Callable:
 def _measure(way: str) -> Measured:
     """What a function of some name or an expression finds with some arguments."""
     measure, expression, arguments = json.loads(way)
-    result = _function(measure)(**arguments) if measure else find(expression, arguments)
+    result = measuring_function(measure)(**arguments) if measure else find(expression, arguments)
     if not isinstance(result, Measured):
         raise TypeError(f"{measure} must return a Measured, got {result!r}")
     unclear = result.replicates is not None and np.isnan(result.replicates).any()
@@ -310,7 +311,7 @@ def _measure(way: str) -> Measured:
     return result
 
 
-class _Printed(float):
+class Printed(float):
     """A number that keeps the digits it is printed with."""
 
     def __new__(cls, text: str):
@@ -327,7 +328,7 @@ _VALUES = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _TEXTS = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 
 
-def load(path: Path = _FILE) -> list[Claim]:
+def load(path: Path = CLAIMS_FILE) -> list[Claim]:
     """All claims, in the order of the file."""
     return list(_parsed(path.read_text(encoding="utf-8")))
 
@@ -347,7 +348,7 @@ def _parsed(text: str) -> tuple[Claim, ...]:
         entry = dict(entry)
         entry["arguments"] = entry.pop("with", {})
         if isinstance(entry.get("printed"), float):
-            entry["printed"] = _Printed(plain["printed"])
+            entry["printed"] = Printed(plain["printed"])
         try:
             if isinstance(entry.get("refuted"), dict):
                 entry["refuted"], entry["outcome"] = _sentence(**entry["refuted"])
@@ -370,13 +371,13 @@ def measured(id: str) -> Measured:
     """What we find for one claim, for a page that quotes it."""
     by_id = {claim.id: claim for claim in load()}
     if id not in by_id:
-        raise ValueError(f"id must be of a claim in {_FILE.name}, got {id!r}")
+        raise ValueError(f"id must be of a claim in {CLAIMS_FILE.name}, got {id!r}")
     return by_id[id].measured()
 
 
 def of_the_paper() -> list[Claim]:
     """All claims but this book's own and those that are judged again on another arm."""
-    return [claim for claim in load() if claim.printed != _OWN and not claim.arm]
+    return [claim for claim in load() if claim.printed != NOT_IN_PAPER and not claim.arm]
 
 
 def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
@@ -385,9 +386,9 @@ def judged_again(arm: str) -> list[tuple[Claim, Claim]]:
     return [(first[c.again], c) for c in first.values() if c.arm == arm and c.again]
 
 
-def _of_chapter(chapter: str) -> list[Claim]:
+def of_chapter(chapter: str) -> list[Claim]:
     """The claims that a page of the book deals with; an error if there are none."""
     claims = [claim for claim in load() if claim.chapter == chapter]
     if not claims:
-        raise ValueError(f"chapter must have claims in {_FILE.name}, got {chapter!r}")
+        raise ValueError(f"chapter must have claims in {CLAIMS_FILE.name}, got {chapter!r}")
     return claims

@@ -25,7 +25,7 @@ import numpy as np
 from ddlib._check import integer, one_of
 
 # All verdicts. The first three are decided by bands, best first.
-_VERDICTS = (
+VERDICTS = (
     "reproduced",
     "qualitative",
     "not reproduced",
@@ -122,12 +122,12 @@ def judged(
     return Measured(value, text(value) if callable(text) else text, replicates)
 
 
-def _largest_median(*cells) -> np.ndarray:
+def largest_median(*cells) -> np.ndarray:
     """The largest of the medians of some cells, one for each draw."""
     return np.max([median(cell) for cell in cells], axis=0)
 
 
-def _shares(verdicts) -> dict[str, float]:
+def shares_of_draws(verdicts) -> dict[str, float]:
     """Share of the draws in which each verdict comes out, the most frequent first."""
     names, counts = np.unique(verdicts, return_counts=True)
     order = np.argsort(-counts, kind="stable")
@@ -147,15 +147,15 @@ def share_told(share: float) -> str:
     return f"{100 * share:.0f} %"
 
 
-def _fresh(shares: Mapping[str, float]) -> str:
+def verdict_of_shares(shares: Mapping[str, float]) -> str:
     """The verdict that shares of draws give by themselves; "undecided" if none is decided."""
     best = max(shares, key=shares.get)
     return best if shares[best] >= DECIDED else "undecided"
 
 
-def _stands(written: str, shares: Mapping[str, float]) -> bool:
+def not_contradicted(written: str, shares: Mapping[str, float]) -> bool:
     """Whether shares of draws do not contradict a written verdict; see the module."""
-    one_of("written", written, _VERDICTS)
+    one_of("written", written, VERDICTS)
     if written == "undecided":
         return max(shares.values()) < _CONTRADICTS
     return shares.get(written, 0.0) >= STANDS

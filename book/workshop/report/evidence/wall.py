@@ -16,13 +16,13 @@ import numpy as np
 from ddlib.tables import significant, typeset
 from workshop.report.evidence.cards import LISTS, WORDS, worded
 from workshop.report.evidence.claims import (
-    _FILE,
-    _LEDGER,
-    _OWN,
+    CLAIMS_FILE,
+    LEDGER,
+    NOT_IN_PAPER,
     Claim,
-    _function,
-    _of_chapter,
-    _Printed,
+    Printed,
+    measuring_function,
+    of_chapter,
 )
 from workshop.report.evidence.expressions import find
 
@@ -61,7 +61,7 @@ class Tiles:
     """Claims to open: sentence and verdict outside; value, picture, bands and reasons inside."""
 
     claims: Iterable[Claim]
-    on: str = _LEDGER
+    on: str = LEDGER
 
     def __post_init__(self):
         object.__setattr__(self, "claims", tuple(self.claims))
@@ -72,7 +72,7 @@ class Tiles:
 
 def chapter_tiles(chapter: str) -> Tiles:
     """A chapter's "Paper and reproduction": its claims as `Tiles`."""
-    return Tiles(_of_chapter(chapter), chapter)
+    return Tiles(of_chapter(chapter), chapter)
 
 
 def _text(text: str) -> str:
@@ -96,7 +96,11 @@ def _tile(claim: Claim, on: str) -> str:
 
 def _body(claim: Claim, on: str) -> list[str]:
     """What is inside a tile, as Markdown."""
-    source = "This book's own claim" if claim.printed == _OWN else f"Printed: {claim.as_printed()}"
+    source = (
+        "This book's own claim"
+        if claim.printed == NOT_IN_PAPER
+        else f"Printed: {claim.as_printed()}"
+    )
     width, ours = window(claim), claim.our_value()
     known = width is None or str(width) in f"{claim.claim} {ours}"
     lines = [
@@ -119,10 +123,10 @@ def _body(claim: Claim, on: str) -> list[str]:
 
 def _links(claim: Claim, on: str) -> str:
     page, links = _page_of(claim), []
-    up = "" if on == _LEDGER else "../"  # evidence pages have a folder of their own
+    up = "" if on == LEDGER else "../"  # evidence pages have a folder of their own
     if page and claim.chapter != on:
         links.append(f"[chapter]({page})")
-    if on != _LEDGER:
+    if on != LEDGER:
         links.append(f'<a href="{up}ledger.html#claim-{claim.id}">in the ledger</a>')
     if claim.is_measured:
         links.append(f'<a href="{up}{_source(claim)}">code</a>')
@@ -131,7 +135,7 @@ def _links(claim: Claim, on: str) -> str:
 
 def _source(claim: Claim) -> str:
     """Address of the lines that measure a claim, from the page of a chapter."""
-    measure = inspect.unwrap(_function(claim.measure) if claim.measure else find)
+    measure = inspect.unwrap(measuring_function(claim.measure) if claim.measure else find)
     return f"{_CODE}/{measure.__module__.replace('.', '/')}.html#{measure.__name__}"
 
 
@@ -144,7 +148,7 @@ def _draws(claim: Claim) -> str:
         return ""
     low, median, high = np.quantile(np.asarray(replicates, float), _MIDDLE)
     band = _range(claim)
-    given = float(claim.printed) if isinstance(claim.printed, _Printed) else None
+    given = float(claim.printed) if isinstance(claim.printed, Printed) else None
     place, ends = _scale([low, high, *filter(np.isfinite, band), *([given] if given else [])])
     parts = [
         ("band", *map(place, band)),
@@ -205,7 +209,7 @@ def window(claim: Claim) -> int | None:
     """The window size that a claim is measured at; None if there is none or there are several."""
     if not claim.measure:
         return claim.arguments.get("width")
-    given = inspect.signature(_function(claim.measure)).bind(**claim.arguments)
+    given = inspect.signature(measuring_function(claim.measure)).bind(**claim.arguments)
     given.apply_defaults()
     return given.arguments.get("width")
 
@@ -249,7 +253,9 @@ _BEHIND = {"whose-filters": "why-smooth-filters"}  # a lesson's evidence page of
 
 def home(claim: Claim) -> str:
     """The page of a claim's chapter, as ``{doc}`` takes it: a lesson, or evidence that has none."""
-    lesson = any((_FILE.parent / f"{claim.chapter}.{end}").is_file() for end in ("ipynb", "md"))
+    lesson = any(
+        (CLAIMS_FILE.parent / f"{claim.chapter}.{end}").is_file() for end in ("ipynb", "md")
+    )
     return claim.chapter if lesson else f"/book/evidence/{claim.chapter}"
 
 
@@ -257,4 +263,4 @@ def _page_of(claim: Claim) -> str:
     """The file of the page that deals with a claim, beside the others; empty if there is none."""
     behind = _BEHIND.get(claim.chapter, claim.chapter)
     names = (f"evidence/{behind}.ipynb", f"{claim.chapter}.ipynb", f"{claim.chapter}.md")
-    return next((name for name in names if (_FILE.parent / name).is_file()), "")
+    return next((name for name in names if (CLAIMS_FILE.parent / name).is_file()), "")

@@ -32,7 +32,7 @@ from workshop.report.evidence.verdicts import (
     median,
     turns_at,
 )
-from workshop.report.studies._windows import _acceleration_error
+from workshop.report.studies._windows import acceleration_error
 
 
 def estimates(
@@ -309,7 +309,7 @@ def short_window(bits: tuple = (16, 15, 14, 13, 12, 11), more: float = 1.1) -> M
         rounded = Quantisation(2 * np.pi / 2**each)
         effects = replace(STATE_FEEDBACK.effects, encoder=(rounded,))
         run = split(replace(STATE_FEEDBACK, effects=effects).record())[0]
-        ratios.append(_acceleration_error(run, 11) / _acceleration_error(run, 21))
+        ratios.append(acceleration_error(run, 11) / acceleration_error(run, 21))
     turn = turns_at([2.0**-each for each in bits], ratios, more)
     text = f"{significant(ratios[0], 2)} times the error at 21 with the assumed {bits[0]} bits"
     text += f"; {significant(more, 2)} times with {-np.log2(turn):.1f} bits"

@@ -10,7 +10,7 @@ from ddlib.metrics import rmss
 from workshop.report import results
 from workshop.report.code_hash import study
 from workshop.report.exact_states import (
-    _DESCENT,
+    DESCENT,
     EPOCHS,
     INITIAL,
     MOMENTUM,
@@ -25,7 +25,7 @@ from workshop.report.exact_states import (
 def _train(states, members, label="", **options):
     data = TrainingSet.from_arrays(states, torque(states))
     weights = Weights.random(members, 3, initial=options.pop("initial", INITIAL))
-    return train_ensemble(weights, data, label=f"state space{label}", **(_DESCENT | options))
+    return train_ensemble(weights, data, label=f"state space{label}", **(DESCENT | options))
 
 
 def _errors(model: TorqueModel, sets: dict) -> dict:
@@ -129,7 +129,7 @@ def _descend(samples, draws, hidden=paper.HIDDEN_UNITS, epochs=EPOCHS, first=100
         data, test = _data(samples, first + draw)
         weights = Weights.random(_DESCENT_MEMBERS, 3, hidden, initial=INITIAL, seed=10 * draw)
         label = f"{samples:,} samples, {hidden} units, descent {draw + 1} of {draws}"
-        options = _DESCENT | {"epochs": epochs}
+        options = DESCENT | {"epochs": epochs}
         histories.append(train_ensemble(weights, data, test=test, label=label, **options)[1])
     return histories
 

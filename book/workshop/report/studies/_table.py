@@ -26,7 +26,7 @@ from workshop.report import results
 from workshop.report.code_hash import study
 
 
-def _row(model, history, recording) -> dict:
+def errors_and_weights(model, history, recording) -> dict:
     """What is written of trained networks: errors in training and test, the largest weights."""
     measured = errors(model, recording)
     return {
@@ -101,7 +101,7 @@ def _ablations() -> dict:
 
 
 def _on_days(setup, days, networks, whiten=True) -> dict:
-    """By window what `_row` tells, each of shape ``(days, networks)`` (`Setup.repeated`)."""
+    """By window `errors_and_weights`, each of shape ``(days, networks)`` (`Setup.repeated`)."""
     cells = {str(w): [] for w in WINDOWS}
     for day in range(1, days + 1):
         recording = setup.repeated(day).record()
@@ -110,7 +110,9 @@ def _on_days(setup, days, networks, whiten=True) -> dict:
                 setup, recording, w, networks, seed=100 * day, whiten=whiten, progress=False
             )
             ends = _saturated(model, recording, w)
-            cells[str(w)].append({**_row(model, history, recording), "saturated": ends})
+            cells[str(w)].append(
+                {**errors_and_weights(model, history, recording), "saturated": ends}
+            )
     return {w: {key: [one[key] for one in cell] for key in cell[0]} for w, cell in cells.items()}
 
 
@@ -151,7 +153,7 @@ def _whitening(days=5, networks=2, members=8, width=41) -> dict:
         hidden = model.weights.hidden_weights
         rough = {"trained": hidden, "change": hidden - start.hidden_weights}
         directions[name] = {
-            **_row(model, history, recording),
+            **errors_and_weights(model, history, recording),
             "learnt": (change > 1).sum(-1),
             "change over start": np.sqrt(np.median(change, 0)),
             **{f"roughness, {k}": np.median(roughness(w), (-2, -1)) for k, w in rough.items()},

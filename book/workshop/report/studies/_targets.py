@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 from ddlib.learning import Weights, surrogates
 from ddlib.simulation import LOG_STEP
 from workshop.report.code_hash import study
-from workshop.report.studies.nulls import TRIAL, _counted, _Trial
+from workshop.report.studies.nulls import TRIAL, FilterTrial, names_counted
 
 _TIMES = (0.02, 0.05, 0.1, 0.3, 1.0)  # s, time constants of the Gaussian processes
 
@@ -24,7 +24,7 @@ _INITIAL = (0.01, 0.03, 0.1, 0.3, 1.0)  # sizes of the initial weights
 class _Targets:
     """Targets ``(draws, runs, time, joint)``, with the mean and the spread of a trial's torques."""
 
-    def __init__(self, trial: _Trial, draws: int):
+    def __init__(self, trial: FilterTrial, draws: int):
         self.trial, self.draws = trial, draws
         x = trial.windows.reshape(len(trial.windows), -1)
         self.along = np.linalg.qr(np.column_stack([np.ones(len(x)), x]))[0]
@@ -98,7 +98,7 @@ class _Targets:
         f, before = weights.hidden_weights, start.hidden_weights
         given = self.trial.model(weights).torque(self.trial.windows)
         left = wanted.reshape(given.shape) - given
-        counts = {"": _counted(f), "added, ": _counted(f - before)}
+        counts = {"": names_counted(f), "added, ": names_counted(f - before)}
         variance = wanted.var((1, 2))
         return {
             "explained": (self.fitted(wanted).var((1, 2)) / variance).mean(-1),
@@ -113,7 +113,7 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
     """Names of hidden filters by what was learnt, and by the size of the initial weights."""
     setup = replace(TRIAL, epochs=epochs)
     recording = setup.record()
-    made = _Targets(_Trial(setup, recording, width), members)
+    made = _Targets(FilterTrial(setup, recording, width), members)
     row = made.row()
     mixed = {
         (name, share): target
@@ -122,7 +122,7 @@ def _targets(members: int = 10, width: int = 21, epochs: int = TRIAL.epochs) -> 
     }
     learnt = made.learnt({**row, **mixed}, 0)
     starts = [
-        _Targets(_Trial(replace(setup, initial=size), recording, width), members).learnt(
+        _Targets(FilterTrial(replace(setup, initial=size), recording, width), members).learnt(
             {name: row[name] for name in _MIXED}, 0
         )
         for size in _INITIAL

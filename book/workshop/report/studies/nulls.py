@@ -42,7 +42,7 @@ from workshop.report._probes import (
     with_jerk,
 )
 from workshop.report.code_hash import study
-from workshop.report.two_harmonics import _record_circle, _record_quintic, record_two_harmonics
+from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
 
 _EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike
 
@@ -63,7 +63,7 @@ _WAITS = {11: 12_000}  # epochs of a window that rests on a plateau for about 3,
 _STARTS = 1000  # seed of the first null network: none shares its start with a real one
 
 
-class _Trial:
+class FilterTrial:
     """One recording and window size: its cases, and what networks make of them."""
 
     def __init__(self, setup: Setup, recording: Recording, width: int):
@@ -99,6 +99,7 @@ class _Trial:
         return model.weights, start
 
     def model(self, weights: Weights) -> TorqueModel:
+        """Weights as a model of the trial's windows and torques."""
         return TorqueModel(weights, self.data.inputs, self.data.outputs, LOG_STEP)
 
     def described(self, weights: Weights, start: Weights, targets) -> dict:
@@ -111,9 +112,9 @@ class _Trial:
         inputs = unit_inputs(model, self.windows)
         for layer, attribute in LAYERS.items():
             f, before = getattr(weights, attribute), getattr(start, attribute)
-            row[layer] = {"classes": _counted(f), **_responded(inputs[layer], self.states)}
+            row[layer] = {"classes": names_counted(f), **_responded(inputs[layer], self.states)}
             changed = (np.abs(f - before) > 1e-9).any()
-            row[layer]["changes"] = _counted(f - before) if changed else _counted(f)
+            row[layer]["changes"] = names_counted(f - before) if changed else names_counted(f)
             row[layer]["roughness"] = np.median(roughness(f), (1, 2))
         row["saturated"] = np.median(saturated(hidden), -1)
         row["cancelled"] = cancellation(model, self.windows).mean(-1)
@@ -162,7 +163,8 @@ class _Trial:
         }
 
 
-def _counted(f) -> dict:
+def names_counted(f) -> dict:
+    """Share of each name among the filters of each network."""
     names = classify(f)
     return {name: (names == name).mean((1, 2)) for name in CLASSES}
 
@@ -186,7 +188,7 @@ def _mean(found, draws: int):
     return found.reshape(draws, -1, *found.shape[1:]).mean(1)
 
 
-def _nulls(trial: _Trial, kinds, draws: int, each: int) -> tuple[dict, dict]:
+def _nulls(trial: FilterTrial, kinds, draws: int, each: int) -> tuple[dict, dict]:
     """Networks of each kind of surrogate, `each` for a draw: means by draw, and the weights."""
     by_kind, kept = {}, {}
     for number, kind in enumerate(kinds):
@@ -204,7 +206,7 @@ def _nulls(trial: _Trial, kinds, draws: int, each: int) -> tuple[dict, dict]:
 def _row(setup: Setup, recording: Recording, width: int, members: int, draws: int, each: int,
          kinds=MATCHED, more: bool = False) -> dict:  # fmt: skip
     """Real torques, no training, and surrogates, on one recording and window size."""
-    trial = _Trial(setup, recording, width)
+    trial = FilterTrial(setup, recording, width)
     targets = np.repeat(trial.torques[None], members, 0)
     weights, start = trial.train(targets, 0)
     row = {
@@ -221,7 +223,7 @@ def _row(setup: Setup, recording: Recording, width: int, members: int, draws: in
     return row
 
 
-def _intervened(trial: _Trial, weights: Weights, start: Weights, nulls: dict) -> dict:
+def _intervened(trial: FilterTrial, weights: Weights, start: Weights, nulls: dict) -> dict:
     f = weights.hidden_weights
     others = {kind: kept.hidden_weights for kind, kept in nulls.items()}
     cycled = {k: x[np.arange(len(f)) % len(x)] for k, x in others.items()}
@@ -243,13 +245,13 @@ def _intervened(trial: _Trial, weights: Weights, start: Weights, nulls: dict) ->
     }
 
 
-def _elsewhere(trial: _Trial, networks: dict) -> dict:
+def _elsewhere(trial: FilterTrial, networks: dict) -> dict:
     """What the same units follow on motions whose acceleration is not their position."""
     setup = trial.setup
     motions = {
         "two sines": split(record_two_harmonics(setup))[0],
-        "quintic": _record_quintic(setup),
-        "circle": _record_circle(setup),
+        "quintic": record_quintic(setup),
+        "circle": record_circle(setup),
     }
     by_name: dict = {}
     for name, motion in motions.items():
@@ -339,7 +341,7 @@ def _filter_responses(members: int = 15) -> dict:
             torque = TRIAL.arm.inverse_dynamics(*np.moveaxis(states[k], -1, 0))[:, 0]
             by_motion[name]["arm"].append(_response(torque[inside], states[k, inside, 0]))
     for width in WINDOWS:
-        trial = _Trial(_as_long_as(width), recording, width)
+        trial = FilterTrial(_as_long_as(width), recording, width)
         weights, _ = trial.train(np.repeat(trial.torques[None], members, 0), 0)
         model = trial.model(weights)
         filters = mean_gradient(model, trial.windows)[:, 0]
@@ -367,7 +369,7 @@ def _null_controls(
     gradient is kept, in the measure of `ddlib.learning.solve`, with how each network ended. The
     error alone has no end within reach: its row is what `few` steps give.
     """
-    trial = _Trial(TRIAL, TRIAL.record(), 21)
+    trial = FilterTrial(TRIAL, TRIAL.record(), 21)
     targets = np.repeat(trial.torques[None], members, 0)
     test = trial.data.transform(trial.test_windows, trial.answer)
 
@@ -378,13 +380,13 @@ def _null_controls(
             "test": errors[:, 1],
             "largest weight": weights.largest,
             "roughness, hidden": np.median(roughness(weights.hidden_weights), (-2, -1)),
-            "classes": _counted(weights.hidden_weights),
-            "direct": _counted(weights.direct_weights),
+            "classes": names_counted(weights.hidden_weights),
+            "direct": names_counted(weights.direct_weights),
         }
 
     rows = []
     for initial in (0.03, 0.3, 1.0):
-        other = _Trial(replace(TRIAL, initial=initial), TRIAL.record(), 21)
+        other = FilterTrial(replace(TRIAL, initial=initial), TRIAL.record(), 21)
         weights, _ = other.train(targets, 0)
         rows.append({"kind": "descent", "initial": initial, **row(weights)})
     for penalty in ({"decay": 1e-5}, {"decay": 1e-3}, {}):

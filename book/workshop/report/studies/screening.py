@@ -24,7 +24,7 @@ from ddlib.effects import (
 from ddlib.setups import JOINT_DAMPING, KP, WINDOWS, Setup, train_windows
 from ddlib.simulation import Recording
 from workshop.report.code_hash import code_hash, study
-from workshop.report.studies._table import _row
+from workshop.report.studies._table import errors_and_weights
 from workshop.report.sweeps import _sweep
 
 # Initial weights tried for a network at most: one that derails is begun anew, as anyone would
@@ -163,7 +163,7 @@ def _run(method: str, places: list, seeds: list) -> dict:
                 derailed += bool(history.derailed[0])
                 if not history.derailed[0]:
                     break
-            rows[-1][width] = _row(model, history, recording)
+            rows[-1][width] = errors_and_weights(model, history, recording)
     cells = {
         str(w): {name: [float(one[w][name][0]) for one in rows] for name in rows[0][w]}
         for w in WINDOWS
