@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beyond.control.adaptive import SlotineLi, Watched, mixed_regressor
-from beyond.studies.loop.runs import adaptive as runs
+from beyond.studies.loop import adaptive_laws as runs
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error
 from ddlib.effects import IDEAL
 from ddlib.setups import KD, STATE_FEEDBACK

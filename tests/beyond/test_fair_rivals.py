@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import expm
 
 from beyond.studies.loop import fair_rivals as study
-from beyond.studies.loop.run_time_parts import rounded
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II, end_point_error, with_load
 from ddlib.effects import CoulombFriction, Effects, Saturation, ViscousFriction

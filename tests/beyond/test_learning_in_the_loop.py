@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beyond.studies.loop import _learning as learning, learners
+from beyond.studies.loop import learners, learning
 from ddlib.control import Feedforward
 from ddlib.dynamics import end_point_error
 from ddlib.setups import STATE_FEEDBACK

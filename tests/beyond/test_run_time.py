@@ -6,7 +6,7 @@ import control
 import numpy as np
 import pytest
 
-from beyond.studies.loop import run_time_parts as parts
+from beyond.studies.loop import feedforwards as parts
 from ddlib.control import pd
 from ddlib.dynamics import CMU_DD_ARM_II as ARM, Arm
 from ddlib.effects import Effects, ViscousFriction

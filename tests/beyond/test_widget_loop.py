@@ -5,7 +5,7 @@ import pytest
 from traitlets import TraitError
 
 from beyond.chapters.widgets import loop
-from beyond.studies.loop.runs import adaptive as runs
+from beyond.studies.loop import adaptive_laws as runs
 from beyond.studies.page import learner
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import Effects

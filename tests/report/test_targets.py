@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ddlib.learning import related
-from workshop.report.studies import _targets as study
+from workshop.report.studies import targets as study
 from workshop.report.studies.nulls import TRIAL, FilterTrial
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from beyond.studies.loop import fair_rivals
-from beyond.studies.loop.runs.adaptive import WITH_FRICTION
+from beyond.studies.loop.adaptive_laws import WITH_FRICTION
 from ddlib.figures import (
     COLOUR_MAP,
     COLOURS,

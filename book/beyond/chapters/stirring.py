@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from beyond.studies.loop.run_time_parts import exact
+from beyond.studies.loop.feedforwards import exact
 from ddlib.figures import COLOURS, FAINT, Illustration, illustrate, legend_above, plain_ticks
 from ddlib.setups import JOINT_DAMPING, Setup
 from ddlib.tables import Table, how_many, quote, spread

@@ -13,7 +13,7 @@ from beyond.rivals.cmac import CMAC, Diverged
 from beyond.rivals.identified import Identified
 from beyond.rivals.protocol import Cases, Rival
 from beyond.rivals.tables import CellTable, GridTable, Nearest, full_table
-from beyond.studies.loop.run_time_parts import exact as equations, square_extents
+from beyond.studies.loop.feedforwards import exact as equations, square_extents
 from beyond.studies.rivals import square_recordings
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, Setup, inside_hull, true_states

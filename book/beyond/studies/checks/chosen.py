@@ -2,7 +2,7 @@
 
 from beyond.studies.loop import joints
 from beyond.studies.loop.chain import chain
-from beyond.studies.loop.runs._conditions import chosen_decay
+from beyond.studies.loop.conditions import chosen_decay
 from ddlib.metrics import rmss
 from workshop.report.code_hash import study
 

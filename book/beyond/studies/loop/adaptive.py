@@ -8,9 +8,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from beyond.control.adaptive import SlotineLi
-from beyond.studies.loop.run_time_parts import rounded
-from beyond.studies.loop.runs import adaptive as batch
-from beyond.studies.loop.runs.adaptive import LAWS
+from beyond.studies.loop import adaptive_laws as batch
+from beyond.studies.loop.adaptive_laws import LAWS
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.effects import IDEAL, Backlash, DeadZone, Delay, Effects, Ripple, StribeckFriction
 from ddlib.setups import (
@@ -39,7 +39,7 @@ _BITS = (10.0, 11.0, 12.5, 14.0, 16.0, 20.0)  # encoders, bits a turn
 _BEGIN = 0.5  # share of the base parameters that is known at the start
 _MOST = tuple(JOINT_DAMPING_COULOMB)  # N m, of the unmodelled effects
 _PLAY = (3.5e-3, 3.5e-3)  # rad: backlash of 0.2 degrees
-_CORNERS = (0.0, 0.1, 0.2)  # s over which a plan's corners are averaged, as in `_run_time`
+_CORNERS = (0.0, 0.1, 0.2)  # s over which a plan's corners are averaged, as in `run_time`
 
 # What is added to the set-up's effects.
 _BED = {

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from beyond.studies.loop.run_time_parts import rounded
-from beyond.studies.loop.runs.adaptive import LIMITS, SIZES, TRUTH
+from beyond.studies.loop.adaptive_laws import LIMITS, SIZES, TRUTH
+from beyond.studies.loop.feedforwards import rounded
 from ddlib.dynamics import CMU_DD_ARM_II, with_load
 from ddlib.setups import JOINT_DAMPING, JOINT_DAMPING_COULOMB, JOINT_DAMPING_VISCOUS, KD
 from ddlib.simulation import CONTROL_STEP, REST

@@ -10,7 +10,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
 from beyond.rivals.protocol import Cases
-from beyond.studies.loop.run_time_parts import on_days
+from beyond.studies.loop.feedforwards import on_days
 from ddlib._check import finite_array, integer, one_of, positive, seed_number, shaped
 from ddlib.analysis import cells_reached
 from ddlib.dynamics import ELBOWS, Arm, follow_hand

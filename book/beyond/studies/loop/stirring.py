@@ -15,8 +15,8 @@ from beyond.rivals.identified import Identified, Linear
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating, Rival
 from beyond.studies.loop import motions
+from beyond.studies.loop.feedforwards import exact, through_window
 from beyond.studies.loop.motions import training
-from beyond.studies.loop.run_time_parts import exact, through_window
 from ddlib.analysis import CLASSES, calibrated, classify, heard, unit_inputs
 from ddlib.control import Feedforward
 from ddlib.dynamics import ELBOWS, end_point_error, reach

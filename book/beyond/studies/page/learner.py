@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beyond.control.feedback_error import FeedbackErrorLearning, RigidBodyTerms
-from beyond.studies.loop.runs.adaptive import (
+from beyond.studies.loop.adaptive_laws import (
     SMOOTH,
     WITH_FRICTION,
     BehindModel,

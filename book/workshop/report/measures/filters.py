@@ -21,8 +21,8 @@ from ddlib.metrics import rmss
 from ddlib.setups import STATE_FEEDBACK, WINDOWS, predict, true_states
 from ddlib.tables import scientific, significant, spread
 from workshop.report import committed
-from workshop.report._probes import zero_crossings
 from workshop.report.evidence.verdicts import Measured, judged, largest_median, mean, median
+from workshop.report.probes import zero_crossings
 
 
 def _made(

@@ -32,7 +32,7 @@ from workshop.report.evidence.verdicts import (
     median,
     turns_at,
 )
-from workshop.report.studies._windows import acceleration_error
+from workshop.report.studies.windows import acceleration_error
 
 
 def estimates(

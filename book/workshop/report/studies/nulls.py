@@ -33,7 +33,8 @@ from ddlib.learning import (
 from ddlib.metrics import rmss
 from ddlib.setups import JOINT_DAMPING, STATE_FEEDBACK, WINDOWS, Setup, split, true_states
 from ddlib.simulation import LOG_STEP, Recording
-from workshop.report._probes import (
+from workshop.report.code_hash import study
+from workshop.report.probes import (
     cancellation,
     decoded,
     decoded_sign,
@@ -41,7 +42,6 @@ from workshop.report._probes import (
     with_filters,
     with_jerk,
 )
-from workshop.report.code_hash import study
 from workshop.report.two_harmonics import record_circle, record_quintic, record_two_harmonics
 
 _EPOCHS = 4000  # Epochs of the trial, for real and surrogate torques alike

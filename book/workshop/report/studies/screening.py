@@ -24,7 +24,7 @@ from ddlib.effects import (
 from ddlib.setups import JOINT_DAMPING, KP, WINDOWS, Setup, train_windows
 from ddlib.simulation import Recording
 from workshop.report.code_hash import code_hash, study
-from workshop.report.studies._table import errors_and_weights
+from workshop.report.studies.table import errors_and_weights
 from workshop.report.sweeps import _sweep
 
 # Initial weights tried for a network at most: one that derails is begun anew, as anyone would

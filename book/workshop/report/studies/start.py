@@ -36,8 +36,8 @@ from ddlib.analysis import (
 from ddlib.learning import TorqueModel, TrainingSet, Weights, cases, surrogates
 from ddlib.setups import SETUPS, WINDOWS, Setup, errors, split, train_windows
 from ddlib.simulation import LOG_STEP
-from workshop.report._probes import cancellation, zero_crossings
 from workshop.report.code_hash import code_hash, study
+from workshop.report.probes import cancellation, zero_crossings
 from workshop.report.sweeps import _sweep
 
 RANGES = (0.01, 0.03, 0.1, 0.3, 1.0)

@@ -14,11 +14,11 @@ from beyond.rivals.identified import Identified
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating
 from beyond.studies.loop import (
-    _learning as learning,
+    feedforwards as run_time,
     joints,
     learners,
+    learning,
     motions,
-    run_time_parts as run_time,
     stirring,
 )
 from beyond.studies.loop.chain import Sample, chain, extents, recorded

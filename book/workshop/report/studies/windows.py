@@ -13,7 +13,7 @@ from ddlib.setups import STATE_FEEDBACK, WINDOWS, split, train_windows
 from ddlib.simulation import LOG_STEP, Recording
 from workshop.report.code_hash import study
 from workshop.report.parity import learn
-from workshop.report.studies._table import errors_and_weights
+from workshop.report.studies.table import errors_and_weights
 
 # Window sizes from the smallest that can see an acceleration up to 0.8 s
 _SIZES = (3, 5, 7, 11, 15, 21, 31, 41, 61, 81)

@@ -21,7 +21,7 @@ from beyond.rivals.identified import Identified, Linear
 from beyond.rivals.lagrangian import LagrangianNetwork
 from beyond.rivals.networks import BySolver
 from beyond.rivals.protocol import Cases, Estimating
-from beyond.studies.loop import run_time_parts as parts
+from beyond.studies.loop import feedforwards as parts
 from ddlib.control import PID, plant
 from ddlib.dynamics import end_point_error, with_load
 from ddlib.effects import CoulombFriction, Delay, ViscousFriction
