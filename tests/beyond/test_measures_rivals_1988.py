@@ -9,7 +9,7 @@ from workshop.report import results
 
 pytestmark = pytest.mark.usefixtures("planted_members")
 
-POSITIONS = measures._KINDS[1]
+POSITIONS = measures.KINDS[1]
 
 
 @pytest.fixture

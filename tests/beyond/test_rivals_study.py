@@ -20,7 +20,7 @@ def test_the_budget_is_the_papers_network():
 def test_the_study_counts_and_keeps(monkeypatch, tmp_path):
     nearest = lineup._Line(lambda *_: Nearest(beyond="edge"), (1,), "cases", "tables", 1)
     filters = lineup._Line(lambda n, _: Linear(width=n, ridge=0.0), (5, 21), "samples", "filters")
-    monkeypatch.setattr(rivals, "_LINES", {"nearest": nearest, "filter": filters})
+    monkeypatch.setattr(rivals, "LINES", {"nearest": nearest, "filter": filters})
     monkeypatch.setattr(rivals, "_RECORDINGS", 2)
     monkeypatch.setattr(rivals, "_TORQUES", tmp_path / "torques.npz")
     rows = {(r["rival"], r["inputs"], r["size"]): r for r in rivals._rivals()["rows"]}
